@@ -1,0 +1,32 @@
+// The one exception type of the library: what is wrong, where, and what to do about it.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace alidade {
+
+// Doubles as the program's exit status.
+enum class ErrorKind {
+  kUsage = 2,          // a flag, setting or argument that cannot be
+  kInput = 3,          // a file or folder that cannot be read or written
+  kNothingMapped = 4,  // good input in which nothing could be tracked
+};
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  ErrorKind kind() const { return kind_; }
+
+ private:
+  ErrorKind kind_;
+};
+
+[[noreturn]] inline void ThrowUsage(const std::string& message) {
+  throw Error(ErrorKind::kUsage, message);
+}
+[[noreturn]] inline void ThrowInput(const std::string& message) {
+  throw Error(ErrorKind::kInput, message);
+}
+
+}  // namespace alidade

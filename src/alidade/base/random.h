@@ -1,0 +1,26 @@
+// Random numbers that are the same on every machine and with every standard library.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace alidade {
+
+// PCG32 (O'Neill 2014). Cheap to copy; equal seeds and streams give equal sequences.
+class Random {
+ public:
+  explicit Random(uint64_t seed = 1, uint64_t stream = 0);
+  uint32_t Next();                 // all 32 bits
+  uint32_t Below(uint32_t bound);  // uniform in [0, bound), bound > 0, unbiased
+  double Uniform();                // [0, 1)
+  double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+  double Gaussian();               // mean 0, standard deviation 1 (Marsaglia's polar method)
+  // `count` different numbers below `bound`, in the order drawn. Needs count <= bound.
+  std::vector<int> Sample(int count, int bound);
+
+ private:
+  uint64_t state_ = 0;
+  uint64_t increment_ = 1;
+};
+
+}  // namespace alidade
