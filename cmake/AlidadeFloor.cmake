@@ -16,6 +16,7 @@ function(alidade_floor NAME)
 endfunction()
 
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest.
+# Problem generators shared with the benchmarks are in bench/support.
 function(alidade_test FOLDER)
   cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${FOLDER}/*.cc)
@@ -23,7 +24,7 @@ function(alidade_test FOLDER)
     return()
   endif()
   add_executable(test_${FOLDER} ${SOURCES})
-  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
   gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
 endfunction()

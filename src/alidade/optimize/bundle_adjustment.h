@@ -1,5 +1,5 @@
-// Bundle adjustment: camera poses and points that agree best with what was seen. Flat arrays, no map.
-// Levenberg–Marquardt on the Schur complement (Triggs et al. 2000, §6), landmark-major.
+// Bundle adjustment: camera poses and points that agree best with what was seen. Flat arrays, no
+// map. Levenberg–Marquardt on the Schur complement (Triggs et al. 2000, §6), landmark-major.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,37 +13,39 @@ namespace alidade {
 
 struct BundleObservation {
   int camera = -1, point = -1;  // indices
-  Eigen::Vector3d pixel;        // u, v (undistorted) and u in the right image (NaN when there is none), pixels
+  Eigen::Vector3d
+      pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
   double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
   double inv_sigma2_right = 1;  // the same of u_right, 1/px²
 };
 
 struct BundleProblem {
-  Camera camera;                         // one camera took all pictures; its distortion is not used
-  std::vector<Se3> T_camera_world;       // start, and result
-  std::vector<uint8_t> fixed;            // one per camera: nonzero = held where it is
-  std::vector<Eigen::Vector3d> points;   // in the world; start, and result
+  Camera camera;                        // one camera took all pictures; its distortion is not used
+  std::vector<Se3> T_camera_world;      // start, and result
+  std::vector<uint8_t> fixed;           // one per camera: nonzero = held where it is
+  std::vector<Eigen::Vector3d> points;  // in the world; start, and result
   std::vector<BundleObservation> observations;  // sorted by point
 };
 
 struct BundleSettings {
-  int max_iterations = 10;     // accepted or rejected Levenberg–Marquardt steps
-  double huber_mono = 2.447;   // sqrt(5.991), standard deviations
-  double huber_stereo = 2.796; // sqrt(7.815)
+  int max_iterations = 10;              // accepted or rejected Levenberg–Marquardt steps
+  double huber_mono = 2.447;            // sqrt(5.991), standard deviations
+  double huber_stereo = 2.796;          // sqrt(7.815)
   double min_relative_decrease = 1e-5;  // stops when a step lowers the cost by less
-  double initial_lambda = 1e-4;  // damping, relative to the diagonal
-  int sparse_above = 100;      // free cameras; above, the reduced system is factored sparse
-  void Check() const;          // throws Error naming the field that cannot be
+  double initial_lambda = 1e-4;         // damping, relative to the diagonal
+  int sparse_above = 100;  // free cameras; above, the reduced system is factored sparse
+  void Check() const;      // throws Error naming the field that cannot be
 };
 
 struct BundleReport {
   double initial_cost = 0, final_cost = 0;  // ½ sum of Huber losses, unitless
   int iterations = 0;
-  bool converged = false;      // stopped by the decrease, not by the count or `stop`
+  bool converged = false;  // stopped by the decrease, not by the count or `stop`
 };
 
-// Improves `problem` in place; its cost never rises. Points seen by no observation, cameras with none, points behind a camera: left
-// as they are / their residual is left out. `stop` (may be null) is looked at between iterations.
+// Improves `problem` in place; its cost never rises. Points seen by no observation, cameras with
+// none, points behind a camera: left as they are / their residual is left out. `stop` (may be null)
+// is looked at between iterations.
 BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);
 

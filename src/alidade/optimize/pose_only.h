@@ -11,31 +11,34 @@
 namespace alidade {
 
 struct PoseOnlySettings {
-  int max_iterations = 10;    // Gauss–Newton steps per round
-  int rounds = 4;             // after each, matches beyond the gate are set aside, and may come back
-  double huber_mono = 2.447;  // sqrt(5.991): 95 % of chi² with 2 degrees of freedom, in standard deviations
+  int max_iterations = 10;  // Gauss–Newton steps per round
+  int rounds = 4;           // after each, matches beyond the gate are set aside, and may come back
+  double huber_mono =
+      2.447;  // sqrt(5.991): 95 % of chi² with 2 degrees of freedom, in standard deviations
   double huber_stereo = 2.796;  // sqrt(7.815): with 3
-  void Check() const;         // throws Error naming the field that cannot be
+  void Check() const;           // throws Error naming the field that cannot be
 };
 
 struct PoseMatch {
-  Eigen::Vector3d p_world;     // landmark, metres
-  Eigen::Vector3d pixel;       // u, v (undistorted) and u in the right image (NaN when there is none), pixels
-  double inv_sigma2 = 1;       // 1 / variance of u and v, 1/px²
-  double inv_sigma2_right = 1; // the same of u_right (a depth sensor's may differ), 1/px²
+  Eigen::Vector3d p_world;  // landmark, metres
+  Eigen::Vector3d
+      pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
+  double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
+  double inv_sigma2_right = 1;  // the same of u_right (a depth sensor's may differ), 1/px²
 };
 
 struct PoseOnlyResult {
   Se3 T_camera_world;
   std::vector<bool> inlier;  // one for each match; behind the camera is never one
   int inliers = 0;
-  double cost = 0;           // sum of Huber losses over inliers, unitless
+  double cost = 0;                          // sum of Huber losses over inliers, unitless
   Matrix6d information = Matrix6d::Zero();  // of the left increment at the solution, inliers only
 };
 
 // Starts at `T_camera_world`. Fewer than 3 matches: returns the start with no inliers.
 // ORB-SLAM2 (Mur-Artal & Tardós 2017), eq. 3–4; left-multiplied increments as in Solà et al. 2018.
-PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world, std::span<const PoseMatch> matches,
+PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
+                            std::span<const PoseMatch> matches,
                             const PoseOnlySettings& settings = {});
 
 }  // namespace alidade

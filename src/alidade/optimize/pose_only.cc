@@ -1,0 +1,251 @@
+#include "alidade/optimize/pose_only.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/base/error.h"
+#include "alidade/optimize/reprojection.h"
+
+namespace alidade {
+namespace {
+
+// Two matches side by side: Eigen turns each operation into one SSE2 (NEON, WebAssembly)
+// instruction.
+using Pair = Eigen::Array2d;
+
+struct MatchPair {
+  Pair x, y, z;           // landmark, world
+  Pair u, v, right;       // seen, pixels
+  Pair weight, weight_r;  // 1/px²; 0: the match, or its u_right, cannot be used
+  Pair huber;             // standard deviations
+  Pair active;            // 1: counts in this round, 0: doesn't
+};
+
+struct NormalEquations {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  double cost = 0;
+};
+
+std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matches,
+                            const PoseOnlySettings& settings) {
+  MatchPair none;
+  none.x = none.y = none.u = none.v = none.right = none.weight = none.weight_r = none.active = 0;
+  none.z = none.huber = 1;
+  std::vector<MatchPair> pairs((matches.size() + 1) / 2, none);
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const PoseMatch& m = matches[i];
+    if (!m.p_world.allFinite() || !m.pixel.head<2>().allFinite()) continue;
+    if (!(m.inv_sigma2 > 0) || !std::isfinite(m.inv_sigma2)) continue;
+    const bool stereo =
+        HasRight(k, m.pixel.z()) && m.inv_sigma2_right > 0 && std::isfinite(m.inv_sigma2_right);
+    MatchPair& p = pairs[i / 2];
+    const int lane = i % 2;
+    p.x[lane] = m.p_world.x();
+    p.y[lane] = m.p_world.y();
+    p.z[lane] = m.p_world.z();
+    p.u[lane] = m.pixel.x();
+    p.v[lane] = m.pixel.y();
+    p.right[lane] = stereo ? m.pixel.z() : 0;
+    p.weight[lane] = m.inv_sigma2;
+    p.weight_r[lane] = stereo ? m.inv_sigma2_right : 0;
+    p.huber[lane] = stereo ? settings.huber_stereo : settings.huber_mono;
+    p.active[lane] = 1;
+  }
+  return pairs;
+}
+
+// One pair seen from a pose.
+struct Seen {
+  Pair x, y, z;  // camera frame, z clamped to be positive
+  Reprojection<Pair> e;
+  Pair chi2;
+  Pair in_front;  // 1 or 0
+};
+
+inline Seen Look(const Intrinsics& k, const Se3& T, const MatchPair& m) {
+  Seen s;
+  s.x = T.R(0, 0) * m.x + T.R(0, 1) * m.y + T.R(0, 2) * m.z + T.t.x();
+  s.y = T.R(1, 0) * m.x + T.R(1, 1) * m.y + T.R(1, 2) * m.z + T.t.y();
+  const Pair depth = T.R(2, 0) * m.x + T.R(2, 1) * m.y + T.R(2, 2) * m.z + T.t.z();
+  s.z = depth.max(kMinDepth);
+  s.in_front = Pair(depth[0] > kMinDepth, depth[1] > kMinDepth);
+  s.e = Reproject<Pair>(k, s.x, s.y, s.z, m.u, m.v, m.right);
+  s.chi2 = m.weight * (s.e.u * s.e.u + s.e.v * s.e.v) + m.weight_r * (s.e.right * s.e.right);
+  return s;
+}
+
+// Errors beyond this say nothing about where to go: the loss is flat from there on, and behind the
+// camera too. So a wrong match that slips behind can neither stop a step nor reward it.
+double FarChi2PerWeight(const Intrinsics& k) { return 16 * k.fx * k.fx; }
+
+// J of the left increment (translation; rotation) is A [I, -[p]x], A the derivative by the
+// camera-frame point: with M = A' W A all blocks of J' W J are M, -M [p]x and [p]x M [p]x' (Solà et
+// al. 2018, eq. 182).
+NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<MatchPair>& pairs,
+                          bool robust) {
+  const Pair zero = Pair::Zero();
+  Pair m00 = zero, m02 = zero, m11 = zero, m12 = zero, m22 = zero, cost = zero;
+  Pair c00 = zero, c01 = zero, c02 = zero, c10 = zero, c11 = zero, c12 = zero, c20 = zero,
+       c21 = zero, c22 = zero;
+  Pair r00 = zero, r01 = zero, r02 = zero, r11 = zero, r12 = zero, r22 = zero;
+  Pair g0 = zero, g1 = zero, g2 = zero, g3 = zero, g4 = zero, g5 = zero;
+  const double far = FarChi2PerWeight(k);
+  for (const MatchPair& m : pairs) {
+    const Seen s = Look(k, T, m);
+    const Pair cap = far * m.weight;
+    const Pair chi2 = s.chi2.min(cap);
+    Pair near = Pair(s.chi2[0] < cap[0], s.chi2[1] < cap[1]) * s.in_front * m.active;
+    if (robust) {
+      const Pair root = chi2.sqrt();
+      const Pair irls = (m.huber / root.max(1e-9)).min(1.0);
+      // Half of Huber's loss, both branches in one: root² / 2 below the bound, huber (root - huber
+      // / 2) above.
+      const Pair inner = root.min(m.huber);
+      cost += m.active * (inner * (root - 0.5 * inner));
+      near *= irls;
+    } else {
+      cost += m.active * (0.5 * chi2);
+    }
+    const Pair w = m.weight * near, wr = m.weight_r * near;
+    const Pair wu = w * s.e.u_x, wru = wr * s.e.u_x, wv = w * s.e.v_y;
+    const Pair a = (wu + wru) * s.e.u_x, b = wv * s.e.v_y;
+    const Pair c = wu * s.e.u_z + wru * s.e.right_z, d = wv * s.e.v_z;
+    const Pair f = w * (s.e.u_z * s.e.u_z + s.e.v_z * s.e.v_z) + wr * (s.e.right_z * s.e.right_z);
+    const Pair h0 = wu * s.e.u + wru * s.e.right, h1 = wv * s.e.v;
+    const Pair h2 = w * (s.e.u_z * s.e.u + s.e.v_z * s.e.v) + wr * (s.e.right_z * s.e.right);
+    m00 += a;
+    m02 += c;
+    m11 += b;
+    m12 += d;
+    m22 += f;
+    // C = -M [p]x; M = (a 0 c; 0 b d; c d f).
+    const Pair k00 = c * s.y, k01 = a * s.z - c * s.x, k02 = -(a * s.y);
+    const Pair k10 = d * s.y - b * s.z, k11 = -(d * s.x), k12 = b * s.x;
+    const Pair k20 = f * s.y - d * s.z, k21 = c * s.z - f * s.x, k22 = d * s.x - c * s.y;
+    c00 += k00;
+    c01 += k01;
+    c02 += k02;
+    c10 += k10;
+    c11 += k11;
+    c12 += k12;
+    c20 += k20;
+    c21 += k21;
+    c22 += k22;
+    // [p]x C, upper half.
+    r00 += s.y * k20 - s.z * k10;
+    r01 += s.y * k21 - s.z * k11;
+    r02 += s.y * k22 - s.z * k12;
+    r11 += s.z * k01 - s.x * k21;
+    r12 += s.z * k02 - s.x * k22;
+    r22 += s.x * k12 - s.y * k02;
+    g0 += h0;
+    g1 += h1;
+    g2 += h2;
+    g3 += s.y * h2 - s.z * h1;
+    g4 += s.z * h0 - s.x * h2;
+    g5 += s.x * h1 - s.y * h0;
+  }
+  NormalEquations n;
+  n.H.row(0) << m00.sum(), 0, m02.sum(), c00.sum(), c01.sum(), c02.sum();
+  n.H.row(1) << 0, m11.sum(), m12.sum(), c10.sum(), c11.sum(), c12.sum();
+  n.H.row(2) << 0, 0, m22.sum(), c20.sum(), c21.sum(), c22.sum();
+  n.H.row(3) << 0, 0, 0, r00.sum(), r01.sum(), r02.sum();
+  n.H.row(4) << 0, 0, 0, 0, r11.sum(), r12.sum();
+  n.H.row(5) << 0, 0, 0, 0, 0, r22.sum();
+  n.H.triangularView<Eigen::StrictlyLower>() = n.H.transpose();
+  n.g << g0.sum(), g1.sum(), g2.sum(), g3.sum(), g4.sum(), g5.sum();
+  n.cost = cost.sum();
+  return n;
+}
+
+// Levenberg–Marquardt with almost no damping: Gauss–Newton as long as the cost falls.
+Se3 Descend(const Intrinsics& k, Se3 T, const std::vector<MatchPair>& pairs, bool robust,
+            int max_iterations) {
+  NormalEquations now = Linearise(k, T, pairs, robust);
+  double lambda = 1e-9;
+  for (int i = 0; i < max_iterations; ++i) {
+    Matrix6d damped = now.H;
+    damped.diagonal() += lambda * now.H.diagonal();
+    damped.diagonal().array() += 1e-12 * now.H.diagonal().maxCoeff() + 1e-300;
+    const Vector6d step = -damped.llt().solve(now.g);
+    if (!step.allFinite()) return T;
+    const Se3 trial = Se3::Exp(step) * T;
+    // What the step still gains is nothing against the noise: take it unseen.
+    const double gain = -0.5 * now.g.dot(step);
+    if (gain < 1e-7 * now.cost + 1e-12) return gain >= 0 ? trial : T;
+    const NormalEquations next = Linearise(k, trial, pairs, robust);
+    if (next.cost < now.cost) {
+      T = trial;
+      now = next;
+      lambda = std::max(lambda * 0.1, 1e-9);
+    } else {
+      lambda = std::max(lambda * 10, 1e-3);
+    }
+  }
+  return T;
+}
+
+// Sets aside what is beyond the gate. Returns whether anything changed.
+bool Reclassify(const Intrinsics& k, const Se3& T, std::vector<MatchPair>& pairs, int& inliers) {
+  bool changed = false;
+  inliers = 0;
+  for (MatchPair& m : pairs) {
+    const Seen s = Look(k, T, m);
+    for (int lane = 0; lane < 2; ++lane) {
+      const bool inlier = m.weight[lane] > 0 && s.in_front[lane] > 0 &&
+                          s.chi2[lane] <= m.huber[lane] * m.huber[lane];
+      changed |= inlier != (m.active[lane] > 0);
+      m.active[lane] = inlier;
+      inliers += inlier;
+    }
+  }
+  return changed;
+}
+
+}  // namespace
+
+void PoseOnlySettings::Check() const {
+  if (max_iterations < 1) ThrowUsage("max_iterations: must be at least 1");
+  if (rounds < 1) ThrowUsage("rounds: must be at least 1");
+  if (!(huber_mono > 0) || !std::isfinite(huber_mono)) ThrowUsage("huber_mono: must be above 0");
+  if (!(huber_stereo > 0) || !std::isfinite(huber_stereo)) {
+    ThrowUsage("huber_stereo: must be above 0");
+  }
+}
+
+PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
+                            std::span<const PoseMatch> matches, const PoseOnlySettings& settings) {
+  PoseOnlyResult result;
+  result.T_camera_world = T_camera_world;
+  result.inlier.assign(matches.size(), false);
+  if (matches.size() < 3) return result;
+
+  const Intrinsics k = Intrinsics::Of(camera);
+  std::vector<MatchPair> pairs = Pack(k, matches, settings);
+  int usable = 0;
+  for (const MatchPair& m : pairs) usable += static_cast<int>(m.active.sum());
+  if (usable < 3) return result;
+
+  Se3 T = T_camera_world;
+  for (int round = 0; round < settings.rounds; ++round) {
+    const bool robust = round == 0 || round + 1 < settings.rounds;
+    T = Descend(k, T, pairs, robust, settings.max_iterations);
+    // With the same inliers again, all inside the quadratic part of the loss, further rounds do
+    // nothing.
+    if (!Reclassify(k, T, pairs, result.inliers)) break;
+    if (result.inliers < 3 && round + 1 < settings.rounds) {
+      for (MatchPair& m : pairs) m.active = Pair(m.weight[0] > 0, m.weight[1] > 0);
+    }
+  }
+  result.T_camera_world = T.Normalised();
+
+  for (size_t i = 0; i < matches.size(); ++i) result.inlier[i] = pairs[i / 2].active[i % 2] > 0;
+  const NormalEquations last = Linearise(k, result.T_camera_world, pairs, false);
+  result.information = last.H;
+  result.cost = last.cost;
+  return result;
+}
+
+}  // namespace alidade
