@@ -1,20 +1,22 @@
-// From an image to a Frame: pyramid, FAST corners spread evenly, orientation, steered binary descriptors.
-// Rublee et al. 2011 (ORB); even spread as in Mur-Artal, Montiel & Tardós 2015, §VI-A.
+// From an image to a Frame: pyramid, FAST corners spread evenly, orientation, steered binary
+// descriptors. Rublee et al. 2011 (ORB); even spread as in Mur-Artal, Montiel & Tardós 2015, §VI-A.
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 
+#include "alidade/features/describe.h"
 #include "alidade/features/frame.h"
 
 namespace alidade {
 
 struct ExtractorSettings {
-  int features = 1000;     // wanted per image, over all levels
-  int fast_threshold = 20; // grey levels; first try in each cell
-  int fast_minimum = 7;    // grey levels; second try in cells the first left empty
-  int cell = 32;           // pixels, side of a detection cell on every level
-  int border = 19;         // pixels kept free on every level: descriptor patch and blur must fit
-  void Check() const;      // throws Error (usage) naming the field that cannot be
+  int features = 1000;      // wanted per image, over all levels
+  int fast_threshold = 20;  // grey levels; first try in each cell
+  int fast_minimum = 7;     // grey levels; second try in cells the first left empty
+  int cell = 32;            // pixels, side of a detection cell on every level
+  int border = 19;          // pixels kept free on every level: descriptor patch and blur must fit
+  void Check() const;       // throws Error (usage) naming the field that cannot be
 };
 
 // One instance per stream: keeps buffers between frames. Extract() is not re-entrant.
@@ -22,23 +24,27 @@ class Extractor {
  public:
   explicit Extractor(ExtractorSettings settings = {});
 
-  // `image`: 8 bit grey, continuous or not, of the camera's size. Keypoints are undistorted with `camera`
-  // (raw_x, raw_y keep the image position) and sorted by level, then row, then column.
-  // The result does not depend on the number of threads. A structureless image gives an empty frame.
+  // `image`: 8 bit grey, continuous or not, of the camera's size. Keypoints are undistorted with
+  // `camera` (raw_x, raw_y keep the image position) and sorted by level, then row, then column. The
+  // result does not depend on the number of threads. A structureless image gives an empty frame.
   Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number);
 
  private:
   ExtractorSettings settings_;
+  cv::Mat smooth_;  // the smoothed levels below each other, one row stride for all
+  std::optional<SteeredPattern> pattern_;  // for that stride
 };
 
-// Gives every keypoint its depth from a registered depth image (CV_16U in depth_factor units per metre or
-// CV_32F in metres), read at its raw position, and right_x = x - bf / depth. Left without depth: no reading, or a 3x3
-// neighbourhood that spreads more than 5 % (an edge: foreground and background mix there).
+// Gives every keypoint its depth from a registered depth image (CV_16U in depth_factor units per
+// metre or CV_32F in metres), read at its raw position, and right_x = x - bf / depth. Left without
+// depth: no reading, or a 3x3 neighbourhood that spreads more than 5 % (an edge: foreground and
+// background mix there).
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame);
 
-// Finds every keypoint of the rectified left image along its row in the right one (extracted with the same settings): Hamming
-// distance, then sum of absolute differences and a parabola for sub-pixel disparity, then outliers by the
-// median SAD. Fills right_x and depth. Needs both pyramids.
+// Finds every keypoint of the rectified left image along its row in the right one (extracted with
+// the same settings): Hamming distance, then sum of absolute differences and a parabola for
+// sub-pixel disparity, then outliers by the median SAD. Fills right_x and depth. Needs both
+// pyramids.
 void MatchStereo(const Frame& right, const Camera& camera, Frame& left);
 
 }  // namespace alidade

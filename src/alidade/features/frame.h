@@ -23,42 +23,44 @@ struct Keypoint {
   float raw_x = 0, raw_y = 0;  // as in the image, pixels of level 0
   float angle = 0;             // orientation of the patch, radians in (-pi, pi]
   float response = 0;          // corner strength (FAST score)
-  float right_x = kNoDepth;    // column in the rectified right image, or x - bf / depth; kNoDepth when unknown
-  float depth = kNoDepth;      // metres along z; kNoDepth when unknown
-  int level = 0;               // pyramid level it was found on
+  float right_x =
+      kNoDepth;  // column in the rectified right image, or x - bf / depth; kNoDepth when unknown
+  float depth = kNoDepth;  // metres along z; kNoDepth when unknown
+  int level = 0;           // pyramid level it was found on
 
   static constexpr float kNoDepth = -1;
   bool has_depth() const { return depth > 0; }
   Eigen::Vector2d pixel() const { return {x, y}; }
 };
 
-// Finds the keypoints near a place in constant time. Cells of kCell pixels over the undistorted image.
+// Finds the keypoints near a place in constant time. Cells of kCell pixels over the undistorted
+// image.
 class KeypointGrid {
  public:
   static constexpr int kCell = 16;  // pixels
   KeypointGrid() = default;
   KeypointGrid(std::span<const Keypoint> keypoints, int width, int height);
-  // Calls visit(index) for every keypoint whose cell touches the square of half-width `radius` around
-  // (x, y), in order of cells, then of indices. The caller checks the exact distance.
+  // Calls visit(index) for every keypoint whose cell touches the square of half-width `radius`
+  // around (x, y), in order of cells, then of indices. The caller checks the exact distance.
   template <typename Visit>
   void VisitNear(float x, float y, float radius, Visit&& visit) const;
 
  private:
   int columns_ = 0, rows_ = 0;
-  float left_ = 0, top_ = 0;     // undistorted keypoints may lie outside the image
-  std::vector<int> first_;       // per cell, index into order_; one more at the end
-  std::vector<int> order_;       // keypoint indices, cell by cell
+  float left_ = 0, top_ = 0;  // undistorted keypoints may lie outside the image
+  std::vector<int> first_;    // per cell, index into order_; one more at the end
+  std::vector<int> order_;    // keypoint indices, cell by cell
 };
 
 // Immutable once made; shared between tracker, map and workers.
 struct Frame {
-  double time = 0;                  // seconds
-  int number = 0;                   // counted from 0 in the recording
+  double time = 0;  // seconds
+  int number = 0;   // counted from 0 in the recording
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;  // one for each keypoint
   KeypointGrid grid;
-  cv::Mat image;                    // 8 bit grey, level 0, as given (not undistorted)
-  std::vector<cv::Mat> pyramid;     // all levels; empty once the frame is a keyframe (memory)
+  cv::Mat image;                 // 8 bit grey, level 0, as given (not undistorted)
+  std::vector<cv::Mat> pyramid;  // all levels; empty once the frame is a keyframe (memory)
 };
 
 template <typename Visit>
