@@ -1,0 +1,20 @@
+// The subcommands. Each adds itself to the command line; when it is the one chosen, parsing fills
+// `action`, which main then runs: what it returns is the program's exit status.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace alidade {
+
+using Action = std::function<int()>;
+
+void AddRunCommand(CLI::App& app, Action& action);
+void AddEvaluateCommand(CLI::App& app, Action& action);
+void AddSynthCommand(CLI::App& app, Action& action);
+void AddBenchCommand(CLI::App& app, Action& action);
+
+}  // namespace alidade

@@ -1,0 +1,223 @@
+// `alidade evaluate`: how good a trajectory is against the truth.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "alidade/evaluation/ate.h"
+#include "alidade/evaluation/rpe.h"
+#include "alidade/io/files/trajectory_file.h"
+#include "arguments.h"
+#include "commands.h"
+
+namespace alidade {
+namespace {
+
+using nlohmann::json;
+
+struct EvaluateOptions {
+  std::string truth, estimate;  // paths
+  std::string align = "se3", association = "tum", delta = "1s", pairs = "all";
+  double max_dt = 0.02;
+  bool as_json = false;
+};
+
+Alignment ParseAlignment(const std::string& word) {
+  return Choice<Alignment>(
+      "--align", word,
+      {{"se3", Alignment::kSe3}, {"sim3", Alignment::kSim3}, {"none", Alignment::kNone}});
+}
+
+// The span of the recording as `run` noted it beside the trajectory it wrote.
+std::optional<TimeSpan> SpanFromStats(const std::filesystem::path& stats_path) {
+  std::ifstream file(stats_path);
+  if (!file) return std::nullopt;
+  const json stats = json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!stats.is_object() || !stats.contains("span")) return std::nullopt;
+  const json& span = stats["span"];
+  if (!span.is_array() || span.size() != 2 || !span[0].is_number() || !span[1].is_number()) {
+    return std::nullopt;
+  }
+  return TimeSpan{span[0].get<double>(), span[1].get<double>()};
+}
+
+// The span of the images listed beside the truth, in a TUM folder.
+std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path) {
+  std::ifstream file(list_path);
+  std::optional<TimeSpan> span;
+  for (std::string line; std::getline(file, line);) {
+    char* end = nullptr;
+    const double time = std::strtod(line.c_str(), &end);
+    if (end == line.c_str()) continue;  // a comment or an empty line
+    if (!span) span = TimeSpan{time, time};
+    span->first = std::min(span->first, time);
+    span->last = std::max(span->last, time);
+  }
+  return span;
+}
+
+// First and last frame of the recording; unknown for a truth and an estimate that lie alone.
+std::optional<TimeSpan> SourceSpan(const EvaluateOptions& options) {
+  const auto beside = [](const std::string& path, const char* name) {
+    return std::filesystem::path(path).parent_path() / name;
+  };
+  if (const auto span = SpanFromStats(beside(options.estimate, "stats.json"))) return span;
+  return SpanFromImageList(beside(options.truth, "rgb.txt"));
+}
+
+json ToJson(const ErrorStatistics& s, double scale, double coverage) {
+  return {{"n", s.n},     {"rmse", s.rmse}, {"mean", s.mean}, {"median", s.median},  {"std", s.std},
+          {"min", s.min}, {"max", s.max},   {"scale", scale}, {"coverage", coverage}};
+}
+
+void PrintRow(const char* name, const ErrorStatistics& s) {
+  std::printf("%-12s %11.6f %11.6f %11.6f %11.6f %11.6f %11.6f\n", name, s.rmse, s.mean, s.median,
+              s.std, s.min, s.max);
+}
+
+void PrintHead() {
+  std::printf("%-12s %11s %11s %11s %11s %11s %11s\n", "", "rmse", "mean", "median", "std", "min",
+              "max");
+}
+
+std::string DescribeAlignment(Alignment align, double scale) {
+  if (align == Alignment::kNone) return "not aligned";
+  if (align == Alignment::kSe3) return "aligned by SE(3)";
+  char text[64];
+  std::snprintf(text, sizeof(text), "aligned by Sim(3), scale %.6f", scale);
+  return text;
+}
+
+int EvaluateAteCommand(const EvaluateOptions& options) {
+  AteSettings settings;
+  settings.align = ParseAlignment(options.align);
+  settings.association =
+      Choice<Association>("--association", options.association,
+                          {{"tum", Association::kTum}, {"evo", Association::kEvo}});
+  settings.max_dt = options.max_dt;
+  settings.Check();
+  settings.source_span = SourceSpan(options);
+  const Trajectory truth = ReadTrajectory(options.truth);
+  const Trajectory estimate = ReadTrajectory(options.estimate);
+  const AteResult result = EvaluateAte(truth, estimate, settings);
+  const double scale = result.T_truth_estimate.s;
+  if (options.as_json) {
+    std::printf("%s\n", ToJson(result.error, scale, result.coverage).dump(2).c_str());
+    return 0;
+  }
+  std::printf("absolute trajectory error of %s\n", options.estimate.c_str());
+  std::printf("%d of %zu poses matched to the truth, %s; coverage %.1f %%\n\n", result.error.n,
+              estimate.size(), DescribeAlignment(settings.align, scale).c_str(),
+              100 * result.coverage);
+  PrintHead();
+  PrintRow("metres", result.error);
+  return 0;
+}
+
+void ParseDelta(const std::string& word, RpeSettings& settings) {
+  char* end = nullptr;
+  settings.delta = std::strtod(word.c_str(), &end);
+  const std::string unit = end;
+  if (end == word.c_str() || (unit != "s" && unit != "f")) {
+    ThrowUsage("--delta cannot be '" + word + "': write seconds like 1s or frames like 30f");
+  }
+  settings.unit = unit == "s" ? DeltaUnit::kSeconds : DeltaUnit::kFrames;
+}
+
+int EvaluateRpeCommand(const EvaluateOptions& options) {
+  RpeSettings settings;
+  settings.align = ParseAlignment(options.align);
+  settings.pairs = Choice<PairSelection>(
+      "--pairs", options.pairs,
+      {{"all", PairSelection::kAll}, {"consecutive", PairSelection::kConsecutive}});
+  settings.max_dt = options.max_dt;
+  ParseDelta(options.delta, settings);
+  settings.Check();
+  settings.source_span = SourceSpan(options);
+  const RpeResult result =
+      EvaluateRpe(ReadTrajectory(options.truth), ReadTrajectory(options.estimate), settings);
+  if (options.as_json) {
+    const json both = {{"trans", ToJson(result.trans, result.scale, result.coverage)},
+                       {"rot", ToJson(result.rot, result.scale, result.coverage)}};
+    std::printf("%s\n", both.dump(2).c_str());
+    return 0;
+  }
+  std::printf("relative pose error of %s over %s\n", options.estimate.c_str(),
+              options.delta.c_str());
+  std::printf("%d %s pairs, scale %.6f; coverage %.1f %%\n\n", result.trans.n,
+              options.pairs == "all" ? "overlapping" : "consecutive", result.scale,
+              100 * result.coverage);
+  PrintHead();
+  PrintRow("metres", result.trans);
+  PrintRow("degrees", result.rot);
+  return 0;
+}
+
+void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
+  command
+      .add_option(
+          "truth", options.truth,
+          "True trajectory: a TUM file, a EuRoC csv, or KITTI poses (times.txt beside them)")
+      ->required()
+      ->type_name("GT");
+  command.add_option("estimate", options.estimate, "Trajectory to judge, in the same formats")
+      ->required()
+      ->type_name("EST");
+  command
+      .add_option("--align", options.align,
+                  "se3: rotate and shift; sim3: scale as well (one camera); none")
+      ->type_name("se3|sim3|none")
+      ->capture_default_str();
+  command.add_option("--max-dt", options.max_dt, "Largest difference of matched time stamps")
+      ->type_name("SECONDS")
+      ->capture_default_str();
+  command.add_flag("--json", options.as_json, "Print JSON instead of a table");
+}
+
+}  // namespace
+
+void AddEvaluateCommand(CLI::App& app, Action& action) {
+  CLI::App* evaluate = app.add_subcommand("evaluate", "How good a trajectory is against the truth");
+  evaluate->require_subcommand(1);
+  const auto options = std::make_shared<EvaluateOptions>();
+
+  CLI::App* ate = evaluate->add_subcommand(
+      "ate", "Absolute trajectory error: distance to the truth after alignment");
+  AddCommonOptions(*ate, *options);
+  ate->add_option("--association", options->association,
+                  "tum: one-to-one, best first; evo: nearest for each pose of the shorter list")
+      ->type_name("tum|evo")
+      ->capture_default_str();
+  ate->footer(
+      "\nExamples:\n"
+      "  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n"
+      "  alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n"
+      "\nJSON: n, rmse, mean, median, std, min, max (metres), scale, coverage.");
+  ate->callback(
+      [options, &action] { action = [options] { return EvaluateAteCommand(*options); }; });
+
+  CLI::App* rpe = evaluate->add_subcommand(
+      "rpe", "Relative pose error: drift over a fixed step of time or frames");
+  AddCommonOptions(*rpe, *options);
+  rpe->add_option("--delta", options->delta, "The step: seconds (1s) or frames (30f)")
+      ->type_name("STEP")
+      ->capture_default_str();
+  rpe->add_option("--pairs", options->pairs,
+                  "all: from every pose, as TUM's tool; consecutive: without overlap")
+      ->type_name("all|consecutive")
+      ->capture_default_str();
+  rpe->footer(
+      "\nExamples:\n"
+      "  alidade evaluate rpe groundtruth.txt trajectory.txt\n"
+      "  alidade evaluate rpe groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n"
+      "\nJSON: trans (metres) and rot (degrees), each as `evaluate ate` prints it.");
+  rpe->callback(
+      [options, &action] { action = [options] { return EvaluateRpeCommand(*options); }; });
+}
+
+}  // namespace alidade

@@ -1,0 +1,47 @@
+// Absolute trajectory error: lay the estimate on the truth, then measure the distance at each
+// matched pose. Sturm et al. 2012, section III-B; alignment by Umeyama 1991.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "alidade/evaluation/association.h"
+#include "alidade/evaluation/statistics.h"
+#include "alidade/io/trajectory.h"
+
+namespace alidade {
+
+enum class Alignment { kNone, kSe3, kSim3 };
+
+struct TimeSpan {
+  double first = 0, last = 0;  // seconds, both included
+};
+
+struct AteSettings {
+  Alignment align = Alignment::kSe3;  // Sim(3) where the estimate's scale is unknown (one camera)
+  double max_dt = 0.02;               // seconds between matched stamps: TUM's default
+  Association association = Association::kTum;
+  // First and last frame of the recording; coverage is judged over it. Unknown: the estimate's own
+  // span.
+  std::optional<TimeSpan> source_span = std::nullopt;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
+};
+
+struct AteResult {
+  ErrorStatistics error;  // metres
+  double coverage = 0;    // matched truth poses / truth poses within the source's span, at most 1
+  Sim3 T_truth_estimate;  // the alignment; its scale is 1 unless Sim(3) was asked for
+  std::vector<StampPair> pairs;   // indices into the trajectories as given
+  std::vector<double> distances;  // metres, one for each pair
+};
+
+// Trajectories in any order of time. Throws Error (input) on numbers that are not finite, on fewer
+// than 3 matched poses, and (when aligning) on poses that all lie in one point.
+AteResult EvaluateAte(const Trajectory& truth, const Trajectory& estimate,
+                      const AteSettings& settings = {});
+
+// The alignment alone, from matched poses (indices into the trajectories).
+Sim3 AlignTrajectories(const Trajectory& truth, const Trajectory& estimate,
+                       const std::vector<StampPair>& pairs, Alignment align);
+
+}  // namespace alidade
