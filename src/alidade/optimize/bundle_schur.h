@@ -1,0 +1,58 @@
+// One damped Gauss–Newton step of bundle adjustment: points eliminated first, the reduced camera
+// system solved dense or sparse, points by back-substitution (Triggs et al. 2000, §6.1).
+#pragma once
+
+#include <Eigen/SparseCholesky>
+#include <vector>
+
+#include "alidade/optimize/bundle_linearise.h"
+
+namespace alidade {
+
+struct BundleStep {
+  std::vector<Vector6d> cameras;        // ρ, θ by slot
+  std::vector<Eigen::Vector3d> points;  // as in the layout
+  double predicted = 0;                 // decrease of the cost, were it quadratic
+  bool valid = false;                   // false: the system could not be factored
+};
+
+// Remembers what does not change from step to step: which blocks of the reduced system are not
+// zero, and in which order to eliminate them.
+class SchurSolver {
+ public:
+  SchurSolver(const BundleLayout& layout, int sparse_above);
+  void Solve(const Linearisation& system, double lambda, BundleStep& step);
+
+ private:
+  using Block = Eigen::Matrix<double, 6, 6>;
+  struct Reduced {              // lower blocks of the reduced system, and its right side
+    std::vector<Block> blocks;  // row by row, ascending columns
+    std::vector<Vector6d> right;
+  };
+  struct Eliminated {                     // of one point: damped H = L L'
+    double l00, l10, l11, l20, l21, l22;  // with inverse pivots
+  };
+
+  void FindBlocks();
+  int FindBlock(int row, int column, int hint) const;
+  void Eliminate(const Linearisation& system, double lambda, int chunk, Reduced& reduced);
+  void AddCameras(const Linearisation& system, double lambda);
+  bool SolveDense(Eigen::VectorXd& x);
+  bool SolveSparse(Eigen::VectorXd& x);
+  void Substitute(const Linearisation& system, BundleStep& step);
+  double Predicted(const Linearisation& system, double lambda, const BundleStep& step) const;
+
+  const BundleLayout& layout_;
+  bool sparse_;
+  int cameras_;
+  std::vector<int> row_begin_;    // first block of each block row
+  std::vector<int> column_;       // of each block
+  std::vector<Reduced> reduced_;  // one per chunk; the first takes the sum
+  std::vector<Eliminated> eliminated_;
+  Eigen::MatrixXd dense_;
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
+  bool analysed_ = false;
+};
+
+}  // namespace alidade

@@ -1,0 +1,71 @@
+// Our bundle adjustment and Ceres', on the same problems.
+#include <gtest/gtest.h>
+
+#include "ceres_bundle.h"
+#include "support/bundle_problem.h"
+
+namespace alidade {
+namespace {
+
+constexpr BundleSettings kToTheEnd{.max_iterations = 400, .min_relative_decrease = 1e-15};
+
+// Both start from the same place; costs are compared as Ceres computes them.
+void ExpectSameOptimum(const BundleProblemOptions& options, double tolerance = 1e-6) {
+  const BundleProblem problem = MakeBundleProblem(options);
+  BundleProblem ours = problem, theirs = problem;
+  const BundleReport report = AdjustBundle(ours, kToTheEnd);
+  const ceres::Solver::Summary summary = AdjustWithCeres(theirs, kToTheEnd);
+  EXPECT_NEAR(report.initial_cost, summary.initial_cost, 1e-9 * summary.initial_cost);
+  EXPECT_NEAR(report.final_cost, summary.final_cost, tolerance * summary.final_cost)
+      << summary.BriefReport() << " ours " << report.iterations;
+  // That the result is where the cost was taken: Ceres' own figure for our answer.
+  CeresBundleOptions no_steps;
+  no_steps.max_iterations = 0;
+  EXPECT_NEAR(AdjustWithCeres(ours, kToTheEnd, no_steps).initial_cost, report.final_cost,
+              1e-9 * report.final_cost);
+}
+
+TEST(BundleAgainstCeres, SameOptimumOnMonocularProblems) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) ExpectSameOptimum({.stereo = 0, .seed = seed});
+}
+
+TEST(BundleAgainstCeres, SameOptimumOnStereoProblems) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) ExpectSameOptimum({.stereo = 1, .seed = seed});
+}
+
+TEST(BundleAgainstCeres, SameOptimumOnMixedProblemsWithOutliers) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    ExpectSameOptimum({.stereo = 0.5, .outliers = 0.05, .seed = seed});
+  }
+}
+
+TEST(BundleAgainstCeres, SameOptimumNearAPlane) {
+  ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0, .seed = 11});
+  ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0.5, .outliers = 0.05, .seed = 12});
+}
+
+TEST(BundleAgainstCeres, SameOptimumWithFewPoints) {
+  ExpectSameOptimum({.free_cameras = 2, .points = 12, .max_track = 4, .stereo = 0, .seed = 13});
+  ExpectSameOptimum({.free_cameras = 3, .points = 8, .max_track = 5, .stereo = 1, .seed = 14});
+}
+
+TEST(BundleAgainstCeres, SameOptimumWhenTheCameraOnlyTurnsAndPointsAreFar) {
+  ExpectSameOptimum({.scene = BundleScene::kTurning, .stereo = 1, .noise_px = 0.2, .seed = 15});
+  ExpectSameOptimum({.scene = BundleScene::kTurning, .stereo = 0, .noise_px = 0.2, .seed = 16});
+}
+
+TEST(BundleAgainstCeres, SameOptimumWithoutAFixedCamera) {
+  ExpectSameOptimum({.fixed_cameras = 0, .stereo = 0, .seed = 16});
+  ExpectSameOptimum({.fixed_cameras = 0, .stereo = 1, .seed = 17});
+}
+
+TEST(BundleAgainstCeres, SameOptimumWithOneFixedCameraAndUnknownScale) {
+  ExpectSameOptimum({.fixed_cameras = 1, .free_cameras = 9, .stereo = 0, .seed = 18});
+}
+
+TEST(BundleAgainstCeres, SameOptimumWhenOnlyPointsMove) {
+  ExpectSameOptimum({.fixed_cameras = 8, .free_cameras = 0, .stereo = 0, .seed = 19});
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,53 @@
+// Bundle adjustment by Ceres: the oracle.
+#pragma once
+
+#include <vector>
+
+#include "alidade/optimize/bundle_adjustment.h"
+#include "ceres_reprojection.h"
+
+namespace alidade {
+
+struct CeresBundleOptions {
+  int max_iterations = 200;
+  bool tight = true;  // to the last digit; otherwise for timing, a fixed number of iterations
+};
+
+// Improves `problem` in place. Every observation must be a number and in front of its camera.
+inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
+                                              const BundleSettings& settings,
+                                              const CeresBundleOptions& with = {}) {
+  std::vector<Eigen::Matrix<double, 6, 1>> poses;
+  for (const Se3& T : problem.T_camera_world) poses.push_back(ToCeresPose(T));
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::HuberLoss mono(settings.huber_mono), stereo(settings.huber_stereo);
+  ceres::Problem ceres_problem(ownership);
+  auto* ordering = new ceres::ParameterBlockOrdering;
+  for (const BundleObservation& o : problem.observations) {
+    double* pose = poses[o.camera].data();
+    double* point = problem.points[o.point].data();
+    ceres_problem.AddResidualBlock(MakeCeresReprojection(problem.camera, o),
+                                   std::isfinite(o.pixel.z()) ? &stereo : &mono, pose, point);
+    if (problem.fixed[o.camera]) ceres_problem.SetParameterBlockConstant(pose);
+    ordering->AddElementToGroup(point, 0);
+    ordering->AddElementToGroup(pose, 1);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_ordering.reset(ordering);
+  options.num_threads = 1;
+  options.max_num_iterations = with.max_iterations;
+  options.function_tolerance = with.tight ? 1e-14 : 0;
+  options.gradient_tolerance = with.tight ? 1e-12 : 0;
+  options.parameter_tolerance = with.tight ? 1e-14 : 0;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &ceres_problem, &summary);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (!problem.fixed[i]) problem.T_camera_world[i] = FromCeresPose(poses[i]);
+  }
+  return summary;
+}
+
+}  // namespace alidade
