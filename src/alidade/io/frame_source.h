@@ -13,24 +13,28 @@ namespace alidade {
 enum class Sensor { kMono, kStereo, kRgbd };
 
 struct SourceFrame {
-  double time = 0;          // seconds
-  std::string stamp;        // as written in the recording, for files that must keep it verbatim
-  int number = 0;           // index in the recording, from 0 (skipped frames keep their number)
-  cv::Mat image;            // 8 bit grey, rectified where the source rectifies
-  cv::Mat right;            // stereo only
-  cv::Mat depth;            // RGB-D only: CV_16U as stored or CV_32F in metres; empty when missing for this frame
-  std::string problem;      // not empty: this frame could not be read and why; images are empty
+  double time = 0;    // seconds
+  std::string stamp;  // as written in the recording, for files that must keep it verbatim
+  int number = 0;     // index in the recording, from 0 (skipped frames keep their number)
+  cv::Mat image;      // 8 bit grey, rectified where the source rectifies
+  cv::Mat right;      // stereo only; empty when missing for this frame
+  cv::Mat
+      depth;  // RGB-D only: CV_16U as stored or CV_32F in metres; empty when missing for this frame
+  // Not empty: this frame could not be read and why; images are empty. Whoever takes the frames
+  // warns and counts.
+  std::string problem;
 };
 
 struct SourceInfo {
-  std::string name;         // short, usable in a file name
-  std::string kind;         // "tum", "euroc", "kitti", "images", "video", "synth", "camera"
+  std::string name;  // short, usable in a file name
+  std::string kind;  // "tum", "euroc", "kitti", "images", "video", "synth", "camera"
   Sensor sensor = Sensor::kMono;
-  Camera camera;            // after any rectification
+  Camera camera;                // after any rectification
   bool camera_guessed = false;  // nothing was known: field of view assumed
-  // Rotation from the rectified camera's frame to that of the camera as mounted: trajectories are the latter's.
+  // Rotation from the rectified camera's frame to that of the camera as mounted: trajectories are
+  // the latter's.
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();
-  int frames = -1;          // -1 when unknown (camera; some videos)
+  int frames = -1;  // -1 when unknown (camera; some videos)
 };
 
 class FrameSource {
@@ -39,6 +43,12 @@ class FrameSource {
   virtual const SourceInfo& Info() const = 0;
   // The next frame, nullopt at the end. Not thread-safe.
   virtual std::optional<SourceFrame> Next() = 0;
+  // The next frame will be the one `frames` after the first. False where that cannot be done (a
+  // live camera).
+  virtual bool Seek(int frames) {
+    (void)frames;
+    return false;
+  }
 };
 
 }  // namespace alidade

@@ -1,0 +1,62 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/io/wrappers.h"
+
+namespace alidade {
+namespace {
+
+class ClippedSource : public FrameSource {
+ public:
+  // `source` stands at frame `first`; `count` is -1 for all the rest.
+  ClippedSource(std::unique_ptr<FrameSource> source, int first, int count)
+      : source_(std::move(source)), info_(source_->Info()), first_(first), count_(count) {
+    if (info_.frames >= 0) info_.frames -= first;
+    if (count >= 0) info_.frames = info_.frames < 0 ? -1 : std::min(info_.frames, count);
+  }
+
+  const SourceInfo& Info() const override { return info_; }
+
+  bool Seek(int frames) override {
+    if (!source_->Seek(first_ + frames)) return false;
+    done_ = frames;
+    return true;
+  }
+
+  std::optional<SourceFrame> Next() override {
+    if (count_ >= 0 && done_ >= count_) return std::nullopt;
+    ++done_;
+    return source_->Next();
+  }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  SourceInfo info_;
+  int first_, count_, done_ = 0;
+};
+
+[[noreturn]] void FailPastEnd(int first, int frames) {
+  ThrowInput("--first " + std::to_string(first) + " lies past the end: the recording has " +
+             std::to_string(frames) + " frames (0 to " + std::to_string(frames - 1) + ")");
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first, int last) {
+  if (first < 0) ThrowUsage("--first must not be negative");
+  if (last < -1 || (last >= 0 && last < first)) ThrowUsage("--last must not come before --first");
+  if (first == 0 && last == -1) return source;
+  const int frames = source->Info().frames;
+  if (frames >= 0 && first >= frames) FailPastEnd(first, frames);
+  if (first > 0 && !source->Seek(first)) {
+    for (int i = 0; i < first; ++i) {
+      if (!source->Next()) FailPastEnd(first, i);
+    }
+  }
+  return std::make_unique<ClippedSource>(std::move(source), first,
+                                         last < 0 ? -1 : last - first + 1);
+}
+
+}  // namespace alidade

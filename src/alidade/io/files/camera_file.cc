@@ -1,0 +1,115 @@
+#include "alidade/io/files/camera_file.h"
+
+#include <algorithm>
+#include <array>
+
+#include "alidade/base/log.h"
+#include "alidade/io/files/yaml.h"
+
+namespace alidade {
+namespace {
+
+double Positive(const YamlFile& file, const YAML::Node& parent, const char* key) {
+  const YAML::Node node = file.Need(parent, key);
+  const double value = file.Number(node, key);
+  if (!(value > 0))
+    file.Fail(node, std::string("`") + key + "` must be positive, not `" + node.Scalar() + "`");
+  return value;
+}
+
+// A name that means nothing may be a misspelt one: `distorsion` must not silently mean no
+// distortion.
+void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool right) {
+  static constexpr std::array kCommon = {"model", "width", "height", "fx",
+                                         "fy",    "cx",    "cy",     "distortion"};
+  static constexpr std::array kLeftOnly = {"fps", "depth_factor", "baseline", "right"};
+  for (const auto& entry : parent) {
+    const std::string key = entry.first.Scalar();
+    const auto is_key = [&key](const char* known) { return key == known; };
+    const bool known =
+        std::any_of(kCommon.begin(), kCommon.end(), is_key) ||
+        (right ? key == "T_left_right" : std::any_of(kLeftOnly.begin(), kLeftOnly.end(), is_key));
+    if (!known) {
+      LogWarning(file.path() + ":" + std::to_string(entry.first.Mark().line + 1) + ": `" + key +
+                 "` means nothing here");
+    }
+  }
+}
+
+RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
+  RawCamera raw;
+  const YAML::Node model = file.Need(node, "model");
+  const std::string name = file.Text(model, "model");
+  if (name != "pinhole" && name != "fisheye")
+    file.Fail(model, "`model` is pinhole or fisheye, not `" + name + "`");
+  raw.lens = name == "pinhole" ? Lens::kPinhole : Lens::kFisheye;
+  raw.width = file.PositiveInteger(file.Need(node, "width"), "width");
+  raw.height = file.PositiveInteger(file.Need(node, "height"), "height");
+  raw.fx = Positive(file, node, "fx");
+  raw.fy = Positive(file, node, "fy");
+  raw.cx = file.Number(file.Need(node, "cx"), "cx");
+  raw.cy = file.Number(file.Need(node, "cy"), "cy");
+  if (const YAML::Node distortion = node["distortion"]) {
+    const auto k = file.Numbers(distortion, "distortion");
+    const size_t most = raw.lens == Lens::kPinhole ? 5 : 4;
+    if (k.size() > most || (k.size() != 4 && k.size() != 5 && !k.empty())) {
+      file.Fail(distortion, raw.lens == Lens::kPinhole
+                                ? "`distortion` is [k1, k2, p1, p2, k3] (k3 may be left out)"
+                                : "`distortion` of a fisheye is [k1, k2, k3, k4]");
+    }
+    std::copy(k.begin(), k.end(), raw.distortion.begin());
+  }
+  return raw;
+}
+
+Se3 ReadTransform(const YamlFile& file, const YAML::Node& node, const std::string& key) {
+  const auto v = file.Numbers(node, key);
+  if (v.size() != 16) file.Fail(node, "`" + key + "` must be 4x4 numbers, row by row");
+  Se3 T;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) T.R(r, c) = v[static_cast<size_t>(4 * r + c)];
+    T.t[r] = v[static_cast<size_t>(4 * r + 3)];
+  }
+  if ((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 ||
+      T.R.determinant() < 0) {
+    file.Fail(node, "`" + key + "`: the upper left 3x3 part is not a rotation");
+  }
+  return T.Normalised();
+}
+
+}  // namespace
+
+Calibration ReadCameraFile(const std::string& path) {
+  const YamlFile file(path);
+  const YAML::Node& root = file.root();
+  WarnOfUnknownKeys(file, root, false);
+  Calibration calibration;
+  calibration.origin = path;
+  calibration.left = ReadRawCamera(file, root);
+  if (root["fps"]) calibration.fps = Positive(file, root, "fps");
+  if (const YAML::Node factor = root["depth_factor"]) {
+    calibration.depth_factor = file.Number(factor, "depth_factor");
+    if (*calibration.depth_factor < 0) file.Fail(factor, "`depth_factor` must not be negative");
+  }
+  if (const YAML::Node right = root["right"]) {
+    if (root["baseline"]) file.Fail(root["baseline"], "give `baseline` or `right`, not both");
+    if (!right.IsMap()) file.Fail(right, "`right` holds a camera's names and values");
+    WarnOfUnknownKeys(file, right, true);
+    calibration.right = ReadRawCamera(file, right);
+    calibration.T_left_right =
+        ReadTransform(file, file.Need(right, "T_left_right"), "T_left_right");
+  } else if (root["baseline"]) {
+    calibration.baseline = Positive(file, root, "baseline");
+  }
+  return calibration;
+}
+
+Calibration GuessedCalibration(int width, int height, double fov_degrees) {
+  const Camera camera = Camera::FromFieldOfView(width, height, fov_degrees);
+  Calibration calibration;
+  calibration.left = {Lens::kPinhole, width,     height,    camera.fx,
+                      camera.fy,      camera.cx, camera.cy, {}};
+  return calibration;
+}
+
+}  // namespace alidade

@@ -1,0 +1,23 @@
+// Camera files: our camera.yaml, and how a recording without one is dealt with.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "alidade/io/calibration.h"
+
+namespace alidade {
+
+inline constexpr double kDefaultFovDegrees =
+    66;  // horizontal; most phones' main camera lies between 60 and 70
+
+// camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1 p2 k3]`
+// (fisheye: [k1 k2 k3 k4]), `fps`, `depth_factor`, and for a stereo pair `baseline` (metres) or
+// `right: {width …, T_left_right: 4x4}`. Throws Error with file:line for what is missing, unknown
+// or impossible.
+Calibration ReadCameraFile(const std::string& path);
+
+// A pinhole of that field of view, and nothing else known.
+Calibration GuessedCalibration(int width, int height, double fov_degrees);
+
+}  // namespace alidade

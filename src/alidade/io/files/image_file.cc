@@ -1,0 +1,77 @@
+#include "alidade/io/files/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/files/image_codec.h"
+#include "alidade/io/files/media.h"
+
+namespace alidade {
+namespace {
+
+std::string LowerEnding(std::string_view path) {
+  const size_t dot = path.rfind('.');
+  if (dot == std::string_view::npos || path.find('/', dot) != std::string_view::npos) return {};
+  std::string ending(path.substr(dot));
+  for (char& c : ending) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+  return ending;
+}
+
+DecodedImage Decode(std::string_view bytes, ImageUse use) {
+  if (bytes.empty()) return {{}, "is empty"};
+  if (LooksLikeJpeg(bytes)) return DecodeJpeg(bytes, use);
+  if (LooksLikePng(bytes)) return DecodePng(bytes, use);
+  return DecodeByMediaModule(bytes, use);
+}
+
+cv::Mat Read(const std::string& path, ImageUse use) {
+  const std::string bytes = ReadFile(path);
+  DecodedImage decoded = Decode(bytes, use);
+  if (!decoded.problem.empty()) ThrowInput(path + " " + decoded.problem);
+  return decoded.image;
+}
+
+}  // namespace
+
+cv::Mat ReadImageGray(const std::string& path) { return Read(path, ImageUse::kGray); }
+cv::Mat ReadImageColor(const std::string& path) { return Read(path, ImageUse::kColor); }
+cv::Mat ReadDepth(const std::string& path) { return Read(path, ImageUse::kDepth); }
+
+cv::Size ReadImageSize(const std::string& path) {
+  const std::string bytes = ReadFile(path);
+  cv::Size size;
+  if (LooksLikeJpeg(bytes)) {
+    size = JpegSize(bytes);
+  } else if (LooksLikePng(bytes)) {
+    size = PngSize(bytes);
+  } else {
+    const DecodedImage decoded = Decode(bytes, ImageUse::kGray);
+    if (!decoded.problem.empty()) ThrowInput(path + " " + decoded.problem);
+    size = decoded.image.size();
+  }
+  if (size.empty()) ThrowInput(path + " has a damaged header");
+  return size;
+}
+
+void WriteImage(const std::string& path, const cv::Mat& image) {
+  const std::string ending = LowerEnding(path);
+  if (ending == ".png") {
+    AtomicWriteFile(path, EncodePng(image), Sync::kNo);
+  } else if (ending == ".jpg" || ending == ".jpeg") {
+    AtomicWriteFile(path, EncodeJpeg(image, 95), Sync::kNo);
+  } else {
+    ThrowUsage("cannot write " + path + ": images are written as .png or .jpg");
+  }
+}
+
+bool HasImageEnding(std::string_view path) {
+  static constexpr std::array<std::string_view, 10> kEndings = {
+      ".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".webp", ".pgm", ".ppm", ".pnm"};
+  const std::string ending = LowerEnding(path);
+  return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
+}
+
+}  // namespace alidade

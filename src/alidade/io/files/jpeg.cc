@@ -1,0 +1,144 @@
+#include <csetjmp>
+#include <cstdio>  // jpeglib.h needs it first
+#include <cstdlib>
+#include <cstring>
+//
+#include <jerror.h>
+#include <jpeglib.h>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/image_codec.h"
+
+namespace alidade {
+namespace {
+
+// libjpeg reports errors by a function that must not return: it jumps. No object with a destructor
+// may be born between setjmp and longjmp, hence the plain functions below that are handed
+// everything.
+struct JumpingErrors {
+  jpeg_error_mgr manager;
+  std::jmp_buf target;
+  char message[JMSG_LENGTH_MAX];
+};
+
+void JumpOut(j_common_ptr info) {
+  auto* errors = reinterpret_cast<JumpingErrors*>(info->err);
+  info->err->format_message(info, errors->message);
+  std::longjmp(errors->target, 1);
+}
+
+// Level -1 are the warnings libjpeg would paper over with grey: data cut short or damaged.
+void OnMessage(j_common_ptr info, int level) {
+  const int code = info->err->msg_code;
+  if (level == -1 &&
+      (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE))
+    JumpOut(info);
+}
+
+void Install(JumpingErrors& errors) {
+  jpeg_std_error(&errors.manager);
+  errors.manager.error_exit = JumpOut;
+  errors.manager.emit_message = OnMessage;
+  errors.message[0] = 0;
+}
+
+bool ReadHeader(jpeg_decompress_struct& info, JumpingErrors& errors, std::string_view bytes) {
+  if (setjmp(errors.target)) return false;
+  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  jpeg_read_header(&info, TRUE);
+  return true;
+}
+
+bool ReadRows(jpeg_decompress_struct& info, JumpingErrors& errors, cv::Mat& image) {
+  if (setjmp(errors.target)) return false;
+  jpeg_start_decompress(&info);
+  while (info.output_scanline < info.output_height) {
+    JSAMPROW row = image.ptr(static_cast<int>(info.output_scanline));
+    jpeg_read_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_decompress(&info);
+  return true;
+}
+
+class Decompressor {
+ public:
+  Decompressor() {
+    Install(errors);
+    info.err = &errors.manager;
+    jpeg_create_decompress(&info);
+  }
+  ~Decompressor() { jpeg_destroy_decompress(&info); }
+  Decompressor(const Decompressor&) = delete;
+  Decompressor& operator=(const Decompressor&) = delete;
+
+  jpeg_decompress_struct info{};
+  JumpingErrors errors{};
+};
+
+struct Compressed {
+  unsigned char* bytes = nullptr;
+  unsigned long size = 0;
+};
+
+bool WriteRows(jpeg_compress_struct& info, JumpingErrors& errors, const cv::Mat& image, int quality,
+               Compressed& out) {
+  if (setjmp(errors.target)) return false;
+  jpeg_mem_dest(&info, &out.bytes, &out.size);
+  info.image_width = static_cast<JDIMENSION>(image.cols);
+  info.image_height = static_cast<JDIMENSION>(image.rows);
+  info.input_components = image.channels();
+  info.in_color_space = image.channels() == 1 ? JCS_GRAYSCALE : JCS_EXT_BGR;
+  jpeg_set_defaults(&info);
+  jpeg_set_quality(&info, quality, TRUE);
+  jpeg_start_compress(&info, TRUE);
+  while (info.next_scanline < info.image_height) {
+    JSAMPROW row = const_cast<unsigned char*>(image.ptr(static_cast<int>(info.next_scanline)));
+    jpeg_write_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_compress(&info);
+  return true;
+}
+
+}  // namespace
+
+bool LooksLikeJpeg(std::string_view bytes) { return bytes.substr(0, 3) == "\xff\xd8\xff"; }
+
+DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
+  if (use == ImageUse::kDepth) return {{}, "is a JPEG: depth needs 16 bits"};
+  Decompressor decoder;
+  const auto failed = [&] {
+    return DecodedImage{{}, std::string("is a damaged JPEG: ") + decoder.errors.message};
+  };
+  if (!ReadHeader(decoder.info, decoder.errors, bytes)) return failed();
+  const bool gray = use == ImageUse::kGray;
+  decoder.info.out_color_space = gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
+  cv::Mat image(static_cast<int>(decoder.info.image_height),
+                static_cast<int>(decoder.info.image_width), gray ? CV_8UC1 : CV_8UC3);
+  if (!ReadRows(decoder.info, decoder.errors, image)) return failed();
+  return {image, {}};
+}
+
+cv::Size JpegSize(std::string_view bytes) {
+  Decompressor decoder;
+  if (!ReadHeader(decoder.info, decoder.errors, bytes)) return {};
+  return {static_cast<int>(decoder.info.image_width), static_cast<int>(decoder.info.image_height)};
+}
+
+std::string EncodeJpeg(const cv::Mat& image, int quality) {
+  CV_Assert(image.type() == CV_8UC1 || image.type() == CV_8UC3);
+  JumpingErrors errors{};
+  Install(errors);
+  jpeg_compress_struct info{};
+  info.err = &errors.manager;
+  jpeg_create_compress(&info);
+  Compressed out;
+  const bool written = WriteRows(info, errors, image, quality, out);
+  jpeg_destroy_compress(&info);
+  std::string bytes;
+  if (written) bytes.assign(reinterpret_cast<const char*>(out.bytes), out.size);
+  std::free(out.bytes);
+  if (!written) ThrowInput(std::string("JPEG: ") + errors.message);
+  return bytes;
+}
+
+}  // namespace alidade

@@ -1,0 +1,39 @@
+#include "alidade/io/files/stamped_list.h"
+
+#include <cmath>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/text.h"
+#include "alidade/io/trajectory.h"
+
+namespace alidade {
+
+std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names) {
+  const std::string text = ReadFile(path);
+  std::vector<StampedName> list;
+  for (const TextLine& line : ContentLines(text)) {
+    StampedName item;
+    const size_t end = line.text.find_first_of(" \t,");
+    item.stamp = line.text.substr(0, end);
+    // Everything after the stamp: names may hold blanks.
+    const size_t begin =
+        end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
+    if (begin != std::string_view::npos) item.name = line.text.substr(begin);
+    const std::string where = path + ":" + std::to_string(line.number) + ": ";
+    const std::string written = item.stamp;
+    if (unit == StampUnit::kNanoseconds) item.stamp = StampFromNanoseconds(item.stamp);
+    const auto time = ParseNumber(item.stamp);
+    if (!time || !std::isfinite(*time)) {
+      item.problem = where + "`" + written + "` is not a time stamp";
+    } else if (with_names && item.name.empty()) {
+      item.problem = where + "there is no file name after the time stamp";
+    }
+    item.time = time.value_or(0);
+    list.push_back(std::move(item));
+  }
+  if (list.empty()) ThrowInput(path + " lists nothing");
+  return list;
+}
+
+}  // namespace alidade

@@ -1,0 +1,33 @@
+// YAML nodes with errors that name the file and the line.
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <vector>
+
+namespace alidade {
+
+class YamlFile {
+ public:
+  // Takes OpenCV's `%YAML:1.0` first line too, which YAML itself does not know.
+  explicit YamlFile(const std::string& path);
+
+  const YAML::Node& root() const { return root_; }
+  const std::string& path() const { return path_; }
+
+  [[noreturn]] void Fail(const YAML::Node& at, const std::string& what) const;
+  // The child `key`; throws when it is missing.
+  YAML::Node Need(const YAML::Node& parent, const std::string& key) const;
+  double Number(const YAML::Node& node, const std::string& key) const;  // finite
+  int PositiveInteger(const YAML::Node& node, const std::string& key) const;
+  std::string Text(const YAML::Node& node, const std::string& key) const;
+  // A flat list, or a list of lists flattened row by row.
+  std::vector<double> Numbers(const YAML::Node& node, const std::string& key) const;
+
+ private:
+  std::string path_;
+  YAML::Node root_;
+};
+
+}  // namespace alidade

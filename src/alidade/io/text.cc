@@ -1,0 +1,56 @@
+#include "alidade/io/text.h"
+
+#include <locale.h>
+#include <stdlib.h>
+
+#include <string>
+
+namespace alidade {
+namespace {
+
+constexpr std::string_view kBlanks = " \t\r\v\f";
+
+std::string_view Trimmed(std::string_view text) {
+  const size_t begin = text.find_first_not_of(kBlanks);
+  if (begin == std::string_view::npos) return {};
+  return text.substr(begin, text.find_last_not_of(kBlanks) - begin + 1);
+}
+
+}  // namespace
+
+std::vector<TextLine> ContentLines(std::string_view text) {
+  if (text.substr(0, 3) == "\xef\xbb\xbf")
+    text.remove_prefix(3);  // byte order mark of Windows editors
+  std::vector<TextLine> lines;
+  for (int number = 1; !text.empty(); ++number) {
+    const size_t end = text.find('\n');
+    const std::string_view line = Trimmed(text.substr(0, end));
+    if (!line.empty() && line.front() != '#') lines.push_back({number, line});
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return lines;
+}
+
+std::vector<std::string_view> Fields(std::string_view line) {
+  constexpr std::string_view kSeparators = " \t\r\v\f,";
+  std::vector<std::string_view> fields;
+  for (size_t begin = line.find_first_not_of(kSeparators); begin != std::string_view::npos;) {
+    const size_t end = line.find_first_of(kSeparators, begin);
+    fields.push_back(line.substr(begin, end - begin));
+    begin = end == std::string_view::npos ? end : line.find_first_not_of(kSeparators, end);
+  }
+  return fields;
+}
+
+std::optional<double> ParseNumber(std::string_view text) {
+  // from_chars(double) is missing in older libc++, and plain strtod follows the locale's decimal
+  // comma.
+  static const locale_t kClassic = newlocale(LC_ALL_MASK, "C", static_cast<locale_t>(nullptr));
+  const std::string copy(text);
+  char* end = nullptr;
+  const double value = strtod_l(copy.c_str(), &end, kClassic);
+  if (copy.empty() || end != copy.c_str() + copy.size()) return std::nullopt;
+  return value;
+}
+
+}  // namespace alidade

@@ -1,0 +1,25 @@
+// Lines, fields and numbers of text files, the same in every locale.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace alidade {
+
+struct TextLine {
+  int number;             // from 1, for errors that say file:line
+  std::string_view text;  // without line end and surrounding blanks; never empty, never a # comment
+};
+
+// The lines that say something. `text` must outlive the result.
+std::vector<TextLine> ContentLines(std::string_view text);
+
+// Fields between blanks, tabs and commas.
+std::vector<std::string_view> Fields(std::string_view line);
+
+// The whole of `text` as a number; nullopt when it is something else. NaN and infinities count as
+// numbers.
+std::optional<double> ParseNumber(std::string_view text);
+
+}  // namespace alidade

@@ -1,0 +1,57 @@
+#include "alidade/io/files/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "support/expect_error.h"
+#include "support/temp_folder.h"
+
+namespace alidade {
+namespace {
+
+int FilesIn(const std::string& folder) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    count += entry.exists() ? 1 : 0;
+  return count;
+}
+
+TEST(File, ComesBackAsWritten) {
+  const TempFolder folder;
+  std::string bytes(100000, '\0');
+  for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+  AtomicWriteFile(folder / "a", bytes);
+  EXPECT_EQ(ReadFile(folder / "a"), bytes);
+  AtomicWriteFile(folder / "a", "short", Sync::kNo);
+  EXPECT_EQ(ReadFile(folder / "a"), "short");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(File, ThatIsMissingIsNamed) {
+  const std::string message = MessageOf(ErrorKind::kInput, [] { ReadFile("/no/such/file"); });
+  EXPECT_THAT(message, testing::HasSubstr("/no/such/file"));
+  EXPECT_THAT(message, testing::HasSubstr("No such file"));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [] { AtomicWriteFile("/no/such/file", "x"); }),
+              testing::HasSubstr("/no/such/file"));
+  MessageOf(ErrorKind::kInput, [] { ReadFile("/tmp"); });
+}
+
+TEST(File, FailedWriteLeavesTheOldFileAndNoTemporary) {
+  const TempFolder folder;
+  AtomicWriteFile(folder / "a", "old");
+  // Renaming onto a folder that is not empty must fail after all bytes were written.
+  folder.Write("b/inside", "x");
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { AtomicWriteFile(folder / "b", "new"); }),
+              testing::HasSubstr("cannot write"));
+  if (geteuid() != 0) {
+    ASSERT_EQ(chmod(folder.path().c_str(), 0500), 0);
+    MessageOf(ErrorKind::kInput, [&] { AtomicWriteFile(folder / "a", "new"); });
+    ASSERT_EQ(chmod(folder.path().c_str(), 0700), 0);
+  }
+  EXPECT_EQ(ReadFile(folder / "a"), "old");
+  EXPECT_EQ(FilesIn(folder.path()), 2);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,127 @@
+#include "alidade/io/files/image_file.h"
+
+#include <gtest/gtest.h>
+
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "alidade/io/files/file.h"
+#include "support/expect_error.h"
+#include "support/tiny_recording.h"
+
+namespace alidade {
+namespace {
+
+double MaxDifference(const cv::Mat& a, const cv::Mat& b) {
+  EXPECT_EQ(a.size(), b.size());
+  EXPECT_EQ(a.type(), b.type());
+  return cv::norm(a, b, cv::NORM_INF);
+}
+
+cv::Mat ColorImage() {
+  cv::Mat planes[3] = {TinyImage(1), TinyImage(2), TinyImage(3)}, image;
+  cv::merge(planes, 3, image);
+  return image;
+}
+
+TEST(ImageFile, PngComesBackBitForBitAndAsOpencvReadsIt) {
+  const TempFolder folder;
+  const cv::Mat gray = TinyImage(1), color = ColorImage();
+  cv::Mat depth;
+  gray.convertTo(depth, CV_16U, 201.0, 3);
+  WriteImage(folder / "gray.png", gray);
+  WriteImage(folder / "color.png", color);
+  WriteImage(folder / "depth.png", depth);
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "gray.png"), gray), 0);
+  EXPECT_EQ(MaxDifference(ReadImageColor(folder / "color.png"), color), 0);
+  EXPECT_EQ(MaxDifference(ReadDepth(folder / "depth.png"), depth), 0);
+  EXPECT_EQ(MaxDifference(cv::imread(folder / "gray.png", cv::IMREAD_UNCHANGED), gray), 0);
+  EXPECT_EQ(MaxDifference(cv::imread(folder / "color.png", cv::IMREAD_UNCHANGED), color), 0);
+  EXPECT_EQ(MaxDifference(cv::imread(folder / "depth.png", cv::IMREAD_UNCHANGED), depth), 0);
+}
+
+TEST(ImageFile, GrayOfColoursIsThatOfBt601) {
+  const TempFolder folder;
+  const cv::Mat color = ColorImage();
+  cv::Mat expected;
+  cv::cvtColor(color, expected, cv::COLOR_BGR2GRAY);
+  WriteImage(folder / "color.png", color);
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "color.png"), expected), 0);
+  ASSERT_TRUE(cv::imwrite(folder / "color.jpg", color, {cv::IMWRITE_JPEG_QUALITY, 98}));
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "color.jpg"),
+                          cv::imread(folder / "color.jpg", cv::IMREAD_GRAYSCALE)),
+            0);
+}
+
+TEST(ImageFile, JpegAgreesWithOpencv) {
+  const TempFolder folder;
+  cv::Mat gray = TinyImage(1), color = ColorImage();
+  cv::GaussianBlur(color, color, {0, 0}, 3);
+  WriteImage(folder / "gray.jpg", gray);
+  WriteImage(folder / "color.jpg", color);
+  EXPECT_LE(MaxDifference(ReadImageGray(folder / "gray.jpg"), gray), 12);
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "gray.jpg"),
+                          cv::imread(folder / "gray.jpg", cv::IMREAD_GRAYSCALE)),
+            0);
+  EXPECT_EQ(MaxDifference(ReadImageColor(folder / "color.jpg"), cv::imread(folder / "color.jpg")),
+            0);
+}
+
+TEST(ImageFile, PalettesAlphaAndSixteenBitsBecomeGray) {
+  const TempFolder folder;
+  const cv::Mat color = ColorImage();
+  cv::Mat with_alpha, expected, wide;
+  cv::cvtColor(color, with_alpha, cv::COLOR_BGR2BGRA);
+  cv::cvtColor(color, expected, cv::COLOR_BGR2GRAY);
+  ASSERT_TRUE(cv::imwrite(folder / "alpha.png", with_alpha));
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "alpha.png"), expected), 0);
+  TinyImage(5).convertTo(wide, CV_16U, 257);
+  ASSERT_TRUE(cv::imwrite(folder / "wide.png", wide));
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "wide.png"), TinyImage(5)), 0);
+  const cv::Mat binary = TinyImage(6) > 128;
+  ASSERT_TRUE(cv::imwrite(folder / "binary.png", binary, {cv::IMWRITE_PNG_BILEVEL, 1}));
+  EXPECT_EQ(MaxDifference(ReadImageGray(folder / "binary.png"), binary), 0);
+}
+
+TEST(ImageFile, SizeIsThatOfTheHeader) {
+  const TempFolder folder;
+  WriteImage(folder / "a.png", TinyImage(1, 33, 21));
+  WriteImage(folder / "a.jpg", TinyImage(1, 35, 22));
+  EXPECT_EQ(ReadImageSize(folder / "a.png"), cv::Size(33, 21));
+  EXPECT_EQ(ReadImageSize(folder / "a.jpg"), cv::Size(35, 22));
+}
+
+TEST(ImageFile, CutShortAnywhereIsAnErrorNeverAHalfGrayPicture) {
+  const TempFolder folder;
+  for (const std::string name : {"a.png", "a.jpg"}) {
+    WriteImage(folder / name, TinyImage(1));
+    const std::string bytes = ReadFile(folder / name);
+    for (const double part : {0.0, 0.001, 0.02, 0.3, 0.6, 0.95}) {
+      const std::string cut =
+          folder.Write(name, bytes.substr(0, static_cast<size_t>(part * bytes.size())));
+      EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadImageGray(cut); }),
+                  testing::HasSubstr(cut))
+          << part;
+    }
+  }
+}
+
+TEST(ImageFile, DamageInTheMiddleOfAPngIsAnError) {
+  const TempFolder folder;
+  WriteImage(folder / "a.png", TinyImage(1));
+  std::string bytes = ReadFile(folder / "a.png");
+  bytes[bytes.size() / 2] = static_cast<char>(~bytes[bytes.size() / 2]);
+  folder.Write("a.png", bytes);
+  MessageOf(ErrorKind::kInput, [&] { ReadImageGray(folder / "a.png"); });
+}
+
+TEST(ImageFile, NoiseIsNoImage) {
+  const TempFolder folder;
+  MessageOf(ErrorKind::kInput,
+            [&] { ReadImageGray(folder.Write("a.png", "not an image at all")); });
+  MessageOf(ErrorKind::kUsage, [&] { WriteImage(folder / "a.xyz", TinyImage(1)); });
+  MessageOf(ErrorKind::kInput, [&] { WriteImage(folder / "missing/a.png", TinyImage(1)); });
+}
+
+}  // namespace
+}  // namespace alidade
