@@ -8,8 +8,10 @@
 
 namespace alidade {
 
-// T minimising sum |target_i - T * source_i|² (Umeyama 1991; scale held at 1 unless asked for). At least 3 pairs,
-// not all in one point: throws Error (input) otherwise, and on numbers that are not finite.
-Sim3 AlignPoints(std::span<const Eigen::Vector3d> target, std::span<const Eigen::Vector3d> source, bool with_scale);
+// T minimising sum |target_i - T * source_i|² (Umeyama 1991; scale held at 1 unless asked for). At
+// least 3 pairs, not all in one point: throws Error (input) otherwise, and on numbers that are not
+// finite.
+Sim3 AlignPoints(std::span<const Eigen::Vector3d> target, std::span<const Eigen::Vector3d> source,
+                 bool with_scale);
 
 }  // namespace alidade

@@ -1,6 +1,7 @@
-// Two views of an unknown scene: relative pose and points, or the honest answer that they can't be had.
-// Homography and fundamental matrix side by side, model choice and motion hypotheses:
-// Mur-Artal, Montiel & Tardós 2015, §IV; eight points and decomposition: Hartley & Zisserman, ch. 9, 11; Faugeras & Lustman 1988.
+// Two views of an unknown scene: relative pose and points, or the honest answer that they can't be
+// had. Homography and fundamental matrix side by side, model choice and motion hypotheses:
+// Mur-Artal, Montiel & Tardós 2015, §IV; eight points and decomposition: Hartley & Zisserman, ch.
+// 9, 11; Faugeras & Lustman 1988.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,36 +15,50 @@
 namespace alidade {
 
 struct TwoViewSettings {
-  int iterations = 200;           // RANSAC samples of 8 matches, for each model
-  double sigma = 1.0;             // standard deviation of a keypoint, pixels
-  double homography_share = 0.45; // S_H / (S_H + S_F) above which the scene counts as planar
-  double min_parallax_degrees = 1.0;  // of the triangulated points (the 50th smallest from the top, or the last)
-  int min_triangulated = 50;      // points
-  double min_good_share = 0.9;    // of the inliers that must triangulate in front of both, with small error
-  double max_rival_share = 0.75;  // second-best motion hypothesis may explain at most this share of the best's points
+  int iterations = 200;            // RANSAC samples of 8 matches, for each model
+  double sigma = 1.0;              // standard deviation of a keypoint, pixels
+  double homography_share = 0.45;  // S_H / (S_H + S_F) above which the scene counts as planar
+  double min_parallax_degrees =
+      1.0;  // of the triangulated points (the 50th smallest from the top, or the last)
+  int min_triangulated = 50;  // points
+  double min_good_share =
+      0.9;  // of the inliers that must triangulate in front of both, with small error
+  double max_rival_share =
+      0.75;  // second-best motion hypothesis may explain at most this share of the best's points
   uint64_t seed = 1;
-  bool parallel = true;           // samples over the threads; the result is the same without
+  bool parallel = true;  // samples over the threads; the result is the same without
   void Check() const;
 };
 
-enum class TwoViewFailure { kNone, kTooFewMatches, kNoModel, kLowParallax, kAmbiguous, kTooFewPoints };
+enum class TwoViewFailure {
+  kNone,
+  kTooFewMatches,
+  kNoModel,
+  kLowParallax,
+  kAmbiguous,
+  kTooFewPoints
+};
 
 struct TwoViewResult {
   TwoViewFailure failure = TwoViewFailure::kTooFewMatches;  // kNone: the rest is filled
-  bool planar = false;                  // the homography was chosen
-  double homography_share = 0;          // S_H / (S_H + S_F)
-  double parallax_degrees = 0;          // as in the settings
-  Se3 T_b_a;                            // motion from the first view to the second, |t| = 1
-  std::vector<bool> inlier;             // one for each match: triangulated well
-  std::vector<Eigen::Vector3d> p_a;     // one for each match, in the first view's frame; NaN when not an inlier
+  bool planar = false;                                      // the homography was chosen
+  double homography_share = 0;                              // S_H / (S_H + S_F)
+  double parallax_degrees = 0;                              // as in the settings
+  Se3 T_b_a;                 // motion from the first view to the second, |t| = 1
+  std::vector<bool> inlier;  // one for each match: triangulated well
+  std::vector<Eigen::Vector3d>
+      p_a;  // one for each match, in the first view's frame; NaN when not an inlier
 };
 
 // Matches are undistorted pixels; all at one camera.
 TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::Vector2d> a,
-                                  std::span<const Eigen::Vector2d> b, const TwoViewSettings& settings = {});
+                                  std::span<const Eigen::Vector2d> b,
+                                  const TwoViewSettings& settings = {});
 
-// Point seen at undistorted pixels by two cameras, linear method (Hartley & Zisserman 12.2), in the world. Not finite or behind: nullopt.
-std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Se3& T_a_world, const Eigen::Vector2d& pixel_a,
-                                           const Se3& T_b_world, const Eigen::Vector2d& pixel_b);
+// Point seen at undistorted pixels by two cameras, linear method (Hartley & Zisserman 12.2), in the
+// world. Not finite or behind: nullopt.
+std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Se3& T_a_world,
+                                           const Eigen::Vector2d& pixel_a, const Se3& T_b_world,
+                                           const Eigen::Vector2d& pixel_b);
 
 }  // namespace alidade

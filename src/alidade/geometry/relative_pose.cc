@@ -1,0 +1,140 @@
+#include "alidade/geometry/relative_pose.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/geometry/fundamental.h"
+#include "alidade/geometry/two_view_ransac.h"
+
+namespace alidade {
+namespace {
+
+using Vector5d = Eigen::Matrix<double, 5, 1>;
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+
+// Signed Sampson distance, in sigmas: b' E a over the length of its gradient in the four image
+// coordinates.
+struct Sampson {
+  double residual;
+  double inverse_gradient;
+};
+
+Sampson SampsonOf(const Eigen::Matrix3d& E, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                  const Eigen::Vector2d& sigma) {
+  const Eigen::Vector3d line_b = E * a;
+  const Eigen::Vector2d line_a = E.leftCols<2>().transpose() * b;
+  const double inverse_gradient =
+      1 / std::sqrt((line_b.head<2>().cwiseProduct(sigma)).squaredNorm() +
+                    line_a.cwiseProduct(sigma).squaredNorm());
+  return {b.dot(line_b) * inverse_gradient, inverse_gradient};
+}
+
+// Two directions at right angles to t and each other.
+Eigen::Matrix<double, 3, 2> TangentPlane(const Eigen::Vector3d& t) {
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = t.unitOrthogonal();
+  basis.col(1) = t.cross(basis.col(0));
+  return basis;
+}
+
+struct NormalEquations {
+  Matrix5d H = Matrix5d::Zero();
+  Vector5d g = Vector5d::Zero();
+  double gain = 0;     // what the truncated least squares make larger
+  double squares = 0;  // of the residuals within the bound
+  int count = 0;
+};
+
+// Unknowns: rotation vector w (R <- Exp(w) R), then t <- t + basis * d. The gradient of Sampson's
+// denominator is left out: it is multiplied by the residual, which is small.
+NormalEquations Linearise(const Se3& T, const Eigen::Matrix<double, 3, 2>& basis,
+                          const RayPairs& rays) {
+  NormalEquations n;
+  const Eigen::Matrix3d E = EssentialFromMotion(T);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Sampson sampson = SampsonOf(E, rays.a[i], rays.b[i], rays.sigma);
+    const double squared = sampson.residual * sampson.residual;
+    if (!(squared < kChi2Fundamental)) continue;
+    n.gain += kChi2Fundamental - squared;
+    n.squares += squared;
+    ++n.count;
+    const Eigen::Vector3d turned = T.R * rays.a[i];
+    Vector5d j;
+    j.head<3>() = turned.cross(rays.b[i].cross(T.t));           // d(b' [t] Exp(w) R a) / dw
+    j.tail<2>() = basis.transpose() * turned.cross(rays.b[i]);  // d(b' [t + dt] R a) / dt
+    j *= sampson.inverse_gradient;
+    n.H += j * j.transpose();
+    n.g += j * sampson.residual;
+  }
+  return n;
+}
+
+}  // namespace
+
+MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays) {
+  MotionScore result;
+  result.gain.assign(rays.size(), 0);
+  const Eigen::Matrix3d E = EssentialFromMotion(T_b_a);
+  // Rays this close to parallel (noise of 3 sigma in each) meet anywhere, behind the cameras too.
+  const double sine_far = 3 * std::sqrt(2.0) * rays.sigma.maxCoeff();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const double residual = SampsonOf(E, rays.a[i], rays.b[i], rays.sigma).residual;
+    const double gain = kChi2Fundamental - residual * residual;
+    if (!(gain > 0)) continue;
+    ++result.consistent;
+    // Depths z_a, z_b where z_a R a + t comes closest to z_b b; only their signs matter.
+    const Eigen::Vector3d turned = T_b_a.R * rays.a[i];
+    const Eigen::Vector3d& b = rays.b[i];
+    const double aa = turned.squaredNorm(), bb = b.squaredNorm(), ab = turned.dot(b);
+    const double at = turned.dot(T_b_a.t), bt = b.dot(T_b_a.t);
+    const double squared_sine = 1 - ab * ab / (aa * bb);
+    const bool in_front = ab * bt > bb * at && aa * bt > ab * at;
+    if (!in_front && !(ab > 0 && squared_sine < sine_far * sine_far)) continue;
+    ++result.good;
+    result.gain[i] = static_cast<float>(gain);
+    result.score += gain;
+  }
+  return result;
+}
+
+RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
+  RefinedMotion refined;
+  refined.T_b_a = start;
+  Eigen::Matrix<double, 3, 2> basis = TangentPlane(start.t);
+  NormalEquations n = Linearise(start, basis, rays);
+  for (int iteration = 0; iteration < 10 && n.count > 5; ++iteration) {
+    Matrix5d damped = n.H;
+    damped.diagonal() *= 1 + 1e-6;
+    const Vector5d step = -damped.ldlt().solve(n.g);
+    if (!step.allFinite() || step.norm() > 0.5) break;
+    Se3 next;
+    next.R = ExpSo3(step.head<3>()) * refined.T_b_a.R;
+    next.t = (refined.T_b_a.t + basis * step.tail<2>()).normalized();
+    const Eigen::Matrix<double, 3, 2> next_basis = TangentPlane(next.t);
+    const NormalEquations next_n = Linearise(next, next_basis, rays);
+    if (!(next_n.gain > n.gain)) break;
+    refined.T_b_a = next;
+    basis = next_basis;
+    n = next_n;
+    if (step.norm() < 1e-6) break;
+  }
+  refined.T_b_a = refined.T_b_a.Normalised();
+  const double variance = std::max(0.25, n.squares / std::max(1, n.count - 5));
+  const Eigen::SelfAdjointEigenSolver<Matrix5d> spectrum(n.H);
+  const Matrix5d covariance = variance * spectrum.eigenvectors() *
+                              spectrum.eigenvalues()
+                                  .cwiseMax(1e-12 * spectrum.eigenvalues()[4])
+                                  .cwiseInverse()
+                                  .asDiagonal() *
+                              spectrum.eigenvectors().transpose();
+  const auto worst = [](const auto& block) {
+    return std::sqrt(block.norm());  // Frobenius: a little above the largest eigenvalue
+  };
+  refined.rotation_sigma = worst(covariance.topLeftCorner<3, 3>());
+  refined.direction_sigma = worst(covariance.bottomRightCorner<2, 2>());
+  return refined;
+}
+
+}  // namespace alidade

@@ -1,0 +1,192 @@
+#include "alidade/geometry/two_view.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/geometry/fundamental.h"
+#include "alidade/geometry/homography.h"
+#include "alidade/geometry/relative_pose.h"
+#include "alidade/geometry/two_view_ransac.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+struct Hypothesis {
+  Se3 T_b_a;
+  MotionScore score;
+  double direction_sigma = 0;
+};
+
+// Motions this close are the same answer, not rivals.
+bool SameMotion(const Se3& x, const Se3& y) {
+  return RotationAngle(x, y) < 1.5 * kDegree && x.t.dot(y.t) > std::cos(6 * kDegree);
+}
+
+// The distinct motions worth considering, refined, best first.
+std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
+  std::vector<Hypothesis> rough;
+  double best = 0;
+  for (const Se3& T_b_a : motions) {
+    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays), 0});
+    best = std::max(best, rough.back().score.score);
+  }
+  std::stable_sort(rough.begin(), rough.end(), [](const Hypothesis& x, const Hypothesis& y) {
+    return x.score.score > y.score.score;
+  });
+  std::vector<Hypothesis> ranked;
+  for (const Hypothesis& start : rough) {
+    if (start.score.score < 0.4 * best || best == 0) break;
+    const RefinedMotion refined = RefineMotion(start.T_b_a, rays);
+    const bool known = std::any_of(ranked.begin(), ranked.end(), [&](const Hypothesis& other) {
+      return SameMotion(other.T_b_a, refined.T_b_a);
+    });
+    Hypothesis hypothesis{refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma};
+    if (!known) ranked.push_back(std::move(hypothesis));
+  }
+  std::stable_sort(ranked.begin(), ranked.end(), [](const Hypothesis& x, const Hypothesis& y) {
+    return x.score.score > y.score.score;
+  });
+  return ranked;
+}
+
+// Whether the matches leave open which of the two it is.
+bool IsRival(const MotionScore& best, const MotionScore& other, double max_share) {
+  if (other.good <= max_share * best.good) return false;
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < best.gain.size(); ++i) {
+    const double difference = best.gain[i] - other.gain[i];
+    sum += difference;
+    squares += difference * difference;
+  }
+  return sum < 5 * std::sqrt(squares) || sum < 0.05 * best.score;
+}
+
+// The 50th largest, or the smallest when there are fewer.
+double FiftiethLargest(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const size_t rank = std::min<size_t>(50, values.size()) - 1;
+  std::nth_element(values.begin(), values.begin() + rank, values.end(), std::greater<>());
+  return values[rank];
+}
+
+void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
+           std::span<const Eigen::Vector2d> b, double sigma, TwoViewResult& result) {
+  const Se3 identity;
+  const double max_squared = kChi2Homography * sigma * sigma;
+  const Eigen::Vector3d centre_b = result.T_b_a.Inverse().t;
+  const double sine_far = 3 * std::sqrt(2.0) * sigma / std::min(camera.fx, camera.fy);
+  std::vector<double> parallax;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (!a[i].allFinite() || !b[i].allFinite()) continue;
+    const std::optional<Eigen::Vector3d> p =
+        Triangulate(camera, identity, a[i], result.T_b_a, b[i]);
+    if (!p) continue;
+    if (!((camera.Project(*p) - a[i]).squaredNorm() < max_squared)) continue;
+    if (!((camera.Project(result.T_b_a * *p) - b[i]).squaredNorm() < max_squared)) continue;
+    const Eigen::Vector3d from_b = *p - centre_b;
+    const double angle = std::atan2(p->cross(from_b).norm(), p->dot(from_b));
+    if (angle < sine_far) continue;
+    parallax.push_back(angle);
+    result.inlier[i] = true;
+    result.p_a[i] = *p;
+  }
+  result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kDegree;
+}
+
+TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
+  result.failure = why;
+  result.T_b_a = Se3();
+  result.inlier.assign(result.inlier.size(), false);
+  result.p_a.assign(result.p_a.size(),
+                    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  return result;
+}
+
+}  // namespace
+
+void TwoViewSettings::Check() const {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) ThrowUsage(std::string("two-view settings: ") + what);
+  };
+  require(iterations > 0, "iterations must be positive");
+  require(sigma > 0 && std::isfinite(sigma), "sigma must be positive");
+  require(homography_share > 0 && homography_share < 1,
+          "homography_share must lie between 0 and 1");
+  require(min_parallax_degrees >= 0, "min_parallax_degrees must not be negative");
+  require(min_triangulated > 0, "min_triangulated must be positive");
+  require(min_good_share >= 0 && min_good_share <= 1, "min_good_share must lie in 0 to 1");
+  require(max_rival_share >= 0 && max_rival_share <= 1, "max_rival_share must lie in 0 to 1");
+}
+
+TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::Vector2d> a,
+                                  std::span<const Eigen::Vector2d> b,
+                                  const TwoViewSettings& settings) {
+  settings.Check();
+  if (a.size() != b.size())
+    ThrowUsage("two views: as many points are needed in one as in the other");
+  TwoViewResult result;
+  result.inlier.assign(a.size(), false);
+  result.p_a.assign(a.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+
+  // Pixels in units of sigma from the principal point, for the models; rays, for the motions.
+  const Eigen::Vector2d centre(camera.cx, camera.cy), focal(camera.fx, camera.fy);
+  std::vector<Eigen::Vector2d> centred_a, centred_b;
+  RayPairs rays;
+  rays.sigma = focal.cwiseInverse() * settings.sigma;
+  for (size_t i = 0; i < a.size(); ++i) {
+    if (!a[i].allFinite() || !b[i].allFinite()) continue;
+    centred_a.push_back((a[i] - centre) / settings.sigma);
+    centred_b.push_back((b[i] - centre) / settings.sigma);
+    rays.a.push_back(centred_a.back().cwiseProduct(rays.sigma).homogeneous());
+    rays.b.push_back(centred_b.back().cwiseProduct(rays.sigma).homogeneous());
+  }
+  if (static_cast<int>(centred_a.size()) < std::max(8, settings.min_triangulated)) {
+    return Refuse(std::move(result), TwoViewFailure::kTooFewMatches);
+  }
+
+  const RansacModels models =
+      FitTwoViewModels(centred_a, centred_b, settings.iterations, settings.seed, settings.parallel);
+  const double total = models.homography.score + models.fundamental.score;
+  if (!(total > 0)) return Refuse(std::move(result), TwoViewFailure::kNoModel);
+  result.homography_share = models.homography.score / total;
+  result.planar = result.homography_share > settings.homography_share;
+
+  const Eigen::Matrix3d K =
+      Eigen::Vector3d(focal.x() / settings.sigma, focal.y() / settings.sigma, 1).asDiagonal();
+  const Eigen::Matrix3d K_inverse = K.diagonal().cwiseInverse().asDiagonal();
+  std::vector<Se3> motions = MotionsFromHomography(K_inverse * models.homography.matrix * K);
+  const std::vector<Se3> more = MotionsFromEssential(K * models.fundamental.matrix * K);
+  motions.insert(motions.end(), more.begin(), more.end());
+  const std::vector<Hypothesis> ranked = RankMotions(motions, rays);
+  if (ranked.empty()) return Refuse(std::move(result), TwoViewFailure::kNoModel);
+
+  const Hypothesis& best = ranked.front();
+  result.T_b_a = best.T_b_a;
+  Place(camera, a, b, settings.sigma, result);
+  const auto placed = std::count(result.inlier.begin(), result.inlier.end(), true);
+  if (result.parallax_degrees < settings.min_parallax_degrees ||
+      best.direction_sigma > 3 * kDegree) {
+    return Refuse(std::move(result), TwoViewFailure::kLowParallax);
+  }
+  for (size_t i = 1; i < ranked.size(); ++i) {
+    if (IsRival(best.score, ranked[i].score, settings.max_rival_share)) {
+      return Refuse(std::move(result), TwoViewFailure::kAmbiguous);
+    }
+  }
+  if (placed < settings.min_triangulated ||
+      best.score.good < settings.min_good_share * best.score.consistent) {
+    return Refuse(std::move(result), TwoViewFailure::kTooFewPoints);
+  }
+  result.failure = TwoViewFailure::kNone;
+  return result;
+}
+
+}  // namespace alidade
