@@ -23,9 +23,11 @@ struct BundleProblemOptions {
   int fixed_cameras = 2;  // the first ones
   int free_cameras = 8;
   int points = 300;
-  int max_track = 8;  // a point is seen by at most so many cameras, next to each other on the path
+  int min_track = 2;             // a point is seen by at least so many cameras,
+  int max_track = 8;             // and at most so many, next to each other on the path
   double stereo = 0.5;           // share of observations with a u_right
-  double outliers = 0;           // share of observations moved anywhere in the image
+  double outliers = 0;           // share of observations moved
+  double outlier_px = 20;        // by up to this, each way
   double noise_px = 1.0;         // standard deviation at the lowest pyramid level
   double point_error = 0.05;     // standard deviation of the start, metres (× depth / 4 m)
   double camera_error = 0.02;    // of a free camera's start, metres
@@ -83,10 +85,10 @@ inline BundleProblem MakeBundleProblem(const BundleProblemOptions& options) {
         seen.push_back(i);
       }
     }
-    const int count =
-        std::min(static_cast<int>(seen.size()),
-                 2 + static_cast<int>(random.Below(std::max(1, options.max_track - 1))));
-    if (count < 2) continue;
+    const int spread = std::max(1, options.max_track - options.min_track + 1);
+    const int count = std::min(static_cast<int>(seen.size()),
+                               options.min_track + static_cast<int>(random.Below(spread)));
+    if (count < options.min_track) continue;
     const int first = static_cast<int>(random.Below(seen.size() - count + 1));
     const int index = static_cast<int>(problem.points.size());
     double depth = 0;
