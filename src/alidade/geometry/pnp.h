@@ -22,6 +22,7 @@ struct PnpSettings {
   double confidence = 0.999;  // stops once this sure to have had a good sample
   int min_inliers = 10;
   uint64_t seed = 1;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 struct PnpResult {
