@@ -17,8 +17,9 @@ endfunction()
 
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest.
 # Problem generators shared with the benchmarks are in bench/support.
+# With END_TO_END the tests get that label, and are no part of the target unit_tests.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${FOLDER}/*.cc)
   if(NOT SOURCES)
     return()
@@ -26,5 +27,10 @@ function(alidade_test FOLDER)
   add_executable(test_${FOLDER} ${SOURCES})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
-  gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+  if(ARG_END_TO_END)
+    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end)
+  else()
+    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    add_dependencies(unit_tests test_${FOLDER})
+  endif()
 endfunction()

@@ -1,0 +1,161 @@
+// Includes go down only: the floors of docs/architecture.md, held to by reading every source file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, int> kFloors = {
+    {"base", 0},     {"geometry", 1}, {"features", 2}, {"io", 2},         {"detect", 2},
+    {"optimize", 2}, {"synth", 2},    {"place", 3},    {"evaluation", 3}, {"map", 4},
+    {"tracking", 5}, {"mapping", 5},  {"looping", 5},  {"semidense", 5},  {"dynamics", 5},
+    {"system", 6},   {"view", 7},     {"apps", 8}};
+
+// Folders inside the portable ones that are not: what touches files and heavy libraries.
+const std::array<std::string, 3> kOuterFolders = {"io/files", "io/media", "detect/onnx"};
+
+// Not to be had in WebAssembly, or not in clang 14's libc++.
+const std::array<std::string, 18> kNotPortable = {"opencv2/imgcodecs",
+                                                  "opencv2/videoio",
+                                                  "opencv2/dnn",
+                                                  "opencv2/highgui",
+                                                  "opencv2/opencv",
+                                                  "yaml-cpp/",
+                                                  "tbb/",
+                                                  "fstream",
+                                                  "filesystem",
+                                                  "format",
+                                                  "ranges",
+                                                  "source_location",
+                                                  "execution",
+                                                  "stop_token",
+                                                  "jpeglib",
+                                                  "png.h",
+                                                  "boost/",
+                                                  "CLI/"};
+
+bool StartsWith(const std::string& text, const std::string& start) {
+  return text.compare(0, start.size(), start) == 0;
+}
+
+// Of a path relative to src/alidade (or apps/...): the folder that has a floor; "slam.h" is the
+// façade's.
+std::string FolderOf(const std::string& path) {
+  const size_t slash = path.find('/');
+  return slash == std::string::npos ? "system" : path.substr(0, slash);
+}
+
+bool IsPortable(const std::string& path) {
+  if (kFloors.at(FolderOf(path)) > 6) return false;
+  return std::none_of(kOuterFolders.begin(), kOuterFolders.end(),
+                      [&](const std::string& outer) { return StartsWith(path, outer + "/"); });
+}
+
+// Why `path` may not include `header`; nothing when it may.
+std::optional<std::string> Violation(const std::string& path, const std::string& header) {
+  const std::string folder = FolderOf(path);
+  if (kFloors.count(folder) == 0) return "folder '" + folder + "' has no floor";
+  if (IsPortable(path)) {
+    for (const std::string& forbidden : kNotPortable) {
+      const bool whole_name = forbidden.find('/') == std::string::npos;
+      if (whole_name ? header == forbidden : StartsWith(header, forbidden)) {
+        return "<" + header + "> is not portable";
+      }
+    }
+  }
+  if (!StartsWith(header, "alidade/")) return std::nullopt;
+  const std::string included = header.substr(std::string("alidade/").size());
+  const std::string other = FolderOf(included);
+  if (kFloors.count(other) == 0) return "folder '" + other + "' has no floor";
+  if (IsPortable(path) && !IsPortable(included)) return header + " is not portable";
+  if (folder == other) return std::nullopt;
+  const int from = kFloors.at(folder), to = kFloors.at(other);
+  if (to > from)
+    return header + " is upstairs (" + folder + " is on floor " + std::to_string(from) + ")";
+  if (to == from) return header + " is next door (both on floor " + std::to_string(from) + ")";
+  return std::nullopt;
+}
+
+std::vector<std::string> IncludesOf(const fs::path& file) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"].*)");
+  std::ifstream stream(file);
+  std::vector<std::string> includes;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    if (line.find('#') == std::string::npos) continue;
+    if (std::regex_match(line, match, kInclude)) includes.push_back(match[1]);
+  }
+  return includes;
+}
+
+// Source files under `root`, as paths relative to `base`.
+std::vector<std::string> SourcesUnder(const fs::path& root, const fs::path& base) {
+  std::vector<std::string> sources;
+  for (const auto& entry : fs::recursive_directory_iterator(root)) {
+    const std::string extension = entry.path().extension().string();
+    if (entry.is_regular_file() && (extension == ".h" || extension == ".cc")) {
+      sources.push_back(fs::relative(entry.path(), base).generic_string());
+    }
+  }
+  std::sort(sources.begin(), sources.end());
+  return sources;
+}
+
+TEST(Architecture, IncludesGoDownOnly) {
+  const fs::path repository = ALIDADE_SOURCE_DIR;
+  int includes = 0;
+  const auto check = [&](const fs::path& root, const fs::path& base) {
+    for (const std::string& path : SourcesUnder(root, base)) {
+      for (const std::string& header : IncludesOf(base / path)) {
+        ++includes;
+        if (const auto why = Violation(path, header)) ADD_FAILURE() << path << ": " << *why;
+      }
+    }
+  };
+  check(repository / "src/alidade", repository / "src/alidade");
+  check(repository / "apps", repository);
+  EXPECT_GT(includes, 100) << "the sources were not found";
+}
+
+TEST(Architecture, EachFolderHasAFloorAndSaysWhatItIsFor) {
+  for (const auto& entry : fs::directory_iterator(fs::path(ALIDADE_SOURCE_DIR) / "src/alidade")) {
+    if (!entry.is_directory()) continue;
+    EXPECT_EQ(kFloors.count(entry.path().filename().string()), 1u) << entry.path().filename();
+    EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path().filename();
+  }
+}
+
+TEST(ArchitectureRules, SeeIncludesThatGoUpOrSideways) {
+  EXPECT_FALSE(Violation("map/keyframe.h", "alidade/features/frame.h"));
+  EXPECT_FALSE(Violation("map/keyframe.h", "alidade/map/landmark.h"));
+  EXPECT_FALSE(Violation("evaluation/ate.h", "alidade/io/trajectory.h"));
+  EXPECT_FALSE(Violation("apps/main.cc", "alidade/io/files/dataset.h"));
+  EXPECT_FALSE(Violation("slam.h", "alidade/system/slam.h"));
+  EXPECT_TRUE(Violation("features/frame.h", "alidade/map/keyframe.h"));    // up
+  EXPECT_TRUE(Violation("tracking/track.h", "alidade/mapping/mapper.h"));  // sideways
+  EXPECT_TRUE(Violation("optimize/pose.h", "alidade/features/frame.h"));   // sideways
+  EXPECT_TRUE(Violation("tracking/track.h", "alidade/slam.h"));            // up
+  EXPECT_TRUE(Violation("cellar/wine.h", "alidade/base/error.h"));         // nowhere
+}
+
+TEST(ArchitectureRules, SeeWhatIsNotPortable) {
+  EXPECT_TRUE(Violation("features/frame.h", "opencv2/imgcodecs.hpp"));
+  EXPECT_TRUE(Violation("io/trajectory.cc", "fstream"));
+  EXPECT_TRUE(Violation("evaluation/ate.cc", "alidade/io/files/file.h"));
+  EXPECT_TRUE(Violation("system/slam.cc", "yaml-cpp/yaml.h"));
+  EXPECT_FALSE(Violation("io/files/image_file.cc", "fstream"));
+  EXPECT_FALSE(Violation("features/frame.h", "opencv2/core.hpp"));
+  EXPECT_FALSE(Violation("base/log.cc", "formatter.h"));
+}
+
+}  // namespace
