@@ -10,9 +10,15 @@ namespace {
 
 class ClippedSource : public FrameSource {
  public:
-  // `source` stands at frame `first`; `count` is -1 for all the rest.
-  ClippedSource(std::unique_ptr<FrameSource> source, int first, int count)
-      : source_(std::move(source)), info_(source_->Info()), first_(first), count_(count) {
+  // `source` stands at frame `first`, or behind it when that was read already and is handed over as
+  // `pending`; `count` is -1 for all the rest.
+  ClippedSource(std::unique_ptr<FrameSource> source, int first, int count,
+                std::optional<SourceFrame> pending)
+      : source_(std::move(source)),
+        info_(source_->Info()),
+        first_(first),
+        count_(count),
+        pending_(std::move(pending)) {
     if (info_.frames >= 0) info_.frames -= first;
     if (count >= 0) info_.frames = info_.frames < 0 ? -1 : std::min(info_.frames, count);
   }
@@ -22,12 +28,14 @@ class ClippedSource : public FrameSource {
   bool Seek(int frames) override {
     if (!source_->Seek(first_ + frames)) return false;
     done_ = frames;
+    pending_.reset();
     return true;
   }
 
   std::optional<SourceFrame> Next() override {
     if (count_ >= 0 && done_ >= count_) return std::nullopt;
     ++done_;
+    if (pending_) return std::exchange(pending_, std::nullopt);
     return source_->Next();
   }
 
@@ -35,12 +43,8 @@ class ClippedSource : public FrameSource {
   std::unique_ptr<FrameSource> source_;
   SourceInfo info_;
   int first_, count_, done_ = 0;
+  std::optional<SourceFrame> pending_;
 };
-
-[[noreturn]] void FailPastEnd(int first, int frames) {
-  ThrowInput("--first " + std::to_string(first) + " lies past the end: the recording has " +
-             std::to_string(frames) + " frames (0 to " + std::to_string(frames - 1) + ")");
-}
 
 }  // namespace
 
@@ -49,14 +53,20 @@ std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first
   if (last < -1 || (last >= 0 && last < first)) ThrowUsage("--last must not come before --first");
   if (first == 0 && last == -1) return source;
   const int frames = source->Info().frames;
-  if (frames >= 0 && first >= frames) FailPastEnd(first, frames);
-  if (first > 0 && !source->Seek(first)) {
-    for (int i = 0; i < first; ++i) {
-      if (!source->Next()) FailPastEnd(first, i);
-    }
+  if (frames >= 0 && first >= frames) {
+    ThrowInput("--first " + std::to_string(first) + " lies past the end: the recording has " +
+               std::to_string(frames) + " frames (0 to " + std::to_string(frames - 1) + ")");
   }
-  return std::make_unique<ClippedSource>(std::move(source), first,
-                                         last < 0 ? -1 : last - first + 1);
+  int skipped = source->Seek(first) ? first : 0;
+  while (skipped < first && source->Next()) ++skipped;
+  std::optional<SourceFrame> pending;
+  if (frames < 0) {  // whether there is such a frame shows only when it is read
+    if (skipped == first) pending = source->Next();
+    if (!pending)
+      ThrowInput("--first " + std::to_string(first) + " lies past the end of the recording");
+  }
+  return std::make_unique<ClippedSource>(std::move(source), first, last < 0 ? -1 : last - first + 1,
+                                         std::move(pending));
 }
 
 }  // namespace alidade

@@ -62,21 +62,6 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
   return raw;
 }
 
-Se3 ReadTransform(const YamlFile& file, const YAML::Node& node, const std::string& key) {
-  const auto v = file.Numbers(node, key);
-  if (v.size() != 16) file.Fail(node, "`" + key + "` must be 4x4 numbers, row by row");
-  Se3 T;
-  for (int r = 0; r < 3; ++r) {
-    for (int c = 0; c < 3; ++c) T.R(r, c) = v[static_cast<size_t>(4 * r + c)];
-    T.t[r] = v[static_cast<size_t>(4 * r + 3)];
-  }
-  if ((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 ||
-      T.R.determinant() < 0) {
-    file.Fail(node, "`" + key + "`: the upper left 3x3 part is not a rotation");
-  }
-  return T.Normalised();
-}
-
 }  // namespace
 
 Calibration ReadCameraFile(const std::string& path) {
@@ -96,8 +81,7 @@ Calibration ReadCameraFile(const std::string& path) {
     if (!right.IsMap()) file.Fail(right, "`right` holds a camera's names and values");
     WarnOfUnknownKeys(file, right, true);
     calibration.right = ReadRawCamera(file, right);
-    calibration.T_left_right =
-        ReadTransform(file, file.Need(right, "T_left_right"), "T_left_right");
+    calibration.T_left_right = file.Transform(file.Need(right, "T_left_right"), "T_left_right");
   } else if (root["baseline"]) {
     calibration.baseline = Positive(file, root, "baseline");
   }

@@ -6,7 +6,9 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/files/camera_file.h"
-#include "alidade/io/files/image_file.h"
+#include "alidade/io/files/euroc_recording.h"
+#include "alidade/io/files/folder_recording.h"
+#include "alidade/io/files/kitti_recording.h"
 #include "alidade/io/files/recording.h"
 #include "alidade/io/files/tum_recording.h"
 #include "alidade/io/wrappers.h"
@@ -16,8 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Recording ReadRecording(const std::string& folder) {
+Recording ReadRecording(const std::string& folder, const SourceOptions& options) {
   if (IsTumFolder(folder)) return ReadTumRecording(folder);
+  if (IsEurocFolder(folder)) return ReadEurocRecording(folder);
+  if (IsKittiFolder(folder)) return ReadKittiRecording(folder);
+  if (IsImageFolder(folder)) {
+    return ReadFolderRecording(folder, options.camera_file
+                                           ? std::optional(ReadCameraFile(*options.camera_file).fps)
+                                           : std::nullopt);
+  }
   if (fs::is_empty(folder)) ThrowInput(folder + " is an empty folder");
   ThrowInput(folder +
              " is no recording: known are TUM RGB-D folders (rgb.txt), EuRoC (mav0/), KITTI "
@@ -36,20 +45,6 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
   if (sensor == Sensor::kStereo && !recording.has_right)
     ThrowUsage("--sensor stereo: " + path + " has no second camera");
   return sensor;
-}
-
-// Of the first image whose header can be read.
-cv::Size SizeOfImages(const Recording& recording) {
-  std::string problem;
-  for (const RecordedFrame& frame : recording.frames) {
-    if (!frame.problem.empty()) continue;
-    try {
-      return ReadImageSize(frame.image);
-    } catch (const Error& error) {
-      if (problem.empty()) problem = error.what();
-    }
-  }
-  ThrowInput("not one image can be read: " + problem);
 }
 
 struct ChosenCalibration {
@@ -88,7 +83,7 @@ void CheckSizes(const Calibration& calibration, cv::Size size) {
 }
 
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
-  Recording recording = ReadRecording(path);
+  Recording recording = ReadRecording(path, options);
   recording.name = fs::weakly_canonical(path).filename().string();
   const Sensor sensor = ChooseSensor(recording, path, options);
   const cv::Size size = SizeOfImages(recording);

@@ -1,10 +1,12 @@
 #include "alidade/io/files/recording.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/association.h"
 #include "alidade/io/files/image_file.h"
 
 namespace alidade {
@@ -124,6 +126,37 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
     }
   }
   return frames;
+}
+
+int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
+                 const std::vector<StampedName>& list, const std::string& folder, double max_dt) {
+  std::vector<double> frame_times, list_times;
+  // NaN matches nothing.
+  const double never = std::numeric_limits<double>::quiet_NaN();
+  for (const RecordedFrame& frame : frames)
+    frame_times.push_back(frame.problem.empty() ? frame.time : never);
+  for (const StampedName& item : list) {
+    if (!item.problem.empty()) LogWarning(item.problem + "; this line is left out");
+    list_times.push_back(item.problem.empty() ? item.time : never);
+  }
+  const auto pairs = AssociateByTime(frame_times, list_times, max_dt);
+  for (const auto& [frame, item] : pairs) {
+    frames[static_cast<size_t>(frame)].*which = folder + "/" + list[static_cast<size_t>(item)].name;
+  }
+  return static_cast<int>(pairs.size());
+}
+
+cv::Size SizeOfImages(const Recording& recording) {
+  std::string problem;
+  for (const RecordedFrame& frame : recording.frames) {
+    if (!frame.problem.empty()) continue;
+    try {
+      return ReadImageSize(frame.image);
+    } catch (const Error& error) {
+      if (problem.empty()) problem = error.what();
+    }
+  }
+  ThrowInput("not one image can be read: " + problem);
 }
 
 std::unique_ptr<FrameSource> PlayRecording(Recording recording, Sensor sensor,

@@ -35,6 +35,15 @@ struct Recording {
 std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
                                     const std::string& folder);
 
+// Gives each good frame the item of `list` nearest in time (under `max_dt` seconds away, one to
+// one) as its `right` or `depth`; returns how many frames got one. Items with a problem are left
+// out with a warning.
+int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
+                 const std::vector<StampedName>& list, const std::string& folder, double max_dt);
+
+// Of the first image whose header can be read; throws Error when there is none.
+cv::Size SizeOfImages(const Recording& recording);
+
 // `preparation` must be made for `sensor`. Images of other sizes than `raw_size` are problems.
 std::unique_ptr<FrameSource> PlayRecording(Recording recording, Sensor sensor,
                                            ImagePreparation preparation, cv::Size raw_size,

@@ -1,9 +1,9 @@
 #include "alidade/io/files/tum_recording.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "alidade/base/log.h"
-#include "alidade/io/association.h"
 #include "alidade/io/files/camera_file.h"
 
 namespace alidade {
@@ -13,32 +13,16 @@ constexpr double kMaxDepthDelay =
     0.02;  // seconds: over half a frame at 30 Hz, as TUM's tools have it
 
 void AddDepth(Recording& recording, const std::string& folder) {
-  std::vector<double> depth_times, image_times;
-  std::vector<std::string> depth_paths;
-  for (const StampedName& item :
-       ReadStampedList(folder + "/depth.txt", StampUnit::kSeconds, true)) {
-    if (!item.problem.empty()) {
-      LogWarning(item.problem + "; this depth image is left out");
-      continue;
-    }
-    depth_times.push_back(item.time);
-    depth_paths.push_back(folder + "/" + item.name);
+  const auto list = ReadStampedList(folder + "/depth.txt", StampUnit::kSeconds, true);
+  const int found =
+      AttachByTime(recording.frames, &RecordedFrame::depth, list, folder, kMaxDepthDelay);
+  const auto good = std::count_if(recording.frames.begin(), recording.frames.end(),
+                                  [](const RecordedFrame& frame) { return frame.problem.empty(); });
+  if (found < good) {
+    LogWarning(std::to_string(good - found) + " of " + std::to_string(good) +
+               " frames have no depth image within 0.02 s");
   }
-  std::vector<RecordedFrame*> images;
-  for (RecordedFrame& frame : recording.frames) {
-    if (!frame.problem.empty()) continue;
-    images.push_back(&frame);
-    image_times.push_back(frame.time);
-  }
-  const auto pairs = AssociateByTime(image_times, depth_times, kMaxDepthDelay);
-  for (const auto& [image, depth] : pairs) {
-    images[static_cast<size_t>(image)]->depth = depth_paths[static_cast<size_t>(depth)];
-  }
-  if (pairs.size() < images.size()) {
-    LogWarning(std::to_string(images.size() - pairs.size()) + " of " +
-               std::to_string(images.size()) + " frames have no depth image within 0.02 s");
-  }
-  recording.has_depth = !pairs.empty();
+  recording.has_depth = found > 0;
 }
 
 }  // namespace

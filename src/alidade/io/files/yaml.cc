@@ -67,4 +67,19 @@ std::vector<double> YamlFile::Numbers(const YAML::Node& node, const std::string&
   return numbers;
 }
 
+Se3 YamlFile::Transform(const YAML::Node& node, const std::string& key) const {
+  const auto v = Numbers(node, key);
+  if (v.size() != 16) Fail(node, "`" + key + "` must be 4x4 numbers, row by row");
+  Se3 T;
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 3; ++c) T.R(r, c) = v[static_cast<size_t>(4 * r + c)];
+    T.t[r] = v[static_cast<size_t>(4 * r + 3)];
+  }
+  if ((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 ||
+      T.R.determinant() < 0) {
+    Fail(node, "`" + key + "`: the upper left 3x3 part is not a rotation");
+  }
+  return T.Normalised();
+}
+
 }  // namespace alidade

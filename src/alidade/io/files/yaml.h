@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "alidade/geometry/se3.h"
+
 namespace alidade {
 
 class YamlFile {
@@ -24,6 +26,8 @@ class YamlFile {
   std::string Text(const YAML::Node& node, const std::string& key) const;
   // A flat list, or a list of lists flattened row by row.
   std::vector<double> Numbers(const YAML::Node& node, const std::string& key) const;
+  // 16 numbers, the rows of a 4x4 matrix whose upper left part is a rotation.
+  Se3 Transform(const YAML::Node& node, const std::string& key) const;
 
  private:
   std::string path_;

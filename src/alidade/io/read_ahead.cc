@@ -1,0 +1,69 @@
+#include "alidade/io/read_ahead.h"
+
+#include <time.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace alidade {
+namespace {
+
+double ThreadCpuSeconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+}  // namespace
+
+ReadAhead::ReadAhead(std::unique_ptr<FrameSource> source, int capacity)
+    : source_(std::move(source)),
+      info_(source_->Info()),
+      capacity_(static_cast<size_t>(std::max(1, capacity))),
+      thread_([this] { Run(); }) {}
+
+ReadAhead::~ReadAhead() {
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void ReadAhead::Run() {
+  std::exception_ptr failure;
+  try {
+    while (true) {
+      std::optional<SourceFrame> frame = source_->Next();
+      cpu_seconds_.store(ThreadCpuSeconds());
+      if (!frame) break;
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stop_ || queue_.size() < capacity_; });
+      if (stop_) break;
+      queue_.push_back(std::move(*frame));
+      changed_.notify_all();
+    }
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const std::lock_guard lock(mutex_);
+  failure_ = failure;
+  finished_ = true;
+  changed_.notify_all();
+}
+
+std::optional<SourceFrame> ReadAhead::Next() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return finished_ || !queue_.empty(); });
+  if (!queue_.empty()) {
+    SourceFrame frame = std::move(queue_.front());
+    queue_.pop_front();
+    changed_.notify_all();
+    return frame;
+  }
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+  return std::nullopt;
+}
+
+}  // namespace alidade

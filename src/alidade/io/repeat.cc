@@ -1,0 +1,99 @@
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/io/trajectory.h"
+#include "alidade/io/wrappers.h"
+
+namespace alidade {
+namespace {
+
+class RepeatedSource : public FrameSource {
+ public:
+  RepeatedSource(std::unique_ptr<FrameSource> source, int times)
+      : source_(std::move(source)), info_(source_->Info()), legs_(2 * times) {
+    if (info_.frames > 0) info_.frames = 1 + legs_ * (info_.frames - 1);
+  }
+
+  const SourceInfo& Info() const override { return info_; }
+
+  std::optional<SourceFrame> Next() override {
+    if (leg_ == 0) {  // the first way forth, as recorded
+      if (auto frame = source_->Next()) {
+        if (played_ == 0) first_number_ = frame->number;
+        ++played_;
+        time_ = recorded_time_ = frame->time;
+        return frame;
+      }
+      length_ = played_;
+      leg_ = 1;
+      at_ = length_ - 1;
+    }
+    return length_ > 1 ? Step() : std::nullopt;
+  }
+
+ private:
+  bool forwards() const { return leg_ % 2 == 0; }
+
+  std::optional<SourceFrame> Step() {
+    if (at_ == (forwards() ? length_ - 1 : 0)) ++leg_;
+    if (leg_ == legs_) return std::nullopt;
+    at_ += forwards() ? 1 : -1;
+    std::optional<SourceFrame> frame = Get(at_);
+    if (!frame)
+      ThrowInput("frame " + std::to_string(first_number_ + at_) + " was there once and is no more");
+    time_ += std::abs(frame->time - recorded_time_);
+    recorded_time_ = frame->time;
+    frame->time = time_;
+    frame->stamp = FormatTime(time_);
+    frame->number = first_number_ + played_++;
+    return frame;
+  }
+
+  // Videos seek slowly: they are read forwards in blocks even when played backwards.
+  std::optional<SourceFrame> Get(int index) {
+    constexpr int kBlock = 32;
+    if (index < block_start_ || index >= block_start_ + static_cast<int>(block_.size())) {
+      const int start = forwards() ? index : std::max(0, index - kBlock + 1);
+      block_.clear();
+      block_start_ = start;
+      if (!forwards() || index != next_in_source_) {
+        if (!source_->Seek(start))
+          ThrowUsage("--repeat needs a recording that can be played backwards");
+      }
+      const int count = forwards() ? 1 : index - start + 1;
+      for (int i = 0; i < count; ++i) {
+        auto frame = source_->Next();
+        if (!frame) return std::nullopt;
+        block_.push_back(std::move(*frame));
+      }
+      next_in_source_ = start + count;
+    }
+    return block_[static_cast<size_t>(index - block_start_)];
+  }
+
+  std::unique_ptr<FrameSource> source_;
+  SourceInfo info_;
+  int legs_;        // ways forth and back in all
+  int leg_ = 0;     // even: forth
+  int length_ = 0;  // frames of the recording, known after the first way
+  int at_ = 0;      // index of the frame given last
+  int played_ = 0;  // frames given
+  int first_number_ = 0;
+  double time_ = 0, recorded_time_ = 0;  // seconds, of the frame given last: as played, as recorded
+  std::vector<SourceFrame> block_;
+  int block_start_ = 0;
+  int next_in_source_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int times) {
+  if (times < 0) ThrowUsage("--repeat must not be negative");
+  if (times == 0) return source;
+  return std::make_unique<RepeatedSource>(std::move(source), times);
+}
+
+}  // namespace alidade
