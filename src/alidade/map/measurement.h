@@ -1,0 +1,33 @@
+// A keypoint as what the optimisers take: pixel, right column, weights.
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "alidade/features/frame.h"
+
+namespace alidade {
+
+// How well a keypoint is placed, pixels on level 0.
+struct MeasurementNoise {
+  double sigma_px = 1.0;        // of u and v; grows with the level's scale
+  double sigma_right_px = 1.0;  // of the right column; a matched one grows with the scale, a depth sensor's does not
+  bool right_from_sensor = false;
+};
+
+struct Measurement {
+  Eigen::Vector3d pixel;        // u, v, right column or NaN
+  double inv_sigma2 = 1, inv_sigma2_right = 1;  // 1/px²
+};
+
+inline Measurement Measure(const Keypoint& keypoint, const MeasurementNoise& noise) {
+  const double scale = ScaleOfLevel(keypoint.level);
+  const double sigma = noise.sigma_px * scale;
+  const double right = noise.sigma_right_px * (noise.right_from_sensor ? 1.0 : scale);
+  return {{keypoint.x, keypoint.y,
+           keypoint.has_depth() ? keypoint.right_x : std::numeric_limits<double>::quiet_NaN()},
+          1 / (sigma * sigma),
+          1 / (right * right)};
+}
+
+}  // namespace alidade

@@ -1,0 +1,27 @@
+#include "alidade/map/view.h"
+
+#include "alidade/features/guided_search.h"
+
+namespace alidade {
+
+std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera& camera,
+                                         const Se3& T_camera_world, double margin) {
+  const Eigen::Vector3d p = T_camera_world * landmark.p_world;
+  if (p.z() <= 0.01) return {};
+  LandmarkView view;
+  view.pixel = camera.Project(p);
+  // Written so that NaN falls through to "outside".
+  const bool inside = view.pixel.x() >= -margin && view.pixel.x() < camera.width + margin &&
+                      view.pixel.y() >= -margin && view.pixel.y() < camera.height + margin;
+  if (!inside) return {};
+  view.distance = p.norm();
+  if (view.distance < 0.8 * landmark.min_distance || view.distance > 1.2 * landmark.max_distance) return {};
+  const Eigen::Vector3d sight = T_camera_world.R.transpose() * p;
+  view.cosine = sight.dot(landmark.normal.cast<double>()) / view.distance;
+  if (view.cosine < 0.5) return {};
+  if (const double bf = camera.bf(); bf > 0) view.right_x = view.pixel.x() - bf / p.z();
+  view.level = PredictLevel(landmark.max_distance, view.distance);
+  return view;
+}
+
+}  // namespace alidade

@@ -1,0 +1,62 @@
+#include "alidade/tracking/local_map.h"
+
+#include <algorithm>
+
+namespace alidade {
+
+namespace {
+constexpr int kNeighboursEach = 10;  // best covisible keyframes looked at for one that shares landmarks
+}
+
+LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
+                                  int max_keyframes) {
+  ++mark_;
+  landmark_mark_.resize(map.next_landmark(), 0);
+  keyframe_mark_.resize(map.next_keyframe(), 0);
+  std::vector<int> votes(map.next_keyframe(), 0);
+  for (LandmarkId id : matches) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    for (const Observation& seen : landmark->observations) ++votes[seen.keyframe.value];
+  }
+
+  LocalMap local;
+  std::vector<Neighbour> sharing;
+  for (uint32_t i = 0; i < votes.size(); ++i) {
+    if (votes[i] > 0) sharing.push_back({{i}, votes[i]});
+  }
+  std::sort(sharing.begin(), sharing.end(), [](const Neighbour& a, const Neighbour& b) {
+    return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
+  });
+  if (sharing.empty()) return local;
+  local.reference = sharing.front().id;
+
+  const auto take = [&](KeyFrameId id) {
+    if (static_cast<int>(local.keyframes.size()) >= max_keyframes) return false;
+    if (!map.Find(id) || keyframe_mark_[id.value] == mark_) return false;
+    keyframe_mark_[id.value] = mark_;
+    local.keyframes.push_back(id);
+    return true;
+  };
+  for (const Neighbour& n : sharing) take(n.id);
+  const size_t direct = local.keyframes.size();
+  for (size_t i = 0; i < direct; ++i) {
+    const auto& covisible = map.Find(local.keyframes[i])->covisible;
+    for (size_t j = 0; j < covisible.size() && j < kNeighboursEach; ++j) {
+      if (take(covisible[j].id)) break;
+    }
+    const KeyFrameId parent = map.Find(local.keyframes[i])->parent;
+    if (parent.valid()) take(parent);
+  }
+
+  for (KeyFrameId id : local.keyframes) {
+    for (LandmarkId landmark_id : map.Find(id)->landmarks) {
+      if (!landmark_id.valid() || landmark_mark_[landmark_id.value] == mark_) continue;
+      landmark_mark_[landmark_id.value] = mark_;
+      if (const Landmark* landmark = map.Find(landmark_id)) local.landmarks.push_back(landmark);
+    }
+  }
+  return local;
+}
+
+}  // namespace alidade

@@ -1,0 +1,28 @@
+// The part of the map a frame can be expected to see (ORB-SLAM §V-D).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "alidade/map/map_store.h"
+
+namespace alidade {
+
+struct LocalMap {
+  std::vector<KeyFrameId> keyframes;        // those that share landmarks with the frame, then their neighbours
+  std::vector<const Landmark*> landmarks;   // all they see, each once; valid as long as the snapshot
+  KeyFrameId reference;                     // the one that shares most
+};
+
+// Keeps its marks between frames so that gathering allocates little.
+class LocalMapGatherer {
+ public:
+  // `matches`: the frame's landmarks so far (invalid and stale ids are passed over).
+  LocalMap Gather(const MapSnapshot& map, std::span<const LandmarkId> matches, int max_keyframes);
+
+ private:
+  std::vector<uint32_t> landmark_mark_, keyframe_mark_;  // by id; equal to mark_ = seen in this call
+  uint32_t mark_ = 0;
+};
+
+}  // namespace alidade

@@ -1,0 +1,30 @@
+// Settings of the tracker. Counts of matches are for 1000 features; match_scale adapts them.
+#pragma once
+
+#include "alidade/features/extractor.h"
+#include "alidade/map/measurement.h"
+
+namespace alidade {
+
+struct TrackerSettings {
+  ExtractorSettings extractor;
+  double match_scale = 1.0;      // multiplies the counts of matches below; phone 0.8 (half the features)
+  int min_predicted = 20;        // matches with the last frame, below which the search is widened
+  int min_after_prediction = 10; // inliers, below which the reference keyframe is tried instead
+  int min_tracked = 20;          // inliers with the local map, below which the frame is lost
+  int max_distance = 100;        // bits of 256; with a pose to guide the search
+  double local_ratio = 0.8;      // best to second-best descriptor distance on the same level
+  float last_frame_radius = 15;  // pixels on level 0 around the predicted place, monocular
+  float last_frame_radius_depth = 10;  // the same with depth: the prediction is better
+  float local_radius = 4;        // pixels on level 0, seen from the side; 2.5 head-on (ORB-SLAM)
+  int local_keyframes = 40;      // at most, in the local map
+  MeasurementNoise noise;        // of keypoints
+  // A keyframe is asked for when this share of the reference keyframe's landmarks is no longer tracked …
+  double keyframe_share_mono = 0.9;
+  double keyframe_share_depth = 0.75;
+  int keyframe_min_gap = 1;      // … but not sooner after the last than this many frames,
+  int keyframe_max_gap = 30;     // and at the latest after this many
+  void Check() const;            // throws Error (usage) naming the field that cannot be
+};
+
+}  // namespace alidade

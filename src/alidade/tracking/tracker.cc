@@ -1,0 +1,284 @@
+#include "alidade/tracking/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/base/parallel.h"
+#include "alidade/features/guided_search.h"
+#include "alidade/features/matching.h"
+#include "alidade/geometry/pnp.h"
+#include "alidade/map/view.h"
+
+namespace alidade {
+
+Tracker::Tracker(const Camera& camera, TrackerSettings settings)
+    : camera_(camera),
+      settings_(settings),
+      has_depth_(camera.StereoBaseline() > 0),
+      extractor_(settings.extractor),
+      right_extractor_(settings.extractor) {
+  settings_.Check();
+  settings_.noise.right_from_sensor = camera.baseline <= 0;
+}
+
+std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
+                                        double time, int number) {
+  auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number));
+  if (!depth.empty()) AttachDepth(depth, camera_, *frame);
+  if (!right.empty()) MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+  return frame;
+}
+
+PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  PlacedFrame guess;
+  guess.frame = std::move(frame);
+  const Se3 T_last_world = T_last_reference_ * map.PoseOf(reference_);
+  last_.T_camera_world = T_last_world;
+
+  const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
+  for (float widen : {1.0f, 2.0f, 4.0f}) {
+    guess.T_camera_world = has_velocity_ ? velocity_ * T_last_world : T_last_world;
+    MatchLastFrame(guess, map, widen * radius);
+    Optimise(guess, map);
+    if (guess.inliers >= Scaled(settings_.min_predicted)) return guess;
+  }
+  MatchKeyFrame(guess, map, reference_);
+  return guess;
+}
+
+void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const {
+  const Frame& now = *guess.frame;
+  guess.matches.assign(now.keypoints.size(), {});
+  const Se3 T_last_now = last_.T_camera_world * guess.T_camera_world.Inverse();
+  const double forward = T_last_now.t.z();  // metres; what is nearer now is found on a coarser level
+  const double baseline = camera_.StereoBaseline();
+
+  std::vector<int> matched;
+  std::vector<float> turns;
+  for (size_t i = 0; i < last_.matches.size(); ++i) {
+    const LandmarkId id = map.Current(last_.matches[i]);
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    const Eigen::Vector3d p = guess.T_camera_world * landmark->p_world;
+    if (p.z() <= 0.01) continue;
+    const Eigen::Vector2d pixel = camera_.Project(p);
+    if (!(pixel.x() >= 0 && pixel.x() < camera_.width && pixel.y() >= 0 && pixel.y() < camera_.height)) continue;
+
+    const Keypoint& before = last_.frame->keypoints[i];
+    Sought sought;
+    sought.descriptor = &last_.frame->descriptors[i];
+    sought.x = static_cast<float>(pixel.x());
+    sought.y = static_cast<float>(pixel.y());
+    sought.radius = radius * static_cast<float>(ScaleOfLevel(before.level));
+    sought.min_level = before.level - 1;
+    sought.max_level = before.level + 1;
+    if (baseline > 0 && forward > baseline) {
+      sought.min_level = before.level;
+      sought.max_level = kPyramidLevels - 1;
+    } else if (baseline > 0 && -forward > baseline) {
+      sought.min_level = 0;
+      sought.max_level = before.level;
+    }
+    if (baseline > 0) sought.right_x = static_cast<float>(pixel.x() - camera_.bf() / p.z());
+    const Sighting found = FindNear(now, sought, [&](int k) { return !guess.matches[k].valid(); });
+    if (found.keypoint < 0 || found.distance > settings_.max_distance) continue;
+    guess.matches[found.keypoint] = id;
+    matched.push_back(found.keypoint);
+    turns.push_back(before.angle - now.keypoints[found.keypoint].angle);
+  }
+  const std::vector<bool> keep = ConsistentTurns(turns);
+  for (size_t i = 0; i < matched.size(); ++i) {
+    if (!keep[i]) guess.matches[matched[i]] = {};
+  }
+}
+
+void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const {
+  guess.matches.assign(guess.frame->keypoints.size(), {});
+  guess.inliers = 0;
+  const KeyFrame* keyframe = map.Find(id);
+  if (!keyframe) return;
+  std::vector<int> known, all(guess.frame->keypoints.size());
+  for (size_t i = 0; i < keyframe->landmarks.size(); ++i) {
+    if (keyframe->landmarks[i].valid()) known.push_back(static_cast<int>(i));
+  }
+  for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> pixels;
+  std::vector<double> scales;
+  std::vector<std::pair<int, LandmarkId>> matches;
+  for (const IndexMatch& match : MatchSubsets(*keyframe->frame, known, *guess.frame, all)) {
+    const Landmark* landmark = map.Find(keyframe->landmarks[match.a]);
+    if (!landmark) continue;
+    const Keypoint& keypoint = guess.frame->keypoints[match.b];
+    points.push_back(landmark->p_world);
+    pixels.push_back(keypoint.pixel());
+    scales.push_back(ScaleOfLevel(keypoint.level));
+    matches.push_back({match.b, landmark->id});
+  }
+  const int enough = Scaled(settings_.min_after_prediction);
+  if (static_cast<int>(matches.size()) < enough) return;
+  PnpSettings pnp;
+  pnp.min_inliers = enough;
+  pnp.seed = static_cast<uint64_t>(guess.frame->number) + 1;
+  const PnpResult pose = SolvePnpRansac(camera_, points, pixels, scales, pnp);
+  if (!pose.success) return;
+  guess.T_camera_world = pose.T_camera_world;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (pose.inlier[i]) guess.matches[matches[i].first] = matches[i].second;
+  }
+  Optimise(guess, map);
+}
+
+PlacedFrame Tracker::Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  std::vector<KeyFrameId> candidates;
+  if (const KeyFrame* reference = map.Find(reference_)) {
+    candidates.push_back(reference_);
+    for (size_t i = 0; i < reference->covisible.size() && i < 4; ++i) {
+      candidates.push_back(reference->covisible[i].id);
+    }
+  }
+  PlacedFrame best;
+  for (KeyFrameId id : candidates) {
+    PlacedFrame guess;
+    guess.frame = frame;
+    MatchKeyFrame(guess, map, id);
+    if (guess.inliers > best.inliers || !best.frame) best = std::move(guess);
+    if (best.inliers >= 50) break;
+  }
+  if (!best.frame) best.frame = std::move(frame);
+  return best;
+}
+
+void Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
+  std::vector<PoseMatch> matches;
+  std::vector<int> keypoints;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
+    if (!landmark) continue;
+    const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
+    matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
+    keypoints.push_back(static_cast<int>(i));
+  }
+  const PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
+  placed.T_camera_world = result.T_camera_world;
+  placed.inliers = result.inliers;
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    if (!result.inlier[i]) placed.matches[keypoints[i]] = {};
+  }
+}
+
+TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
+  TrackEstimate estimate;
+  const int enough_to_try = Scaled(settings_.min_after_prediction);
+  if (guess.inliers < enough_to_try) {
+    estimate.placed = std::move(guess);
+    return estimate;
+  }
+  const LocalMap local = gatherer_.Gather(map, guess.matches, settings_.local_keyframes);
+  const Frame& frame = *guess.frame;
+
+  std::vector<uint8_t> matched_already(map.next_landmark(), 0);
+  for (LandmarkId id : guess.matches) {
+    if (id.valid()) matched_already[id.value] = 1;
+  }
+  // Landmarks are looked for side by side; conflicts are settled afterwards, in order.
+  struct Candidate {
+    const Landmark* landmark;
+    Sighting sighting;
+    bool visible = false;
+  };
+  std::vector<Candidate> candidates;
+  candidates.reserve(local.landmarks.size());
+  for (const Landmark* landmark : local.landmarks) {
+    if (!matched_already[landmark->id.value]) candidates.push_back({landmark, {}, false});
+  }
+  constexpr int kChunk = 256;
+  const int chunks = (static_cast<int>(candidates.size()) + kChunk - 1) / kChunk;
+  ParallelFor(chunks, [&](int chunk) {
+    const size_t end = std::min(candidates.size(), static_cast<size_t>(chunk + 1) * kChunk);
+    for (size_t i = static_cast<size_t>(chunk) * kChunk; i < end; ++i) {
+      const auto view = ViewLandmark(*candidates[i].landmark, camera_, guess.T_camera_world);
+      if (!view) continue;
+      candidates[i].visible = true;
+      Sought sought;
+      sought.descriptor = &candidates[i].landmark->descriptor;
+      sought.x = static_cast<float>(view->pixel.x());
+      sought.y = static_cast<float>(view->pixel.y());
+      sought.right_x = static_cast<float>(view->right_x);
+      const float radius = view->cosine > 0.998 ? 2.5f : settings_.local_radius;
+      sought.radius = radius * static_cast<float>(ScaleOfLevel(view->level));
+      sought.min_level = view->level - 1;
+      sought.max_level = view->level;
+      candidates[i].sighting = FindNear(frame, sought, [&](int k) { return !guess.matches[k].valid(); });
+    }
+  });
+  std::vector<int> taken_by(frame.keypoints.size(), -1);
+  for (size_t i = 0; i < candidates.size(); ++i) {
+    const Sighting& s = candidates[i].sighting;
+    if (s.keypoint < 0 || s.distance > settings_.max_distance) continue;
+    if (s.level == s.second_level && s.distance > settings_.local_ratio * s.second_distance) continue;
+    int& holder = taken_by[s.keypoint];
+    if (holder < 0 || s.distance < candidates[holder].sighting.distance) holder = static_cast<int>(i);
+  }
+  for (size_t k = 0; k < taken_by.size(); ++k) {
+    if (taken_by[k] >= 0) guess.matches[k] = candidates[taken_by[k]].landmark->id;
+  }
+  std::vector<LandmarkId> before_optimising = guess.matches;
+  Optimise(guess, map);
+
+  for (size_t k = 0; k < before_optimising.size(); ++k) {
+    if (before_optimising[k].valid()) estimate.sightings.push_back({before_optimising[k], guess.matches[k].valid()});
+  }
+  std::vector<uint8_t> counted(map.next_landmark(), 0);
+  for (const SightingCount& s : estimate.sightings) counted[s.landmark.value] = 1;
+  for (const Candidate& c : candidates) {
+    if (c.visible && !counted[c.landmark->id.value]) estimate.sightings.push_back({c.landmark->id, false});
+  }
+  estimate.reference = local.reference;
+  estimate.tracked = guess.inliers >= Scaled(settings_.min_tracked);
+  estimate.placed = std::move(guess);
+  estimate.wants_keyframe = estimate.tracked && WantsKeyFrame(estimate, map);
+  return estimate;
+}
+
+bool Tracker::WantsKeyFrame(const TrackEstimate& estimate, const MapSnapshot& map) const {
+  const KeyFrame* reference = map.Find(estimate.reference);
+  if (!reference) return false;
+  const size_t min_observations = map.keyframe_count() <= 2 ? 2 : 3;
+  int reference_matches = 0;
+  for (LandmarkId id : reference->landmarks) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (landmark && landmark->observations.size() >= min_observations) ++reference_matches;
+  }
+  const int since = estimate.placed.frame->number - last_keyframe_number_;
+  if (since >= settings_.keyframe_max_gap) return true;
+  if (since < settings_.keyframe_min_gap) return false;
+  const int inliers = estimate.placed.inliers;
+  const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
+  if (inliers < share * reference_matches) return true;
+  if (!has_depth_) return false;
+  int near_tracked = 0, near_new = 0;
+  const auto& keypoints = estimate.placed.frame->keypoints;
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    if (!keypoints[i].has_depth()) continue;
+    ++(estimate.placed.matches[i].valid() ? near_tracked : near_new);
+  }
+  return near_tracked < Scaled(100) && near_new > Scaled(70);
+}
+
+void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
+  const Se3 T_last_world = last_.frame ? T_last_reference_ * map.PoseOf(reference_) : Se3{};
+  has_velocity_ = last_.frame && placed.frame->number > last_.frame->number;
+  if (has_velocity_) velocity_ = placed.T_camera_world * T_last_world.Inverse();
+  last_ = placed;
+  reference_ = reference;
+  T_last_reference_ = placed.T_camera_world * map.PoseOf(reference).Inverse();
+}
+
+void Tracker::Forget() {
+  last_ = {};
+  has_velocity_ = false;
+}
+
+}  // namespace alidade

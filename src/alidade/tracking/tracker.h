@@ -1,0 +1,81 @@
+// Where the camera is at this frame, from the map as it stands. Reads the map, never writes it.
+// ORB-SLAM §V (Mur-Artal, Montiel & Tardós 2015), with depth as in ORB-SLAM2 (2017).
+#pragma once
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "alidade/map/map_store.h"
+#include "alidade/optimize/pose_only.h"
+#include "alidade/tracking/local_map.h"
+#include "alidade/tracking/settings.h"
+
+namespace alidade {
+
+// A frame placed in the map.
+struct PlacedFrame {
+  std::shared_ptr<const Frame> frame;
+  Se3 T_camera_world;
+  std::vector<LandmarkId> matches;  // one for each keypoint; none where nothing is known
+  int inliers = 0;                  // matches that agree with the pose
+};
+
+struct SightingCount {
+  LandmarkId landmark;
+  bool found = false;  // expected in the frame, and: was it matched?
+};
+
+struct TrackEstimate {
+  bool tracked = false;
+  PlacedFrame placed;
+  KeyFrameId reference;                  // keyframe that shares most landmarks with the frame
+  std::vector<SightingCount> sightings;  // landmarks that should have been seen
+  bool wants_keyframe = false;
+};
+
+class Tracker {
+ public:
+  // `camera`: as the frames are; with depth_factor and baseline 0 for monocular use.
+  Tracker(const Camera& camera, TrackerSettings settings);
+
+  // Turns images into a frame. `right` and `depth` may be empty.
+  std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
+                                 double time, int number);
+  // First guess of the pose: constant velocity and the last frame's landmarks, or the reference keyframe.
+  PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
+  // Pose from the local map, starting at the guess.
+  TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
+  // A guess with no last frame to lean on: descriptors against the keyframes last in use, RANSAC.
+  PlacedFrame Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
+
+  // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added), or a loss.
+  void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
+  void Forget();  // the frame was lost: no velocity
+
+  KeyFrameId reference() const { return reference_; }
+  const Camera& camera() const { return camera_; }
+  void set_last_keyframe_number(int number) { last_keyframe_number_ = number; }
+
+ private:
+  void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
+  void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
+  void Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
+  bool WantsKeyFrame(const TrackEstimate& estimate, const MapSnapshot& map) const;
+  int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
+
+  Camera camera_;
+  TrackerSettings settings_;
+  bool has_depth_;
+  Extractor extractor_, right_extractor_;
+  LocalMapGatherer gatherer_;
+
+  PlacedFrame last_;
+  Se3 T_last_reference_;     // last frame in its reference keyframe: follows when the map is adjusted
+  KeyFrameId reference_;
+  Se3 velocity_;             // T_now_last of one frame
+  bool has_velocity_ = false;
+  int last_keyframe_number_ = 0;
+};
+
+}  // namespace alidade
