@@ -1,0 +1,192 @@
+#include "alidade/mapping/mapper.h"
+
+#include <algorithm>
+
+#include "alidade/mapping/fuse.h"
+#include "alidade/mapping/local_window.h"
+#include "alidade/mapping/triangulate.h"
+
+namespace alidade {
+
+Mapper::Mapper(MapStore& map, const Camera& camera, MapperSettings settings)
+    : map_(map), camera_(camera), settings_(settings), has_depth_(camera.StereoBaseline() > 0) {
+  settings_.Check();
+  settings_.noise.right_from_sensor = camera.baseline <= 0;
+}
+
+KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Se3& T_camera_world,
+                          std::span<const LandmarkId> matches, KeyFrameId parent) {
+  KeyFrameId id;
+  map_.Commit([&](MapCommit& commit) {
+    KeyFrame keyframe;
+    keyframe.frame = frame;
+    keyframe.T_camera_world = T_camera_world;
+    keyframe.parent = parent;
+    id = commit.Add(std::move(keyframe));
+    for (size_t i = 0; i < matches.size(); ++i) {
+      if (matches[i].valid()) commit.AddObservation(matches[i], id, static_cast<int>(i));
+    }
+    const Se3 T_world_camera = T_camera_world.Inverse();
+    for (size_t i = 0; i < frame->keypoints.size(); ++i) {
+      const Keypoint& keypoint = frame->keypoints[i];
+      if (!keypoint.has_depth() || keypoint.depth > settings_.max_depth) continue;
+      if (commit.Find(id)->landmarks[i].valid()) continue;
+      Landmark landmark;
+      landmark.p_world = T_world_camera * camera_.Unproject(keypoint.pixel(), keypoint.depth);
+      landmark.reference = landmark.born = id;
+      landmark.observations = {{id, static_cast<int>(i)}};
+      commit.RefreshLandmark(commit.Add(std::move(landmark)));
+    }
+    commit.RefreshCovisibility(id);
+  });
+  return id;
+}
+
+KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
+  KeyFrameId first, second;
+  MapSnapshot map = map_.Commit([&](MapCommit& commit) {
+    KeyFrame a, b;
+    a.frame = start.a;
+    b.frame = start.b;
+    b.T_camera_world = start.T_b_a;
+    first = commit.Add(std::move(a));
+    b.parent = first;
+    second = commit.Add(std::move(b));
+    for (const auto& point : start.points) {
+      Landmark landmark;
+      landmark.p_world = point.p_a;
+      landmark.reference = first;
+      landmark.born = second;
+      landmark.observations = {{first, point.keypoint_a}, {second, point.keypoint_b}};
+      commit.RefreshLandmark(commit.Add(std::move(landmark)));
+    }
+    commit.RefreshCovisibility(second);
+  });
+  MapperSettings thorough = settings_;
+  thorough.bundle.max_iterations = 20;
+  const WindowResult adjusted = AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr);
+  map_.Commit([&](MapCommit& commit) {
+    CommitWindow(commit, map, adjusted);
+    std::vector<double> depths;
+    std::vector<LandmarkId> good;
+    for (const auto& [id, p_world] : adjusted.points) {
+      const Landmark* landmark = commit.Find(id);
+      if (!landmark) continue;
+      if (landmark->observations.size() < 2) {
+        commit.Remove(id);
+        continue;
+      }
+      good.push_back(id);
+      depths.push_back(landmark->p_world.z());
+    }
+    if (depths.empty()) return;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    const double scale = 1 / *middle;
+    commit.Edit(second)->T_camera_world.t *= scale;
+    for (LandmarkId id : good) {
+      commit.Edit(id)->p_world *= scale;
+      commit.RefreshLandmark(id);
+    }
+  });
+  return second;
+}
+
+void Mapper::Count(std::span<const std::pair<LandmarkId, bool>> sightings) {
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  for (const auto& [id, found] : sightings) {
+    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
+    ++tallies_[id.value].expected;
+    tallies_[id.value].found += found;
+  }
+}
+
+MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
+  MapperReport report;
+  MapSnapshot map = map_.Snapshot();
+  if (!map.Find(id)) return report;
+
+  // Those the keyframe itself brought are on trial too.
+  for (LandmarkId landmark : map.Find(id)->landmarks) {
+    if (landmark.valid() && map.Find(landmark)->born == id) young_.push_back(landmark);
+  }
+  std::vector<LandmarkId> still_young;
+  std::vector<LandmarkId> weak;
+  {
+    std::lock_guard<std::mutex> lock(tallies_mutex_);
+    weak = FindWeakLandmarks(map, young_, tallies_, id, has_depth_, settings_, still_young);
+  }
+  young_ = std::move(still_young);
+  report.landmarks_culled = static_cast<int>(weak.size());
+  map = map_.Commit([&](MapCommit& commit) {
+    for (LandmarkId landmark : weak) commit.Remove(landmark);
+    const std::vector<LandmarkId> seen = commit.Find(id)->landmarks;
+    for (LandmarkId landmark : seen) {
+      if (landmark.valid()) commit.RefreshLandmark(landmark);
+    }
+  });
+
+  const std::vector<NewLandmark> made = TriangulateNew(map, id, camera_, settings_);
+  report.triangulated = static_cast<int>(made.size());
+  map = map_.Commit([&](MapCommit& commit) {
+    for (const NewLandmark& entry : made) {
+      Landmark landmark;
+      landmark.p_world = entry.p_world;
+      landmark.reference = landmark.born = id;
+      landmark.observations = {entry.first, entry.second};
+      const LandmarkId added = commit.Add(std::move(landmark));
+      if (commit.Find(added)->observations.size() < 2) {
+        commit.Remove(added);
+        continue;
+      }
+      commit.RefreshLandmark(added);
+      young_.push_back(added);
+    }
+  });
+
+  const std::vector<FusedSighting> duplicates = FindDuplicates(map, id, camera_, settings_);
+  report.fused = static_cast<int>(duplicates.size());
+  map = map_.Commit([&](MapCommit& commit) {
+    for (LandmarkId landmark : CommitFusion(commit, duplicates)) commit.RefreshLandmark(landmark);
+    commit.RefreshCovisibility(id);
+  });
+
+  if (map.keyframe_count() > 2 || has_depth_) {
+    if (map.keyframe_count() < 2) return report;
+    const WindowResult adjusted = AdjustWindow(map, id, camera_, settings_, stop);
+    report.bundle = adjusted.report;
+    map = map_.Commit([&](MapCommit& commit) {
+      CommitWindow(commit, map, adjusted);
+      for (const auto& [landmark, keyframe] : adjusted.outliers) {
+        const Landmark* l = commit.Find(landmark);
+        if (l && l->observations.size() < (has_depth_ ? 1 : 2)) commit.Remove(landmark);
+      }
+      for (const auto& [landmark, p_world] : adjusted.points) commit.RefreshLandmark(landmark);
+    });
+  }
+
+  const std::vector<KeyFrameId> redundant = FindRedundantKeyFrames(map, id, has_depth_, settings_);
+  report.keyframes_culled = static_cast<int>(redundant.size());
+  if (!redundant.empty()) {
+    map_.Commit([&](MapCommit& commit) {
+      for (KeyFrameId gone : redundant) {
+        const KeyFrame* keyframe = commit.Find(gone);
+        if (!keyframe) continue;
+        const std::vector<LandmarkId> seen = keyframe->landmarks;
+        commit.Remove(gone);
+        for (LandmarkId landmark : seen) {
+          if (landmark.valid()) commit.RefreshLandmark(landmark);
+        }
+      }
+    });
+  }
+  return report;
+}
+
+void Mapper::Reset() {
+  young_.clear();
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  tallies_.clear();
+}
+
+}  // namespace alidade

@@ -1,0 +1,59 @@
+// Turns keyframes into landmarks: triangulates, fuses, adjusts, culls (ORB-SLAM §VI).
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "alidade/map/map_store.h"
+#include "alidade/mapping/cull.h"
+#include "alidade/mapping/settings.h"
+
+namespace alidade {
+
+struct MapperReport {
+  int triangulated = 0, fused = 0, landmarks_culled = 0, keyframes_culled = 0;
+  BundleReport bundle;
+};
+
+class Mapper {
+ public:
+  // `camera`: as the frames are; depth_factor and baseline 0 for monocular use.
+  Mapper(MapStore& map, const Camera& camera, MapperSettings settings);
+
+  // Enters a keyframe and the landmarks its depth gives, at once: quick, on the tracker's thread.
+  // `matches`: one for each keypoint. `parent`: none for the first.
+  KeyFrameId Insert(std::shared_ptr<const Frame> frame, const Se3& T_camera_world,
+                    std::span<const LandmarkId> matches, KeyFrameId parent);
+  // Enters two keyframes and the points between them: a monocular map begins.
+  struct TwoViewMap {
+    std::shared_ptr<const Frame> a, b;
+    Se3 T_b_a;
+    struct Point {
+      Eigen::Vector3d p_a;
+      int keypoint_a, keypoint_b;
+    };
+    std::vector<Point> points;
+  };
+  // Adjusted and scaled to a median depth of 1 in a. Returns b's id.
+  KeyFrameId InsertTwoViews(const TwoViewMap& start);
+
+  // What the tracker looked for and found since the last call. Thread-safe.
+  void Count(std::span<const std::pair<LandmarkId, bool>> sightings);
+
+  // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the adjustment short.
+  MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
+  void Reset();  // after the map was cleared
+
+ private:
+  MapStore& map_;
+  Camera camera_;
+  MapperSettings settings_;
+  bool has_depth_;
+  std::vector<LandmarkId> young_;        // on trial
+  std::mutex tallies_mutex_;
+  std::vector<SightingTally> tallies_;   // by landmark id
+};
+
+}  // namespace alidade

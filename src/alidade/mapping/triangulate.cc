@@ -1,0 +1,167 @@
+#include "alidade/mapping/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "alidade/base/parallel.h"
+#include "alidade/features/matching.h"
+#include "alidade/geometry/two_view.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kChiSquared1 = 3.84;  // 95 % with 1 degree of freedom
+constexpr double kChiSquared2 = 5.991;
+
+struct Partner {
+  int a = -1, b = -1;  // keypoints
+  int distance = 0;
+};
+
+// Fundamental matrix: x_b^T F x_a = 0 (Hartley & Zisserman 9.1).
+Eigen::Matrix3d FundamentalOf(const Camera& camera, const Se3& T_b_a) {
+  Eigen::Matrix3d K_inverse;
+  K_inverse << 1 / camera.fx, 0, -camera.cx / camera.fx, 0, 1 / camera.fy, -camera.cy / camera.fy, 0, 0, 1;
+  return K_inverse.transpose() * Skew(T_b_a.t) * T_b_a.R * K_inverse;
+}
+
+std::vector<int> WithoutLandmark(const KeyFrame& keyframe) {
+  std::vector<int> free;
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (!keyframe.landmarks[i].valid()) free.push_back(static_cast<int>(i));
+  }
+  return free;
+}
+
+double MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe) {
+  std::vector<double> depths;
+  for (LandmarkId id : keyframe.landmarks) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (landmark) depths.push_back((keyframe.T_camera_world * landmark->p_world).z());
+  }
+  if (depths.empty()) return 1;
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
+}
+
+// Best descriptor partner along the epipolar line, clearly better than the second.
+std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& free_a, const KeyFrame& b,
+                                     const std::vector<int>& free_b, const Camera& camera,
+                                     const MapperSettings& settings) {
+  const Se3 T_b_a = b.T_camera_world * a.T_camera_world.Inverse();
+  const Eigen::Matrix3d F = FundamentalOf(camera, T_b_a);
+  const bool epipole_seen = T_b_a.t.z() > 1e-6;
+  const Eigen::Vector2d epipole = epipole_seen ? camera.Project(T_b_a.t) : Eigen::Vector2d(-1e9, -1e9);
+
+  std::vector<float> x(free_b.size()), y(free_b.size()), reach(free_b.size());
+  for (size_t j = 0; j < free_b.size(); ++j) {
+    const Keypoint& keypoint = b.frame->keypoints[free_b[j]];
+    x[j] = keypoint.x;
+    y[j] = keypoint.y;
+    const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
+    reach[j] = static_cast<float>(kChiSquared1 * sigma * sigma);
+    // Next to the epipole every direction fits and the depth is not determined.
+    if ((keypoint.pixel() - epipole).squaredNorm() < 100 * ScaleOfLevel(keypoint.level)) reach[j] = -1;
+  }
+  std::vector<Partner> best_for_b(free_b.size());
+  for (int i : free_a) {
+    const Keypoint& keypoint = a.frame->keypoints[i];
+    const Eigen::Vector3d line = F * Eigen::Vector3d(keypoint.x, keypoint.y, 1);
+    const double norm = std::hypot(line.x(), line.y());
+    if (!(norm > 0)) continue;
+    const auto lx = static_cast<float>(line.x() / norm), ly = static_cast<float>(line.y() / norm),
+               lc = static_cast<float>(line.z() / norm);
+    int best = 256, second = 256, best_j = -1;
+    for (size_t j = 0; j < free_b.size(); ++j) {
+      const float off = lx * x[j] + ly * y[j] + lc;
+      if (off * off > reach[j]) continue;
+      const int distance = HammingDistance(a.frame->descriptors[i], b.frame->descriptors[free_b[j]]);
+      if (distance < best) {
+        second = best;
+        best = distance;
+        best_j = static_cast<int>(j);
+      } else if (distance < second) {
+        second = distance;
+      }
+    }
+    if (best > settings.triangulate_distance || best > settings.triangulate_ratio * second) continue;
+    Partner& held = best_for_b[best_j];
+    if (held.a < 0 || best < held.distance) held = {i, free_b[best_j], best};
+  }
+  std::vector<Partner> partners;
+  std::vector<float> turns;
+  for (const Partner& partner : best_for_b) {
+    if (partner.a < 0) continue;
+    partners.push_back(partner);
+    turns.push_back(a.frame->keypoints[partner.a].angle - b.frame->keypoints[partner.b].angle);
+  }
+  const std::vector<bool> keep = ConsistentTurns(turns);
+  std::vector<Partner> kept;
+  for (size_t i = 0; i < partners.size(); ++i) {
+    if (keep[i]) kept.push_back(partners[i]);
+  }
+  std::sort(kept.begin(), kept.end(), [](const Partner& p, const Partner& q) { return p.a < q.a; });
+  return kept;
+}
+
+bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint, const Eigen::Vector3d& p_world,
+          const MapperSettings& settings) {
+  const Eigen::Vector3d p = keyframe.T_camera_world * p_world;
+  if (p.z() <= 0) return false;
+  const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
+  return (camera.Project(p) - keypoint.pixel()).squaredNorm() <= kChiSquared2 * sigma * sigma;
+}
+
+}  // namespace
+
+std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
+                                        const MapperSettings& settings) {
+  const KeyFrame& a = *map.Find(id);
+  const bool has_depth = camera.StereoBaseline() > 0;
+  const auto count = static_cast<size_t>(has_depth ? settings.triangulate_keyframes_depth
+                                                   : settings.triangulate_keyframes_mono);
+  const double median_depth = MedianDepth(map, a);
+  const Eigen::Vector3d centre_a = a.Centre();
+  const std::vector<int> free_a = WithoutLandmark(a);
+
+  std::vector<const KeyFrame*> others;
+  for (size_t i = 0; i < a.covisible.size() && others.size() < count; ++i) {
+    const KeyFrame* b = map.Find(a.covisible[i].id);
+    if (!b) continue;
+    const double baseline = (b->Centre() - centre_a).norm();
+    if (baseline < (has_depth ? camera.StereoBaseline() : settings.min_baseline_ratio * median_depth)) continue;
+    others.push_back(b);
+  }
+  std::vector<std::vector<Partner>> partners(others.size());
+  ParallelFor(static_cast<int>(others.size()), [&](int i) {
+    partners[i] = MatchAlongLines(a, free_a, *others[i], WithoutLandmark(*others[i]), camera, settings);
+  });
+
+  const double max_cosine = std::cos(settings.min_parallax_degrees * std::numbers::pi / 180);
+  std::vector<NewLandmark> made;
+  std::vector<uint8_t> used(a.landmarks.size(), 0);
+  for (size_t n = 0; n < others.size(); ++n) {
+    const KeyFrame& b = *others[n];
+    const Eigen::Vector3d centre_b = b.Centre();
+    for (const Partner& partner : partners[n]) {
+      if (used[partner.a]) continue;
+      const Keypoint &key_a = a.frame->keypoints[partner.a], &key_b = b.frame->keypoints[partner.b];
+      const auto p = Triangulate(camera, a.T_camera_world, key_a.pixel(), b.T_camera_world, key_b.pixel());
+      if (!p || !Fits(camera, a, key_a, *p, settings) || !Fits(camera, b, key_b, *p, settings)) continue;
+      const Eigen::Vector3d ray_a = *p - centre_a, ray_b = *p - centre_b;
+      const double distance_a = ray_a.norm(), distance_b = ray_b.norm();
+      if (ray_a.dot(ray_b) > max_cosine * distance_a * distance_b) continue;
+      // Its size in the two images must change as its distance does.
+      const double change = distance_b / distance_a * ScaleOfLevel(key_b.level) / ScaleOfLevel(key_a.level);
+      constexpr double kTolerance = 1.5 * kPyramidScale;
+      if (change > kTolerance || change < 1 / kTolerance) continue;
+      used[partner.a] = 1;
+      made.push_back({*p, {b.id, partner.b}, {a.id, partner.a}});
+    }
+  }
+  return made;
+}
+
+}  // namespace alidade

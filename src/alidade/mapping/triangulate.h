@@ -1,0 +1,22 @@
+// New landmarks from keypoints two keyframes share but nobody knew.
+#pragma once
+
+#include <vector>
+
+#include "alidade/geometry/camera.h"
+#include "alidade/map/map_store.h"
+#include "alidade/mapping/settings.h"
+
+namespace alidade {
+
+struct NewLandmark {
+  Eigen::Vector3d p_world;
+  Observation first, second;
+};
+
+// Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible keyframes and
+// triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A keypoint is used at most once.
+std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
+                                        const MapperSettings& settings);
+
+}  // namespace alidade
