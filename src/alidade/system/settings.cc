@@ -109,7 +109,7 @@ void SlamSettings::Set(const std::string& name, const std::string& value) {
     known = true;
     member = Parse<std::decay_t<decltype(member)>>(name, value);
   });
-  if (!known) ThrowUsage("unknown setting '" + name + "'; did you mean '" + NearestName(name, names) + "'?");
+  if (!known) ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
 }
 
 std::vector<std::pair<std::string, std::string>> SlamSettings::All() const {

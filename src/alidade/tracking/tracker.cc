@@ -26,6 +26,8 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
   auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number));
   if (!depth.empty()) AttachDepth(depth, camera_, *frame);
   if (!right.empty()) MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+  frame->pyramid.clear();  // only extraction and stereo matching need it
+  frame->image.release();
   return frame;
 }
 

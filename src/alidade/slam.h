@@ -1,0 +1,4 @@
+// The library's one include.
+#pragma once
+
+#include "alidade/system/slam.h"

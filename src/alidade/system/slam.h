@@ -1,0 +1,69 @@
+// Visual SLAM behind one class: images in, poses and a map out.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "alidade/base/timing.h"
+#include "alidade/map/map_store.h"
+#include "alidade/system/settings.h"
+
+namespace alidade {
+
+enum class TrackState { kInitialising, kTracking, kLost };
+
+struct FrameInput {
+  double time = 0;  // seconds
+  cv::Mat image;    // 8 bit grey (or BGR), the camera's size
+  cv::Mat right;    // stereo: the rectified right image
+  cv::Mat depth;    // RGB-D: registered depth, CV_16U in camera.depth_factor units or CV_32F metres; empty = none
+};
+
+struct TrackResult {
+  TrackState state = TrackState::kInitialising;
+  Se3 T_world_camera;       // only when tracking
+  int matches = 0;          // landmarks the pose agrees with
+  bool keyframe = false;    // this frame became one
+  const char* reason = "";  // why there is no pose
+};
+
+// One frame of the finished trajectory.
+struct FramePose {
+  int index = 0;            // call of Track() it came from, from 0
+  double time = 0;          // seconds
+  bool tracked = false;
+  Se3 T_world_camera;       // corrected by all that was learnt since
+  Se3 T_world_camera_live;  // as it was when the frame was done
+};
+
+// Milliseconds, one sample per frame (map: per keyframe).
+struct StageTimes {
+  std::vector<double> frame, extract, track, map;
+};
+
+class Slam {
+ public:
+  // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo camera.baseline.
+  Slam(const Camera& camera, const SlamSettings& settings);
+  ~Slam();
+  Slam(const Slam&) = delete;
+  Slam& operator=(const Slam&) = delete;
+
+  // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a time that does not
+  // grow; the system stays as it was then.
+  TrackResult Track(const FrameInput& input);
+  void Finish();  // waits until the workers have nothing left to do
+
+  MapSnapshot Snapshot() const;             // cheap, consistent, safe to keep
+  std::vector<FramePose> Trajectory() const;  // every frame so far
+  StageTimes Times() const;
+  const Camera& camera() const;             // as used: scaled by the profile
+  int relocalisations() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace alidade
