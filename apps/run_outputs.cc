@@ -40,18 +40,18 @@ Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified
 // Times between losing track and finding it again, seconds; not before the start.
 ordered_json LostSpans(const std::vector<FramePose>& poses) {
   ordered_json spans = ordered_json::array();
-  bool started = false;
-  std::optional<double> lost_since;
+  const FramePose* last_tracked = nullptr;
+  const FramePose* lost = nullptr;  // first frame of the span that is open
   for (const FramePose& pose : poses) {
-    if (pose.tracked) {
-      if (lost_since) spans.push_back({*lost_since, pose.time});
-      lost_since.reset();
-      started = true;
-    } else if (started && !lost_since) {
-      lost_since = pose.time;
+    if (!pose.tracked) {
+      if (last_tracked && !lost) lost = &pose;
+      continue;
     }
+    if (lost) spans.push_back({lost->time, pose.time});
+    lost = nullptr;
+    last_tracked = &pose;
   }
-  if (lost_since) spans.push_back({*lost_since, poses.back().time});
+  if (lost) spans.push_back({lost->time, poses.back().time});
   return spans;
 }
 
