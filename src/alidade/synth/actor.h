@@ -1,0 +1,41 @@
+// People made of rounded parts, who walk about.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "alidade/synth/camera_path.h"
+#include "alidade/synth/scene.h"
+#include "alidade/synth/scenes.h"
+
+namespace alidade {
+
+struct ActorLooks {
+  double height = 1.75;                                        // metres
+  double girth = 1;                                            // factor
+  int head = 0, shirt = 0, trousers = 0, shoes = 0, skin = 0;  // textures
+};
+
+class Actor {
+ public:
+  Actor(ActorLooks looks, Walk walk, double start, double speed, double wander_phase);
+  Eigen::Vector2d Position(double time) const;  // on the floor, metres
+  std::vector<Quadric> Body(double time) const;
+
+ private:
+  double Along(double time) const;  // metres walked since the walk's first corner
+  Eigen::Vector2d At(double along) const;
+
+  ActorLooks looks_;
+  Walk walk_;
+  std::vector<double> until_;  // metres at each corner
+  double start_, speed_, wander_phase_;
+};
+
+ActorLooks DressActor(SceneBuilder& builder, Random& random);
+
+// `count` people on the walks, started so that they keep out of the camera's way for `seconds`.
+std::vector<Actor> CastActors(const std::vector<ActorLooks>& looks, const std::vector<Walk>& walks,
+                              const CameraPath& path, double seconds, uint64_t seed);
+
+}  // namespace alidade

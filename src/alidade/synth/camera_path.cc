@@ -1,0 +1,70 @@
+#include "alidade/synth/camera_path.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "alidade/base/random.h"
+
+namespace alidade {
+
+Eigen::Matrix3d LookAlong(double yaw, double pitch) {
+  const Eigen::Vector3d forward(std::cos(yaw) * std::cos(pitch), std::sin(yaw) * std::cos(pitch),
+                                std::sin(pitch));
+  const Eigen::Vector3d right(std::sin(yaw), -std::cos(yaw), 0);
+  Eigen::Matrix3d R;
+  R << right, forward.cross(right), forward;
+  return R;
+}
+
+CameraPath::CameraPath(std::vector<PathKnot> knots, double period, int turns,
+                       const ShakeSettings& shake, uint64_t seed)
+    : knots_(std::move(knots)), period_(period), turns_(turns) {
+  Random random(seed, 21);
+  for (int axis = 0; axis < 6; ++axis) {
+    const double scale = axis < 3 ? shake.position : shake.rotation;
+    for (size_t i = 0; i < waves_[axis].size(); ++i) {
+      // Evenly spread in log frequency; slow sway is wide, quick tremble small.
+      const double octave =
+          (static_cast<double>(i) + random.Uniform()) / static_cast<double>(waves_[axis].size());
+      const double hertz = (1 / shake.seconds) * std::pow(8.0, octave - 1);
+      waves_[axis][i] = {scale * std::sqrt(2.0 / static_cast<double>(waves_[axis].size())),
+                         2 * std::numbers::pi * hertz, random.Uniform(0, 2 * std::numbers::pi)};
+    }
+  }
+}
+
+double CameraPath::Shake(int axis, double time) const {
+  double sum = 0;
+  for (const Wave& wave : waves_[axis])
+    sum += wave.amplitude * std::sin(wave.frequency * time + wave.phase);
+  return sum;
+}
+
+PathKnot CameraPath::Spline(double time) const {
+  const int count = static_cast<int>(knots_.size());
+  const double s = time / period_ * count;
+  const double whole = std::floor(s), f = s - whole;
+  const double weights[4] = {(1 - f) * (1 - f) * (1 - f) / 6, (3 * f * f * f - 6 * f * f + 4) / 6,
+                             (-3 * f * f * f + 3 * f * f + 3 * f + 1) / 6, f * f * f / 6};
+  PathKnot at{Eigen::Vector3d::Zero(), 0, 0};
+  for (int i = 0; i < 4; ++i) {
+    const long index = static_cast<long>(whole) + i - 1;
+    const long round = index >= 0 ? index / count : -((-index + count - 1) / count);
+    const PathKnot& knot = knots_[static_cast<size_t>(index - round * count)];
+    at.position += weights[i] * knot.position;
+    at.yaw += weights[i] * (knot.yaw + 2 * std::numbers::pi * turns_ * static_cast<double>(round));
+    at.pitch += weights[i] * knot.pitch;
+  }
+  return at;
+}
+
+Eigen::Vector3d CameraPath::UnshakenPosition(double time) const { return Spline(time).position; }
+
+Se3 CameraPath::At(double time) const {
+  const PathKnot knot = Spline(time);
+  const Eigen::Vector3d shift(Shake(0, time), Shake(1, time), Shake(2, time));
+  const Eigen::Vector3d turn(Shake(3, time), Shake(4, time), Shake(5, time));
+  return {LookAlong(knot.yaw, knot.pitch) * ExpSo3(turn), knot.position + shift};
+}
+
+}  // namespace alidade

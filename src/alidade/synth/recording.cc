@@ -1,0 +1,143 @@
+#include "alidade/synth/recording.h"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "alidade/base/parallel.h"
+#include "alidade/base/random.h"
+#include "alidade/synth/actor.h"
+#include "alidade/synth/renderer.h"
+#include "alidade/synth/scenes.h"
+#include "alidade/synth/sensor.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kReadout = 0.016;  // seconds from first to last row, rolling shutter
+constexpr double kExposure = 0.02;  // seconds the shutter is open, with blur
+constexpr int kBlurSamples = 7;     // pictures taken meanwhile
+constexpr double kBaseline = 0.11;  // metres
+constexpr double kDepthFactor = 5000;
+
+Camera MakeCamera(const SynthSettings& settings) {
+  Camera camera;
+  camera.width = settings.width;
+  camera.height = settings.height;
+  camera.fx = camera.fy = 525.0 * settings.width / 640;  // 62.7°, as Kinect-like cameras have
+  camera.cx = (settings.width - 1) / 2.0;
+  camera.cy = (settings.height - 1) / 2.0;
+  if (settings.distortion) camera.distortion = {-0.22, 0.09, 0.0006, -0.0004, 0};
+  camera.fps = settings.fps;
+  camera.depth_factor = kDepthFactor;
+  camera.baseline = settings.stereo ? kBaseline : 0;
+  return camera;
+}
+
+// Slow drift of brightness and contrast; 1 and 0 in the mean.
+struct Drift {
+  double gain = 1, bias = 0;  // factor, grey levels
+};
+Drift ExposureAt(const SynthSettings& settings, double time) {
+  if (!settings.exposure) return {};
+  Random random(settings.seed, 41);
+  const double a = random.Uniform(0, 6.28), b = random.Uniform(0, 6.28),
+               c = random.Uniform(0, 6.28);
+  return {1 + 0.18 * std::sin(0.9 * time + a) + 0.07 * std::sin(2.1 * time + b),
+          9 * std::sin(0.6 * time + c)};
+}
+
+}  // namespace
+
+struct SynthRecording::Parts {
+  Parts(const SynthSettings& given, const Layout& layout, Scene built,
+        const std::vector<ActorLooks>& looks)
+      : settings(given),
+        camera(MakeCamera(given)),
+        scene(std::move(built)),
+        path(layout.knots, layout.period, layout.turns, layout.shake, given.seed),
+        actors(CastActors(looks, layout.walks, path, given.frames / given.fps, given.seed)),
+        renderer(scene, camera) {}
+
+  View Capture(double time, const Eigen::Vector3d& p_camera_eye) const {
+    Shutter shutter;
+    shutter.rolling = settings.rolling;
+    const auto row_time = [this, time](double row) {
+      return settings.rolling ? time + kReadout * ((row + 0.5) / camera.height - 0.5) : time;
+    };
+    shutter.T_world_camera = [this, row_time, p_camera_eye](double row) {
+      Se3 pose = path.At(row_time(row));
+      pose.t = pose * p_camera_eye;
+      return pose;
+    };
+    shutter.actors = [this, row_time](double row) {
+      std::vector<Quadric> parts;
+      for (const Actor& actor : actors) {
+        for (const Quadric& part : actor.Body(row_time(row))) parts.push_back(part);
+      }
+      return parts;
+    };
+    return renderer.Render(shutter);
+  }
+
+  // With blur: grey levels are the mean over the time the shutter is open, depth and actors those
+  // of its middle.
+  View Look(double time, const Eigen::Vector3d& p_camera_eye) const {
+    View view = Capture(time, p_camera_eye);
+    if (!settings.blur) return view;
+    for (int i = 0; i < kBlurSamples; ++i) {
+      if (i == kBlurSamples / 2) continue;
+      view.grey += Capture(time + kExposure * ((i + 0.5) / kBlurSamples - 0.5), p_camera_eye).grey;
+    }
+    view.grey /= kBlurSamples;
+    return view;
+  }
+
+  SynthSettings settings;
+  Camera camera;
+  Scene scene;
+  CameraPath path;
+  std::vector<Actor> actors;
+  ViewRenderer renderer;
+};
+
+SynthRecording::SynthRecording(SynthSettings settings) {
+  settings.Check();
+  SceneBuilder builder(settings.seed);
+  const Layout layout = LayOut(settings.scene, builder);
+  std::vector<ActorLooks> looks;
+  Random random(settings.seed, 51);  // their own: the place is the same with and without people
+  for (int i = 0; i < settings.actors; ++i) looks.push_back(DressActor(builder, random));
+  parts_ = std::make_unique<Parts>(settings, layout, builder.Build(), looks);
+}
+SynthRecording::~SynthRecording() = default;
+SynthRecording::SynthRecording(SynthRecording&&) noexcept = default;
+SynthRecording& SynthRecording::operator=(SynthRecording&&) noexcept = default;
+
+const SynthSettings& SynthRecording::settings() const { return parts_->settings; }
+const Camera& SynthRecording::camera() const { return parts_->camera; }
+int SynthRecording::frames() const { return parts_->settings.frames; }
+double SynthRecording::Time(int number) const { return number / parts_->settings.fps; }
+Se3 SynthRecording::Pose(int number) const { return parts_->path.At(Time(number)); }
+
+RenderedFrame SynthRecording::Render(int number) const {
+  const SynthSettings& settings = parts_->settings;
+  RenderedFrame frame;
+  frame.time = Time(number);
+  const Drift drift = ExposureAt(settings, frame.time);
+  const View left = parts_->Look(frame.time, Eigen::Vector3d::Zero());
+  frame.clean = left.grey;
+  frame.image =
+      ExposeImage(left.grey, drift.gain, drift.bias, settings.noise, {settings.seed, number, 0});
+  frame.depth_exact = left.depth;
+  frame.mask = left.actor;
+  frame.depth = SenseDepth(left.depth, parts_->camera.fx, kDepthFactor, {settings.seed, number, 2});
+  if (settings.stereo) {
+    const View right = parts_->Look(frame.time, {kBaseline, 0, 0});
+    frame.right =
+        ExposeImage(right.grey, drift.gain, drift.bias, settings.noise, {settings.seed, number, 1});
+  }
+  return frame;
+}
+
+}  // namespace alidade

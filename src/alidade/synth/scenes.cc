@@ -1,0 +1,41 @@
+#include "alidade/synth/scenes.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "alidade/synth/settings.h"
+
+namespace alidade {
+
+Layout LayOut(const std::string& name, SceneBuilder& builder) {
+  SceneFrames(name);  // throws when there is none
+  return LayOutRoom(builder);
+}
+
+std::vector<PathKnot> KnotsAlong(const std::vector<Eigen::Vector2d>& corners, double height,
+                                 int count) {
+  std::vector<double> until = {0};
+  for (size_t i = 0; i < corners.size(); ++i) {
+    until.push_back(until.back() + (corners[(i + 1) % corners.size()] - corners[i]).norm());
+  }
+  const auto at = [&](double s) -> Eigen::Vector2d {
+    s -= std::floor(s / until.back()) * until.back();
+    size_t i = 0;
+    while (i + 2 < until.size() && until[i + 1] < s) ++i;
+    const double share = (s - until[i]) / (until[i + 1] - until[i]);
+    return corners[i] + share * (corners[(i + 1) % corners.size()] - corners[i]);
+  };
+  std::vector<PathKnot> knots;
+  double last = 0;
+  for (int i = 0; i < count; ++i) {
+    const double s = until.back() * i / count;
+    const Eigen::Vector2d p = at(s), ahead = at(s + 0.6) - at(s - 0.2);
+    double yaw = std::atan2(ahead.y(), ahead.x());
+    if (i > 0) yaw = last + std::remainder(yaw - last, 2 * std::numbers::pi);
+    last = yaw;
+    knots.push_back({{p.x(), p.y(), height}, yaw, 0});
+  }
+  return knots;
+}
+
+}  // namespace alidade
