@@ -76,6 +76,31 @@ TEST(BundleAgainstCeres, SameOptimumWithOneFixedCameraAndUnknownScale) {
   ExpectSameOptimum({.fixed_cameras = 1, .free_cameras = 9, .stereo = 0, .seed = 18});
 }
 
+TEST(BundleAgainstCeres, SameOptimumWhenACameraSeesAPointTwice) {
+  BundleProblem problem = MakeBundleProblem({.free_cameras = 4, .points = 60, .seed = 20});
+  const size_t count = problem.observations.size();
+  for (size_t i = 0; i < count; i += 3) {
+    problem.observations.push_back(problem.observations[i]);
+    problem.observations.back().pixel += Eigen::Vector3d(1, -2, 1);
+  }
+  BundleProblem ours = problem, theirs = problem;
+  const BundleReport report = AdjustBundle(ours, kToTheEnd);
+  const double expected = AdjustWithCeres(theirs, kToTheEnd).final_cost;
+  EXPECT_NEAR(report.final_cost, expected, 1e-6 * expected);
+  // A wrong block would still end there, only slower.
+  EXPECT_LT(report.iterations, 60);
+}
+
+TEST(BundleAgainstCeres, SameOptimumWithASparseReducedSystem) {
+  const BundleProblem problem =
+      MakeBundleProblem({.free_cameras = 25, .points = 400, .max_track = 5, .seed = 20});
+  BundleProblem ours = problem, theirs = problem;
+  BundleSettings settings = kToTheEnd;
+  settings.sparse_above = 10;
+  const double expected = AdjustWithCeres(theirs, settings).final_cost;
+  EXPECT_NEAR(AdjustBundle(ours, settings).final_cost, expected, 1e-6 * expected);
+}
+
 TEST(BundleAgainstCeres, SameOptimumWhenOnlyPointsMove) {
   ExpectSameOptimum({.fixed_cameras = 8, .free_cameras = 0, .stereo = 0, .seed = 19});
 }

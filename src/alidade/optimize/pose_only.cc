@@ -14,6 +14,11 @@ namespace {
 // instruction.
 using Pair = Eigen::Array2d;
 
+// 1 where positive, else 0. Eigen's comparisons go one number at a time.
+[[gnu::always_inline]] inline Pair IsPositive(const Pair& x) {
+  return (x * 1e300).max(0.0).min(1.0);
+}
+
 struct MatchPair {
   Pair x, y, z;           // landmark, world
   Pair u, v, right;       // seen, pixels
@@ -64,13 +69,13 @@ struct Seen {
   Pair in_front;  // 1 or 0
 };
 
-inline Seen Look(const Intrinsics& k, const Se3& T, const MatchPair& m) {
+[[gnu::always_inline]] inline Seen Look(const Intrinsics& k, const Se3& T, const MatchPair& m) {
   Seen s;
   s.x = T.R(0, 0) * m.x + T.R(0, 1) * m.y + T.R(0, 2) * m.z + T.t.x();
   s.y = T.R(1, 0) * m.x + T.R(1, 1) * m.y + T.R(1, 2) * m.z + T.t.y();
   const Pair depth = T.R(2, 0) * m.x + T.R(2, 1) * m.y + T.R(2, 2) * m.z + T.t.z();
   s.z = depth.max(kMinDepth);
-  s.in_front = Pair(depth[0] > kMinDepth, depth[1] > kMinDepth);
+  s.in_front = IsPositive(depth - kMinDepth);
   s.e = Reproject<Pair>(k, s.x, s.y, s.z, m.u, m.v, m.right);
   s.chi2 = m.weight * (s.e.u * s.e.u + s.e.v * s.e.v) + m.weight_r * (s.e.right * s.e.right);
   return s;
@@ -96,7 +101,7 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     const Seen s = Look(k, T, m);
     const Pair cap = far * m.weight;
     const Pair chi2 = s.chi2.min(cap);
-    Pair near = Pair(s.chi2[0] < cap[0], s.chi2[1] < cap[1]) * s.in_front * m.active;
+    Pair near = IsPositive(cap - s.chi2) * s.in_front * m.active;
     if (robust) {
       const Pair root = chi2.sqrt();
       const Pair irls = (m.huber / root.max(1e-9)).min(1.0);
@@ -160,31 +165,41 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
   return n;
 }
 
-// Levenberg–Marquardt with almost no damping: Gauss–Newton as long as the cost falls.
-Se3 Descend(const Intrinsics& k, Se3 T, const std::vector<MatchPair>& pairs, bool robust,
-            int max_iterations) {
-  NormalEquations now = Linearise(k, T, pairs, robust);
+struct Descent {
+  Se3 T;
+  NormalEquations at_end;
+};
+
+// Levenberg–Marquardt with almost no damping: Gauss–Newton as long as the cost falls. Ends when a
+// step would gain less than `tolerance` of the cost.
+Descent Descend(const Intrinsics& k, const Se3& start, const std::vector<MatchPair>& pairs,
+                bool robust, int max_iterations, double tolerance) {
+  Descent d{start, Linearise(k, start, pairs, robust)};
   double lambda = 1e-9;
   for (int i = 0; i < max_iterations; ++i) {
-    Matrix6d damped = now.H;
-    damped.diagonal() += lambda * now.H.diagonal();
-    damped.diagonal().array() += 1e-12 * now.H.diagonal().maxCoeff() + 1e-300;
-    const Vector6d step = -damped.llt().solve(now.g);
-    if (!step.allFinite()) return T;
-    const Se3 trial = Se3::Exp(step) * T;
-    // What the step still gains is nothing against the noise: take it unseen.
-    const double gain = -0.5 * now.g.dot(step);
-    if (gain < 1e-7 * now.cost + 1e-12) return gain >= 0 ? trial : T;
+    Matrix6d damped = d.at_end.H;
+    const double largest = damped.diagonal().maxCoeff();
+    damped.diagonal() += lambda * d.at_end.H.diagonal();
+    damped.diagonal().array() += 1e-12 * largest + 1e-300;
+    const Vector6d step = -damped.llt().solve(d.at_end.g);
+    const double gain = -0.5 * d.at_end.g.dot(step);
+    if (!step.allFinite() || !(gain >= 0)) break;
+    const Se3 trial = Se3::Exp(step) * d.T;
+    if (gain < tolerance * d.at_end.cost + 1e-12) {  // so little can be taken unseen
+      d.T = trial;
+      d.at_end.cost -= gain;
+      break;
+    }
     const NormalEquations next = Linearise(k, trial, pairs, robust);
-    if (next.cost < now.cost) {
-      T = trial;
-      now = next;
+    if (next.cost < d.at_end.cost) {
+      d.T = trial;
+      d.at_end = next;
       lambda = std::max(lambda * 0.1, 1e-9);
     } else {
       lambda = std::max(lambda * 10, 1e-3);
     }
   }
-  return T;
+  return d;
 }
 
 // Sets aside what is beyond the gate. Returns whether anything changed.
@@ -228,23 +243,21 @@ PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
   for (const MatchPair& m : pairs) usable += static_cast<int>(m.active.sum());
   if (usable < 3) return result;
 
+  // Until the inliers are known, a pose within a fraction of its standard deviation will do.
   Se3 T = T_camera_world;
   for (int round = 0; round < settings.rounds; ++round) {
     const bool robust = round == 0 || round + 1 < settings.rounds;
-    T = Descend(k, T, pairs, robust, settings.max_iterations);
-    // With the same inliers again, all inside the quadratic part of the loss, further rounds do
-    // nothing.
+    T = Descend(k, T, pairs, robust, settings.max_iterations, 1e-3).T;
     if (!Reclassify(k, T, pairs, result.inliers)) break;
     if (result.inliers < 3 && round + 1 < settings.rounds) {
       for (MatchPair& m : pairs) m.active = Pair(m.weight[0] > 0, m.weight[1] > 0);
     }
   }
-  result.T_camera_world = T.Normalised();
-
+  const Descent last = Descend(k, T, pairs, false, settings.max_iterations, 1e-7);
+  result.T_camera_world = last.T.Normalised();
+  result.information = last.at_end.H;
+  result.cost = last.at_end.cost;
   for (size_t i = 0; i < matches.size(); ++i) result.inlier[i] = pairs[i / 2].active[i % 2] > 0;
-  const NormalEquations last = Linearise(k, result.T_camera_world, pairs, false);
-  result.information = last.H;
-  result.cost = last.cost;
   return result;
 }
 

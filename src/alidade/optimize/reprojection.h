@@ -28,10 +28,12 @@ struct Reprojection {
   T u_x, v_y, u_z, v_z, right_z;
 };
 
-// T: double, or an Eigen array of several points side by side. z > 0.
+// T: double, or an Eigen array of several points side by side. z > 0. Inlined whatever the compiler
+// thinks: as a call it is most of the time of the loops around it.
 template <typename T>
-inline Reprojection<T> Reproject(const Intrinsics& k, const T& x, const T& y, const T& z,
-                                 const T& seen_u, const T& seen_v, const T& seen_right) {
+[[gnu::always_inline]] inline Reprojection<T> Reproject(const Intrinsics& k, const T& x, const T& y,
+                                                        const T& z, const T& seen_u,
+                                                        const T& seen_v, const T& seen_right) {
   Reprojection<T> e;
   const T inv_z = 1.0 / z;
   e.u_x = k.fx * inv_z;

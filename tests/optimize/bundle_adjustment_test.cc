@@ -1,0 +1,339 @@
+#include "alidade/optimize/bundle_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+
+#include "alidade/base/error.h"
+#include "alidade/base/parallel.h"
+#include "support/bundle_problem.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// ½ sum of Huber losses, written down once more.
+double CostOf(const BundleProblem& problem, const BundleSettings& settings = {}) {
+  double cost = 0;
+  for (const BundleObservation& o : problem.observations) {
+    const double chi2 =
+        ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
+    const double bound = std::isfinite(o.pixel.z()) ? settings.huber_stereo : settings.huber_mono;
+    const double root = std::sqrt(chi2);
+    cost += root <= bound ? 0.5 * chi2 : bound * (root - 0.5 * bound);
+  }
+  return cost;
+}
+
+bool SameBits(const BundleProblem& a, const BundleProblem& b) {
+  const auto equal = [](const auto& x, const auto& y) {
+    return x.size() == y.size() &&
+           (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
+  };
+  return equal(a.T_camera_world, b.T_camera_world) && equal(a.points, b.points);
+}
+
+double LargestPointError(const BundleProblem& a, const BundleProblem& b) {
+  double worst = 0;
+  for (size_t i = 0; i < a.points.size(); ++i) {
+    worst = std::max(worst, (a.points[i] - b.points[i]).norm());
+  }
+  return worst;
+}
+
+TEST(AdjustBundle, ReturnsToTruthWithoutNoise) {
+  BundleProblemOptions options{.stereo = 1, .noise_px = 0, .seed = 21};
+  BundleProblem problem = MakeBundleProblem(options);
+  const BundleReport report =
+      AdjustBundle(problem, {.max_iterations = 50, .min_relative_decrease = 1e-12});
+  EXPECT_LT(report.final_cost, 1e-12 * report.initial_cost);
+  options.point_error = options.camera_error = options.rotation_error = 0;
+  const BundleProblem truth = MakeBundleProblem(options);
+  EXPECT_LT(LargestPointError(problem, truth), 1e-5);
+  for (size_t i = 0; i < truth.T_camera_world.size(); ++i) {
+    EXPECT_LT(RotationAngle(problem.T_camera_world[i], truth.T_camera_world[i]), 1e-7);
+  }
+}
+
+TEST(AdjustBundle, CostNeverRisesHoweverFarTheStart) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    const BundleProblem start = MakeBundleProblem({.free_cameras = 6,
+                                                   .points = 120,
+                                                   .stereo = seed % 2 * 0.5,
+                                                   .outliers = 0.1,
+                                                   .outlier_px = 300,
+                                                   .point_error = 1.5,
+                                                   .camera_error = 0.3,
+                                                   .rotation_error = 0.2,
+                                                   .seed = seed});
+    double before = std::numeric_limits<double>::infinity();
+    for (int iterations = 0; iterations < 25; ++iterations) {
+      BundleProblem problem = start;
+      const BundleReport report =
+          AdjustBundle(problem, {.max_iterations = iterations, .min_relative_decrease = 0});
+      EXPECT_LE(report.final_cost, before);
+      EXPECT_LE(report.final_cost, report.initial_cost);
+      before = report.final_cost;
+    }
+    EXPECT_LT(before, 1e9);
+  }
+}
+
+TEST(AdjustBundle, ReportsTheCostOfWhatItReturns) {
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    BundleProblem problem = MakeBundleProblem({.outliers = 0.05, .seed = seed});
+    const double before = CostOf(problem);
+    const BundleReport report = AdjustBundle(problem);
+    EXPECT_NEAR(report.initial_cost, before, 1e-9 * before);
+    EXPECT_NEAR(report.final_cost, CostOf(problem), 1e-9 * before);
+    EXPECT_LT(report.final_cost, 0.5 * report.initial_cost);
+    EXPECT_LE(report.iterations, 10);
+  }
+}
+
+TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
+  for (const int sparse_above : {100, 4}) {
+    const BundleProblem start = MakeBundleProblem({.points = 1500, .outliers = 0.05, .seed = 22});
+    ASSERT_GT(start.observations.size(), 4000u);  // enough to be cut into all chunks
+    BundleSettings settings;
+    settings.sparse_above = sparse_above;
+    BundleProblem one = start;
+    SetThreadCount(1);
+    AdjustBundle(one, settings);
+    for (const int threads : {2, 3}) {
+      BundleProblem several = start;
+      SetThreadCount(threads);
+      AdjustBundle(several, settings);
+      EXPECT_TRUE(SameBits(one, several)) << threads;
+    }
+    SetThreadCount(0);
+    EXPECT_FALSE(SameBits(one, start));
+  }
+}
+
+TEST(AdjustBundle, SparseAndDenseReducedSystemsGiveTheSameSteps) {
+  const BundleProblem start = MakeBundleProblem({.free_cameras = 30, .outliers = 0.05, .seed = 23});
+  BundleProblem dense = start, sparse = start;
+  const BundleReport a = AdjustBundle(dense, {.sparse_above = 100});
+  const BundleReport b = AdjustBundle(sparse, {.sparse_above = 10});
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_NEAR(a.final_cost, b.final_cost, 1e-9 * a.final_cost);
+  EXPECT_LT(LargestPointError(dense, sparse), 1e-6);
+}
+
+TEST(AdjustBundle, StopsWhenTold) {
+  const BundleProblem start = MakeBundleProblem({.seed = 24});
+  BundleProblem problem = start;
+  const std::atomic<bool> stop{true};
+  const BundleReport report = AdjustBundle(problem, {}, &stop);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_FALSE(report.converged);
+  EXPECT_EQ(report.final_cost, report.initial_cost);
+  EXPECT_TRUE(SameBits(problem, start));
+  const std::atomic<bool> go_on{false};
+  EXPECT_GT(AdjustBundle(problem, {}, &go_on).iterations, 0);
+}
+
+TEST(AdjustBundle, SaysWhetherItConverged) {
+  const BundleProblem start = MakeBundleProblem({.stereo = 1, .seed = 25});
+  BundleProblem problem = start;
+  EXPECT_FALSE(AdjustBundle(problem, {.max_iterations = 1}).converged);
+  problem = start;
+  EXPECT_TRUE(AdjustBundle(problem, {.max_iterations = 50}).converged);
+  EXPECT_TRUE(AdjustBundle(problem, {.max_iterations = 50}).converged);  // already there
+}
+
+TEST(AdjustBundle, EmptyProblemsStayAsTheyAre) {
+  BundleProblem nothing;
+  nothing.camera = MakeProblemCamera();
+  EXPECT_EQ(AdjustBundle(nothing).final_cost, 0);
+
+  BundleProblem unseen = MakeBundleProblem({.seed = 26});
+  unseen.observations.clear();
+  const BundleProblem before = unseen;
+  const BundleReport report = AdjustBundle(unseen);
+  EXPECT_EQ(report.initial_cost, 0);
+  EXPECT_EQ(report.iterations, 0);
+  EXPECT_TRUE(SameBits(unseen, before));
+}
+
+TEST(AdjustBundle, WhatIsFixedOrUnseenStaysToTheBit) {
+  BundleProblem problem = MakeBundleProblem({.seed = 27});
+  problem.T_camera_world.push_back(Se3::Exp(Vector6d::Constant(0.3)));
+  problem.fixed.push_back(0);
+  problem.points.emplace_back(1, 2, 3);
+  const BundleProblem before = problem;
+  AdjustBundle(problem);
+  for (size_t i = 0; i < problem.fixed.size(); ++i) {
+    const bool same = problem.T_camera_world[i].R == before.T_camera_world[i].R &&
+                      problem.T_camera_world[i].t == before.T_camera_world[i].t;
+    EXPECT_EQ(same, problem.fixed[i] || i + 1 == problem.fixed.size()) << i;
+  }
+  EXPECT_EQ(problem.points.back(), Eigen::Vector3d(1, 2, 3));
+}
+
+TEST(AdjustBundle, RotationsStayOrthonormal) {
+  BundleProblem problem = MakeBundleProblem({.rotation_error = 0.1, .seed = 28});
+  AdjustBundle(problem, {.max_iterations = 30});
+  for (const Se3& T : problem.T_camera_world) {
+    EXPECT_LT((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-13);
+  }
+}
+
+TEST(AdjustBundle, TheOrderOfObservationsDoesNotMatter) {
+  const BundleProblem start = MakeBundleProblem({.seed = 29});
+  BundleProblem sorted = start, shuffled = start;
+  Random random(3);
+  for (size_t i = shuffled.observations.size() - 1; i > 0; --i) {
+    std::swap(shuffled.observations[i], shuffled.observations[random.Below(i + 1)]);
+  }
+  const BundleReport a = AdjustBundle(sorted), b = AdjustBundle(shuffled);
+  EXPECT_NEAR(a.final_cost, b.final_cost, 1e-9 * a.final_cost);
+  EXPECT_LT(LargestPointError(sorted, shuffled), 1e-6);
+}
+
+TEST(AdjustBundle, LeavesOutWhatIsNotANumber) {
+  const BundleProblem clean = MakeBundleProblem({.seed = 30});
+  BundleProblem dirty = clean;
+  BundleObservation o = dirty.observations[5];
+  o.pixel.x() = kNaN;
+  dirty.observations.push_back(o);
+  o = dirty.observations[6];
+  o.inv_sigma2 = kNaN;
+  dirty.observations.push_back(o);
+  o.inv_sigma2 = -1;
+  dirty.observations.push_back(o);
+  o = dirty.observations[7];
+  o.point = static_cast<int>(dirty.points.size());
+  dirty.points.emplace_back(kNaN, 0, 1);
+  dirty.observations.push_back(o);
+  o = dirty.observations[8];
+  o.camera = static_cast<int>(dirty.fixed.size());
+  dirty.T_camera_world.push_back(clean.T_camera_world[0]);
+  dirty.T_camera_world.back().t.x() = kNaN;
+  dirty.fixed.push_back(0);
+  dirty.observations.push_back(o);
+
+  BundleProblem expected = clean;
+  const BundleReport a = AdjustBundle(expected), b = AdjustBundle(dirty);
+  EXPECT_EQ(a.final_cost, b.final_cost);
+  EXPECT_TRUE(std::isnan(dirty.points.back().x()));
+  dirty.points.pop_back();
+  dirty.T_camera_world.pop_back();
+  EXPECT_TRUE(SameBits(expected, dirty));
+}
+
+TEST(AdjustBundle, LeavesOutWhatStartsBehindTheCamera) {
+  const BundleProblem clean = MakeBundleProblem({.seed = 31});
+  BundleProblem problem = clean;
+  BundleObservation o = problem.observations[0];
+  o.point = static_cast<int>(problem.points.size());
+  problem.points.push_back(problem.T_camera_world[o.camera].Inverse() * Eigen::Vector3d(0, 0, -2));
+  problem.observations.push_back(o);
+  BundleProblem expected = clean;
+  EXPECT_EQ(AdjustBundle(problem).final_cost, AdjustBundle(expected).final_cost);
+  EXPECT_EQ(ChiSquared(problem.camera, clean.T_camera_world[o.camera], problem.points.back(), o),
+            std::numeric_limits<double>::infinity());
+}
+
+TEST(AdjustBundle, NoPointEndsBehindACameraThatSeesIt) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    // Wrong matches far apart draw points through the cameras.
+    BundleProblem problem = MakeBundleProblem(
+        {.max_track = 3, .stereo = 0, .outliers = 0.3, .outlier_px = 400, .seed = seed});
+    ASSERT_TRUE(std::isfinite(CostOf(problem)));
+    const BundleReport report = AdjustBundle(problem, {.max_iterations = 40});
+    EXPECT_LT(report.final_cost, report.initial_cost);
+    EXPECT_NEAR(CostOf(problem), report.final_cost, 1e-9 * report.initial_cost);
+  }
+}
+
+TEST(AdjustBundle, APointThatCannotMoveForwardHoldsNobodyBack) {
+  const BundleProblem clean = MakeBundleProblem({.stereo = 1, .noise_px = 0.5, .seed = 32});
+  BundleProblem problem = clean;
+  // A hair in front of its camera, and drawn far behind it by a negative disparity.
+  BundleObservation o = problem.observations[0];
+  o.point = static_cast<int>(problem.points.size());
+  o.camera = 0;
+  o.pixel = {320, 240, 420};
+  problem.points.push_back(problem.T_camera_world[0].Inverse() * Eigen::Vector3d(0, 0, 0.05));
+  problem.observations.push_back(o);
+  BundleProblem expected = clean;
+  const BundleSettings settings{.max_iterations = 60, .min_relative_decrease = 1e-10};
+  AdjustBundle(expected, settings);
+  AdjustBundle(problem, settings);
+  problem.points.pop_back();
+  EXPECT_LT(LargestPointError(problem, expected), 1e-3);
+}
+
+TEST(AdjustBundle, PointsSeenOnceByOneEyeDoNoHarm) {
+  const BundleProblem clean = MakeBundleProblem({.seed = 33});
+  BundleProblem problem = clean;
+  Random random(4);
+  for (int i = 0; i < 40; ++i) {
+    BundleObservation o;
+    o.camera = i % static_cast<int>(problem.fixed.size());
+    o.point = static_cast<int>(problem.points.size());
+    o.pixel = {random.Uniform(0, 640), random.Uniform(0, 480), kNaN};
+    const Eigen::Vector3d p =
+        problem.camera.Unproject(o.pixel.head<2>() + Eigen::Vector2d(3, 2), 4);
+    problem.points.push_back(problem.T_camera_world[o.camera].Inverse() * p);
+    problem.observations.push_back(o);
+  }
+  BundleProblem expected = clean;
+  const BundleSettings settings{.max_iterations = 100, .min_relative_decrease = 1e-12};
+  const double cost = AdjustBundle(expected, settings).final_cost;
+  // Each can be explained entirely, and so adds nothing.
+  EXPECT_NEAR(AdjustBundle(problem, settings).final_cost, cost, 1e-6 * cost);
+  for (const Eigen::Vector3d& p : problem.points) EXPECT_TRUE(p.allFinite());
+}
+
+TEST(AdjustBundle, IndicesThatAreNotThereAreNamed) {
+  BundleProblem problem = MakeBundleProblem({.seed = 34});
+  problem.observations[3].camera = 99;
+  EXPECT_THROW(AdjustBundle(problem), Error);
+  problem = MakeBundleProblem({.seed = 34});
+  problem.observations[3].point = -1;
+  EXPECT_THROW(AdjustBundle(problem), Error);
+  problem = MakeBundleProblem({.seed = 34});
+  problem.fixed.pop_back();
+  EXPECT_THROW(AdjustBundle(problem), Error);
+}
+
+TEST(AdjustBundle, SettingsThatCannotBeAreNamed) {
+  const auto complaint = [](BundleSettings settings) -> std::string {
+    try {
+      settings.Check();
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  };
+  const auto names = [&](BundleSettings settings, const char* field) {
+    return complaint(settings).find(field) == 0;
+  };
+  EXPECT_EQ(complaint({}), "");
+  EXPECT_TRUE(names({.max_iterations = -1}, "max_iterations"));
+  EXPECT_TRUE(names({.huber_mono = 0}, "huber_mono"));
+  EXPECT_TRUE(names({.huber_stereo = kNaN}, "huber_stereo"));
+  EXPECT_TRUE(names({.min_relative_decrease = -1}, "min_relative_decrease"));
+  EXPECT_TRUE(names({.initial_lambda = 0}, "initial_lambda"));
+  EXPECT_TRUE(names({.sparse_above = -1}, "sparse_above"));
+}
+
+TEST(ChiSquared, IsTheSquaredErrorInStandardDeviations) {
+  const Camera camera = MakeProblemCamera();
+  const Eigen::Vector3d p(0.3, -0.2, 2.0);
+  BundleObservation o{.camera = 0, .point = 0, .pixel = ProjectStereo(camera, p)};
+  o.pixel += Eigen::Vector3d(3, -4, 2);
+  o.inv_sigma2 = 0.25;
+  o.inv_sigma2_right = 0.5;
+  EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 4, 1e-10);
+  o.pixel.z() = kNaN;
+  EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25, 1e-10);
+}
+
+}  // namespace
+}  // namespace alidade
