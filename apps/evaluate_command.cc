@@ -64,7 +64,8 @@ std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path
 // First and last frame of the recording; unknown for a truth and an estimate that lie alone.
 std::optional<TimeSpan> SourceSpan(const EvaluateOptions& options) {
   const auto beside = [](const std::string& path, const char* name) {
-    return std::filesystem::path(path).parent_path() / name;
+    const std::filesystem::path folder(path);
+    return (std::filesystem::is_directory(folder) ? folder : folder.parent_path()) / name;
   };
   if (const auto span = SpanFromStats(beside(options.estimate, "stats.json"))) return span;
   return SpanFromImageList(beside(options.truth, "rgb.txt"));
@@ -160,12 +161,14 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
 
 void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
   command
-      .add_option(
-          "truth", options.truth,
-          "True trajectory: a TUM file, a EuRoC csv, or KITTI poses (times.txt beside them)")
+      .add_option("truth", options.truth,
+                  "True trajectory: a TUM file, a EuRoC csv, KITTI poses (times.txt beside them), "
+                  "or the recording")
       ->required()
       ->type_name("GT");
-  command.add_option("estimate", options.estimate, "Trajectory to judge, in the same formats")
+  command
+      .add_option("estimate", options.estimate,
+                  "Trajectory to judge: a file in the same formats, or the folder `run` left")
       ->required()
       ->type_name("EST");
   command
