@@ -12,7 +12,9 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
 add_library(alidade_flags INTERFACE)
-target_compile_options(alidade_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
+# Warnings are ours alone; -ffp-contract is for those who use the library's headers too.
+target_compile_options(alidade_flags INTERFACE "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror>"
+                       -ffp-contract=off)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   # A fixed baseline (2009 and later: SSE4.2, popcnt), not the build machine's: the same bits everywhere.
   target_compile_options(alidade_flags INTERFACE -march=x86-64-v2)

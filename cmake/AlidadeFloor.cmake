@@ -10,9 +10,11 @@ function(alidade_floor NAME)
     return()
   endif()
   add_library(alidade_${NAME} STATIC ${SOURCES})
-  target_include_directories(alidade_${NAME} PUBLIC ${PROJECT_SOURCE_DIR}/src)
+  target_include_directories(alidade_${NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+                             $<INSTALL_INTERFACE:include>)
   target_include_directories(alidade_${NAME} SYSTEM PUBLIC ${OpenCV_INCLUDE_DIRS})
   target_link_libraries(alidade_${NAME} PUBLIC alidade_flags ${ARG_LINKS})
+  set_property(GLOBAL APPEND PROPERTY ALIDADE_FLOORS alidade_${NAME})
 endfunction()
 
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest.

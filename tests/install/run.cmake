@@ -1,0 +1,15 @@
+# Installs BUILD into a folder of its own, builds the program beside this file against it, and runs that.
+set(PREFIX ${BUILD}/install-test/prefix)
+set(OUTSIDE ${BUILD}/install-test/build)
+file(REMOVE_RECURSE ${BUILD}/install-test)
+function(run)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE RESULT OUTPUT_VARIABLE OUTPUT ERROR_VARIABLE OUTPUT)
+  if(NOT RESULT EQUAL 0)
+    message(FATAL_ERROR "${ARGN}: ${RESULT}\n${OUTPUT}")
+  endif()
+endfunction()
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
+run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${OUTSIDE} -DCMAKE_PREFIX_PATH=${PREFIX}
+    -DCMAKE_BUILD_TYPE=Release)
+run(${CMAKE_COMMAND} --build ${OUTSIDE})
+run(${OUTSIDE}/outside)
