@@ -18,7 +18,7 @@
 namespace alidade {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;  // in the order of docs/formats.md
 
 struct EvaluateOptions {
   std::string truth, estimate;  // paths
@@ -161,16 +161,16 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
 
 void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
   command
-      .add_option("truth", options.truth,
+      .add_option("GT", options.truth,
                   "True trajectory: a TUM file, a EuRoC csv, KITTI poses (times.txt beside them), "
                   "or the recording")
       ->required()
-      ->type_name("GT");
+      ->type_name("PATH");
   command
-      .add_option("estimate", options.estimate,
+      .add_option("EST", options.estimate,
                   "Trajectory to judge: a file in the same formats, or the folder `run` left")
       ->required()
-      ->type_name("EST");
+      ->type_name("PATH");
   command
       .add_option("--align", options.align,
                   "se3: rotate and shift; sim3: scale as well (one camera); none")
