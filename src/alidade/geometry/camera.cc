@@ -13,11 +13,13 @@ void Camera::Check() const {
     if (!holds) ThrowInput(std::string("camera: ") + what);
   };
   require(width > 0 && height > 0, "width and height must be positive");
-  require(std::isfinite(fx) && std::isfinite(fy) && fx > 0 && fy > 0, "fx and fy must be positive numbers");
+  require(std::isfinite(fx) && std::isfinite(fy) && fx > 0 && fy > 0,
+          "fx and fy must be positive numbers");
   require(std::isfinite(cx) && std::isfinite(cy), "cx and cy must be numbers");
   for (double k : distortion) require(std::isfinite(k), "distortion must be numbers");
   require(std::isfinite(fps) && fps > 0, "fps must be a positive number");
-  require(std::isfinite(depth_factor) && depth_factor >= 0, "depth_factor must be zero or positive");
+  require(std::isfinite(depth_factor) && depth_factor >= 0,
+          "depth_factor must be zero or positive");
   require(std::isfinite(baseline) && baseline >= 0, "baseline must be zero or positive");
 }
 

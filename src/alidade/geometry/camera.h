@@ -1,6 +1,6 @@
-// The camera as the rest of the program sees it: a pinhole with radial-tangential distortion, and what
-// measures depth beside it (a second camera, or a depth image). Fisheye and unrectified stereo pairs are
-// turned into this by rectify.h before they get here.
+// The camera as the rest of the program sees it: a pinhole with radial-tangential distortion, and
+// what measures depth beside it (a second camera, or a depth image). Fisheye and unrectified stereo
+// pairs are turned into this by rectify.h before they get here.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,13 +12,13 @@
 namespace alidade {
 
 struct Camera {
-  int width = 0, height = 0;          // pixels
-  double fx = 0, fy = 0;              // focal lengths, pixels
-  double cx = 0, cy = 0;              // principal point, pixels; the centre of the top-left pixel is 0, 0
+  int width = 0, height = 0;  // pixels
+  double fx = 0, fy = 0;      // focal lengths, pixels
+  double cx = 0, cy = 0;      // principal point, pixels; the centre of the top-left pixel is 0, 0
   std::array<double, 5> distortion{};  // k1 k2 p1 p2 k3 (Brown), unitless
-  double fps = 30;                    // frames per second, where time stamps don't say
-  double depth_factor = 0;            // depth image value per metre; 0 = no depth image
-  double baseline = 0;                // metres between left and right camera; 0 = no second camera
+  double fps = 30;                     // frames per second, where time stamps don't say
+  double depth_factor = 0;             // depth image value per metre; 0 = no depth image
+  double baseline = 0;                 // metres between left and right camera; 0 = no second camera
 
   void Check() const;  // throws Error (input) naming the field that cannot be
   bool HasDistortion() const;
@@ -35,13 +35,15 @@ struct Camera {
   Eigen::Vector2d Distort(const Eigen::Vector2d& undistorted) const;
   Eigen::Vector2d Undistort(const Eigen::Vector2d& distorted) const;  // by Newton's method
 
-  // Focal length × baseline: disparity = bf / z. RGB-D gets a virtual baseline (see StereoBaseline()).
+  // Focal length × baseline: disparity = bf / z. RGB-D gets a virtual baseline (see
+  // StereoBaseline()).
   double bf() const { return fx * StereoBaseline(); }
-  // The second camera's, or for a depth sensor 0.08 m (structured-light cameras have about that): it only
-  // says how a depth error grows with z² against a pixel.
+  // The second camera's, or for a depth sensor 0.08 m (structured-light cameras have about that):
+  // it only says how a depth error grows with z² against a pixel.
   double StereoBaseline() const { return baseline > 0 ? baseline : (depth_factor > 0 ? 0.08 : 0); }
 
-  // The camera of the same view, its image resized to another width (height keeps the aspect ratio, rounded).
+  // The camera of the same view, its image resized to another width (height keeps the aspect ratio,
+  // rounded).
   Camera ScaledToWidth(int new_width) const;
   // Pinhole from the horizontal field of view (degrees): f = W / (2 tan(θ/2)); square pixels.
   static Camera FromFieldOfView(int width, int height, double horizontal_fov_degrees);

@@ -2,6 +2,8 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
@@ -50,14 +52,14 @@ struct NormalEquations {
 // Unknowns: rotation vector w (R <- Exp(w) R), then t <- t + basis * d. The gradient of Sampson's
 // denominator is left out: it is multiplied by the residual, which is small.
 NormalEquations Linearise(const Se3& T, const Eigen::Matrix<double, 3, 2>& basis,
-                          const RayPairs& rays) {
+                          const RayPairs& rays, double bound) {
   NormalEquations n;
   const Eigen::Matrix3d E = EssentialFromMotion(T);
   for (size_t i = 0; i < rays.size(); ++i) {
     const Sampson sampson = SampsonOf(E, rays.a[i], rays.b[i], rays.sigma);
     const double squared = sampson.residual * sampson.residual;
-    if (!(squared < kChi2Fundamental)) continue;
-    n.gain += kChi2Fundamental - squared;
+    if (!(squared < bound)) continue;
+    n.gain += bound - squared;
     n.squares += squared;
     ++n.count;
     const Eigen::Vector3d turned = T.R * rays.a[i];
@@ -73,7 +75,7 @@ NormalEquations Linearise(const Se3& T, const Eigen::Matrix<double, 3, 2>& basis
 
 }  // namespace
 
-MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays) {
+MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays, double widening) {
   MotionScore result;
   result.gain.assign(rays.size(), 0);
   const Eigen::Matrix3d E = EssentialFromMotion(T_b_a);
@@ -81,7 +83,7 @@ MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays) {
   const double sine_far = 3 * std::sqrt(2.0) * rays.sigma.maxCoeff();
   for (size_t i = 0; i < rays.size(); ++i) {
     const double residual = SampsonOf(E, rays.a[i], rays.b[i], rays.sigma).residual;
-    const double gain = kChi2Fundamental - residual * residual;
+    const double gain = widening * kChi2Fundamental - residual * residual;
     if (!(gain > 0)) continue;
     ++result.consistent;
     // Depths z_a, z_b where z_a R a + t comes closest to z_b b; only their signs matter.
@@ -102,23 +104,29 @@ MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays) {
 RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
   RefinedMotion refined;
   refined.T_b_a = start;
-  Eigen::Matrix<double, 3, 2> basis = TangentPlane(start.t);
-  NormalEquations n = Linearise(start, basis, rays);
-  for (int iteration = 0; iteration < 10 && n.count > 5; ++iteration) {
-    Matrix5d damped = n.H;
-    damped.diagonal() *= 1 + 1e-6;
-    const Vector5d step = -damped.ldlt().solve(n.g);
-    if (!step.allFinite() || step.norm() > 0.5) break;
-    Se3 next;
-    next.R = ExpSo3(step.head<3>()) * refined.T_b_a.R;
-    next.t = (refined.T_b_a.t + basis * step.tail<2>()).normalized();
-    const Eigen::Matrix<double, 3, 2> next_basis = TangentPlane(next.t);
-    const NormalEquations next_n = Linearise(next, next_basis, rays);
-    if (!(next_n.gain > n.gain)) break;
-    refined.T_b_a = next;
-    basis = next_basis;
-    n = next_n;
-    if (step.norm() < 1e-6) break;
+  NormalEquations n;
+  // Wide bounds first, so that the start need not be good enough to tell all the inliers.
+  for (const double widening : {16.0, 4.0, 1.0}) {
+    const double bound = widening * kChi2Fundamental;
+    Eigen::Matrix<double, 3, 2> basis = TangentPlane(refined.T_b_a.t);
+    n = Linearise(refined.T_b_a, basis, rays, bound);
+    for (int iteration = 0; iteration < 10 && n.count > 5; ++iteration) {
+      Matrix5d damped = n.H;
+      damped.diagonal() *= 1 + 1e-6;
+      const Vector5d step = -damped.ldlt().solve(n.g);
+      if (!step.allFinite() || step.norm() > 0.5) break;
+      Se3 next;
+      next.R = ExpSo3(step.head<3>()) * refined.T_b_a.R;
+      next.t = (refined.T_b_a.t + basis * step.tail<2>()).normalized();
+      const Eigen::Matrix<double, 3, 2> next_basis = TangentPlane(next.t);
+      const NormalEquations next_n = Linearise(next, next_basis, rays, bound);
+      if (!(next_n.gain > n.gain)) break;
+      const bool settled = next_n.gain - n.gain < (widening > 1 ? 1e-2 : 1e-5) * n.gain;
+      refined.T_b_a = next;
+      basis = next_basis;
+      n = next_n;
+      if (settled) break;
+    }
   }
   refined.T_b_a = refined.T_b_a.Normalised();
   const double variance = std::max(0.25, n.squares / std::max(1, n.count - 5));
@@ -135,6 +143,31 @@ RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
   refined.rotation_sigma = worst(covariance.topLeftCorner<3, 3>());
   refined.direction_sigma = worst(covariance.bottomRightCorner<2, 2>());
   return refined;
+}
+
+std::vector<bool> ExplainedByRotation(const Eigen::Matrix3d& start, const RayPairs& rays) {
+  Eigen::Matrix3d R = start;
+  std::vector<bool> explained(rays.size(), false);
+  for (const double widening : {16.0, 4.0, 1.0, 1.0, 1.0}) {
+    const double bound =
+        widening * 2 * kChi2Homography;  // the difference of two images has twice the variance
+    Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Eigen::Vector3d turned = R * rays.a[i];
+      const Eigen::Vector2d error =
+          (turned.head<2>() / turned.z() - rays.b[i].head<2>()).cwiseQuotient(rays.sigma);
+      explained[i] = turned.z() > 0 && error.squaredNorm() < bound;
+      if (explained[i])
+        correlation += rays.b[i] * rays.a[i].transpose() / (rays.a[i].norm() * rays.b[i].norm());
+    }
+    // Umeyama 1991: the rotation nearest to the correlation.
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation,
+                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
+    const Eigen::Vector3d sign(
+        1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
+    R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  }
+  return explained;
 }
 
 }  // namespace alidade

@@ -25,8 +25,9 @@ struct MotionScore {
   int good = 0;        // of these, in front of both cameras or too far to tell
 };
 
-// Matches against the motion T_b_a, |t| = 1.
-MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays);
+// Matches against the motion T_b_a, |t| = 1. `widening` multiplies the chi² bound, for motions that
+// are only rough.
+MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays, double widening = 1);
 
 struct RefinedMotion {
   Se3 T_b_a;
@@ -39,5 +40,10 @@ struct RefinedMotion {
 // bound, over the five degrees of freedom. Gauss-Newton from `T_b_a`; returns the start where it
 // does not get better.
 RefinedMotion RefineMotion(const Se3& T_b_a, const RayPairs& rays);
+
+// Matches that a camera which only turned would explain too (the rotation from a to b that explains
+// most, found from `start`): their images agree within the noise of both. Where it is nearly all
+// there is no parallax to speak of, whatever a motion made to fit the noise may claim.
+std::vector<bool> ExplainedByRotation(const Eigen::Matrix3d& start, const RayPairs& rays);
 
 }  // namespace alidade

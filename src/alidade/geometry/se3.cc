@@ -26,7 +26,8 @@ namespace {
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
   const double b = angle < 1e-4 ? 0.5 - angle2 / 24 : (1 - std::cos(angle)) / angle2;
-  const double c = angle < 1e-4 ? 1.0 / 6 - angle2 / 120 : (angle - std::sin(angle)) / (angle2 * angle);
+  const double c =
+      angle < 1e-4 ? 1.0 / 6 - angle2 / 120 : (angle - std::sin(angle)) / (angle2 * angle);
   const Eigen::Matrix3d W = Skew(w);
   return Eigen::Matrix3d::Identity() + b * W + c * (W * W);
 }

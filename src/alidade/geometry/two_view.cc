@@ -11,6 +11,7 @@
 #include "alidade/base/error.h"
 #include "alidade/geometry/fundamental.h"
 #include "alidade/geometry/homography.h"
+#include "alidade/geometry/motion_ranking.h"
 #include "alidade/geometry/relative_pose.h"
 #include "alidade/geometry/two_view_ransac.h"
 
@@ -18,56 +19,11 @@ namespace alidade {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-struct Hypothesis {
-  Se3 T_b_a;
-  MotionScore score;
-  double direction_sigma = 0;
-};
-
-// Motions this close are the same answer, not rivals.
-bool SameMotion(const Se3& x, const Se3& y) {
-  return RotationAngle(x, y) < 1.5 * kDegree && x.t.dot(y.t) > std::cos(6 * kDegree);
-}
-
-// The distinct motions worth considering, refined, best first.
-std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
-  std::vector<Hypothesis> rough;
-  double best = 0;
-  for (const Se3& T_b_a : motions) {
-    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays), 0});
-    best = std::max(best, rough.back().score.score);
-  }
-  std::stable_sort(rough.begin(), rough.end(), [](const Hypothesis& x, const Hypothesis& y) {
-    return x.score.score > y.score.score;
-  });
-  std::vector<Hypothesis> ranked;
-  for (const Hypothesis& start : rough) {
-    if (start.score.score < 0.4 * best || best == 0) break;
-    const RefinedMotion refined = RefineMotion(start.T_b_a, rays);
-    const bool known = std::any_of(ranked.begin(), ranked.end(), [&](const Hypothesis& other) {
-      return SameMotion(other.T_b_a, refined.T_b_a);
-    });
-    Hypothesis hypothesis{refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma};
-    if (!known) ranked.push_back(std::move(hypothesis));
-  }
-  std::stable_sort(ranked.begin(), ranked.end(), [](const Hypothesis& x, const Hypothesis& y) {
-    return x.score.score > y.score.score;
-  });
-  return ranked;
-}
-
-// Whether the matches leave open which of the two it is.
-bool IsRival(const MotionScore& best, const MotionScore& other, double max_share) {
-  if (other.good <= max_share * best.good) return false;
-  double sum = 0, squares = 0;
-  for (size_t i = 0; i < best.gain.size(); ++i) {
-    const double difference = best.gain[i] - other.gain[i];
-    sum += difference;
-    squares += difference * difference;
-  }
-  return sum < 5 * std::sqrt(squares) || sum < 0.05 * best.score;
-}
+// Of the matches a motion explains, so many must be beyond what a camera that only turned explains.
+// On made-up scenes a turning camera leaves up to 0.08 for noise, moving ones 0.4 and more.
+constexpr double kMinShareBeyondRotation = 0.2;
+constexpr double kMaxDirectionSigma =
+    3 * kDegree;  // of the direction of motion, as left by the noise
 
 // The 50th largest, or the smallest when there are fewer.
 double FiftiethLargest(std::vector<double> values) {
@@ -99,6 +55,13 @@ void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
     result.p_a[i] = *p;
   }
   result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kDegree;
+}
+
+double ShareBeyondRotation(const Hypothesis& best, const RayPairs& rays) {
+  const std::vector<bool> turned = ExplainedByRotation(best.T_b_a.R, rays);
+  int beyond = 0;
+  for (size_t i = 0; i < rays.size(); ++i) beyond += best.score.gain[i] > 0 && !turned[i];
+  return static_cast<double>(beyond) / std::max(1, best.score.consistent);
 }
 
 TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
@@ -171,9 +134,9 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   const Hypothesis& best = ranked.front();
   result.T_b_a = best.T_b_a;
   Place(camera, a, b, settings.sigma, result);
-  const auto placed = std::count(result.inlier.begin(), result.inlier.end(), true);
-  if (result.parallax_degrees < settings.min_parallax_degrees ||
-      best.direction_sigma > 3 * kDegree) {
+  if (ShareBeyondRotation(best, rays) < kMinShareBeyondRotation ||
+      result.parallax_degrees < settings.min_parallax_degrees ||
+      best.direction_sigma > kMaxDirectionSigma) {
     return Refuse(std::move(result), TwoViewFailure::kLowParallax);
   }
   for (size_t i = 1; i < ranked.size(); ++i) {
@@ -181,7 +144,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
       return Refuse(std::move(result), TwoViewFailure::kAmbiguous);
     }
   }
-  if (placed < settings.min_triangulated ||
+  if (std::count(result.inlier.begin(), result.inlier.end(), true) < settings.min_triangulated ||
       best.score.good < settings.min_good_share * best.score.consistent) {
     return Refuse(std::move(result), TwoViewFailure::kTooFewPoints);
   }

@@ -107,7 +107,8 @@ double Score(const Eigen::Matrix3d& matrix, const Lanes& lanes) {
 }
 
 template <typename Model>
-void MarkInliers(const Lanes& lanes, size_t count, RansacModel& fitted) {
+void MarkInliers(const Lanes& lanes, size_t count, float widening, RansacModel& fitted) {
+  const float bound = widening * Model::kBound;
   const Model model(fitted.matrix);
   fitted.inlier.assign(count, false);
   fitted.inliers = 0;
@@ -115,34 +116,40 @@ void MarkInliers(const Lanes& lanes, size_t count, RansacModel& fitted) {
     const std::array<Float4, 2> squared = model.Distances(Load(&lanes.ax[i]), Load(&lanes.ay[i]),
                                                           Load(&lanes.bx[i]), Load(&lanes.by[i]));
     for (size_t k = 0; k < 4 && i + k < count; ++k) {
-      const bool inside = squared[0][k] < Model::kBound && squared[1][k] < Model::kBound;
+      const bool inside = squared[0][k] < bound && squared[1][k] < bound;
       fitted.inlier[i + k] = inside;
       fitted.inliers += inside;
     }
   }
 }
 
-// Estimates again from the inliers while it helps: a sample of eight carries the noise of eight.
+// Estimates again from the inliers, first of a wider band: a sample of eight carries the noise of
+// eight, but its model still passes near most of the inliers it misses (local optimisation, Chum,
+// Matas & Kittler 2003).
 template <typename Model>
-RansacModel Polish(RansacModel fitted, const Lanes& lanes, Points a, Points b) {
+RansacModel Polish(const RansacModel& start, const Lanes& lanes, Points a, Points b) {
+  RansacModel best = start, current = start;
   std::vector<Eigen::Vector2d> inliers_a, inliers_b;
-  for (int round = 0; round < 5; ++round) {
-    MarkInliers<Model>(lanes, a.size(), fitted);
-    if (fitted.inliers < 8) break;
+  for (const float widening : {9.f, 4.f, 1.f, 1.f, 1.f}) {
+    MarkInliers<Model>(lanes, a.size(), widening, current);
+    if (current.inliers < 8) break;
     inliers_a.clear();
     inliers_b.clear();
     for (size_t i = 0; i < a.size(); ++i) {
-      if (!fitted.inlier[i]) continue;
+      if (!current.inlier[i]) continue;
       inliers_a.push_back(a[i]);
       inliers_b.push_back(b[i]);
     }
-    const Eigen::Matrix3d matrix = Model::Estimate(inliers_a, inliers_b);
-    const double score = Score<Model>(matrix, lanes);
-    if (!(score > fitted.score)) break;
-    fitted.matrix = matrix;
-    fitted.score = score;
+    current.matrix = Model::Estimate(inliers_a, inliers_b);
+    current.score = Score<Model>(current.matrix, lanes);
+    if (current.score > best.score) {
+      best = current;
+    } else if (widening == 1.f) {
+      break;
+    }
   }
-  return fitted;
+  MarkInliers<Model>(lanes, a.size(), 1, best);
+  return best;
 }
 
 struct Sample {
@@ -162,16 +169,24 @@ Candidate Try(const Sample& sample, const Lanes& lanes) {
   return candidate;
 }
 
+// The best after polishing the most promising few: among outliers the first of them is often not
+// the one that polishes best.
 template <typename Model>
-RansacModel Best(const std::vector<Candidate>& candidates, const Lanes& lanes, Points a, Points b) {
+RansacModel Best(std::vector<Candidate> candidates, const Lanes& lanes, Points a, Points b) {
+  // In order: the first of equals wins.
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
+  if (candidates.size() > 5) candidates.resize(5);
   RansacModel best;
-  for (const Candidate& candidate : candidates) {  // in order: the first of equals wins
-    if (candidate.score > best.score) {
-      best.score = candidate.score;
-      best.matrix = candidate.matrix;
-    }
+  for (const Candidate& candidate : candidates) {
+    if (!(candidate.score > 0)) break;
+    RansacModel start;
+    start.matrix = candidate.matrix;
+    start.score = candidate.score;
+    RansacModel polished = Polish<Model>(start, lanes, a, b);
+    if (polished.score > best.score) best = std::move(polished);
   }
-  return best.score > 0 ? Polish<Model>(best, lanes, a, b) : best;
+  return best;
 }
 
 }  // namespace

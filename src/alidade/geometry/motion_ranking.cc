@@ -1,0 +1,103 @@
+#include "alidade/geometry/motion_ranking.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "alidade/geometry/homography.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+// Motions this close are the same answer, not rivals.
+bool SameMotion(const Se3& x, const Se3& y) {
+  return RotationAngle(x, y) < 1.5 * kDegree && x.t.dot(y.t) > std::cos(6 * kDegree);
+}
+
+void SortByScore(std::vector<Hypothesis>& hypotheses) {
+  std::stable_sort(
+      hypotheses.begin(), hypotheses.end(),
+      [](const Hypothesis& x, const Hypothesis& y) { return x.score.score > y.score.score; });
+}
+
+Hypothesis Refined(const Se3& start, const RayPairs& rays) {
+  const RefinedMotion refined = RefineMotion(start, rays);
+  return {refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma};
+}
+
+bool Contains(const std::vector<Hypothesis>& hypotheses, const Se3& T_b_a) {
+  return std::any_of(hypotheses.begin(), hypotheses.end(),
+                     [&](const Hypothesis& other) { return SameMotion(other.T_b_a, T_b_a); });
+}
+
+// A plane seen by two cameras always allows two motions. These are the motions of the plane that
+// lies nearest to the points as this motion places them; how well they explain the matches shows
+// whether the scene was too flat to tell.
+std::vector<Se3> PlanarTwins(const Hypothesis& hypothesis, const RayPairs& rays) {
+  // A plane n' p = 1 has inverse depth n' a along the ray a: linear in n, with errors of equal
+  // size.
+  const Se3& T = hypothesis.T_b_a;
+  Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d g = Eigen::Vector3d::Zero();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (!(hypothesis.score.gain[i] > 0)) continue;
+    // b ~ R a + t / depth: from both coordinates of b, in least squares.
+    const Eigen::Vector3d turned = T.R * rays.a[i];
+    const Eigen::Vector2d offset = turned.head<2>() - turned.z() * rays.b[i].head<2>();
+    const Eigen::Vector2d slope = T.t.z() * rays.b[i].head<2>() - T.t.head<2>();
+    H += slope.squaredNorm() * rays.a[i] * rays.a[i].transpose();
+    g += slope.dot(offset) * rays.a[i];
+  }
+  const Eigen::Vector3d n = H.ldlt().solve(g);
+  return MotionsFromHomography(T.R + T.t * n.transpose());
+}
+
+}  // namespace
+
+std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
+  std::vector<Hypothesis> rough;
+  double most = 0;
+  // Bounds of three times the size: these motions carry the noise of the models they were taken
+  // from.
+  for (const Se3& T_b_a : motions) {
+    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0});
+    most = std::max(most, rough.back().score.score);
+  }
+  SortByScore(rough);
+  std::vector<Hypothesis> ranked;
+  for (const Hypothesis& start : rough) {
+    if (start.score.score < 0.6 * most || most == 0) break;
+    Hypothesis refined = Refined(start.T_b_a, rays);
+    if (!Contains(ranked, refined.T_b_a)) ranked.push_back(std::move(refined));
+  }
+  SortByScore(ranked);
+  // Twice: the twin may turn out to be the better one, and then it deserves the same test.
+  for (int round = 0; round < 2 && !ranked.empty(); ++round) {
+    for (const Se3& twin : PlanarTwins(ranked.front(), rays)) {
+      if (Contains(ranked, twin)) continue;
+      if (ScoreMotion(twin, rays, 9).good < 0.5 * ranked.front().score.good) continue;
+      Hypothesis refined = Refined(twin, rays);
+      if (!Contains(ranked, refined.T_b_a)) ranked.push_back(std::move(refined));
+    }
+    SortByScore(ranked);
+  }
+  return ranked;
+}
+
+bool IsRival(const MotionScore& best, const MotionScore& other, double max_share) {
+  if (other.good <= max_share * best.good) return false;
+  // Match by match: a difference five times its standard deviation is not the noise's doing.
+  double sum = 0, squares = 0;
+  for (size_t i = 0; i < best.gain.size(); ++i) {
+    const double difference = best.gain[i] - other.gain[i];
+    sum += difference;
+    squares += difference * difference;
+  }
+  return sum < 5 * std::sqrt(squares) || sum < 0.05 * best.score;
+}
+
+}  // namespace alidade

@@ -1,0 +1,26 @@
+// Which of many motions between two views it was, and whether that can be told at all.
+#pragma once
+
+#include <vector>
+
+#include "alidade/geometry/relative_pose.h"
+#include "alidade/geometry/se3.h"
+
+namespace alidade {
+
+struct Hypothesis {
+  Se3 T_b_a;  // |t| = 1
+  MotionScore score;
+  double direction_sigma = 0;  // of t, radians
+};
+
+// The distinct motions among `motions` that come near explaining the most, each refined, best
+// first. The one a plane could be mistaken for (see PlanarTwin) competes with the best, whether or
+// not it was among them.
+std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays);
+
+// Whether the matches leave open which of the two it is: `other` explains more than `max_share` of
+// what the best explains, and not clearly worse.
+bool IsRival(const MotionScore& best, const MotionScore& other, double max_share);
+
+}  // namespace alidade
