@@ -1,8 +1,11 @@
 #include "alidade/io/files/file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
+#include <csignal>
 
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
@@ -51,6 +54,24 @@ TEST(File, FailedWriteLeavesTheOldFileAndNoTemporary) {
   }
   EXPECT_EQ(ReadFile(folder / "a"), "old");
   EXPECT_EQ(FilesIn(folder.path()), 2);
+}
+
+// A limit on the size of files fails the write in the middle, as a full disk does.
+TEST(File, DiskThatFillsUpLeavesTheOldFileAndNoTemporary) {
+  const TempFolder folder;
+  AtomicWriteFile(folder / "a", "old");
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{4096, before.rlim_max};
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
+  const std::string message = MessageOf(
+      ErrorKind::kInput, [&] { AtomicWriteFile(folder / "a", std::string(100000, 'x')); });
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_THAT(message, testing::HasSubstr("File too large"));
+  EXPECT_EQ(ReadFile(folder / "a"), "old");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
 }
 
 }  // namespace

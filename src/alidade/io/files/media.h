@@ -3,12 +3,20 @@
 // loaded when first needed.
 #pragma once
 
+#include <memory>
+#include <string>
 #include <string_view>
 
 #include "alidade/io/files/image_codec.h"
+#include "alidade/io/media/media_module.h"
 
 namespace alidade {
 
+// A problem, too, when there is no module to ask.
 DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use);
+
+// Throw Error when it cannot be opened, or the module is missing.
+std::unique_ptr<MediaStream> OpenVideo(const std::string& path);
+std::unique_ptr<MediaStream> OpenLiveCamera(int number);
 
 }  // namespace alidade

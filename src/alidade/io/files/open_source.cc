@@ -1,16 +1,19 @@
 #include "alidade/io/files/open_source.h"
 
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "alidade/base/error.h"
-#include "alidade/base/log.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/euroc_recording.h"
 #include "alidade/io/files/folder_recording.h"
 #include "alidade/io/files/kitti_recording.h"
 #include "alidade/io/files/recording.h"
 #include "alidade/io/files/tum_recording.h"
+#include "alidade/io/files/video_source.h"
+#include "alidade/io/text.h"
 #include "alidade/io/wrappers.h"
 
 namespace alidade {
@@ -47,48 +50,12 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
   return sensor;
 }
 
-struct ChosenCalibration {
-  Calibration calibration;
-  bool guessed = false;
-};
-
-ChosenCalibration ChooseCalibration(const Recording& recording, cv::Size size,
-                                    const SourceOptions& options) {
-  std::optional<Calibration> found = recording.calibration;
-  if (options.camera_file) found = ReadCameraFile(*options.camera_file);
-  if (found && !options.fov_degrees) return {*found, false};
-  ChosenCalibration chosen;
-  chosen.calibration =
-      GuessedCalibration(size.width, size.height, options.fov_degrees.value_or(kDefaultFovDegrees));
-  if (found) {  // what a field of view says nothing about
-    chosen.calibration.baseline = found->baseline;
-    chosen.calibration.fps = found->fps;
-    chosen.calibration.depth_factor = found->depth_factor;
-  }
-  chosen.guessed = !options.fov_degrees;
-  if (chosen.guessed) {
-    LogWarning(
-        "no camera file: a horizontal field of view of 66 degrees is assumed (--fov or --camera "
-        "say better)");
-  }
-  return chosen;
-}
-
-void CheckSizes(const Calibration& calibration, cv::Size size) {
-  if (size != cv::Size(calibration.left.width, calibration.left.height)) {
-    ThrowInput(calibration.origin + " is for images of " + std::to_string(calibration.left.width) +
-               "x" + std::to_string(calibration.left.height) + ", the recording's are " +
-               std::to_string(size.width) + "x" + std::to_string(size.height));
-  }
-}
-
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   recording.name = fs::weakly_canonical(path).filename().string();
   const Sensor sensor = ChooseSensor(recording, path, options);
   const cv::Size size = SizeOfImages(recording);
-  auto [calibration, guessed] = ChooseCalibration(recording, size, options);
-  CheckSizes(calibration, size);
+  auto [calibration, guessed] = ChooseCalibration(recording.calibration, size, options);
   if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;
   if (sensor == Sensor::kRgbd && !(*calibration.depth_factor > 0)) {
     ThrowInput((calibration.origin.empty() ? path : calibration.origin) +
@@ -103,15 +70,30 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
 }
 
+// N of "camera:N".
+std::optional<int> LiveCameraNumber(const std::string& path) {
+  const std::string prefix = "camera:";
+  if (path.rfind(prefix, 0) != 0) return std::nullopt;
+  const auto number = ParseNumber(path.substr(prefix.size()));
+  if (!number || !(*number >= 0 && *number < 1000) || *number != std::floor(*number)) {
+    ThrowUsage("live cameras are camera:0, camera:1, ..., not " + path);
+  }
+  return static_cast<int>(*number);
+}
+
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options) {
   if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) ThrowInput("there is no file or folder " + path);
-  if (!fs::is_directory(status)) ThrowInput(path + " is not a folder");
-  return Clip(OpenRecording(path, options), options.first, options.last);
+  std::unique_ptr<FrameSource> source;
+  if (const auto number = LiveCameraNumber(path)) {
+    source = OpenLiveCameraSource(*number, options);
+  } else if (!fs::exists(path)) {
+    ThrowInput("there is no file or folder " + path);
+  } else {
+    source = fs::is_directory(path) ? OpenRecording(path, options) : OpenVideoSource(path, options);
+  }
+  return Clip(std::move(source), options.first, options.last);
 }
 
 }  // namespace alidade

@@ -1,0 +1,47 @@
+#include "alidade/io/files/choose_calibration.h"
+
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/files/camera_file.h"
+
+namespace alidade {
+namespace {
+
+void CheckSize(const Calibration& calibration, cv::Size size) {
+  if (size != cv::Size(calibration.left.width, calibration.left.height)) {
+    ThrowInput(calibration.origin + " is for images of " + std::to_string(calibration.left.width) +
+               "x" + std::to_string(calibration.left.height) + ", the recording's are " +
+               std::to_string(size.width) + "x" + std::to_string(size.height));
+  }
+}
+
+}  // namespace
+
+ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv::Size size,
+                                    const SourceOptions& options) {
+  std::optional<Calibration> found = beside;
+  if (options.camera_file) found = ReadCameraFile(*options.camera_file);
+  if (found && !options.fov_degrees) {
+    CheckSize(*found, size);
+    return {*found, false};
+  }
+  ChosenCalibration chosen;
+  chosen.calibration =
+      GuessedCalibration(size.width, size.height, options.fov_degrees.value_or(kDefaultFovDegrees));
+  if (found) {  // what a field of view says nothing about
+    chosen.calibration.baseline = found->baseline;
+    chosen.calibration.fps = found->fps;
+    chosen.calibration.depth_factor = found->depth_factor;
+  }
+  chosen.guessed = !options.fov_degrees;
+  if (chosen.guessed) {
+    LogWarning(
+        "no camera file: a horizontal field of view of 66 degrees is assumed (--fov or --camera "
+        "say better)");
+  }
+  return chosen;
+}
+
+}  // namespace alidade

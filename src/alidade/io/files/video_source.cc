@@ -1,0 +1,167 @@
+#include "alidade/io/files/video_source.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
+#include "alidade/io/files/media.h"
+#include "alidade/io/trajectory.h"
+
+namespace alidade {
+namespace {
+
+class VideoSource : public FrameSource {
+ public:
+  // `stream` has grabbed its first frame. Without a path (a live camera) there is no seeking.
+  VideoSource(SourceInfo info, std::string path, std::unique_ptr<MediaStream> stream,
+              ImagePreparation preparation, cv::Size raw_size)
+      : info_(std::move(info)),
+        path_(std::move(path)),
+        stream_(std::move(stream)),
+        preparation_(std::move(preparation)),
+        raw_size_(raw_size) {}
+
+  const SourceInfo& Info() const override { return info_; }
+
+  std::optional<SourceFrame> Next() override {
+    if (!GrabNext()) return std::nullopt;
+    SourceFrame frame;
+    frame.number = next_;
+    frame.time = times_[static_cast<size_t>(next_)];
+    frame.stamp = FormatTime(frame.time);
+    const cv::Mat image = stream_->Gray();
+    Advance();
+    if (image.empty()) {
+      frame.problem = info_.name + ": frame " + std::to_string(frame.number) + " cannot be decoded";
+    } else if (image.size() != raw_size_) {
+      frame.problem = info_.name + ": frame " + std::to_string(frame.number) +
+                      " has another size than the first";
+    } else {
+      frame.image = preparation_.Left(image);
+    }
+    return frame;
+  }
+
+  bool Seek(int frames) override {
+    if (path_.empty()) return false;
+    if (frames < next_ && !SeekBack(frames)) return false;
+    while (next_ < frames && GrabNext()) Advance();
+    return next_ == frames;
+  }
+
+ private:
+  // Frame next_ is the one grabbed last, its time known; false at the end.
+  bool GrabNext() {
+    if (!grabbed_ && !stream_->Grab()) {
+      WarnIfShort();
+      return false;
+    }
+    grabbed_ = true;
+    if (next_ == static_cast<int>(times_.size())) {
+      stream_times_.push_back(stream_->Time());
+      const double step = 1 / info_.camera.fps;
+      // Streams without usable times say 0 for ever.
+      const bool goes_on = times_.empty() || stream_times_.back() > times_.back();
+      times_.push_back(goes_on ? stream_times_.back() : times_.back() + step);
+    }
+    return true;
+  }
+
+  void Advance() {
+    ++next_;
+    grabbed_ = false;
+  }
+
+  // FFmpeg finds frames by time, and OpenCV takes the rate for constant: which frame we have got is
+  // told by its time, known from the way forth. Tried from ever further back, at last from the
+  // start.
+  bool SeekBack(int frames) {
+    for (const int margin : {2, 16, 64}) {
+      if (margin >= frames) break;
+      if (!stream_->SeekNear(stream_times_[static_cast<size_t>(frames - margin)]) ||
+          !stream_->Grab())
+        continue;
+      const auto found =
+          std::find_if(stream_times_.begin(), stream_times_.end(),
+                       [this](double time) { return std::abs(time - stream_->Time()) < 1e-6; });
+      const auto index = static_cast<int>(found - stream_times_.begin());
+      if (index > frames) continue;
+      next_ = index;
+      grabbed_ = true;
+      return true;
+    }
+    stream_ = OpenVideo(path_);
+    next_ = 0;
+    grabbed_ = false;
+    return true;
+  }
+
+  void WarnIfShort() {
+    if (warned_ || next_ + 2 >= info_.frames) return;
+    warned_ = true;
+    LogWarning(info_.name + " ends after " + std::to_string(next_) + " of " +
+               std::to_string(info_.frames) + " frames: is the file cut short?");
+  }
+
+  SourceInfo info_;
+  std::string path_;
+  std::unique_ptr<MediaStream> stream_;
+  ImagePreparation preparation_;
+  cv::Size raw_size_;
+  std::vector<double> stream_times_,
+      times_;            // seconds, of the frames met so far: as the stream has them, as given
+  int next_ = 0;         // number of the frame the next call gives
+  bool grabbed_ = true;  // it is grabbed already
+  bool warned_ = false;
+};
+
+std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path,
+                                        std::unique_ptr<MediaStream> stream,
+                                        const std::optional<Calibration>& beside,
+                                        const SourceOptions& options) {
+  const std::string name = path.empty() ? info.name : path;
+  if (options.sensor.value_or(Sensor::kMono) != Sensor::kMono)
+    ThrowUsage(name + " has one camera: only --sensor mono");
+  const cv::Mat first = stream->Grab() ? stream->Gray() : cv::Mat();
+  if (first.empty()) ThrowInput(name + ": not one picture can be read");
+  auto [calibration, guessed] = ChooseCalibration(beside, first.size(), options);
+  const double fps = stream->FramesPerSecond();
+  if (guessed && std::isfinite(fps) && fps > 0) calibration.fps = fps;
+  ImagePreparation preparation(calibration, Sensor::kMono);
+  info.camera = preparation.camera();
+  info.camera_guessed = guessed;
+  const int frames = stream->FrameCount();
+  info.frames = frames > 0 ? frames : -1;
+  return std::make_unique<VideoSource>(std::move(info), path, std::move(stream),
+                                       std::move(preparation), first.size());
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path,
+                                             const SourceOptions& options) {
+  const std::filesystem::path file(path);
+  SourceInfo info;
+  info.name = file.stem().string();
+  info.kind = "video";
+  std::optional<Calibration> beside;
+  const std::filesystem::path camera = file.parent_path() / "camera.yaml";
+  if (!options.camera_file && std::filesystem::is_regular_file(camera))
+    beside = ReadCameraFile(camera.string());
+  return MakeSource(std::move(info), path, OpenVideo(path), beside, options);
+}
+
+std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOptions& options) {
+  SourceInfo info;
+  info.name = "camera" + std::to_string(number);
+  info.kind = "camera";
+  return MakeSource(std::move(info), {}, OpenLiveCamera(number), std::nullopt, options);
+}
+
+}  // namespace alidade

@@ -1,0 +1,126 @@
+#include "alidade/io/media/media_module.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <memory>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/videoio.hpp>
+
+#include "alidade/io/files/image_codec.h"
+
+namespace alidade {
+namespace {
+
+// What is wrong with a file we say ourselves, in one line. The user's own setting of these
+// variables wins.
+void SilenceLibraries() {
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
+  setenv("OPENCV_FFMPEG_DEBUG", "1", 0);  // lets the next line count
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
+}
+
+// Quarter turns clockwise that make the pictures upright.
+int QuarterTurns(const cv::VideoCapture& capture) {
+  const int degrees = static_cast<int>(capture.get(cv::CAP_PROP_ORIENTATION_META));
+  const int turns = ((degrees / 90) % 4 + 4) % 4;
+  // OpenCV 4.6.0 alone has the sign of the angle wrong (its issue 22088): portrait videos came
+  // upside down.
+  const bool wrong =
+      cv::getVersionMajor() == 4 && cv::getVersionMinor() == 6 && cv::getVersionRevision() == 0;
+  return wrong ? (4 - turns) % 4 : turns;
+}
+
+class Stream : public MediaStream {
+ public:
+  Stream(cv::VideoCapture capture, bool live)
+      : capture_(std::move(capture)), live_(live), turns_(live ? 0 : QuarterTurns(capture_)) {}
+
+  int FrameCount() const override {
+    return live_ ? 0 : static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_COUNT));
+  }
+  double FramesPerSecond() const override { return capture_.get(cv::CAP_PROP_FPS); }
+
+  bool Grab() override try {
+    const bool grabbed = capture_.grab();
+    if (live_) {
+      const auto now = Clock::now();
+      if (start_ == Clock::time_point{}) start_ = now;
+      time_ = std::chrono::duration<double>(now - start_).count();
+    } else {
+      time_ = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000;
+    }
+    return grabbed;
+  } catch (const cv::Exception&) {
+    return false;
+  }
+
+  double Time() const override { return time_; }
+
+  cv::Mat Gray() override try {
+    cv::Mat color, gray;
+    if (!capture_.retrieve(color) || color.empty()) return {};
+    if (color.channels() == 1) {
+      gray = color.clone();
+    } else {
+      cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
+    }
+    constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                                          cv::ROTATE_90_COUNTERCLOCKWISE};
+    if (turns_ > 0) cv::rotate(gray, gray, kTurns[turns_ - 1]);
+    return gray;
+  } catch (const cv::Exception&) {
+    return {};
+  }
+
+  bool SeekNear(double time) override try {
+    return !live_ && capture_.set(cv::CAP_PROP_POS_MSEC, 1000 * time);
+  } catch (const cv::Exception&) {
+    return false;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  cv::VideoCapture capture_;
+  bool live_;
+  int turns_;
+  Clock::time_point start_{};
+  double time_ = 0;
+};
+
+}  // namespace
+}  // namespace alidade
+
+using namespace alidade;
+
+extern "C" __attribute__((visibility("default"))) bool alidade_media_decode(const char* bytes,
+                                                                            size_t size, int use,
+                                                                            cv::Mat* image) try {
+  SilenceLibraries();
+  const cv::Mat buffer(1, static_cast<int>(size), CV_8UC1, const_cast<char*>(bytes));
+  const auto as = static_cast<ImageUse>(use);
+  *image = cv::imdecode(buffer, as == ImageUse::kGray    ? cv::IMREAD_GRAYSCALE
+                                : as == ImageUse::kColor ? cv::IMREAD_COLOR
+                                                         : cv::IMREAD_UNCHANGED);
+  return !image->empty();
+} catch (...) {
+  return false;
+}
+
+extern "C" __attribute__((visibility("default"))) MediaStream* alidade_media_open(const char* path,
+                                                                                  int camera) try {
+  SilenceLibraries();
+  const bool live = path[0] == 0;
+  cv::VideoCapture capture;
+  if (live) {
+    capture.open(camera, cv::CAP_ANY);
+  } else {
+    capture.open(path, cv::CAP_FFMPEG);
+    capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
+  }
+  if (!capture.isOpened()) return nullptr;
+  return std::make_unique<Stream>(std::move(capture), live).release();
+} catch (...) {
+  return nullptr;
+}

@@ -1,0 +1,54 @@
+// Small surgery on MP4 files (ISO 14496-12), for tests: what OpenCV's writer cannot write.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace alidade {
+
+inline uint32_t Mp4Number(const std::string& bytes, size_t at) {
+  uint32_t value = 0;
+  for (size_t i = 0; i < 4; ++i) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+  return value;
+}
+
+inline std::string Mp4Text(uint32_t value) {
+  std::string text;
+  for (int shift = 24; shift >= 0; shift -= 8)
+    text.push_back(static_cast<char>((value >> shift) & 0xff));
+  return text;
+}
+
+// Where the box of that type starts (its size field).
+inline size_t Mp4Box(const std::string& bytes, const std::string& type) {
+  return bytes.rfind(type) - 4;
+}
+
+// Sets how long each frame is shown, in units of the track's time scale. The index must follow the
+// pictures (as FFmpeg writes it), since it grows.
+inline void SetMp4Durations(std::string& bytes, const std::vector<uint32_t>& durations) {
+  std::string stts = "stts" + Mp4Text(0) + Mp4Text(static_cast<uint32_t>(durations.size()));
+  for (const uint32_t duration : durations) stts += Mp4Text(1) + Mp4Text(duration);
+  stts = Mp4Text(static_cast<uint32_t>(stts.size() + 4)) + stts;
+  const size_t at = Mp4Box(bytes, "stts");
+  const uint32_t old_size = Mp4Number(bytes, at);
+  bytes.replace(at, old_size, stts);
+  for (const char* parent : {"moov", "trak", "mdia", "minf", "stbl"}) {
+    const size_t box = Mp4Box(bytes, parent);
+    bytes.replace(box, 4,
+                  Mp4Text(Mp4Number(bytes, box) + static_cast<uint32_t>(stts.size()) - old_size));
+  }
+}
+
+// Marks the video to be shown turned by a quarter clockwise.
+inline void SetMp4QuarterTurn(std::string& bytes) {
+  const uint32_t one = 0x10000, minus_one = 0xffff0000, one_w = 0x40000000;
+  std::string matrix;
+  for (const uint32_t value : {0u, one, 0u, minus_one, 0u, 0u, 0u, 0u, one_w})
+    matrix += Mp4Text(value);
+  bytes.replace(Mp4Box(bytes, "tkhd") + 48, matrix.size(), matrix);  // version 0 of the box
+}
+
+}  // namespace alidade
