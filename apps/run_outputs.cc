@@ -126,6 +126,8 @@ int WriteOutputs(const std::string& folder, const Slam& slam, const RunRecord& r
       {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
       {"initialised_at", initialised_at < 0 ? ordered_json(nullptr) : ordered_json(initialised_at)},
       {"lost_spans", LostSpans(poses)},
+      {"span", poses.empty() ? ordered_json(nullptr)
+                             : ordered_json({poses.front().time, poses.back().time})},
       {"relocalisations", slam.relocalisations()},
       {"loops", 0},
       {"maps", map.keyframe_count() > 0 ? 1 : 0},

@@ -12,6 +12,7 @@ set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
 add_library(alidade_flags INTERFACE)
+target_compile_features(alidade_flags INTERFACE cxx_std_20)
 # Warnings are ours alone; -ffp-contract is for those who use the library's headers too.
 target_compile_options(alidade_flags INTERFACE "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror>"
                        -ffp-contract=off)
