@@ -17,6 +17,7 @@ install(DIRECTORY src/alidade DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATC
         PATTERN "io/files" EXCLUDE)
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS alidade_media LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})  # found in ../lib of the program
 endif()
 configure_package_config_file(cmake/AlidadeConfig.cmake.in ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake
                               INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR})
