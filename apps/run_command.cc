@@ -16,6 +16,7 @@
 #include "arguments.h"
 #include "commands.h"
 #include "run_outputs.h"
+#include "synth_source.h"
 
 namespace alidade {
 namespace {
@@ -43,6 +44,7 @@ std::unique_ptr<FrameSource> Open(const RunArguments& arguments) {
   if (arguments.fov > 0) options.fov_degrees = arguments.fov;
   options.first = arguments.first;
   options.last = arguments.last;
+  if (IsSynthSource(arguments.source)) return OpenSynthSource(arguments.source, options);
   return OpenSource(arguments.source, options);
 }
 

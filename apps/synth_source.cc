@@ -1,0 +1,204 @@
+#include "synth_source.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/nearest_name.h"
+#include "alidade/io/calibration.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/text.h"
+#include "alidade/io/wrappers.h"
+#include "alidade/synth/recording.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kPrefix[] = "synth:";
+
+double Number(const std::string& name, const std::string& value, bool whole) {
+  const std::optional<double> number = ParseNumber(value);
+  if (!number || !(*number >= -1e9 && *number <= 9e15) ||
+      (whole && *number != static_cast<double>(static_cast<int64_t>(*number)))) {
+    ThrowUsage("synth: " + name + " cannot be \"" + value + "\": it must be a " +
+               (whole ? "whole " : "") + "number");
+  }
+  return *number;
+}
+
+int Whole(const std::string& name, const std::string& value) {
+  const double number = Number(name, value, true);
+  if (number < -1e9 || number > 1e9) ThrowUsage("synth: " + name + " is out of range: " + value);
+  return static_cast<int>(number);
+}
+
+bool Switch(const std::string& name, const std::string& value) {
+  if (value.empty() || value == "1" || value == "true") return true;
+  if (value == "0" || value == "false") return false;
+  ThrowUsage("synth: " + name + " cannot be \"" + value + "\": it is 0 or 1");
+}
+
+void Set(SynthSettings& settings, const std::string& name, const std::string& value) {
+  static const std::vector<std::string> kNames = {"frames",   "actors",     "noise",   "blur",
+                                                  "exposure", "distortion", "rolling", "stereo",
+                                                  "seed",     "width",      "height",  "fps"};
+  if (name == "frames") {
+    settings.frames = Whole(name, value);
+  } else if (name == "actors") {
+    settings.actors = Whole(name, value);
+  } else if (name == "noise") {
+    settings.noise = Number(name, value, false);
+  } else if (name == "blur") {
+    settings.blur = Switch(name, value);
+  } else if (name == "exposure") {
+    settings.exposure = Switch(name, value);
+  } else if (name == "distortion") {
+    settings.distortion = Switch(name, value);
+  } else if (name == "rolling") {
+    settings.rolling = Switch(name, value);
+  } else if (name == "stereo") {
+    settings.stereo = Switch(name, value);
+  } else if (name == "seed") {
+    const double seed = Number(name, value, true);
+    if (seed < 0) ThrowUsage("synth: seed cannot be negative");
+    settings.seed = static_cast<uint64_t>(seed);
+  } else if (name == "width") {
+    settings.width = Whole(name, value);
+  } else if (name == "height") {
+    settings.height = Whole(name, value);
+  } else if (name == "fps") {
+    settings.fps = Number(name, value, false);
+  } else {
+    ThrowUsage("synth: unknown option \"" + name + "\"" + DidYouMean(name, kNames));
+  }
+}
+
+Calibration CalibrationOf(const Camera& camera) {
+  Calibration calibration;
+  calibration.left.width = camera.width;
+  calibration.left.height = camera.height;
+  calibration.left.fx = camera.fx;
+  calibration.left.fy = camera.fy;
+  calibration.left.cx = camera.cx;
+  calibration.left.cy = camera.cy;
+  calibration.left.distortion = camera.distortion;
+  calibration.baseline = camera.baseline;
+  calibration.fps = camera.fps;
+  calibration.depth_factor = camera.depth_factor;
+  return calibration;
+}
+
+// What the user says the camera is, where he says so.
+Calibration ChooseCalibration(const Camera& camera, const SourceOptions& options) {
+  const Calibration own = CalibrationOf(camera);
+  if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
+  Calibration chosen = own;
+  if (options.fov_degrees)
+    chosen = GuessedCalibration(camera.width, camera.height, *options.fov_degrees);
+  if (options.camera_file) chosen = ReadCameraFile(*options.camera_file);
+  if (chosen.left.width != camera.width || chosen.left.height != camera.height) {
+    ThrowInput(chosen.origin + " is for images of another size than the rendered " +
+               std::to_string(camera.width) + "x" + std::to_string(camera.height));
+  }
+  if (!options.camera_file) {
+    chosen.baseline = own.baseline;
+    chosen.fps = own.fps;
+  }
+  if (!chosen.depth_factor) chosen.depth_factor = own.depth_factor;
+  return chosen;
+}
+
+Sensor ChooseSensor(const SynthSettings& settings, const SourceOptions& options) {
+  const Sensor sensor = options.sensor.value_or(settings.stereo ? Sensor::kStereo : Sensor::kRgbd);
+  if (sensor == Sensor::kStereo && !settings.stereo) {
+    ThrowUsage(
+        "--sensor stereo: the rendered recording has no second camera (add ?stereo to the source)");
+  }
+  return sensor;
+}
+
+class SynthSource : public FrameSource {
+ public:
+  SynthSource(SynthSettings settings, const SourceOptions& options)
+      : recording_(settings),
+        preparation_(ChooseCalibration(recording_.camera(), options),
+                     ChooseSensor(settings, options)) {
+    info_.name = "synth-" + settings.scene;
+    info_.kind = "synth";
+    info_.sensor = ChooseSensor(settings, options);
+    info_.camera = preparation_.camera();
+    info_.R_camera_rectified = preparation_.R_camera_rectified();
+    info_.frames = settings.frames;
+  }
+
+  const SourceInfo& Info() const override { return info_; }
+
+  std::optional<SourceFrame> Next() override {
+    if (next_ >= info_.frames) return std::nullopt;
+    const RenderedFrame rendered = recording_.Render(next_);
+    SourceFrame frame;
+    frame.time = rendered.time;
+    frame.stamp = SynthStamp(rendered.time);
+    frame.number = next_++;
+    frame.image = preparation_.Left(rendered.image);
+    if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);
+    if (info_.sensor == Sensor::kRgbd) frame.depth = preparation_.Depth(rendered.depth);
+    return frame;
+  }
+
+  bool Seek(int frames) override {
+    next_ = frames;
+    return true;
+  }
+
+ private:
+  SynthRecording recording_;
+  ImagePreparation preparation_;
+  SourceInfo info_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+std::string SynthStamp(double seconds) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.6f", seconds);
+  return text;
+}
+
+bool IsSynthSource(const std::string& source) { return source.rfind(kPrefix, 0) == 0; }
+
+SynthSettings ParseSynthSource(const std::string& source) {
+  if (!IsSynthSource(source)) ThrowUsage("not a rendered source: " + source);
+  std::string rest = source.substr(sizeof(kPrefix) - 1);
+  const size_t question = rest.find('?');
+  SynthSettings settings;
+  settings.scene = rest.substr(0, question);
+  settings.frames = SceneFrames(settings.scene);
+  rest = question == std::string::npos ? "" : rest.substr(question + 1);
+  while (!rest.empty()) {
+    const size_t end = rest.find('&');
+    const std::string item = rest.substr(0, end);
+    rest = end == std::string::npos ? "" : rest.substr(end + 1);
+    if (item.empty()) continue;
+    const size_t equals = item.find('=');
+    const std::string name = item.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
+    Set(settings, name, value);
+  }
+  settings.Check();
+  return settings;
+}
+
+std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,
+                                             const SourceOptions& options) {
+  const SynthSettings settings = ParseSynthSource(source);
+  ChooseSensor(settings, options);  // before anything is painted
+  return Clip(std::make_unique<SynthSource>(settings, options), options.first, options.last);
+}
+
+}  // namespace alidade
