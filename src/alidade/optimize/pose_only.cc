@@ -5,26 +5,19 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/optimize/double2.h"
 #include "alidade/optimize/reprojection.h"
 
 namespace alidade {
 namespace {
 
-// Two matches side by side: Eigen turns each operation into one SSE2 (NEON, WebAssembly)
-// instruction.
-using Pair = Eigen::Array2d;
-
-// 1 where positive, else 0. Eigen's comparisons go one number at a time.
-[[gnu::always_inline]] inline Pair IsPositive(const Pair& x) {
-  return (x * 1e300).max(0.0).min(1.0);
-}
-
+// Side by side.
 struct MatchPair {
-  Pair x, y, z;           // landmark, world
-  Pair u, v, right;       // seen, pixels
-  Pair weight, weight_r;  // 1/px²; 0: the match, or its u_right, cannot be used
-  Pair huber;             // standard deviations
-  Pair active;            // 1: counts in this round, 0: doesn't
+  Double2 x, y, z;           // landmark, world
+  Double2 u, v, right;       // seen, pixels
+  Double2 weight, weight_r;  // 1/px²; 0: the match, or its u_right, cannot be used
+  Double2 huber;             // standard deviations
+  Mask2 active;              // ones: counts in this round
 };
 
 struct NormalEquations {
@@ -36,8 +29,9 @@ struct NormalEquations {
 std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matches,
                             const PoseOnlySettings& settings) {
   MatchPair none;
-  none.x = none.y = none.u = none.v = none.right = none.weight = none.weight_r = none.active = 0;
-  none.z = none.huber = 1;
+  none.x = none.y = none.u = none.v = none.right = none.weight = none.weight_r = Both(0);
+  none.z = none.huber = Both(1);
+  none.active = Mask2{0, 0};
   std::vector<MatchPair> pairs((matches.size() + 1) / 2, none);
   for (size_t i = 0; i < matches.size(); ++i) {
     const PoseMatch& m = matches[i];
@@ -56,27 +50,27 @@ std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matc
     p.weight[lane] = m.inv_sigma2;
     p.weight_r[lane] = stereo ? m.inv_sigma2_right : 0;
     p.huber[lane] = stereo ? settings.huber_stereo : settings.huber_mono;
-    p.active[lane] = 1;
+    p.active[lane] = -1;
   }
   return pairs;
 }
 
 // One pair seen from a pose.
 struct Seen {
-  Pair x, y, z;  // camera frame, z clamped to be positive
-  Reprojection<Pair> e;
-  Pair chi2;
-  Pair in_front;  // 1 or 0
+  Double2 x, y, z;  // camera frame, z clamped to be positive
+  Reprojection<Double2> e;
+  Double2 chi2;
+  Mask2 in_front;
 };
 
 [[gnu::always_inline]] inline Seen Look(const Intrinsics& k, const Se3& T, const MatchPair& m) {
   Seen s;
   s.x = T.R(0, 0) * m.x + T.R(0, 1) * m.y + T.R(0, 2) * m.z + T.t.x();
   s.y = T.R(1, 0) * m.x + T.R(1, 1) * m.y + T.R(1, 2) * m.z + T.t.y();
-  const Pair depth = T.R(2, 0) * m.x + T.R(2, 1) * m.y + T.R(2, 2) * m.z + T.t.z();
-  s.z = depth.max(kMinDepth);
-  s.in_front = IsPositive(depth - kMinDepth);
-  s.e = Reproject<Pair>(k, s.x, s.y, s.z, m.u, m.v, m.right);
+  const Double2 depth = T.R(2, 0) * m.x + T.R(2, 1) * m.y + T.R(2, 2) * m.z + T.t.z();
+  s.z = Max(depth, Both(kMinDepth));
+  s.in_front = depth > kMinDepth;
+  s.e = Reproject<Double2>(k, s.x, s.y, s.z, m.u, m.v, m.right);
   s.chi2 = m.weight * (s.e.u * s.e.u + s.e.v * s.e.v) + m.weight_r * (s.e.right * s.e.right);
   return s;
 }
@@ -90,45 +84,48 @@ double FarChi2PerWeight(const Intrinsics& k) { return 16 * k.fx * k.fx; }
 // al. 2018, eq. 182).
 NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<MatchPair>& pairs,
                           bool robust) {
-  const Pair zero = Pair::Zero();
-  Pair m00 = zero, m02 = zero, m11 = zero, m12 = zero, m22 = zero, cost = zero;
-  Pair c00 = zero, c01 = zero, c02 = zero, c10 = zero, c11 = zero, c12 = zero, c20 = zero,
-       c21 = zero, c22 = zero;
-  Pair r00 = zero, r01 = zero, r02 = zero, r11 = zero, r12 = zero, r22 = zero;
-  Pair g0 = zero, g1 = zero, g2 = zero, g3 = zero, g4 = zero, g5 = zero;
+  const Double2 zero = Both(0);
+  Double2 m00 = zero, m02 = zero, m11 = zero, m12 = zero, m22 = zero, cost = zero;
+  Double2 c00 = zero, c01 = zero, c02 = zero, c10 = zero, c11 = zero, c12 = zero, c20 = zero,
+          c21 = zero, c22 = zero;
+  Double2 r00 = zero, r01 = zero, r02 = zero, r11 = zero, r12 = zero, r22 = zero;
+  Double2 g0 = zero, g1 = zero, g2 = zero, g3 = zero, g4 = zero, g5 = zero;
   const double far = FarChi2PerWeight(k);
   for (const MatchPair& m : pairs) {
     const Seen s = Look(k, T, m);
-    const Pair cap = far * m.weight;
-    const Pair chi2 = s.chi2.min(cap);
-    Pair near = IsPositive(cap - s.chi2) * s.in_front * m.active;
+    const Double2 cap = far * m.weight;
+    const Double2 chi2 = Min(s.chi2, cap);
+    const Mask2 near = (s.chi2 < cap) & s.in_front & m.active;
+    Double2 w = near ? m.weight : zero, wr = near ? m.weight_r : zero, loss;
     if (robust) {
-      const Pair root = chi2.sqrt();
-      const Pair irls = (m.huber / root.max(1e-9)).min(1.0);
+      const Double2 root = Sqrt(chi2);
+      const Double2 irls = Min(m.huber / Max(root, Both(1e-9)), Both(1));
       // Half of Huber's loss, both branches in one: root² / 2 below the bound, huber (root - huber
       // / 2) above.
-      const Pair inner = root.min(m.huber);
-      cost += m.active * (inner * (root - 0.5 * inner));
-      near *= irls;
+      const Double2 inner = Min(root, m.huber);
+      loss = inner * (root - 0.5 * inner);
+      w *= irls;
+      wr *= irls;
     } else {
-      cost += m.active * (0.5 * chi2);
+      loss = 0.5 * chi2;
     }
-    const Pair w = m.weight * near, wr = m.weight_r * near;
-    const Pair wu = w * s.e.u_x, wru = wr * s.e.u_x, wv = w * s.e.v_y;
-    const Pair a = (wu + wru) * s.e.u_x, b = wv * s.e.v_y;
-    const Pair c = wu * s.e.u_z + wru * s.e.right_z, d = wv * s.e.v_z;
-    const Pair f = w * (s.e.u_z * s.e.u_z + s.e.v_z * s.e.v_z) + wr * (s.e.right_z * s.e.right_z);
-    const Pair h0 = wu * s.e.u + wru * s.e.right, h1 = wv * s.e.v;
-    const Pair h2 = w * (s.e.u_z * s.e.u + s.e.v_z * s.e.v) + wr * (s.e.right_z * s.e.right);
+    cost += m.active ? loss : zero;
+    const Double2 wu = w * s.e.u_x, wru = wr * s.e.u_x, wv = w * s.e.v_y;
+    const Double2 a = (wu + wru) * s.e.u_x, b = wv * s.e.v_y;
+    const Double2 c = wu * s.e.u_z + wru * s.e.right_z, d = wv * s.e.v_z;
+    const Double2 f =
+        w * (s.e.u_z * s.e.u_z + s.e.v_z * s.e.v_z) + wr * (s.e.right_z * s.e.right_z);
+    const Double2 h0 = wu * s.e.u + wru * s.e.right, h1 = wv * s.e.v;
+    const Double2 h2 = w * (s.e.u_z * s.e.u + s.e.v_z * s.e.v) + wr * (s.e.right_z * s.e.right);
     m00 += a;
     m02 += c;
     m11 += b;
     m12 += d;
     m22 += f;
     // C = -M [p]x; M = (a 0 c; 0 b d; c d f).
-    const Pair k00 = c * s.y, k01 = a * s.z - c * s.x, k02 = -(a * s.y);
-    const Pair k10 = d * s.y - b * s.z, k11 = -(d * s.x), k12 = b * s.x;
-    const Pair k20 = f * s.y - d * s.z, k21 = c * s.z - f * s.x, k22 = d * s.x - c * s.y;
+    const Double2 k00 = c * s.y, k01 = a * s.z - c * s.x, k02 = -(a * s.y);
+    const Double2 k10 = d * s.y - b * s.z, k11 = -(d * s.x), k12 = b * s.x;
+    const Double2 k20 = f * s.y - d * s.z, k21 = c * s.z - f * s.x, k22 = d * s.x - c * s.y;
     c00 += k00;
     c01 += k01;
     c02 += k02;
@@ -153,15 +150,15 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     g5 += s.x * h1 - s.y * h0;
   }
   NormalEquations n;
-  n.H.row(0) << m00.sum(), 0, m02.sum(), c00.sum(), c01.sum(), c02.sum();
-  n.H.row(1) << 0, m11.sum(), m12.sum(), c10.sum(), c11.sum(), c12.sum();
-  n.H.row(2) << 0, 0, m22.sum(), c20.sum(), c21.sum(), c22.sum();
-  n.H.row(3) << 0, 0, 0, r00.sum(), r01.sum(), r02.sum();
-  n.H.row(4) << 0, 0, 0, 0, r11.sum(), r12.sum();
-  n.H.row(5) << 0, 0, 0, 0, 0, r22.sum();
+  n.H.row(0) << Sum(m00), 0, Sum(m02), Sum(c00), Sum(c01), Sum(c02);
+  n.H.row(1) << 0, Sum(m11), Sum(m12), Sum(c10), Sum(c11), Sum(c12);
+  n.H.row(2) << 0, 0, Sum(m22), Sum(c20), Sum(c21), Sum(c22);
+  n.H.row(3) << 0, 0, 0, Sum(r00), Sum(r01), Sum(r02);
+  n.H.row(4) << 0, 0, 0, 0, Sum(r11), Sum(r12);
+  n.H.row(5) << 0, 0, 0, 0, 0, Sum(r22);
   n.H.triangularView<Eigen::StrictlyLower>() = n.H.transpose();
-  n.g << g0.sum(), g1.sum(), g2.sum(), g3.sum(), g4.sum(), g5.sum();
-  n.cost = cost.sum();
+  n.g << Sum(g0), Sum(g1), Sum(g2), Sum(g3), Sum(g4), Sum(g5);
+  n.cost = Sum(cost);
   return n;
 }
 
@@ -209,10 +206,10 @@ bool Reclassify(const Intrinsics& k, const Se3& T, std::vector<MatchPair>& pairs
   for (MatchPair& m : pairs) {
     const Seen s = Look(k, T, m);
     for (int lane = 0; lane < 2; ++lane) {
-      const bool inlier = m.weight[lane] > 0 && s.in_front[lane] > 0 &&
+      const bool inlier = m.weight[lane] > 0 && s.in_front[lane] != 0 &&
                           s.chi2[lane] <= m.huber[lane] * m.huber[lane];
-      changed |= inlier != (m.active[lane] > 0);
-      m.active[lane] = inlier;
+      changed |= inlier != (m.active[lane] != 0);
+      m.active[lane] = inlier ? -1 : 0;
       inliers += inlier;
     }
   }
@@ -240,7 +237,7 @@ PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
   const Intrinsics k = Intrinsics::Of(camera);
   std::vector<MatchPair> pairs = Pack(k, matches, settings);
   int usable = 0;
-  for (const MatchPair& m : pairs) usable += static_cast<int>(m.active.sum());
+  for (const MatchPair& m : pairs) usable -= static_cast<int>(m.active[0] + m.active[1]);
   if (usable < 3) return result;
 
   // Until the inliers are known, a pose within a fraction of its standard deviation will do.
@@ -250,14 +247,14 @@ PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
     T = Descend(k, T, pairs, robust, settings.max_iterations, 1e-3).T;
     if (!Reclassify(k, T, pairs, result.inliers)) break;
     if (result.inliers < 3 && round + 1 < settings.rounds) {
-      for (MatchPair& m : pairs) m.active = Pair(m.weight[0] > 0, m.weight[1] > 0);
+      for (MatchPair& m : pairs) m.active = m.weight > 0;
     }
   }
   const Descent last = Descend(k, T, pairs, false, settings.max_iterations, 1e-7);
   result.T_camera_world = last.T.Normalised();
   result.information = last.at_end.H;
   result.cost = last.at_end.cost;
-  for (size_t i = 0; i < matches.size(); ++i) result.inlier[i] = pairs[i / 2].active[i % 2] > 0;
+  for (size_t i = 0; i < matches.size(); ++i) result.inlier[i] = pairs[i / 2].active[i % 2] != 0;
   return result;
 }
 
