@@ -23,6 +23,7 @@ struct BundleProblemOptions {
   int fixed_cameras = 2;  // the first ones
   int free_cameras = 8;
   int points = 300;
+  double path_length = 4;        // metres
   int min_track = 2;             // a point is seen by at least so many cameras,
   int max_track = 8;             // and at most so many, next to each other on the path
   double stereo = 0.5;           // share of observations with a u_right
@@ -35,19 +36,20 @@ struct BundleProblemOptions {
   uint64_t seed = 1;
 };
 
-// The camera at place s in [0, 1] of its path: 4 m sideways, turning by half a radian.
-inline Se3 BundleCameraAt(BundleScene scene, double s) {
+// The camera at place s in [0, 1] of its path: sideways, turning by half a radian.
+inline Se3 BundleCameraAt(BundleScene scene, double path_length, double s) {
   const Eigen::Vector3d turn(0.1 * std::sin(9 * s), 0.5 * (s - 0.5), 0.1 * std::cos(7 * s));
   const Eigen::Vector3d centre =
       scene == BundleScene::kTurning
           ? Eigen::Vector3d(0, 0, 0)
-          : Eigen::Vector3d(4 * s, 0.2 * std::sin(8 * s), 0.3 * std::sin(5 * s));
+          : Eigen::Vector3d(path_length * s, 0.2 * std::sin(8 * s), 0.3 * std::sin(5 * s));
   const Eigen::Matrix3d R = ExpSo3(turn);
   return {R, -(R * centre)};
 }
 
-inline Eigen::Vector3d RandomBundlePoint(BundleScene scene, Random& random) {
-  const double x = random.Uniform(-2, 6), y = random.Uniform(-2, 2), z = random.Uniform(2, 7);
+inline Eigen::Vector3d RandomBundlePoint(BundleScene scene, double path_length, Random& random) {
+  const double x = random.Uniform(-2, path_length + 2), y = random.Uniform(-2, 2),
+               z = random.Uniform(2, 7);
   switch (scene) {
     case BundleScene::kWall:
       return {x, y, 4 + 0.1 * x + 0.0005 * (z - 4)};
@@ -65,7 +67,7 @@ inline BundleProblem MakeBundleProblem(const BundleProblemOptions& options) {
   const int cameras = options.fixed_cameras + options.free_cameras;
   std::vector<Se3> truth;
   for (int i = 0; i < cameras; ++i) {
-    truth.push_back(BundleCameraAt(options.scene, (i + 0.5) / cameras));
+    truth.push_back(BundleCameraAt(options.scene, options.path_length, (i + 0.5) / cameras));
     problem.fixed.push_back(i < options.fixed_cameras);
   }
   // Fixed cameras are spread over the path, as the old keyframes around a local window are.
@@ -74,7 +76,7 @@ inline BundleProblem MakeBundleProblem(const BundleProblemOptions& options) {
   for (int i = cameras - 1; i > 0; --i) std::swap(order[i], order[random.Below(i + 1)]);
 
   while (static_cast<int>(problem.points.size()) < options.points) {
-    const Eigen::Vector3d p_world = RandomBundlePoint(options.scene, random);
+    const Eigen::Vector3d p_world = RandomBundlePoint(options.scene, options.path_length, random);
     std::vector<int> seen;
     for (int i = 0; i < cameras; ++i) {
       const Eigen::Vector3d p = truth[i] * p_world;

@@ -94,8 +94,13 @@ TEST(AdjustBundle, ReportsTheCostOfWhatItReturns) {
 }
 
 TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
-  for (const int sparse_above : {100, 4}) {
-    const BundleProblem start = MakeBundleProblem({.points = 1500, .outliers = 0.05, .seed = 22});
+  for (const int sparse_above : {100, 10}) {
+    const BundleProblem start = MakeBundleProblem({.free_cameras = 80,
+                                                   .points = 1500,
+                                                   .path_length = 80,
+                                                   .max_track = 5,
+                                                   .outliers = 0.05,
+                                                   .seed = 22});
     ASSERT_GT(start.observations.size(), 4000u);  // enough to be cut into all chunks
     BundleSettings settings;
     settings.sparse_above = sparse_above;
@@ -114,7 +119,12 @@ TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
 }
 
 TEST(AdjustBundle, SparseAndDenseReducedSystemsGiveTheSameSteps) {
-  const BundleProblem start = MakeBundleProblem({.free_cameras = 30, .outliers = 0.05, .seed = 23});
+  const BundleProblem start = MakeBundleProblem({.free_cameras = 80,
+                                                 .points = 800,
+                                                 .path_length = 80,
+                                                 .max_track = 5,
+                                                 .outliers = 0.05,
+                                                 .seed = 23});
   BundleProblem dense = start, sparse = start;
   const BundleReport a = AdjustBundle(dense, {.sparse_above = 100});
   const BundleReport b = AdjustBundle(sparse, {.sparse_above = 10});

@@ -81,12 +81,10 @@ TEST(LineariseBundle, AgreesWithAutomaticDerivatives) {
       Vector9d our_g;
       const Eigen::Matrix3d N = Full(system.couplings[0].N);
       const Eigen::Vector3d Y(system.couplings[0].Y.data());
-      Eigen::Matrix3d rt;
-      rt << c.rt[0], c.rt[1], c.rt[2], c.rt[3], c.rt[4], c.rt[5], c.rt[6], c.rt[7], c.rt[8];
-      ours << Full(c.tt), rt.transpose(), N, rt, Full(c.rr), Skew(Y) * N, N,
-          (Skew(Y) * N).transpose(), Full(system.points[0].H);
-      our_g << Eigen::Map<const Vector6d>(c.g.data()),
-          Eigen::Map<const Eigen::Vector3d>(system.points[0].g.data());
+      Eigen::Matrix<double, 6, 3> mixed;
+      mixed << N, Skew(Y) * N;
+      ours << c.Hessian(), mixed, mixed.transpose(), Full(system.points[0].H);
+      our_g << c.Gradient(), Eigen::Map<const Eigen::Vector3d>(system.points[0].g.data());
       EXPECT_LT((ours - H).norm(), 1e-10 * H.norm());
       EXPECT_LT((our_g - g).norm(), 1e-10 * std::max(1.0, g.norm()));
     }

@@ -21,11 +21,8 @@ void Assemble(const BundleLayout& layout, const Linearisation& system, Eigen::Ma
   H.setZero(size, size);
   g.setZero(size);
   for (int i = 0; i < cameras; ++i) {
-    const CameraBlock& c = system.cameras[i];
-    Eigen::Matrix3d rt;
-    rt << c.rt[0], c.rt[1], c.rt[2], c.rt[3], c.rt[4], c.rt[5], c.rt[6], c.rt[7], c.rt[8];
-    H.block<6, 6>(6 * i, 6 * i) << Full(c.tt), rt.transpose(), rt, Full(c.rr);
-    g.segment<6>(6 * i) = Eigen::Map<const Vector6d>(c.g.data());
+    H.block<6, 6>(6 * i, 6 * i) = system.cameras[i].Hessian();
+    g.segment<6>(6 * i) = system.cameras[i].Gradient();
   }
   for (size_t j = 0; j < layout.points.size(); ++j) {
     const BundlePoint& point = layout.points[j];
@@ -43,7 +40,7 @@ void Assemble(const BundleLayout& layout, const Linearisation& system, Eigen::Ma
 }
 
 TEST(SchurSolver, StepSolvesTheWholeDampedSystem) {
-  for (const int sparse_above : {100, 2}) {
+  for (const ReducedFactor kind : {ReducedFactor::kDense, ReducedFactor::kSparse}) {
     BundleProblem problem =
         MakeBundleProblem({.free_cameras = 6, .points = 80, .outliers = 0.1, .seed = 51});
     problem.observations.push_back(problem.observations[4]);  // seen twice
@@ -57,7 +54,7 @@ TEST(SchurSolver, StepSolvesTheWholeDampedSystem) {
     Eigen::VectorXd g;
     Assemble(layout, system, H, g);
 
-    SchurSolver solver(layout, sparse_above);
+    SchurSolver solver(layout, kind);
     BundleStep step;
     for (const double lambda : {1e-2, 1e-4}) {  // the second time on what the first has left
       solver.Solve(system, lambda, step);
@@ -76,6 +73,16 @@ TEST(SchurSolver, StepSolvesTheWholeDampedSystem) {
       EXPECT_NEAR(step.predicted, predicted, 1e-8 * predicted);
     }
   }
+}
+
+TEST(SchurSolver, ChoosesSparseOnALongPathAndDenseInOneRoom) {
+  BundleProblemOptions options{.free_cameras = 80, .points = 800, .max_track = 40, .seed = 52};
+  EXPECT_FALSE(
+      SchurSolver(LayOut(MakeBundleProblem(options), {}), ReducedFactor::kFastest).sparse());
+  options.path_length = 80;
+  options.max_track = 5;
+  EXPECT_TRUE(
+      SchurSolver(LayOut(MakeBundleProblem(options), {}), ReducedFactor::kFastest).sparse());
 }
 
 }  // namespace

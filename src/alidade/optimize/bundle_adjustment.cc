@@ -96,7 +96,8 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
   report.initial_cost = report.final_cost = system.cost;
   if (!system.valid) return report;
 
-  SchurSolver solver(layout, settings.sparse_above);
+  const bool many = static_cast<int>(layout.free_cameras.size()) > settings.sparse_above;
+  SchurSolver solver(layout, many ? ReducedFactor::kFastest : ReducedFactor::kDense);
   BundleStep step;
   Damping damping{settings.initial_lambda};
   bool moved = false;

@@ -33,7 +33,7 @@ struct BundleSettings {
   double huber_stereo = 2.796;          // sqrt(7.815)
   double min_relative_decrease = 1e-5;  // stops when a step lowers the cost by less
   double initial_lambda = 1e-4;         // damping, relative to the diagonal
-  int sparse_above = 100;  // free cameras; above, the reduced system is factored sparse
+  int sparse_above = 100;  // free cameras; above, the reduced system is factored sparse if faster
   void Check() const;      // throws Error naming the field that cannot be
 };
 

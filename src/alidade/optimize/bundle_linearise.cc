@@ -7,45 +7,96 @@
 namespace alidade {
 namespace {
 
-inline void Accumulate(const Symmetric3& N, const std::array<double, 3>& Y,
-                       const std::array<double, 3>& g, CameraBlock& block) {
-  const double x = Y[0], y = Y[1], z = Y[2];
-  for (int i = 0; i < 6; ++i) block.tt[i] += N[i];
-  // C = [Y]x N
-  const double c00 = y * N[2] - z * N[1], c01 = y * N[4] - z * N[3], c02 = y * N[5] - z * N[4];
-  const double c10 = z * N[0] - x * N[2], c11 = z * N[1] - x * N[4], c12 = z * N[2] - x * N[5];
-  const double c20 = x * N[1] - y * N[0], c21 = x * N[3] - y * N[1], c22 = x * N[4] - y * N[2];
-  block.rt[0] += c00;
-  block.rt[1] += c01;
-  block.rt[2] += c02;
-  block.rt[3] += c10;
-  block.rt[4] += c11;
-  block.rt[5] += c12;
-  block.rt[6] += c20;
-  block.rt[7] += c21;
-  block.rt[8] += c22;
-  // C [Y]x'
-  block.rr[0] += y * c02 - z * c01;
-  block.rr[1] += z * c00 - x * c02;
-  block.rr[2] += x * c01 - y * c00;
-  block.rr[3] += z * c10 - x * c12;
-  block.rr[4] += x * c11 - y * c10;
-  block.rr[5] += x * c21 - y * c20;
-  block.g[0] += g[0];
-  block.g[1] += g[1];
-  block.g[2] += g[2];
-  block.g[3] += y * g[2] - z * g[1];
-  block.g[4] += z * g[0] - x * g[2];
-  block.g[5] += x * g[1] - y * g[0];
+// Two sightings of one point, side by side.
+struct Terms {
+  Double2 Y[3];  // point from the camera's centre, world axes
+  Double2
+      N[6];  // B' W B, W with Huber's weight at this state (iteratively reweighted least squares)
+  Double2 g[3];  // B' W r
+  Double2 cost;
+  Mask2 in_front;
+};
+
+[[gnu::always_inline]] inline Terms Look(const Intrinsics& k, const BundleCamera& c0,
+                                         const BundleCamera& c1, const Eigen::Vector3d& X,
+                                         const BundleSighting& s0, const BundleSighting& s1,
+                                         Double2 counts) {
+  Terms t;
+  Double2 R[9];
+  for (int i = 0; i < 9; ++i) R[i] = Double2{c0.R.data()[i], c1.R.data()[i]};  // column by column
+  for (int i = 0; i < 3; ++i) t.Y[i] = X[i] - Double2{c0.centre[i], c1.centre[i]};
+  const Double2 x = R[0] * t.Y[0] + R[3] * t.Y[1] + R[6] * t.Y[2];
+  const Double2 y = R[1] * t.Y[0] + R[4] * t.Y[1] + R[7] * t.Y[2];
+  const Double2 z = R[2] * t.Y[0] + R[5] * t.Y[1] + R[8] * t.Y[2];
+  t.in_front = z > kMinDepth;
+  const Reprojection<Double2> e = Reproject<Double2>(
+      k, x, y, z, Double2{s0.u, s1.u}, Double2{s0.v, s1.v}, Double2{s0.right, s1.right});
+  Double2 w = Double2{s0.weight, s1.weight} * counts;
+  Double2 wr = Double2{s0.weight_r, s1.weight_r} * counts;
+  const Double2 chi2 = w * (e.u * e.u + e.v * e.v) + wr * (e.right * e.right);
+  const Double2 huber{s0.huber, s1.huber};
+  const Double2 root = Sqrt(chi2), inner = Min(root, huber);
+  t.cost = inner * (root - 0.5 * inner);
+  const Double2 irls = root > huber ? huber / root : Both(1);
+  w *= irls;
+  wr *= irls;
+  // Rows of B = A R.
+  Double2 U[3], V[3], S[3];
+  for (int i = 0; i < 3; ++i) {
+    const Double2 along = e.u_x * R[3 * i];
+    U[i] = along + e.u_z * R[3 * i + 2];
+    V[i] = e.v_y * R[3 * i + 1] + e.v_z * R[3 * i + 2];
+    S[i] = along + e.right_z * R[3 * i + 2];
+  }
+  for (int i = 0, at = 0; i < 3; ++i) {
+    const Double2 u = w * U[i], v = w * V[i], r = wr * S[i];
+    t.g[i] = u * e.u + v * e.v + r * e.right;
+    for (int j = i; j < 3; ++j) t.N[at++] = u * U[j] + v * V[j] + r * S[j];
+  }
+  return t;
 }
 
-bool InFront(const BundleLayout& layout, const BundleState& state, const BundlePoint& point,
-             const Eigen::Vector3d& X) {
-  for (int i = point.begin; i < point.end; ++i) {
-    const BundleCamera& camera = state.cameras[layout.sightings[i].camera];
-    if (!(camera.R.row(2).dot(X - camera.centre) > kMinDepth)) return false;
-  }
-  return true;
+// Adds G N G' and G g of each of the two to its camera.
+[[gnu::always_inline]] inline void AddToCameras(const Terms& t, CameraBlock& first,
+                                                CameraBlock* second) {
+  const Double2 x = t.Y[0], y = t.Y[1], z = t.Y[2];
+  const Double2* N = t.N;
+  Double2 q[28];
+  for (int i = 0; i < 6; ++i) q[CameraBlock::kTt + i] = N[i];
+  // C = [Y]x N
+  Double2* C = q + CameraBlock::kRt;
+  C[0] = y * N[2] - z * N[1];
+  C[1] = y * N[4] - z * N[3];
+  C[2] = y * N[5] - z * N[4];
+  C[3] = z * N[0] - x * N[2];
+  C[4] = z * N[1] - x * N[4];
+  C[5] = z * N[2] - x * N[5];
+  C[6] = x * N[1] - y * N[0];
+  C[7] = x * N[3] - y * N[1];
+  C[8] = x * N[4] - y * N[2];
+  // C [Y]x'
+  Double2* rr = q + CameraBlock::kRr;
+  rr[0] = y * C[2] - z * C[1];
+  rr[1] = z * C[0] - x * C[2];
+  rr[2] = x * C[1] - y * C[0];
+  rr[3] = z * C[3] - x * C[5];
+  rr[4] = x * C[4] - y * C[3];
+  rr[5] = x * C[7] - y * C[6];
+  Double2* g = q + CameraBlock::kG;
+  for (int i = 0; i < 3; ++i) g[i] = t.g[i];
+  g[3] = y * t.g[2] - z * t.g[1];
+  g[4] = z * t.g[0] - x * t.g[2];
+  g[5] = x * t.g[1] - y * t.g[0];
+  q[CameraBlock::kSize] = Both(0);
+  for (int i = 0; i < 14; ++i) first.sums[i] += Double2{q[2 * i][0], q[2 * i + 1][0]};
+  if (!second) return;
+  for (int i = 0; i < 14; ++i) second->sums[i] += Double2{q[2 * i][1], q[2 * i + 1][1]};
+}
+
+inline void StoreCoupling(const Terms& t, int lane, int slot, Coupling& coupling) {
+  for (int i = 0; i < 6; ++i) coupling.N[i] = t.N[i][lane];
+  for (int i = 0; i < 3; ++i) coupling.Y[i] = t.Y[i][lane];
+  coupling.slot = slot;
 }
 
 struct ChunkSums {
@@ -54,92 +105,108 @@ struct ChunkSums {
   bool valid = true;
 };
 
+class Worker {
+ public:
+  Worker(const BundleLayout& layout, const BundleState& state, Linearisation& result,
+         ChunkSums& sums)
+      : layout_(layout), state_(state), result_(result), sums_(sums) {
+    sums.cameras.resize(layout.free_cameras.size());
+  }
+
+  // False, and nothing done, if the point is behind one of its cameras.
+  bool Add(int j, const Eigen::Vector3d& X) {
+    const BundlePoint& point = layout_.points[j];
+    const int pairs = (point.end - point.begin + 1) / 2;
+    if (static_cast<int>(terms_.size()) < pairs) terms_.resize(pairs);
+    Mask2 in_front{-1, -1};
+    for (int n = 0; n < pairs; ++n) {
+      const int i = point.begin + 2 * n;
+      const bool alone = i + 1 == point.end;  // seen twice then, counted once
+      const BundleSighting& s0 = layout_.sightings[i];
+      const BundleSighting& s1 = layout_.sightings[alone ? i : i + 1];
+      terms_[n] = Look(layout_.intrinsics, state_.cameras[s0.camera], state_.cameras[s1.camera], X,
+                       s0, s1, Double2{1, alone ? 0.0 : 1.0});
+      in_front &= terms_[n].in_front;
+    }
+    if (!(in_front[0] & in_front[1])) return false;
+    Double2 H[6]{}, g[3]{}, cost{};
+    Coupling* coupling = result_.couplings.data() + point.coupling;
+    for (int n = 0; n < pairs; ++n) {
+      const Terms& t = terms_[n];
+      for (int d = 0; d < 6; ++d) H[d] += t.N[d];
+      for (int d = 0; d < 3; ++d) g[d] += t.g[d];
+      cost += t.cost;
+      const int i = point.begin + 2 * n;
+      if (i >= point.free_end) continue;
+      const int slot0 = layout_.sightings[i].slot;
+      const bool both = i + 1 < point.free_end;
+      const int slot1 = both ? layout_.sightings[i + 1].slot : -1;
+      AddToCameras(t, sums_.cameras[slot0], both ? &sums_.cameras[slot1] : nullptr);
+      StoreCoupling(t, 0, slot0, *coupling++);
+      if (both) StoreCoupling(t, 1, slot1, *coupling++);
+    }
+    PointBlock& block = result_.points[j];
+    for (int d = 0; d < 6; ++d) block.H[d] = Sum(H[d]);
+    for (int d = 0; d < 3; ++d) block.g[d] = Sum(g[d]);
+    sums_.cost += Sum(cost);
+    return true;
+  }
+
+ private:
+  const BundleLayout& layout_;
+  const BundleState& state_;
+  Linearisation& result_;
+  ChunkSums& sums_;
+  std::vector<Terms> terms_;  // of one point
+};
+
 }  // namespace
 
-void CameraBlock::Add(const CameraBlock& other) {
-  for (int i = 0; i < 6; ++i) tt[i] += other.tt[i];
-  for (int i = 0; i < 9; ++i) rt[i] += other.rt[i];
-  for (int i = 0; i < 6; ++i) rr[i] += other.rr[i];
-  for (int i = 0; i < 6; ++i) g[i] += other.g[i];
+Matrix6d CameraBlock::Hessian() const {
+  const CameraBlock& b = *this;
+  Matrix6d H;
+  H.row(0) << b[0], b[1], b[2], b[6], b[9], b[12];
+  H.row(1) << b[1], b[3], b[4], b[7], b[10], b[13];
+  H.row(2) << b[2], b[4], b[5], b[8], b[11], b[14];
+  H.row(3) << b[6], b[7], b[8], b[15], b[16], b[17];
+  H.row(4) << b[9], b[10], b[11], b[16], b[18], b[19];
+  H.row(5) << b[12], b[13], b[14], b[17], b[19], b[20];
+  return H;
 }
 
-SightingTerms Linearise(const Intrinsics& k, const BundleCamera& camera,
-                        const std::array<double, 3>& Y, const BundleSighting& s) {
-  const Eigen::Matrix3d& R = camera.R;
-  const double x = R(0, 0) * Y[0] + R(0, 1) * Y[1] + R(0, 2) * Y[2];
-  const double y = R(1, 0) * Y[0] + R(1, 1) * Y[1] + R(1, 2) * Y[2];
-  const double z = R(2, 0) * Y[0] + R(2, 1) * Y[1] + R(2, 2) * Y[2];
-  SightingTerms terms;
-  terms.in_front = z > kMinDepth;
-  const Reprojection<double> e = Reproject<double>(k, x, y, z, s.u, s.v, s.right);
-  const double chi2 = s.weight * (e.u * e.u + e.v * e.v) + s.weight_r * (e.right * e.right);
-  double w = s.weight, wr = s.weight_r;
-  terms.cost = 0.5 * chi2;
-  if (chi2 > s.huber * s.huber) {
-    const double root = std::sqrt(chi2);
-    terms.cost = s.huber * (root - 0.5 * s.huber);
-    w *= s.huber / root;
-    wr *= s.huber / root;
-  }
-  // Rows of B = A R.
-  double U[3], V[3], S[3];
-  for (int i = 0; i < 3; ++i) {
-    U[i] = e.u_x * R(0, i) + e.u_z * R(2, i);
-    V[i] = e.v_y * R(1, i) + e.v_z * R(2, i);
-    S[i] = e.u_x * R(0, i) + e.right_z * R(2, i);
-  }
-  for (int i = 0, at = 0; i < 3; ++i) {
-    const double u = w * U[i], v = w * V[i], r = wr * S[i];
-    terms.g[i] = u * e.u + v * e.v + r * e.right;
-    for (int j = i; j < 3; ++j) terms.N[at++] = u * U[j] + v * V[j] + r * S[j];
-  }
-  return terms;
+Vector6d CameraBlock::Gradient() const {
+  Vector6d g;
+  for (int i = 0; i < 6; ++i) g[i] = (*this)[kG + i];
+  return g;
 }
 
 void Linearise(const BundleLayout& layout, const BundleState* before, BundleState& state,
                Linearisation& result) {
   result.couplings.resize(layout.couplings);
   result.points.resize(layout.points.size());
-  const size_t cameras = layout.free_cameras.size();
   std::vector<ChunkSums> sums(layout.chunk_count());
   ParallelFor(layout.chunk_count(), [&](int chunk) {
-    ChunkSums& sum = sums[chunk];
-    sum.cameras.resize(cameras);
+    Worker worker(layout, state, result, sums[chunk]);
     for (int j = layout.chunks[chunk]; j < layout.chunks[chunk + 1]; ++j) {
-      const BundlePoint& point = layout.points[j];
-      if (!InFront(layout, state, point, state.points[j])) {
-        if (before) state.points[j] = before->points[j];
-        if (!before || !InFront(layout, state, point, state.points[j])) {
-          sum.valid = false;
-          return;
-        }
+      if (worker.Add(j, state.points[j])) continue;
+      if (before) state.points[j] = before->points[j];
+      if (!before || !worker.Add(j, state.points[j])) {
+        sums[chunk].valid = false;
+        return;
       }
-      const Eigen::Vector3d X = state.points[j];
-      PointBlock block{};
-      Coupling* coupling = result.couplings.data() + point.coupling;
-      for (int i = point.begin; i < point.end; ++i) {
-        const BundleSighting& sighting = layout.sightings[i];
-        const BundleCamera& camera = state.cameras[sighting.camera];
-        const std::array<double, 3> Y{X[0] - camera.centre[0], X[1] - camera.centre[1],
-                                      X[2] - camera.centre[2]};
-        const SightingTerms terms = Linearise(layout.intrinsics, camera, Y, sighting);
-        sum.cost += terms.cost;
-        for (int d = 0; d < 6; ++d) block.H[d] += terms.N[d];
-        for (int d = 0; d < 3; ++d) block.g[d] += terms.g[d];
-        if (i >= point.free_end) continue;
-        *coupling++ = {terms.N, Y, sighting.slot};
-        Accumulate(terms.N, Y, terms.g, sum.cameras[sighting.slot]);
-      }
-      result.points[j] = block;
     }
   });
-  result.cameras.assign(cameras, CameraBlock{});
-  result.cost = 0;
-  result.valid = true;
-  for (const ChunkSums& sum : sums) {
-    result.valid &= sum.valid;
-    result.cost += sum.cost;
-    for (size_t c = 0; c < cameras; ++c) result.cameras[c].Add(sum.cameras[c]);
+  result.cameras = sums[0].cameras;
+  result.cost = sums[0].cost;
+  result.valid = sums[0].valid;
+  for (size_t chunk = 1; chunk < sums.size(); ++chunk) {
+    result.valid &= sums[chunk].valid;
+    result.cost += sums[chunk].cost;
+    for (size_t c = 0; c < result.cameras.size(); ++c) {
+      for (size_t i = 0; i < result.cameras[c].sums.size(); ++i) {
+        result.cameras[c].sums[i] += sums[chunk].cameras[c].sums[i];
+      }
+    }
   }
   result.valid &= std::isfinite(result.cost);
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alidade/optimize/bundle_layout.h"
+#include "alidade/optimize/double2.h"
 
 namespace alidade {
 
@@ -38,33 +39,27 @@ struct PointBlock {
   std::array<double, 3> g;
 };
 
+// Lower triangle of the camera's own block, and its gradient. Kept two by two, as they are summed.
 struct CameraBlock {
-  Symmetric3 tt{};             // translation–translation
-  std::array<double, 9> rt{};  // rotation–translation, row by row
-  Symmetric3 rr{};             // rotation–rotation
-  std::array<double, 6> g{};
+  static constexpr int kTt = 0;   // translation–translation, as Symmetric3
+  static constexpr int kRt = 6;   // rotation–translation, row by row
+  static constexpr int kRr = 15;  // rotation–rotation, as Symmetric3
+  static constexpr int kG = 21;   // gradient by translation, rotation
+  static constexpr int kSize = 27;
+  std::array<Double2, (kSize + 1) / 2> sums;
 
-  void Add(const CameraBlock& other);
+  double operator[](int i) const { return sums[i / 2][i % 2]; }
+  Matrix6d Hessian() const;
+  Vector6d Gradient() const;
 };
 
 struct Linearisation {
-  std::vector<Coupling> couplings;
+  std::vector<Coupling> couplings;  // point by point, in the order of the layout
   std::vector<PointBlock> points;
   std::vector<CameraBlock> cameras;  // by slot
   double cost = 0;                   // ½ sum of Huber losses
   bool valid = true;                 // no point behind a camera that should see it
 };
-
-// Of one sighting: weighted with Huber's weight at this state (iteratively reweighted least
-// squares).
-struct SightingTerms {
-  Symmetric3 N;
-  std::array<double, 3> g;  // B' W r
-  double cost;
-  bool in_front;
-};
-SightingTerms Linearise(const Intrinsics& k, const BundleCamera& camera,
-                        const std::array<double, 3>& Y, const BundleSighting& sighting);
 
 // A point of `state` that is behind one of its cameras is put back to where `before` has it, if
 // given; where that does not help either, the result is not valid.

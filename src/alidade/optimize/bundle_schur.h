@@ -16,17 +16,37 @@ struct BundleStep {
   bool valid = false;                   // false: the system could not be factored
 };
 
+// 6x6, two rows at a time.
+struct ReducedBlock {
+  Double2 column[6][3];
+
+  double operator()(int row, int col) const { return column[col][row / 2][row % 2]; }
+  void Add(const ReducedBlock& other) {
+    for (int j = 0; j < 6; ++j) {
+      for (int i = 0; i < 3; ++i) column[j][i] += other.column[j][i];
+    }
+  }
+};
+
+enum class ReducedFactor { kDense, kSparse, kFastest };
+
+// Sparse LDL' of Eigen, and how long it will take.
+struct SparseFactor : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
+  // Twice its multiplications; known once the pattern is analysed.
+  double Work() const;
+};
+
 // Remembers what does not change from step to step: which blocks of the reduced system are not
 // zero, and in which order to eliminate them.
 class SchurSolver {
  public:
-  SchurSolver(const BundleLayout& layout, int sparse_above);
+  SchurSolver(const BundleLayout& layout, ReducedFactor kind);
+  bool sparse() const { return sparse_; }
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
 
  private:
-  using Block = Eigen::Matrix<double, 6, 6>;
-  struct Reduced {              // lower blocks of the reduced system, and its right side
-    std::vector<Block> blocks;  // row by row, ascending columns
+  struct Reduced {                     // lower blocks of the reduced system, and its right side
+    std::vector<ReducedBlock> blocks;  // row by row, ascending columns
     std::vector<Vector6d> right;
   };
   struct Eliminated {                     // of one point: damped H = L L'
@@ -34,6 +54,7 @@ class SchurSolver {
   };
 
   void FindBlocks();
+  void Analyse();
   int FindBlock(int row, int column, int hint) const;
   void Eliminate(const Linearisation& system, double lambda, int chunk, Reduced& reduced);
   void AddCameras(const Linearisation& system, double lambda);
@@ -51,8 +72,7 @@ class SchurSolver {
   std::vector<Eliminated> eliminated_;
   Eigen::MatrixXd dense_;
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
-  bool analysed_ = false;
+  SparseFactor factor_;
 };
 
 }  // namespace alidade
