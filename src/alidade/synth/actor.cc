@@ -141,10 +141,10 @@ std::vector<Quadric> Actor::Body(double time) const {
     const double fore = arm + 0.35;
     const Vector3d wrist =
         elbow + stance.At(0.15 * h * std::sin(fore), 0, -0.15 * h * std::cos(fore)) - stance.foot;
-    body.push_back(Blob(stance, top, Vector3d::Constant(0.037 * h * g), looks_.shirt));
-    body.push_back(Limb(stance, elbow, top, 0.025 * h * g, 0.025 * h * g, 1.35, looks_.shirt));
-    body.push_back(Blob(stance, elbow, Vector3d::Constant(0.026 * h * g), looks_.shirt));
-    body.push_back(Limb(stance, wrist, elbow, 0.018 * h, 0.018 * h, 1.4, looks_.shirt));
+    body.push_back(Blob(stance, top, Vector3d::Constant(0.037 * h * g), looks_.sleeves));
+    body.push_back(Limb(stance, elbow, top, 0.025 * h * g, 0.025 * h * g, 1.35, looks_.sleeves));
+    body.push_back(Blob(stance, elbow, Vector3d::Constant(0.026 * h * g), looks_.sleeves));
+    body.push_back(Limb(stance, wrist, elbow, 0.018 * h, 0.018 * h, 1.4, looks_.sleeves));
     body.push_back(Blob(stance, wrist + stance.At(0.01 * h, 0, -0.03 * h) - stance.foot,
                         {0.022 * h, 0.018 * h, 0.045 * h}, looks_.skin));
   }
@@ -167,7 +167,13 @@ ActorLooks DressActor(SceneBuilder& builder, Random& random) {
   looks.height = random.Uniform(1.62, 1.88);
   looks.girth = random.Uniform(0.9, 1.2);
   looks.head = builder.Paint([](Random& r) { return PaintHead(r, {420, 230}); });
-  looks.shirt = builder.Paint([](Random& r) { return PaintShirt(r, {640, 340}); });
+  const ShirtStyle shirt = PickShirt(random);
+  looks.shirt = builder.Paint([shirt](Random& r) {
+    return PaintShirt(r, {640, 340}, shirt, false);
+  });
+  looks.sleeves = builder.Paint([shirt](Random& r) {
+    return PaintShirt(r, {240, 240}, shirt, true);
+  });
   looks.trousers = builder.Paint([](Random& r) { return PaintTrousers(r, {320, 260}); });
   looks.shoes = builder.Tone(40);
   looks.skin = builder.Tone(150);

@@ -44,7 +44,12 @@ cv::Mat PaintBand(Random& random,
 
 // People. u goes once round with the front in the middle, v from top to bottom.
 cv::Mat PaintHead(Random& random, cv::Size size);
-cv::Mat PaintShirt(Random& random, cv::Size size);
+struct ShirtStyle {
+  double tone = 120, other = 200;  // grey levels
+  int pattern = 0;                 // 0 stripes, 1 checks, else plain with a print
+};
+ShirtStyle PickShirt(Random& random);
+cv::Mat PaintShirt(Random& random, cv::Size size, const ShirtStyle& style, bool sleeve);
 cv::Mat PaintTrousers(Random& random, cv::Size size);
 
 }  // namespace alidade

@@ -32,26 +32,38 @@ cv::Mat PaintHead(Random& random, cv::Size size) {
   return ToGrey(picture);
 }
 
-cv::Mat PaintShirt(Random& random, cv::Size size) {
-  const double tone = random.Uniform(50, 205);
+ShirtStyle PickShirt(Random& random) {
+  ShirtStyle style;
+  style.tone = random.Uniform(50, 205);
+  style.other =
+      style.tone > 128 ? style.tone - random.Uniform(50, 90) : style.tone + random.Uniform(50, 90);
+  style.pattern = static_cast<int>(random.Below(4));
+  return style;
+}
+
+cv::Mat PaintShirt(Random& random, cv::Size size, const ShirtStyle& style, bool sleeve) {
   const int w = size.width, h = size.height;
-  cv::Mat1f picture(size, static_cast<float>(tone));
-  const double other = tone > 128 ? tone - random.Uniform(50, 90) : tone + random.Uniform(50, 90);
-  const uint32_t kind = random.Below(4);
-  const double pitch = h / random.Uniform(7, 13);
+  cv::Mat1f picture(size, static_cast<float>(style.tone));
+  const double rows = sleeve ? 7 : 11, columns = sleeve ? 8 : 24;
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) {
-      const bool row = std::fmod(y / pitch, 1.0) < 0.4;
-      const bool column = std::fmod(x / (w / std::round(w / pitch)), 1.0) < 0.4;
-      if ((kind == 0 && row) || (kind == 1 && row != column))
-        picture(y, x) = static_cast<float>(other);
+      const bool row = std::fmod(y * rows / h, 1.0) < 0.4,
+                 column = std::fmod(x * columns / w, 1.0) < 0.4;
+      if ((style.pattern == 0 && row) || (style.pattern == 1 && row != column))
+        picture(y, x) = static_cast<float>(style.other);
     }
   }
-  if (kind >= 2) {  // print on the chest and on the back
+  if (style.pattern >= 2 && !sleeve) {  // print on the chest and on the back
     for (const int cx : {w / 2, 0, w}) {
-      cv::circle(picture, {cx, h * 2 / 5}, h / 6, other, -1, cv::LINE_AA);
-      cv::circle(picture, {cx, h * 2 / 5}, h / 10, tone, std::max(2, h / 40), cv::LINE_AA);
-      cv::rectangle(picture, {cx - w / 12, h * 31 / 50, w / 6, h / 16}, other, -1);
+      if (style.pattern == 2) {
+        cv::circle(picture, {cx, h * 2 / 5}, h / 6, style.other, -1, cv::LINE_AA);
+        cv::circle(picture, {cx, h * 2 / 5}, h / 10, style.tone, std::max(2, h / 40), cv::LINE_AA);
+      } else {
+        for (int i = 0; i < 4; ++i) {
+          cv::rectangle(picture, {cx - w / 10, h / 5 + i * h / 9, w / 5 - i * w / 60, h / 20},
+                        style.other, -1);
+        }
+      }
     }
   }
   picture += 9.0 * FractalNoise(random, size, w / 12.0, h / 3.0, 4, 0.6);  // folds

@@ -82,21 +82,39 @@ void DrawShape(Random& random, cv::Mat& picture, double smallest, double largest
   }
 }
 
-// Hills, a sky and a bright disc: what photographs on walls show.
+// Hills under a sky: what photographs on walls show. By day or night, gentle or rugged, from afar
+// or near.
 void DrawLandscape(Random& random, cv::Mat picture) {
   const cv::Size size = picture.size();
-  for (int y = 0; y < size.height; ++y) picture.row(y) = 225 - 70.0 * y / size.height;
-  cv::circle(picture, {Pick(random, size.width / 5, size.width * 4 / 5), size.height / 4},
-             size.width / 9, 245, -1, cv::LINE_AA);
-  for (int ridge = 0; ridge < 4; ++ridge) {
-    const cv::Mat1f line = FractalNoise(random, {size.width, 1}, size.width / 3.0, 1, 5, 0.55);
-    const double base = size.height * (0.35 + 0.17 * ridge),
-                 tone = 150 - 33 * ridge + random.Uniform(-12, 12);
+  const double zenith = random.Uniform(60, 235), horizon = random.Uniform(120, 240);
+  for (int y = 0; y < size.height; ++y)
+    picture.row(y) = zenith + (horizon - zenith) * y / size.height;
+  for (int disc = Pick(random, 0, 2); disc > 0; --disc) {
+    cv::circle(picture, {Pick(random, 0, size.width), Pick(random, 0, size.height / 2)},
+               Pick(random, size.width / 24, size.width / 6), Contrasting(random, zenith, 40), -1,
+               cv::LINE_AA);
+  }
+  const int ridges = Pick(random, 1, 5);
+  const double rough = random.Uniform(0.3, 0.75), wide = random.Uniform(1.5, 6);
+  const double near = random.Uniform(25, 210), far = Contrasting(random, horizon, 40);
+  for (int ridge = 0; ridge < ridges; ++ridge) {
+    const cv::Mat1f line = FractalNoise(random, {size.width, 1}, size.width / wide, 1, 5, rough);
+    const double base = size.height * (0.3 + 0.6 * ridge / ridges),
+                 tone = far + (near - far) * (ridge + 1) / ridges;
     for (int x = 0; x < size.width; ++x) {
       const int top =
           std::clamp(static_cast<int>(base - 0.12 * size.height * line(0, x)), 0, size.height - 1);
       picture(cv::Rect(x, top, 1, size.height - top)) = tone;
     }
+  }
+  const double trunk = random.Uniform(10, 60);
+  for (int tree = Pick(random, 0, 7); tree > 0; --tree) {  // firs in front
+    const int x = Pick(random, 0, size.width),
+              tall = Pick(random, size.height / 8, size.height / 2),
+              foot = Pick(random, size.height * 3 / 4, size.height);
+    const std::vector<cv::Point> fir = {
+        {x, foot - tall}, {x + tall / 5, foot}, {x - tall / 5, foot}};
+    cv::fillPoly(picture, std::vector<std::vector<cv::Point>>{fir}, trunk, cv::LINE_AA);
   }
   cv::Mat1f grain;
   picture.convertTo(grain, CV_32F);
@@ -359,9 +377,10 @@ cv::Mat PaintWindow(Random& random, cv::Size size) {
 cv::Mat PaintBoard(Random& random, cv::Size size) {
   cv::Mat picture = Blank(size, 226);
   const int w = size.width, h = size.height, pen = std::max(2, w / 260);
-  for (int i = 0; i < 5; ++i) {
-    const cv::Rect area(Pick(random, w / 30, w * 3 / 5), Pick(random, h / 20, h * 3 / 5), w / 3,
-                        h / 3);
+  for (int i = 0; i < 6; ++i) {
+    if (random.Uniform() < 0.2) continue;
+    const cv::Rect area(w / 20 + (i % 3) * w * 3 / 10 + Pick(random, 0, w / 30),
+                        h / 10 + (i / 3) * h * 9 / 20, w / 4, h * 7 / 20);
     const double ink = random.Uniform(30, 120);
     switch (random.Below(3)) {
       case 0:

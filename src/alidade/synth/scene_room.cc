@@ -17,7 +17,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   AddCeiling(furnish, a, c, height);
   AddWall(furnish, a, b, height, {PaintPlaster, 190});
   AddWall(furnish, b, c, height, {PaintPlaster, 175});
-  AddWall(furnish, c, d, height, {PaintBricks, 120});
+  AddWall(furnish, c, d, height, {PaintPlaster, 180});
   AddWall(furnish, d, a, height, {PaintPlaster, 195});
   builder.AddLamp({-1.6, 0, 2.45});
   builder.AddLamp({1.6, 0, 2.45});
@@ -56,10 +56,11 @@ Layout LayOutRoom(SceneBuilder& builder) {
   furnish.Hang(east, 0.9, 1.55, 1.3, 0.85, furnish.Picture(PaintBoard, 1.3, 0.85), 0.02);
   furnish.PottedPlant(AtWall(b, c, 5.5, 0.5), 1.4);
 
-  // North wall, of bricks: sofa, pictures, lamp.
+  // North wall, its bricks bare behind the sofa: pictures, lamp.
   const Place north = AtWall(c, d, 3.6);
+  furnish.Hang(north, -0.5, 1.3, 1.7, 2.6, furnish.Material(PaintBricks, 1.7, 2.6, 120), 0.01);
   furnish.Sofa(AtWall(c, d, 3.4, 0.48), 1.9);
-  furnish.Poster(north, -0.3, 1.7, 0.9, 0.65);
+  furnish.Hang(north, -0.3, 1.7, 0.9, 0.65, furnish.Picture(PaintPoster, 0.9, 0.65), 0.02);
   furnish.Poster(north, 0.95, 1.6, 0.55, 0.75);
   furnish.FloorLamp(AtWall(c, d, 1.9, 0.4));
   furnish.Poster(north, 2.5, 1.55, 0.6, 0.85);
@@ -85,7 +86,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
     knot.position = {2.25 * std::cos(angle), 1.8 * std::sin(angle),
                      1.42 + 0.1 * std::sin(3 * angle)};
     knot.yaw = angle + pi - 0.55 + 0.3 * std::sin(4 * angle);
-    knot.pitch = -0.2 + 0.08 * std::sin(5 * angle + 1);
+    knot.pitch = -0.12 + 0.08 * std::sin(5 * angle + 1);
     knots.push_back(knot);
   }
   const std::vector<Walk> walks = {

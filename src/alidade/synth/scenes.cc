@@ -9,6 +9,10 @@ namespace alidade {
 
 Layout LayOut(const std::string& name, SceneBuilder& builder) {
   SceneFrames(name);  // throws when there is none
+  if (name == "desk") return LayOutDesk(builder);
+  if (name == "corridor") return LayOutCorridor(builder);
+  if (name == "wall") return LayOutWall(builder);
+  if (name == "loop") return LayOutLoop(builder);
   return LayOutRoom(builder);
 }
 
@@ -29,7 +33,7 @@ std::vector<PathKnot> KnotsAlong(const std::vector<Eigen::Vector2d>& corners, do
   double last = 0;
   for (int i = 0; i < count; ++i) {
     const double s = until.back() * i / count;
-    const Eigen::Vector2d p = at(s), ahead = at(s + 0.6) - at(s - 0.2);
+    const Eigen::Vector2d p = at(s), ahead = at(s + 1.2) - at(s - 0.4);
     double yaw = std::atan2(ahead.y(), ahead.x());
     if (i > 0) yaw = last + std::remainder(yaw - last, 2 * std::numbers::pi);
     last = yaw;

@@ -11,7 +11,8 @@ struct NamedScene {
   const char* name;
   int frames;
 };
-constexpr NamedScene kScenes[] = {{"room", 600}};
+constexpr NamedScene kScenes[] = {
+    {"room", 600}, {"desk", 600}, {"corridor", 1000}, {"wall", 600}, {"loop", 2000}};
 
 }  // namespace
 
