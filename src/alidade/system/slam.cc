@@ -133,7 +133,7 @@ void Slam::Impl::Place(FrameRecord& record, const PlacedFrame& placed, KeyFrameI
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, KeyFrameId reference) {
   const KeyFrameId id = mapper_.Insert(placed.frame, placed.T_camera_world, placed.matches, reference);
   placed.matches = map_.Snapshot().Find(id)->landmarks;
-  tracker_.set_last_keyframe_number(placed.frame->number);
+  tracker_.KeyFrameInserted(placed.frame->number);
   Place(records_.back(), placed, id);
   mapping_.Add(id);
 }
@@ -175,7 +175,7 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
     trial_left_ = settings_.start.trial_frames;
     const KeyFrame* keyframe = map.Find(id);
     PlacedFrame placed{frame, keyframe->T_camera_world, keyframe->landmarks, trial_points_};
-    tracker_.set_last_keyframe_number(frame->number);
+    tracker_.KeyFrameInserted(frame->number);
     Place(records_.back(), placed, id);
   }
   state_ = TrackState::kTracking;

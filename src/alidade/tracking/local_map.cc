@@ -6,18 +6,46 @@ namespace alidade {
 
 namespace {
 constexpr int kNeighboursEach = 10;  // best covisible keyframes looked at for one that shares landmarks
+constexpr double kMaxTurn = 0.7;       // cosine: optical axes within 45°
+constexpr double kMaxMove = 0.5;       // of the depth of what is seen
+
+double Median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
+// Keyframes from whose place and direction much the same must be seen, best first.
+std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, const Se3& T_camera_world, double depth) {
+  const Eigen::Vector3d centre = T_camera_world.Inverse().t, axis = T_camera_world.R.row(2).transpose();
+  std::vector<std::pair<double, KeyFrameId>> scored;
+  for (uint32_t i = 0; i < map.next_keyframe(); ++i) {
+    const KeyFrame* keyframe = map.Find(KeyFrameId{i});
+    if (!keyframe) continue;
+    const double turn = axis.dot(keyframe->T_camera_world.R.row(2).transpose());
+    const double move = (keyframe->Centre() - centre).norm() / depth;
+    if (turn > kMaxTurn && move < kMaxMove) scored.push_back({(1 - turn) / (1 - kMaxTurn) + move / kMaxMove, {i}});
+  }
+  std::sort(scored.begin(), scored.end());
+  std::vector<KeyFrameId> ids;
+  for (const auto& entry : scored) ids.push_back(entry.second);
+  return ids;
+}
+
+}  // namespace
+
 LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
-                                  int max_keyframes) {
+                                  const Se3& T_camera_world, int max_keyframes) {
   ++mark_;
   landmark_mark_.resize(map.next_landmark(), 0);
   keyframe_mark_.resize(map.next_keyframe(), 0);
   std::vector<int> votes(map.next_keyframe(), 0);
+  std::vector<double> depths;
   for (LandmarkId id : matches) {
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
     if (!landmark) continue;
     for (const Observation& seen : landmark->observations) ++votes[seen.keyframe.value];
+    depths.push_back((T_camera_world * landmark->p_world).z());
   }
 
   LocalMap local;
@@ -39,6 +67,7 @@ LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const Landma
     return true;
   };
   for (const Neighbour& n : sharing) take(n.id);
+  for (const KeyFrameId id : LookingTheSameWay(map, T_camera_world, Median(depths))) take(id);
   const size_t direct = local.keyframes.size();
   for (size_t i = 0; i < direct; ++i) {
     const auto& covisible = map.Find(local.keyframes[i])->covisible;

@@ -19,7 +19,7 @@ struct TrackerSettings {
   float local_radius = 4;        // pixels on level 0, seen from the side; 2.5 head-on (ORB-SLAM)
   int local_keyframes = 40;      // at most, in the local map
   MeasurementNoise noise;        // of keypoints
-  // A keyframe is asked for when this share of the reference keyframe's landmarks is no longer tracked …
+  // A keyframe is asked for when a frame's inliers fall below this share of the most since the last one …
   double keyframe_share_mono = 0.9;
   double keyframe_share_depth = 0.75;
   int keyframe_min_gap = 1;      // … but not sooner after the last than this many frames,

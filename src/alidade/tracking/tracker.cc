@@ -177,7 +177,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     estimate.placed = std::move(guess);
     return estimate;
   }
-  const LocalMap local = gatherer_.Gather(map, guess.matches, settings_.local_keyframes);
+  const LocalMap local = gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
   const Frame& frame = *guess.frame;
 
   std::vector<uint8_t> matched_already(map.next_landmark(), 0);
@@ -208,7 +208,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       sought.x = static_cast<float>(view->pixel.x());
       sought.y = static_cast<float>(view->pixel.y());
       sought.right_x = static_cast<float>(view->right_x);
-      const float radius = view->cosine > 0.998 ? 2.5f : settings_.local_radius;
+      const float radius = settings_.local_radius * (view->cosine > 0.998 ? 0.625f : 1.0f);
       sought.radius = radius * static_cast<float>(ScaleOfLevel(view->level));
       sought.min_level = view->level - 1;
       sought.max_level = view->level;
@@ -240,31 +240,24 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   estimate.reference = local.reference;
   estimate.tracked = guess.inliers >= Scaled(settings_.min_tracked);
   estimate.placed = std::move(guess);
-  estimate.wants_keyframe = estimate.tracked && WantsKeyFrame(estimate, map);
+  if (estimate.tracked) {
+    most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
+    estimate.wants_keyframe = WantsKeyFrame(estimate.placed);
+  }
   return estimate;
 }
 
-bool Tracker::WantsKeyFrame(const TrackEstimate& estimate, const MapSnapshot& map) const {
-  const KeyFrame* reference = map.Find(estimate.reference);
-  if (!reference) return false;
-  const size_t min_observations = map.keyframe_count() <= 2 ? 2 : 3;
-  int reference_matches = 0;
-  for (LandmarkId id : reference->landmarks) {
-    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (landmark && landmark->observations.size() >= min_observations) ++reference_matches;
-  }
-  const int since = estimate.placed.frame->number - last_keyframe_number_;
+bool Tracker::WantsKeyFrame(const PlacedFrame& placed) const {
+  const int since = placed.frame->number - last_keyframe_number_;
   if (since >= settings_.keyframe_max_gap) return true;
   if (since < settings_.keyframe_min_gap) return false;
-  const int inliers = estimate.placed.inliers;
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
-  if (inliers < share * reference_matches) return true;
+  if (placed.inliers < share * most_inliers_) return true;
   if (!has_depth_) return false;
   int near_tracked = 0, near_new = 0;
-  const auto& keypoints = estimate.placed.frame->keypoints;
-  for (size_t i = 0; i < keypoints.size(); ++i) {
-    if (!keypoints[i].has_depth()) continue;
-    ++(estimate.placed.matches[i].valid() ? near_tracked : near_new);
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    if (!placed.frame->keypoints[i].has_depth()) continue;
+    ++(placed.matches[i].valid() ? near_tracked : near_new);
   }
   return near_tracked < Scaled(100) && near_new > Scaled(70);
 }

@@ -55,13 +55,16 @@ class Tracker {
 
   KeyFrameId reference() const { return reference_; }
   const Camera& camera() const { return camera_; }
-  void set_last_keyframe_number(int number) { last_keyframe_number_ = number; }
+  void KeyFrameInserted(int frame_number) {
+    last_keyframe_number_ = frame_number;
+    most_inliers_ = 0;
+  }
 
  private:
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
   void Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
-  bool WantsKeyFrame(const TrackEstimate& estimate, const MapSnapshot& map) const;
+  bool WantsKeyFrame(const PlacedFrame& placed) const;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
 
   Camera camera_;
@@ -76,6 +79,7 @@ class Tracker {
   Se3 velocity_;             // T_now_last of one frame
   bool has_velocity_ = false;
   int last_keyframe_number_ = 0;
+  int most_inliers_ = 0;     // of a frame since the last keyframe: what it could show at best
 };
 
 }  // namespace alidade
