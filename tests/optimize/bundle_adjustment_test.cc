@@ -340,7 +340,8 @@ TEST(ChiSquared, IsTheSquaredErrorInStandardDeviations) {
   o.pixel += Eigen::Vector3d(3, -4, 2);
   o.inv_sigma2 = 0.25;
   o.inv_sigma2_right = 0.5;
-  EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 4, 1e-10);
+  // The disparity u - u_right is off by 3 - 2.
+  EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 1, 1e-10);
   o.pixel.z() = kNaN;
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25, 1e-10);
 }

@@ -37,7 +37,7 @@ struct CeresReprojection {
     residual[0] = w * (u - pixel.x());
     residual[1] = w * (camera.fy * p[1] / p[2] + camera.cy - pixel.y());
     if constexpr (kStereo) {
-      residual[2] = std::sqrt(inv_sigma2_right) * (u - camera.bf() / p[2] - pixel.z());
+      residual[2] = std::sqrt(inv_sigma2_right) * (camera.bf() / p[2] - (pixel.x() - pixel.z()));
     }
     return true;
   }

@@ -32,7 +32,7 @@ void FindIn(const MapSnapshot& map, const std::vector<LandmarkId>& landmarks, co
       const Measurement m = Measure(keypoint, settings.noise);
       const double error = (view->pixel - keypoint.pixel()).squaredNorm() * m.inv_sigma2;
       if (!(bf > 0 && keypoint.has_depth())) return error < 5.991;
-      const double right = view->right_x - keypoint.right_x;
+      const double right = (view->pixel.x() - view->right_x) - (keypoint.x - keypoint.right_x);
       return error + right * right * m.inv_sigma2_right < 7.815;
     });
     if (sighting.keypoint < 0 || sighting.distance > settings.fuse_distance) continue;

@@ -16,7 +16,7 @@ struct BundleObservation {
   Eigen::Vector3d
       pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
   double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
-  double inv_sigma2_right = 1;  // the same of u_right, 1/px²
+  double inv_sigma2_right = 1;  // the same of the disparity u - u_right, 1/px²
 };
 
 struct BundleProblem {

@@ -33,7 +33,7 @@ struct Terms {
       k, x, y, z, Double2{s0.u, s1.u}, Double2{s0.v, s1.v}, Double2{s0.right, s1.right});
   Double2 w = Double2{s0.weight, s1.weight} * counts;
   Double2 wr = Double2{s0.weight_r, s1.weight_r} * counts;
-  const Double2 chi2 = w * (e.u * e.u + e.v * e.v) + wr * (e.right * e.right);
+  const Double2 chi2 = w * (e.u * e.u + e.v * e.v) + wr * (e.d * e.d);
   const Double2 huber{s0.huber, s1.huber};
   const Double2 root = Sqrt(chi2), inner = Min(root, huber);
   t.cost = inner * (root - 0.5 * inner);
@@ -43,14 +43,13 @@ struct Terms {
   // Rows of B = A R.
   Double2 U[3], V[3], S[3];
   for (int i = 0; i < 3; ++i) {
-    const Double2 along = e.u_x * R[3 * i];
-    U[i] = along + e.u_z * R[3 * i + 2];
+    U[i] = e.u_x * R[3 * i] + e.u_z * R[3 * i + 2];
     V[i] = e.v_y * R[3 * i + 1] + e.v_z * R[3 * i + 2];
-    S[i] = along + e.right_z * R[3 * i + 2];
+    S[i] = e.d_z * R[3 * i + 2];
   }
   for (int i = 0, at = 0; i < 3; ++i) {
     const Double2 u = w * U[i], v = w * V[i], r = wr * S[i];
-    t.g[i] = u * e.u + v * e.v + r * e.right;
+    t.g[i] = u * e.u + v * e.v + r * e.d;
     for (int j = i; j < 3; ++j) t.N[at++] = u * U[j] + v * V[j] + r * S[j];
   }
   return t;

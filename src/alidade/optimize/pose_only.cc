@@ -71,7 +71,7 @@ struct Seen {
   s.z = Max(depth, Both(kMinDepth));
   s.in_front = depth > kMinDepth;
   s.e = Reproject<Double2>(k, s.x, s.y, s.z, m.u, m.v, m.right);
-  s.chi2 = m.weight * (s.e.u * s.e.u + s.e.v * s.e.v) + m.weight_r * (s.e.right * s.e.right);
+  s.chi2 = m.weight * (s.e.u * s.e.u + s.e.v * s.e.v) + m.weight_r * (s.e.d * s.e.d);
   return s;
 }
 
@@ -110,13 +110,12 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
       loss = 0.5 * chi2;
     }
     cost += m.active ? loss : zero;
-    const Double2 wu = w * s.e.u_x, wru = wr * s.e.u_x, wv = w * s.e.v_y;
-    const Double2 a = (wu + wru) * s.e.u_x, b = wv * s.e.v_y;
-    const Double2 c = wu * s.e.u_z + wru * s.e.right_z, d = wv * s.e.v_z;
-    const Double2 f =
-        w * (s.e.u_z * s.e.u_z + s.e.v_z * s.e.v_z) + wr * (s.e.right_z * s.e.right_z);
-    const Double2 h0 = wu * s.e.u + wru * s.e.right, h1 = wv * s.e.v;
-    const Double2 h2 = w * (s.e.u_z * s.e.u + s.e.v_z * s.e.v) + wr * (s.e.right_z * s.e.right);
+    const Double2 wu = w * s.e.u_x, wv = w * s.e.v_y;
+    const Double2 a = wu * s.e.u_x, b = wv * s.e.v_y;
+    const Double2 c = wu * s.e.u_z, d = wv * s.e.v_z;
+    const Double2 f = w * (s.e.u_z * s.e.u_z + s.e.v_z * s.e.v_z) + wr * (s.e.d_z * s.e.d_z);
+    const Double2 h0 = wu * s.e.u, h1 = wv * s.e.v;
+    const Double2 h2 = w * (s.e.u_z * s.e.u + s.e.v_z * s.e.v) + wr * (s.e.d_z * s.e.d);
     m00 += a;
     m02 += c;
     m11 += b;

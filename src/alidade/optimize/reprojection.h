@@ -1,6 +1,7 @@
 // The residual all of this folder minimises: where a point would be seen minus where it was, and
-// its derivative by the point in the camera frame. (u, v, u_right): Mur-Artal & Tardós 2017, eq. 2
-// and 4.
+// its derivative by the point in the camera frame. Pixel u, v as in Mur-Artal & Tardós 2017, eq. 2
+// and 4, but depth as disparity u - u_right, not as u_right: what shifts a keypoint (blur, a rolling
+// shutter) shifts both columns alike, so that disparity is known far better than either.
 #pragma once
 
 #include <cmath>
@@ -21,11 +22,11 @@ struct Intrinsics {
   }
 };
 
-// Derivative rows by (x, y, z): u: (u_x, 0, u_z); v: (0, v_y, v_z); u_right: (u_x, 0, right_z).
+// Derivative rows by (x, y, z): u: (u_x, 0, u_z); v: (0, v_y, v_z); disparity: (0, 0, d_z).
 template <typename T>
 struct Reprojection {
-  T u, v, right;  // residuals, pixels
-  T u_x, v_y, u_z, v_z, right_z;
+  T u, v, d;  // residuals, pixels
+  T u_x, v_y, u_z, v_z, d_z;
 };
 
 // T: double, or an Eigen array of several points side by side. z > 0. Inlined whatever the compiler
@@ -41,10 +42,10 @@ template <typename T>
   const T u = e.u_x * x, v = e.v_y * y, disparity = k.bf * inv_z;
   e.u = u + k.cx - seen_u;
   e.v = v + k.cy - seen_v;
-  e.right = u + k.cx - disparity - seen_right;
+  e.d = disparity - (seen_u - seen_right);
   e.u_z = -(u * inv_z);
   e.v_z = -(v * inv_z);
-  e.right_z = e.u_z + disparity * inv_z;
+  e.d_z = -(disparity * inv_z);
   return e;
 }
 

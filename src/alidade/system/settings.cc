@@ -32,6 +32,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.last_frame_radius", t.last_frame_radius);
   visit("tracker.last_frame_radius_depth", t.last_frame_radius_depth);
   visit("tracker.local_radius", t.local_radius);
+  visit("tracker.local_radius_depth", t.local_radius_depth);
   visit("tracker.local_keyframes", t.local_keyframes);
   visit("tracker.sigma_px", t.noise.sigma_px);
   visit("tracker.sigma_right_px", t.noise.sigma_right_px);

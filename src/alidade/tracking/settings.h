@@ -16,7 +16,8 @@ struct TrackerSettings {
   double local_ratio = 0.8;      // best to second-best descriptor distance on the same level
   float last_frame_radius = 15;  // pixels on level 0 around the predicted place, monocular
   float last_frame_radius_depth = 10;  // the same with depth: the prediction is better
-  float local_radius = 4;        // pixels on level 0, seen from the side; 2.5 head-on (ORB-SLAM)
+  float local_radius = 4;        // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
+  float local_radius_depth = 12; // the same with depth, whose landmarks are placed from a single view
   int local_keyframes = 40;      // at most, in the local map
   MeasurementNoise noise;        // of keypoints
   // A keyframe is asked for when a frame's inliers fall below this share of the most since the last one …

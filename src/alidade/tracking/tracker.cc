@@ -195,6 +195,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   for (const Landmark* landmark : local.landmarks) {
     if (!matched_already[landmark->id.value]) candidates.push_back({landmark, {}, false});
   }
+  const float local_radius = has_depth_ ? settings_.local_radius_depth : settings_.local_radius;
   constexpr int kChunk = 256;
   const int chunks = (static_cast<int>(candidates.size()) + kChunk - 1) / kChunk;
   ParallelFor(chunks, [&](int chunk) {
@@ -208,7 +209,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       sought.x = static_cast<float>(view->pixel.x());
       sought.y = static_cast<float>(view->pixel.y());
       sought.right_x = static_cast<float>(view->right_x);
-      const float radius = settings_.local_radius * (view->cosine > 0.998 ? 0.625f : 1.0f);
+      const float radius = local_radius * (view->cosine > 0.998 ? 0.625f : 1.0f);
       sought.radius = radius * static_cast<float>(ScaleOfLevel(view->level));
       sought.min_level = view->level - 1;
       sought.max_level = view->level;
