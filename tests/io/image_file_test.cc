@@ -5,7 +5,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/base/random.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/image_codec.h"
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
@@ -113,6 +115,31 @@ TEST(ImageFile, DamageInTheMiddleOfAPngIsAnError) {
   bytes[bytes.size() / 2] = static_cast<char>(~bytes[bytes.size() / 2]);
   folder.Write("a.png", bytes);
   MessageOf(ErrorKind::kInput, [&] { ReadImageGray(folder / "a.png"); });
+}
+
+// Whatever the damage: an image of some size, or a text; never a crash (the sanitizers watch).
+TEST(ImageFile, NoDamageBringsTheReaderDown) {
+  const TempFolder folder;
+  Random random(11);
+  for (const std::string name : {"a.png", "a.jpg"}) {
+    WriteImage(folder / name, TinyImage(1));
+    const std::string bytes = ReadFile(folder / name);
+    int damaged = 0;
+    for (int round = 0; round < 300; ++round) {
+      std::string broken = bytes;
+      // Half of the rounds spare nothing, half hit the header.
+      const auto reach = static_cast<uint32_t>(round % 2 == 0 ? bytes.size() : 64);
+      for (int i = 0; i < 3; ++i)
+        broken[random.Below(reach)] = static_cast<char>(random.Below(256));
+      for (const ImageUse use : {ImageUse::kGray, ImageUse::kColor, ImageUse::kDepth}) {
+        const DecodedImage decoded =
+            name == "a.png" ? DecodePng(broken, use) : DecodeJpeg(broken, use);
+        EXPECT_NE(decoded.image.empty(), decoded.problem.empty());
+        damaged += decoded.problem.empty() ? 0 : 1;
+      }
+    }
+    EXPECT_GT(damaged, 100);
+  }
 }
 
 TEST(ImageFile, NoiseIsNoImage) {

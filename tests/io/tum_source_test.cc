@@ -67,6 +67,17 @@ TEST(TumSource, WithoutDepthIsMono) {
   MessageOf(ErrorKind::kUsage, [&] { OpenSource(folder.path(), {.sensor = Sensor::kStereo}); });
 }
 
+TEST(TumSource, DepthFactorOfZeroMeansNoDepth) {
+  const TempFolder folder;
+  WriteTinyTum(folder);
+  const std::string camera = ReadFile(folder / "camera.yaml");
+  folder.Write("camera.yaml", camera.substr(0, camera.find("depth_factor")) + "depth_factor: 0\n");
+  EXPECT_EQ(OpenSource(folder.path())->Info().sensor, Sensor::kMono);
+  MessageOf(ErrorKind::kUsage, [&] { OpenSource(folder.path(), {.sensor = Sensor::kRgbd}); });
+  folder.Write("camera.yaml", camera.substr(0, camera.find("depth_factor")));
+  EXPECT_EQ(OpenSource(folder.path())->Info().camera.depth_factor, 5000);
+}
+
 TEST(TumSource, WithoutCameraFileGuessesAndSaysSo) {
   const TempFolder folder;
   WriteTinyTum(folder, {.camera = false});

@@ -110,6 +110,8 @@ DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
     return DecodedImage{{}, std::string("is a damaged JPEG: ") + decoder.errors.message};
   };
   if (!ReadHeader(decoder.info, decoder.errors, bytes)) return failed();
+  if (1.0 * decoder.info.image_width * decoder.info.image_height > kMostPixels)
+    return {{}, "is too large"};
   const bool gray = use == ImageUse::kGray;
   decoder.info.out_color_space = gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
   cv::Mat image(static_cast<int>(decoder.info.image_height),

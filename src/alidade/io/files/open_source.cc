@@ -43,8 +43,6 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
                       : recording.has_right ? Sensor::kStereo
                                             : Sensor::kMono;
   const Sensor sensor = options.sensor.value_or(best);
-  if (sensor == Sensor::kRgbd && !recording.has_depth)
-    ThrowUsage("--sensor rgbd: " + path + " has no depth images");
   if (sensor == Sensor::kStereo && !recording.has_right)
     ThrowUsage("--sensor stereo: " + path + " has no second camera");
   return sensor;
@@ -53,10 +51,12 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   recording.name = fs::weakly_canonical(path).filename().string();
-  const Sensor sensor = ChooseSensor(recording, path, options);
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed] = ChooseCalibration(recording.calibration, size, options);
   if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;
+  // A factor of 0 says: no depth, whatever lies in the folder.
+  recording.has_depth = recording.has_depth && *calibration.depth_factor > 0;
+  const Sensor sensor = ChooseSensor(recording, path, options);
   if (sensor == Sensor::kRgbd && !(*calibration.depth_factor > 0)) {
     ThrowInput((calibration.origin.empty() ? path : calibration.origin) +
                ": depth images need a `depth_factor` above 0 in the camera file");

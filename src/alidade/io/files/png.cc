@@ -129,6 +129,11 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
     return DecodedImage{{}, std::string("is a damaged PNG: ") + decoder.trouble.message};
   };
   if (!ReadHeader(decoder) || !SetUp(decoder, use)) return failed();
+  if (1.0 * png_get_image_width(decoder.png, decoder.info) *
+          png_get_image_height(decoder.png, decoder.info) >
+      kMostPixels) {
+    return {{}, "is too large"};
+  }
   const int channels = png_get_channels(decoder.png, decoder.info);
   const int depth = png_get_bit_depth(decoder.png, decoder.info) == 16 ? CV_16U : CV_8U;
   if (use == ImageUse::kDepth && channels != 1)

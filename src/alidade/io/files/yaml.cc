@@ -13,7 +13,7 @@ YamlFile::YamlFile(const std::string& path) : path_(path) {
   if (text.rfind("%YAML:", 0) == 0) text[0] = '#';  // a comment keeps the line numbers
   try {
     root_ = YAML::Load(text);
-  } catch (const YAML::ParserException& error) {
+  } catch (const YAML::Exception& error) {
     ThrowInput(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
   if (!root_.IsMap()) ThrowInput(path + ": expected `name: value` lines");
