@@ -24,14 +24,22 @@ void SortByScore(std::vector<Hypothesis>& hypotheses) {
       [](const Hypothesis& x, const Hypothesis& y) { return x.score.score > y.score.score; });
 }
 
-Hypothesis Refined(const Se3& start, const RayPairs& rays) {
+// Adds the motion refined from `start`. One that went far on the way adds its start too: in a flat
+// valley between two answers the lowest point says little, and the start may then be as good.
+void Add(const Se3& start, const RayPairs& rays, std::vector<Hypothesis>& hypotheses) {
+  const auto known = [&](const Se3& T_b_a, bool refined_only) {
+    return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& other) {
+      return !(refined_only && other.unrefined) && SameMotion(other.T_b_a, T_b_a);
+    });
+  };
   const RefinedMotion refined = RefineMotion(start, rays);
-  return {refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma};
-}
-
-bool Contains(const std::vector<Hypothesis>& hypotheses, const Se3& T_b_a) {
-  return std::any_of(hypotheses.begin(), hypotheses.end(),
-                     [&](const Hypothesis& other) { return SameMotion(other.T_b_a, T_b_a); });
+  if (!known(refined.T_b_a, true)) {
+    hypotheses.push_back(
+        {refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma, false});
+  }
+  if (!known(start, false)) {
+    hypotheses.push_back({start, ScoreMotion(start, rays), refined.direction_sigma, true});
+  }
 }
 
 // A plane seen by two cameras always allows two motions. These are the motions of the plane that
@@ -64,40 +72,39 @@ std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPa
   // Bounds of three times the size: these motions carry the noise of the models they were taken
   // from.
   for (const Se3& T_b_a : motions) {
-    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0});
+    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0, true});
     most = std::max(most, rough.back().score.score);
   }
   SortByScore(rough);
   std::vector<Hypothesis> ranked;
   for (const Hypothesis& start : rough) {
     if (start.score.score < 0.6 * most || most == 0) break;
-    Hypothesis refined = Refined(start.T_b_a, rays);
-    if (!Contains(ranked, refined.T_b_a)) ranked.push_back(std::move(refined));
+    Add(start.T_b_a, rays, ranked);
   }
   SortByScore(ranked);
   // Twice: the twin may turn out to be the better one, and then it deserves the same test.
   for (int round = 0; round < 2 && !ranked.empty(); ++round) {
     for (const Se3& twin : PlanarTwins(ranked.front(), rays)) {
-      if (Contains(ranked, twin)) continue;
       if (ScoreMotion(twin, rays, 9).good < 0.5 * ranked.front().score.good) continue;
-      Hypothesis refined = Refined(twin, rays);
-      if (!Contains(ranked, refined.T_b_a)) ranked.push_back(std::move(refined));
+      Add(twin, rays, ranked);
     }
     SortByScore(ranked);
   }
   return ranked;
 }
 
-bool IsRival(const MotionScore& best, const MotionScore& other, double max_share) {
-  if (other.good <= max_share * best.good) return false;
-  // Match by match: a difference five times its standard deviation is not the noise's doing.
-  double sum = 0, squares = 0;
-  for (size_t i = 0; i < best.gain.size(); ++i) {
-    const double difference = best.gain[i] - other.gain[i];
-    sum += difference;
+bool IsRival(const Hypothesis& best, const Hypothesis& other, double max_share) {
+  if (other.score.good <= max_share * best.score.good) return false;
+  double lost = 0, squares = 0;
+  for (size_t i = 0; i < best.score.gain.size(); ++i) {
+    const double difference = best.score.gain[i] - other.score.gain[i];
+    lost += difference;
     squares += difference * difference;
   }
-  return sum < 5 * std::sqrt(squares) || sum < 0.05 * best.score;
+  // In the same valley: inside the region of 99.99 % confidence (chi² with 5 degrees of freedom).
+  if (other.unrefined) return lost < 26;
+  // An answer of its own: match by match, five standard deviations are not the noise's doing.
+  return lost < 5 * std::sqrt(squares) || lost < 0.05 * best.score.score;
 }
 
 }  // namespace alidade

@@ -106,7 +106,7 @@ RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
   refined.T_b_a = start;
   NormalEquations n;
   // Wide bounds first, so that the start need not be good enough to tell all the inliers.
-  for (const double widening : {16.0, 4.0, 1.0}) {
+  for (const double widening : {9.0, 4.0, 1.0}) {
     const double bound = widening * kChi2Fundamental;
     Eigen::Matrix<double, 3, 2> basis = TangentPlane(refined.T_b_a.t);
     n = Linearise(refined.T_b_a, basis, rays, bound);

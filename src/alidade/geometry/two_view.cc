@@ -86,6 +86,7 @@ void TwoViewSettings::Check() const {
   require(min_parallax_degrees >= 0, "min_parallax_degrees must not be negative");
   require(min_triangulated > 0, "min_triangulated must be positive");
   require(min_good_share >= 0 && min_good_share <= 1, "min_good_share must lie in 0 to 1");
+  require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share must lie in 0 to 1");
   require(max_rival_share >= 0 && max_rival_share <= 1, "max_rival_share must lie in 0 to 1");
 }
 
@@ -132,6 +133,9 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   if (ranked.empty()) return Refuse(std::move(result), TwoViewFailure::kNoModel);
 
   const Hypothesis& best = ranked.front();
+  if (best.score.consistent < settings.min_inlier_share * static_cast<double>(rays.size())) {
+    return Refuse(std::move(result), TwoViewFailure::kNoModel);
+  }
   result.T_b_a = best.T_b_a;
   Place(camera, a, b, settings.sigma, result);
   if (ShareBeyondRotation(best, rays) < kMinShareBeyondRotation ||
@@ -140,7 +144,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
     return Refuse(std::move(result), TwoViewFailure::kLowParallax);
   }
   for (size_t i = 1; i < ranked.size(); ++i) {
-    if (IsRival(best.score, ranked[i].score, settings.max_rival_share)) {
+    if (IsRival(best, ranked[i], settings.max_rival_share)) {
       return Refuse(std::move(result), TwoViewFailure::kAmbiguous);
     }
   }

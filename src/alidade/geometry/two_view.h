@@ -25,6 +25,9 @@ struct TwoViewSettings {
       0.9;  // of the inliers that must triangulate in front of both, with small error
   double max_rival_share =
       0.75;  // second-best motion hypothesis may explain at most this share of the best's points
+  double min_inlier_share =
+      0.45;  // of the matches that the motion must explain: among more outliers
+             // chance makes up motions that explain as many as the true one
   uint64_t seed = 1;
   bool parallel = true;  // samples over the threads; the result is the same without
   void Check() const;
@@ -50,7 +53,10 @@ struct TwoViewResult {
       p_a;  // one for each match, in the first view's frame; NaN when not an inlier
 };
 
-// Matches are undistorted pixels; all at one camera.
+// Matches are undistorted pixels; all at one camera. Matches that are not finite are never inliers.
+// Near the line between the two models neither alone can be trusted, so the motions of both are
+// candidates: each is refined on all matches, and the answer given only when no other comes near
+// it.
 TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::Vector2d> a,
                                   std::span<const Eigen::Vector2d> b,
                                   const TwoViewSettings& settings = {});

@@ -123,24 +123,24 @@ void MarkInliers(const Lanes& lanes, size_t count, float widening, RansacModel& 
   }
 }
 
+std::vector<Eigen::Vector2d> Chosen(Points points, const std::vector<bool>& chosen) {
+  std::vector<Eigen::Vector2d> result;
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (chosen[i]) result.push_back(points[i]);
+  }
+  return result;
+}
+
 // Estimates again from the inliers, first of a wider band: a sample of eight carries the noise of
 // eight, but its model still passes near most of the inliers it misses (local optimisation, Chum,
 // Matas & Kittler 2003).
 template <typename Model>
 RansacModel Polish(const RansacModel& start, const Lanes& lanes, Points a, Points b) {
   RansacModel best = start, current = start;
-  std::vector<Eigen::Vector2d> inliers_a, inliers_b;
   for (const float widening : {9.f, 4.f, 1.f, 1.f, 1.f}) {
     MarkInliers<Model>(lanes, a.size(), widening, current);
     if (current.inliers < 8) break;
-    inliers_a.clear();
-    inliers_b.clear();
-    for (size_t i = 0; i < a.size(); ++i) {
-      if (!current.inlier[i]) continue;
-      inliers_a.push_back(a[i]);
-      inliers_b.push_back(b[i]);
-    }
-    current.matrix = Model::Estimate(inliers_a, inliers_b);
+    current.matrix = Model::Estimate(Chosen(a, current.inlier), Chosen(b, current.inlier));
     current.score = Score<Model>(current.matrix, lanes);
     if (current.score > best.score) {
       best = current;
@@ -162,24 +162,27 @@ struct Candidate {
 };
 
 template <typename Model>
-Candidate Try(const Sample& sample, const Lanes& lanes) {
+Candidate Try(Points a, Points b, const Lanes& lanes) {
   Candidate candidate;
-  candidate.matrix = Model::Estimate(sample.a, sample.b);
+  candidate.matrix = Model::Estimate(a, b);
   candidate.score = Score<Model>(candidate.matrix, lanes);
   return candidate;
 }
 
-// The best after polishing the most promising few: among outliers the first of them is often not
-// the one that polishes best.
-template <typename Model>
-RansacModel Best(std::vector<Candidate> candidates, const Lanes& lanes, Points a, Points b) {
+// The few to polish: among outliers the first of them is often not the one that polishes best.
+std::vector<Candidate> MostPromising(std::vector<Candidate> candidates) {
   // In order: the first of equals wins.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
   if (candidates.size() > 5) candidates.resize(5);
+  return candidates;
+}
+
+template <typename Model>
+RansacModel Best(const std::vector<Candidate>& candidates, const Lanes& lanes, Points a, Points b) {
   RansacModel best;
   for (const Candidate& candidate : candidates) {
-    if (!(candidate.score > 0)) break;
+    if (!(candidate.score > 0)) continue;
     RansacModel start;
     start.matrix = candidate.matrix;
     start.score = candidate.score;
@@ -208,8 +211,8 @@ RansacModels FitTwoViewModels(Points a, Points b, int iterations, uint64_t seed,
   const int chunks = (iterations + kChunk - 1) / kChunk;
   const auto try_chunk = [&](int chunk) {
     for (int i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, iterations); ++i) {
-      homographies[i] = Try<Homography>(samples[i], lanes);
-      fundamentals[i] = Try<Fundamental>(samples[i], lanes);
+      homographies[i] = Try<Homography>(samples[i].a, samples[i].b, lanes);
+      fundamentals[i] = Try<Fundamental>(samples[i].a, samples[i].b, lanes);
     }
   };
   if (parallel) {
@@ -217,8 +220,17 @@ RansacModels FitTwoViewModels(Points a, Points b, int iterations, uint64_t seed,
   } else {
     for (int chunk = 0; chunk < chunks; ++chunk) try_chunk(chunk);
   }
-  return {Best<Homography>(homographies, lanes, a, b),
-          Best<Fundamental>(fundamentals, lanes, a, b)};
+  RansacModels models;
+  models.fundamental = Best<Fundamental>(MostPromising(std::move(fundamentals)), lanes, a, b);
+  homographies = MostPromising(std::move(homographies));
+  // A plane's matches are among the inliers of the fundamental matrix, with hardly an outlier: a
+  // start where outliers are too many for samples of eight.
+  if (models.fundamental.inliers >= 8) {
+    homographies.push_back(Try<Homography>(Chosen(a, models.fundamental.inlier),
+                                           Chosen(b, models.fundamental.inlier), lanes));
+  }
+  models.homography = Best<Homography>(homographies, lanes, a, b);
+  return models;
 }
 
 }  // namespace alidade
