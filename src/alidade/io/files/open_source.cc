@@ -43,8 +43,12 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
                       : recording.has_right ? Sensor::kStereo
                                             : Sensor::kMono;
   const Sensor sensor = options.sensor.value_or(best);
-  if (sensor == Sensor::kStereo && !recording.has_right)
+  if (sensor == Sensor::kRgbd && !recording.has_depth) {
+    ThrowUsage("--sensor rgbd: " + path + " has no depth images (or a `depth_factor` of 0)");
+  }
+  if (sensor == Sensor::kStereo && !recording.has_right) {
     ThrowUsage("--sensor stereo: " + path + " has no second camera");
+  }
   return sensor;
 }
 
@@ -57,10 +61,6 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   // A factor of 0 says: no depth, whatever lies in the folder.
   recording.has_depth = recording.has_depth && *calibration.depth_factor > 0;
   const Sensor sensor = ChooseSensor(recording, path, options);
-  if (sensor == Sensor::kRgbd && !(*calibration.depth_factor > 0)) {
-    ThrowInput((calibration.origin.empty() ? path : calibration.origin) +
-               ": depth images need a `depth_factor` above 0 in the camera file");
-  }
   if (sensor == Sensor::kStereo && !calibration.right && !(calibration.baseline > 0)) {
     ThrowInput((calibration.origin.empty() ? path : calibration.origin) +
                ": stereo needs the `baseline` or the `right` camera in the camera file (or ask for "
