@@ -43,9 +43,12 @@ struct BundleReport {
   bool converged = false;  // stopped by the decrease, not by the count or `stop`
 };
 
-// Improves `problem` in place; its cost never rises. Points seen by no observation, cameras with
-// none, points behind a camera: left as they are / their residual is left out. `stop` (may be null)
-// is looked at between iterations.
+// Improves `problem` in place; its cost never rises. Points and cameras that nothing usable was
+// seen of stay as they are. Observations that are not numbers, or whose point starts behind the
+// camera, are left out for good. A point whose step would take it behind one of its cameras stays
+// where it was in that step; a step in which the cameras alone would do that is rejected. Without a
+// fixed camera the damping holds the gauge. `stop` (may be null) is looked at between iterations.
+// The result is the same with any number of threads. Throws Error on indices that aren't there.
 BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);
 

@@ -31,12 +31,15 @@ struct PoseOnlyResult {
   Se3 T_camera_world;
   std::vector<bool> inlier;  // one for each match; behind the camera is never one
   int inliers = 0;
-  double cost = 0;                          // sum of Huber losses over inliers, unitless
+  double cost = 0;                          // ½ sum of chi² over inliers, unitless
   Matrix6d information = Matrix6d::Zero();  // of the left increment at the solution, inliers only
 };
 
-// Starts at `T_camera_world`. Fewer than 3 matches: returns the start with no inliers.
-// ORB-SLAM2 (Mur-Artal & Tardós 2017), eq. 3–4; left-multiplied increments as in Solà et al. 2018.
+// Starts at `T_camera_world`. Fewer than 3 usable matches: returns the start with no inliers.
+// Matches that are not numbers are never inliers. Each round minimises Huber's loss over the
+// inliers so far (all at first), then counts as inliers what is within `huber` of the result; at
+// the end plain squares over the inliers. ORB-SLAM2 (Mur-Artal & Tardós 2017), eq. 3–4;
+// left-multiplied increments as in Solà et al. 2018.
 PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
                             std::span<const PoseMatch> matches,
                             const PoseOnlySettings& settings = {});
