@@ -14,7 +14,7 @@ struct MapperSettings {
   double max_depth = 8.0;            // metres; beyond, a depth sensor says little
 
   // Triangulation (ORB-SLAM §VI-C).
-  int triangulate_keyframes_mono = 15;   // best covisible keyframes searched for partners
+  int triangulate_keyframes_mono = 10;   // best covisible keyframes searched for partners
   int triangulate_keyframes_depth = 6;
   int triangulate_distance = 50;     // bits of 256: only the epipolar line guides the search
   double triangulate_ratio = 0.85;   // best to second-best distance

@@ -12,6 +12,7 @@ struct TrackerSettings {
   int min_predicted = 20;        // matches with the last frame, below which the search is widened
   int min_after_prediction = 10; // inliers, below which the reference keyframe is tried instead
   int min_tracked = 20;          // inliers with the local map, below which the frame is lost
+  double min_agreement = 0.4;    // share of a frame's matches that must fit one pose for it to be trusted
   int max_distance = 100;        // bits of 256; with a pose to guide the search
   double local_ratio = 0.8;      // best to second-best descriptor distance on the same level
   float last_frame_radius = 15;  // pixels on level 0 around the predicted place, monocular
@@ -19,10 +20,11 @@ struct TrackerSettings {
   float local_radius = 4;        // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
   float local_radius_depth = 12; // the same with depth, whose landmarks are placed from a single view
   int local_keyframes = 40;      // at most, in the local map
-  MeasurementNoise noise;        // of keypoints
+  // Of keypoints; wider than the mapper's, as blur and a rolling shutter bend whole frames.
+  MeasurementNoise noise{.sigma_px = 1.5};
   // A keyframe is asked for when a frame's inliers fall below this share of the most since the last one …
   double keyframe_share_mono = 0.9;
-  double keyframe_share_depth = 0.75;
+  double keyframe_share_depth = 0.8;
   int keyframe_min_gap = 1;      // … but not sooner after the last than this many frames,
   int keyframe_max_gap = 30;     // and at the latest after this many
   void Check() const;            // throws Error (usage) naming the field that cannot be

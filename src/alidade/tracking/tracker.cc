@@ -38,14 +38,17 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
   last_.T_camera_world = T_last_world;
 
   const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
+  PlacedFrame best;
   for (float widen : {1.0f, 2.0f, 4.0f}) {
     guess.T_camera_world = has_velocity_ ? velocity_ * T_last_world : T_last_world;
     MatchLastFrame(guess, map, widen * radius);
-    Optimise(guess, map);
-    if (guess.inliers >= Scaled(settings_.min_predicted)) return guess;
+    const double share = Optimise(guess, map);
+    // A window that misses the true places still finds something in them: then few agree on one pose.
+    if (guess.inliers >= Scaled(settings_.min_predicted) && share > settings_.min_agreement) return guess;
+    if (guess.inliers > best.inliers) best = guess;
   }
   MatchKeyFrame(guess, map, reference_);
-  return guess;
+  return guess.inliers > best.inliers ? guess : best.frame ? best : guess;
 }
 
 void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const {
@@ -152,7 +155,7 @@ PlacedFrame Tracker::Recover(std::shared_ptr<const Frame> frame, const MapSnapsh
   return best;
 }
 
-void Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
+double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
   std::vector<PoseMatch> matches;
   std::vector<int> keypoints;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
@@ -168,6 +171,7 @@ void Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (!result.inlier[i]) placed.matches[keypoints[i]] = {};
   }
+  return keypoints.empty() ? 0 : static_cast<double>(result.inliers) / static_cast<double>(keypoints.size());
 }
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
@@ -228,7 +232,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     if (taken_by[k] >= 0) guess.matches[k] = candidates[taken_by[k]].landmark->id;
   }
   std::vector<LandmarkId> before_optimising = guess.matches;
-  Optimise(guess, map);
+  const double share = Optimise(guess, map);
 
   for (size_t k = 0; k < before_optimising.size(); ++k) {
     if (before_optimising[k].valid()) estimate.sightings.push_back({before_optimising[k], guess.matches[k].valid()});
@@ -243,13 +247,15 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   estimate.placed = std::move(guess);
   if (estimate.tracked) {
     most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
-    estimate.wants_keyframe = WantsKeyFrame(estimate.placed);
+    estimate.wants_keyframe = WantsKeyFrame(estimate.placed, share);
   }
   return estimate;
 }
 
-bool Tracker::WantsKeyFrame(const PlacedFrame& placed) const {
+bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   const int since = placed.frame->number - last_keyframe_number_;
+  // A blurred or badly placed frame would bend the map; a better one comes soon, unless tracking is at its end.
+  if (agreement < settings_.min_agreement && placed.inliers > 2 * Scaled(settings_.min_tracked)) return false;
   if (since >= settings_.keyframe_max_gap) return true;
   if (since < settings_.keyframe_min_gap) return false;
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;

@@ -63,8 +63,9 @@ class Tracker {
  private:
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
-  void Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
-  bool WantsKeyFrame(const PlacedFrame& placed) const;
+  // Returns the share of the matches that agree with the pose found; the others are dropped.
+  double Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
+  bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
 
   Camera camera_;
