@@ -108,6 +108,7 @@ int WriteOutputs(const std::string& folder, const Slam& slam, const RunRecord& r
   AtomicWriteFile(path("trajectory.txt"), FormatTumTrajectory(final_poses));
   AtomicWriteFile(path("trajectory_live.txt"), FormatTumTrajectory(live_poses));
   AtomicWriteFile(path("keyframes.txt"), FormatTumTrajectory(keyframe_poses));
+  AtomicWriteFile(path("map.alidade"), slam.SaveMap());
   AtomicWriteFile(path("landmarks.ply"), LandmarksPly(map, turn));
 
   ordered_json settings = {{"profile", record.profile},

@@ -117,6 +117,11 @@ Landmark* MapCommit::Edit(LandmarkId id) {
 
 KeyFrameId MapCommit::Add(KeyFrame keyframe) {
   keyframe.landmarks.resize(keyframe.frame->keypoints.size());
+  // The parent was chosen on a snapshot, and may have been removed since.
+  while (keyframe.parent.valid() && !Find(keyframe.parent)) {
+    const KeyFrame* gone = state_.keyframes.At(keyframe.parent.value);
+    keyframe.parent = gone ? gone->parent : KeyFrameId{};
+  }
   return {Append(state_.keyframes, std::move(keyframe))};
 }
 
@@ -298,6 +303,13 @@ void MapStore::Clear() {
     for (auto& page : state.landmarks.pages) page = std::make_shared<const MapPage<Landmark>>();
     state.keyframes.alive = state.landmarks.alive = 0;
   });
+}
+
+void MapStore::Restore(const MapSnapshot& saved) {
+  std::lock_guard<std::mutex> writer(writer_mutex_);
+  MapState state = saved.state();
+  state.version = std::max(state.version, Snapshot().version()) + 1;
+  Publish(std::move(state));
 }
 
 }  // namespace alidade

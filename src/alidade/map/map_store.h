@@ -65,6 +65,7 @@ class MapSnapshot {
   uint32_t next_keyframe() const { return state_->keyframes.next; }
   uint32_t next_landmark() const { return state_->landmarks.next; }
   uint64_t version() const { return state_->version; }
+  const MapState& state() const { return *state_; }  // all there is, the culled and fused included: for saving
 
  private:
   friend class MapStore;
@@ -83,7 +84,7 @@ class MapCommit {
   KeyFrame* Edit(KeyFrameId id);  // null when it is not alive
   Landmark* Edit(LandmarkId id);
 
-  KeyFrameId Add(KeyFrame keyframe);  // sets its id
+  KeyFrameId Add(KeyFrame keyframe);  // sets its id; a parent removed meanwhile gives way to its own
   LandmarkId Add(Landmark landmark);  // sets its id; its observations are entered in the keyframes too
 
   // Both sides of an observation. A keyframe sees a landmark at most once, a keypoint shows at most one:
@@ -133,6 +134,7 @@ class MapStore {
     return Publish(std::move(commit.state_));
   }
   void Clear();  // empties the map; ids and versions go on
+  void Restore(const MapSnapshot& saved);  // makes `saved` the map; its ids go on, versions of this store too
 
  private:
   MapSnapshot Publish(MapState&& state);

@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "alidade/base/error.h"
+#include "alidade/map/map_file.h"
 #include "alidade/system/mapping_stage.h"
 #include "alidade/tracking/tracker.h"
 
@@ -248,6 +249,12 @@ void Slam::Finish() { impl_->mapping_.Drain(); }
 MapSnapshot Slam::Snapshot() const { return impl_->map_.Snapshot(); }
 const Camera& Slam::camera() const { return impl_->camera_; }
 int Slam::relocalisations() const { return impl_->relocalisations_; }
+
+std::string Slam::SaveMap() const {
+  const Sensor sensor = impl_->settings_.sensor;
+  const char* name = sensor == Sensor::kMono ? "mono" : sensor == Sensor::kStereo ? "stereo" : "rgbd";
+  return EncodeMap({Snapshot(), impl_->camera_, name, impl_->settings_.All()});
+}
 
 StageTimes Slam::Times() const {
   StageTimes times = impl_->times_;

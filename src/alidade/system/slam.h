@@ -57,6 +57,7 @@ class Slam {
 
   MapSnapshot Snapshot() const;             // cheap, consistent, safe to keep
   std::vector<FramePose> Trajectory() const;  // every frame so far
+  std::string SaveMap() const;              // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   const Camera& camera() const;             // as used: scaled by the profile
   int relocalisations() const;

@@ -1,0 +1,116 @@
+#include "alidade/map/map_checksum.h"
+#include "alidade/map/map_file.h"
+#include "alidade/map/map_generated.h"
+
+namespace alidade {
+namespace {
+
+using flatbuffers::FlatBufferBuilder;
+using flatbuffers::Offset;
+
+fb::Vec3 Encode(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+fb::Pose Encode(const Se3& T) {
+  return {Encode(T.R.row(0).transpose()), Encode(T.R.row(1).transpose()),
+          Encode(T.R.row(2).transpose()), Encode(T.t)};
+}
+
+fb::Descriptor Encode(const Descriptor& d) {
+  return {d.words[0], d.words[1], d.words[2], d.words[3]};
+}
+
+fb::Keypoint Encode(const Keypoint& k) {
+  return {k.x, k.y, k.raw_x, k.raw_y, k.angle, k.response, k.right_x, k.depth, k.level};
+}
+
+fb::Neighbour Encode(const Neighbour& n) { return {n.id.value, static_cast<uint32_t>(n.shared)}; }
+
+fb::Observation Encode(const Observation& o) {
+  return {o.keyframe.value, static_cast<uint32_t>(o.keypoint)};
+}
+
+// A list of things as a vector of structs.
+template <typename Struct, typename Thing>
+Offset<flatbuffers::Vector<const Struct*>> EncodeList(FlatBufferBuilder& builder,
+                                                      const std::vector<Thing>& things) {
+  std::vector<Struct> structs;
+  structs.reserve(things.size());
+  for (const Thing& thing : things) structs.push_back(Encode(thing));
+  return builder.CreateVectorOfStructs(structs);
+}
+
+Offset<fb::KeyFrame> EncodeKeyFrame(FlatBufferBuilder& builder, const KeyFrame& keyframe) {
+  const auto keypoints = EncodeList<fb::Keypoint>(builder, keyframe.frame->keypoints);
+  const auto descriptors = EncodeList<fb::Descriptor>(builder, keyframe.frame->descriptors);
+  const auto covisible = EncodeList<fb::Neighbour>(builder, keyframe.covisible);
+  const fb::Pose pose = Encode(keyframe.T_camera_world);
+  return fb::CreateKeyFrame(builder, keyframe.id.value, keyframe.parent.value,
+                            keyframe.frame->number, keyframe.frame->time, &pose, keypoints,
+                            descriptors, covisible);
+}
+
+Offset<fb::CulledKeyFrame> EncodeCulled(FlatBufferBuilder& builder, const KeyFrame& keyframe) {
+  const fb::Pose pose = Encode(keyframe.T_camera_parent);
+  return fb::CreateCulledKeyFrame(builder, keyframe.id.value, keyframe.parent.value, &pose);
+}
+
+Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& landmark) {
+  const auto observations = EncodeList<fb::Observation>(builder, landmark.observations);
+  const fb::Vec3 p_world = Encode(landmark.p_world);
+  const fb::Vec3f normal(landmark.normal.x(), landmark.normal.y(), landmark.normal.z());
+  const fb::Descriptor descriptor = Encode(landmark.descriptor);
+  return fb::CreateLandmark(builder, landmark.id.value, &p_world, observations,
+                            landmark.reference.value, landmark.born.value, &descriptor, &normal,
+                            landmark.min_distance, landmark.max_distance);
+}
+
+Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera) {
+  const auto distortion = builder.CreateVector(camera.distortion.data(), camera.distortion.size());
+  return fb::CreateCamera(builder, camera.width, camera.height, camera.fx, camera.fy, camera.cx,
+                          camera.cy, distortion, camera.fps, camera.depth_factor, camera.baseline);
+}
+
+}  // namespace
+
+std::string EncodeMap(const SavedMap& saved) {
+  const MapState& state = saved.map.state();
+  FlatBufferBuilder builder(1 << 20);
+  std::vector<Offset<fb::KeyFrame>> keyframes;
+  std::vector<Offset<fb::CulledKeyFrame>> culled;
+  for (uint32_t i = 0; i < state.keyframes.next; ++i) {
+    const KeyFrame* keyframe = state.keyframes.At(i);
+    if (keyframe && keyframe->culled()) culled.push_back(EncodeCulled(builder, *keyframe));
+    if (keyframe && !keyframe->culled()) keyframes.push_back(EncodeKeyFrame(builder, *keyframe));
+  }
+  std::vector<Offset<fb::Landmark>> landmarks;
+  std::vector<fb::Forward> forwards;
+  for (uint32_t i = 0; i < state.landmarks.next; ++i) {
+    const Landmark* landmark = state.landmarks.At(i);
+    if (!landmark) continue;
+    if (!landmark->replaced_by.valid()) {
+      landmarks.push_back(EncodeLandmark(builder, *landmark));
+    } else if (const LandmarkId by = saved.map.Current({i});
+               by.valid()) {  // straight to where a chain ends
+      forwards.push_back({i, by.value});
+    }
+  }
+  std::vector<Offset<fb::Setting>> settings;
+  for (const auto& [name, value] : saved.settings) {
+    settings.push_back(fb::CreateSettingDirect(builder, name.c_str(), value.c_str()));
+  }
+  const fb::Checksum unknown(0);
+  const auto root =
+      fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
+                          EncodeCamera(builder, saved.camera), &settings, state.keyframes.next,
+                          state.landmarks.next, &keyframes, &culled, &landmarks, &forwards);
+  fb::FinishMapBuffer(builder, root);
+
+  uint8_t* bytes = builder.GetBufferPointer();
+  const size_t size = builder.GetSize();
+  fb::Checksum* checksum = fb::GetMutableMap(bytes)->mutable_checksum();
+  const auto place = static_cast<size_t>(reinterpret_cast<const uint8_t*>(checksum) - bytes);
+  checksum->mutate_fnv1a(MapChecksum(bytes, size, place));
+  return {reinterpret_cast<const char*>(bytes), size};
+}
+
+}  // namespace alidade

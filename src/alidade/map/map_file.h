@@ -1,0 +1,29 @@
+// A map as bytes (map.alidade) and back. No files here: the portable core has none.
+// The format is map.fbs; equal maps give equal bytes.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "alidade/geometry/camera.h"
+#include "alidade/map/map_store.h"
+
+namespace alidade {
+
+// All that is saved. Images are not: the frames of a map read back have none.
+struct SavedMap {
+  MapSnapshot map;     // MapStore::Restore() makes it the map to go on with; ids are kept
+  Camera camera;       // that of the keypoints: after rectifying and scaling
+  std::string sensor;  // "mono", "stereo" or "rgbd"
+  std::vector<std::pair<std::string, std::string>> settings;  // name and value
+};
+
+std::string EncodeMap(const SavedMap& saved);
+
+// Throws Error (input) that says what is wrong when these are not the bytes of a map, when they are
+// damaged, or when they come from a newer program.
+SavedMap DecodeMap(std::string_view bytes);
+
+}  // namespace alidade
