@@ -1,0 +1,247 @@
+#include "synth_writer.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/parallel.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/files/image_file.h"
+#include "alidade/io/trajectory.h"
+#include "synth_source.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string Print(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+std::string Exact(double value) { return Print("%.17g", value); }
+
+std::string Join(const std::vector<double>& values, const char* between) {
+  std::string text;
+  for (size_t i = 0; i < values.size(); ++i) text += (i > 0 ? between : "") + Exact(values[i]);
+  return text;
+}
+
+// Rows of [R t], three or four of them.
+std::string Matrix(const Se3& T, int rows, const char* between) {
+  std::vector<double> values;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) values.push_back(T.R(row, column));
+    values.push_back(T.t[row]);
+  }
+  if (rows == 4) values.insert(values.end(), {0, 0, 0, 1});
+  return Join(values, between);
+}
+
+class FolderWriter : public SynthWriter {
+ public:
+  FolderWriter(std::string folder, const Camera& camera, const std::vector<std::string>& parts)
+      : folder_(std::move(folder)), camera_(camera) {
+    for (const std::string& part : parts) {
+      std::error_code error;
+      fs::create_directories(folder_ + "/" + part, error);
+      if (error)
+        ThrowInput("cannot make the folder " + folder_ + "/" + part + ": " + error.message());
+    }
+  }
+
+ protected:
+  void WriteImages(const std::vector<std::pair<std::string, cv::Mat>>& images) const {
+    ParallelFor(static_cast<int>(images.size()),
+                [&](int i) { WriteImage(folder_ + "/" + images[i].first, images[i].second); });
+  }
+  void WriteText(const std::string& name, const std::string& text) const {
+    AtomicWriteFile(folder_ + "/" + name, text);
+  }
+  const Camera& camera() const { return camera_; }
+
+ private:
+  std::string folder_;
+  Camera camera_;
+};
+
+// Sturm et al. 2012: lists of stamped images, poses as stamp, place and quaternion.
+class TumWriter : public FolderWriter {
+ public:
+  TumWriter(const std::string& folder, const Camera& camera)
+      : FolderWriter(folder, camera, {"rgb", "depth", "mask"}) {}
+
+  void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
+    const std::string stamp = SynthStamp(frame.time), file = "/" + stamp + ".png";
+    WriteImages(
+        {{"rgb" + file, frame.image}, {"depth" + file, frame.depth}, {"mask" + file, frame.mask}});
+    for (const auto& [list, part] :
+         {std::pair(&rgb_, "rgb"), std::pair(&depth_, "depth"), std::pair(&mask_, "mask")}) {
+      *list += stamp + " " + part + file + "\n";
+    }
+    truth_.push_back({frame.time, T_world_camera, stamp});
+  }
+
+  void Finish() override {
+    const Camera& c = camera();
+    WriteText("camera.yaml",
+              "model: pinhole\nwidth: " + std::to_string(c.width) +
+                  "\nheight: " + std::to_string(c.height) + "\nfx: " + Exact(c.fx) +
+                  "\nfy: " + Exact(c.fy) + "\ncx: " + Exact(c.cx) + "\ncy: " + Exact(c.cy) +
+                  "\ndistortion: [" + Join({c.distortion.begin(), c.distortion.end()}, ", ") +
+                  "]\nfps: " + Exact(c.fps) + "\ndepth_factor: " + Exact(c.depth_factor) + "\n");
+    WriteText("groundtruth.txt", FormatTumTrajectory(truth_));
+    WriteText("mask.txt", "# timestamp file (255 = moving people)\n" + mask_);
+    WriteText("depth.txt", "# timestamp file\n" + depth_);
+    WriteText("rgb.txt", "# timestamp file\n" + rgb_);
+  }
+
+ private:
+  std::string rgb_, depth_, mask_;
+  Trajectory truth_;
+};
+
+// Burri et al. 2016. The body looks along its x axis, z up; its middle is the left camera's.
+class EurocWriter : public FolderWriter {
+ public:
+  EurocWriter(const std::string& folder, const Camera& camera)
+      : FolderWriter(folder, camera,
+                     {"mav0/cam0/data", "mav0/cam1/data", "mav0/depth0/data", "mav0/mask0/data",
+                      "mav0/state_groundtruth_estimate0"}) {
+    T_body_camera_.R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  }
+
+  void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
+    const std::string stamp = std::to_string(1'000'000'000'000'000'000LL +
+                                             std::llround(frame.time * 1e9)),
+                      file = "/data/" + stamp + ".png";
+    WriteImages({{"mav0/cam0" + file, frame.image},
+                 {"mav0/cam1" + file, frame.right},
+                 {"mav0/depth0" + file, frame.depth},
+                 {"mav0/mask0" + file, frame.mask}});
+    list_ += stamp + "," + stamp + ".png\n";
+    const Se3 T_world_body = T_world_camera * T_body_camera_.Inverse();
+    const Eigen::Quaterniond q = T_world_body.Quaternion();
+    const Eigen::Vector3d& t = T_world_body.t;
+    truth_ += stamp + "," + Join({t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}, ",") + "\n";
+  }
+
+  void Finish() override {
+    WriteText("mav0/state_groundtruth_estimate0/data.csv",
+              "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y "
+              "[],q_RS_z []\n" +
+                  truth_);
+    const Se3 beside{Eigen::Matrix3d::Identity(), {camera().baseline, 0, 0}};
+    WriteText("mav0/cam0/sensor.yaml", Sensor("left camera", T_body_camera_));
+    WriteText("mav0/cam1/sensor.yaml", Sensor("right camera", T_body_camera_ * beside));
+    const std::string head = "#timestamp [ns],filename\n";
+    for (const char* part : {"cam1", "depth0", "mask0", "cam0"})
+      WriteText(std::string("mav0/") + part + "/data.csv", head + list_);
+  }
+
+ private:
+  std::string Sensor(const std::string& comment, const Se3& T_body_sensor) const {
+    const Camera& c = camera();
+    const auto& k = c.distortion;
+    return "# " + comment + ", rendered\nsensor_type: camera\ncomment: rendered " + comment +
+           "\nT_BS:\n  cols: 4\n  rows: 4\n  data: [" + Matrix(T_body_sensor, 4, ", ") +
+           "]\nrate_hz: " + Exact(c.fps) + "\nresolution: [" + std::to_string(c.width) + ", " +
+           std::to_string(c.height) + "]\ncamera_model: pinhole\nintrinsics: [" +
+           Join({c.fx, c.fy, c.cx, c.cy}, ", ") +
+           "]\ndistortion_model: radial-tangential\ndistortion_coefficients: [" +
+           Join({k[0], k[1], k[2], k[3]}, ", ") + "]\n";
+  }
+
+  Se3 T_body_camera_;
+  std::string list_, truth_;
+};
+
+// Geiger et al. 2012, odometry: numbered images, poses in the first camera's frame.
+class KittiWriter : public FolderWriter {
+ public:
+  KittiWriter(const std::string& folder, const Camera& camera)
+      : FolderWriter(folder, camera, {"image_0", "image_1", "depth", "mask"}) {
+    if (camera.HasDistortion())
+      ThrowUsage(
+          "--distortion: KITTI recordings are rectified and cannot say how a lens distorts "
+          "(--format tum or euroc)");
+  }
+
+  void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
+    char file[32];
+    std::snprintf(file, sizeof(file), "/%06d.png", count_);
+    WriteImages({{std::string("image_0") + file, frame.image},
+                 {std::string("image_1") + file, frame.right},
+                 {std::string("depth") + file, frame.depth},
+                 {std::string("mask") + file, frame.mask}});
+    if (count_ == 0) T_first_world_ = T_world_camera.Inverse();
+    times_ += Print("%.9e", frame.time) + "\n";
+    poses_ += Matrix(T_first_world_ * T_world_camera, 3, " ") + "\n";
+    ++count_;
+  }
+
+  void Finish() override {
+    const Camera& c = camera();
+    std::string calibration;
+    for (int i = 0; i < 4; ++i) {
+      const double shift = i % 2 == 1 ? -c.fx * c.baseline : 0;
+      calibration += "P" + std::to_string(i) + ": " +
+                     Join({c.fx, 0, c.cx, shift, 0, c.fy, c.cy, 0, 0, 0, 1, 0}, " ") + "\n";
+    }
+    WriteText("calib.txt", calibration);
+    WriteText("poses.txt", poses_);
+    WriteText("times.txt", times_);
+  }
+
+ private:
+  int count_ = 0;
+  Se3 T_first_world_;
+  std::string times_, poses_;
+};
+
+}  // namespace
+
+std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
+                                             const Camera& camera) {
+  switch (format) {
+    case SynthFormat::kTum:
+      return std::make_unique<TumWriter>(folder, camera);
+    case SynthFormat::kEuroc:
+      return std::make_unique<EurocWriter>(folder, camera);
+    case SynthFormat::kKitti:
+      return std::make_unique<KittiWriter>(folder, camera);
+  }
+  ThrowUsage("unknown format");
+}
+
+void PrepareSynthFolder(const std::string& folder) {
+  std::error_code error;
+  const fs::file_status status = fs::status(folder, error);
+  if (fs::exists(status) && !fs::is_directory(status))
+    ThrowInput(folder + " is a file, not a folder");
+  if (fs::exists(status)) {
+    const bool empty = fs::is_empty(folder, error);
+    if (error) ThrowInput("cannot read the folder " + folder + ": " + error.message());
+    if (!empty && !fs::exists(folder + "/" + kSynthMarker)) {
+      ThrowInput(folder +
+                 " is not empty and holds no earlier recording of `alidade synth`: give another "
+                 "folder, or empty this one");
+    }
+    // The marker goes last, so that what is left after an interruption is still known to be ours.
+    for (const char* name :
+         {"rgb", "depth", "mask", "mav0", "image_0", "image_1", "rgb.txt", "depth.txt", "mask.txt",
+          "groundtruth.txt", "camera.yaml", "times.txt", "poses.txt", "calib.txt", kSynthMarker}) {
+      fs::remove_all(folder + "/" + name, error);
+      if (error) ThrowInput("cannot remove " + folder + "/" + name + ": " + error.message());
+    }
+  }
+  fs::create_directories(folder, error);
+  if (error) ThrowInput("cannot make the folder " + folder + ": " + error.message());
+}
+
+}  // namespace alidade

@@ -1,0 +1,34 @@
+// Writes rendered recordings to disk, laid out as known datasets are (docs/formats.md), with depth
+// and masks always.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "alidade/synth/recording.h"
+
+namespace alidade {
+
+enum class SynthFormat { kTum, kEuroc, kKitti };
+
+class SynthWriter {
+ public:
+  virtual ~SynthWriter() = default;
+  // Frames in order, from 0.
+  virtual void Add(const RenderedFrame& frame, const Se3& T_world_camera) = 0;
+  // Lists, poses and calibration: until then no reader takes the folder for a recording.
+  virtual void Finish() = 0;
+};
+
+// The folder must be there. Throws Error (input) when a file cannot be written.
+std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
+                                             const Camera& camera);
+
+// Makes the folder, or clears an earlier recording of ours out of it. Throws Error (input) when it
+// holds anything else.
+void PrepareSynthFolder(const std::string& folder);
+
+// The file that says a folder is ours.
+inline constexpr char kSynthMarker[] = "synth.json";
+
+}  // namespace alidade
