@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -31,7 +32,10 @@ struct Loop {
   }
 };
 
-// Workers sleep between loops. One loop at a time has them; `loop_` is null in between.
+// Workers sleep between loops: looking out for the next one instead was measured to save nothing
+// and to cost CPU time, and on a busy machine the caller's as well. One loop at a time has them;
+// `loop_` is null in between. A worker joins the loop when it wakes up, if it is still there: the
+// caller waits for those at work, never for one that sleeps.
 class Pool {
  public:
   ~Pool() { Stop(); }
@@ -39,29 +43,36 @@ class Pool {
   bool TryRun(Loop& loop, int threads) {
     std::unique_lock<std::mutex> owner(owner_, std::try_to_lock);
     if (!owner.owns_lock()) return false;
-    if (static_cast<int>(workers_.size()) != threads - 1) {
+    if (threads_ != threads) {
       Stop();
-      Start(threads - 1);
+      Start(threads);
     }
     {
       std::lock_guard<std::mutex> lock(mutex_);
       loop_ = &loop;
       ++generation_;
-      busy_ = static_cast<int>(workers_.size());
     }
-    wake_.notify_all();
+    const int helpers = std::min(static_cast<int>(workers_.size()), loop.count - 1);
+    for (int i = 0; i < helpers; ++i) wake_.notify_one();
     loop.Work();
     std::unique_lock<std::mutex> lock(mutex_);
-    done_.wait(lock, [&] { return busy_ == 0; });
-    loop_ = nullptr;
+    loop_ = nullptr;  // from here on nobody joins
+    done_.wait(lock, [&] { return active_ == 0; });
     return true;
   }
 
  private:
-  void Start(int count) {
-    stopping_ = false;
-    const uint64_t generation = generation_;
-    for (int i = 0; i < count; ++i) workers_.emplace_back([this, generation] { Run(generation); });
+  void Start(int threads) {
+    threads_ = threads;
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      stopping_ = false;
+    }
+    try {
+      for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Run(); });
+    } catch (const std::system_error&) {
+      // No more threads to be had: those there are will do.
+    }
   }
 
   void Stop() {
@@ -74,22 +85,26 @@ class Pool {
     workers_.clear();
   }
 
-  void Run(uint64_t seen);
+  void Run();
 
-  std::mutex owner_, mutex_;
-  std::condition_variable wake_, done_;
+  std::mutex owner_;  // held by the caller whose loop it is
+  int threads_ = 1;
   std::vector<std::thread> workers_;
+
+  std::mutex mutex_;  // of all below
+  std::condition_variable wake_, done_;
   Loop* loop_ = nullptr;
   uint64_t generation_ = 0;
-  int busy_ = 0;
+  int active_ = 0;  // workers inside the loop
   bool stopping_ = false;
 };
 
 std::atomic<int> g_threads{0};
 thread_local bool t_inside_loop = false;
 
-void Pool::Run(uint64_t seen) {
+void Pool::Run() {
   t_inside_loop = true;
+  uint64_t seen = 0;  // generations start at 1, and a loop that has gone is told by its absence
   while (true) {
     Loop* loop;
     {
@@ -98,10 +113,12 @@ void Pool::Run(uint64_t seen) {
       if (stopping_) return;
       seen = generation_;
       loop = loop_;
+      if (loop == nullptr) continue;
+      ++active_;
     }
     loop->Work();
     std::lock_guard<std::mutex> lock(mutex_);
-    if (--busy_ == 0) done_.notify_one();
+    if (--active_ == 0) done_.notify_one();
   }
 }
 

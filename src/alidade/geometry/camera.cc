@@ -1,5 +1,6 @@
 #include "alidade/geometry/camera.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -64,10 +65,11 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& distorted) const {
 }
 
 Camera Camera::ScaledToWidth(int new_width) const {
+  if (new_width <= 0) ThrowUsage("image width must be positive");
   const double scale = static_cast<double>(new_width) / width;
   Camera scaled = *this;
   scaled.width = new_width;
-  scaled.height = static_cast<int>(std::lround(height * scale));
+  scaled.height = std::max(1, static_cast<int>(std::lround(height * scale)));
   const double scale_y = static_cast<double>(scaled.height) / height;
   scaled.fx = fx * scale;
   scaled.fy = fy * scale_y;

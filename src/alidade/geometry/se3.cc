@@ -4,11 +4,19 @@
 
 namespace alidade {
 
+namespace {
+// (1 - cos x) / x², without the difference that loses half the digits of a small angle.
+double HalfVersine(double x) {
+  const double half = x / 2, quotient = half < 1e-4 ? 1 - half * half / 6 : std::sin(half) / half;
+  return quotient * quotient / 2;
+}
+}  // namespace
+
 Eigen::Matrix3d ExpSo3(const Eigen::Vector3d& w) {
   const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
   // Taylor series below 1e-4 rad: the quotients lose their digits there.
   const double a = angle < 1e-4 ? 1 - angle2 / 6 : std::sin(angle) / angle;
-  const double b = angle < 1e-4 ? 0.5 - angle2 / 24 : (1 - std::cos(angle)) / angle2;
+  const double b = HalfVersine(angle);
   const Eigen::Matrix3d W = Skew(w);
   return Eigen::Matrix3d::Identity() + a * W + b * (W * W);
 }
@@ -25,7 +33,7 @@ namespace {
 // V of Exp: translation = V * rho (Solà et al. 2018, eq. 174).
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
-  const double b = angle < 1e-4 ? 0.5 - angle2 / 24 : (1 - std::cos(angle)) / angle2;
+  const double b = HalfVersine(angle);
   const double c =
       angle < 1e-4 ? 1.0 / 6 - angle2 / 120 : (angle - std::sin(angle)) / (angle2 * angle);
   const Eigen::Matrix3d W = Skew(w);
