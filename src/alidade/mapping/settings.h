@@ -18,7 +18,7 @@ struct MapperSettings {
   int triangulate_keyframes_depth = 6;
   int triangulate_distance = 50;     // bits of 256: only the epipolar line guides the search
   double triangulate_ratio = 0.85;   // best to second-best distance
-  double min_parallax_degrees = 1.0; // between the two rays
+  double min_parallax_degrees = 0.4; // between the two rays; far points hold the rotation, their depth comes later
   double min_baseline_ratio = 0.01;  // baseline to median depth, monocular
 
   // Fusion of duplicates.
