@@ -34,7 +34,7 @@ struct MapperSettings {
   // Local bundle adjustment (ORB-SLAM §VI-D).
   int window_keyframes = 15;         // adjusted: the newest and its best covisible ones
   int window_fixed = 20;             // held: those that see most of the same landmarks
-  BundleSettings bundle{.max_iterations = 6, .min_relative_decrease = 1e-4};
+  BundleSettings bundle{.max_iterations = 10, .min_relative_decrease = 1e-4};
 
   void Check() const;                // throws Error (usage) naming the field that cannot be
 };

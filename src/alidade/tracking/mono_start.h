@@ -21,7 +21,7 @@ struct MonoStartSettings {
   double window = 0.16;        // of the image's width: how far a keypoint may move between two frames
   double min_motion = 0.015;   // of the image's width: median motion below which a pair can't tell
   int trial_frames = 5;        // frames that must confirm the map before it is believed
-  double trial_share = 0.5;    // of its points, tracked in each of them
+  double trial_share = 0.3;    // of its points, tracked in each of them
   void Check() const;          // throws Error (usage) naming the field that cannot be
 };
 
