@@ -1,0 +1,56 @@
+// Rendered recordings for end-to-end tests: each made once per test run, by the program itself.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "support/program.h"
+
+namespace alidade {
+
+// The folder of the recording `alidade synth` makes from `arguments` ({"room", "--frames", "30"}).
+// CTest empties the folder of recordings before the first test; do not change what is in them (see
+// CopyOf).
+inline std::string Rendered(const std::vector<std::string>& arguments) {
+  namespace fs = std::filesystem;
+  std::string name;
+  for (const std::string& argument : arguments) name += (name.empty() ? "" : "_") + argument;
+  const fs::path folder = fs::path(ALIDADE_TEST_RECORDINGS) / name;
+  if (fs::exists(folder)) return folder.string();
+  const fs::path draft = folder.string() + "." + std::to_string(getpid());
+  fs::create_directories(draft.parent_path());
+  std::vector<std::string> words = {"synth", arguments.front(), draft.string()};
+  words.insert(words.end(), arguments.begin() + 1, arguments.end());
+  const ProgramResult result = RunAlidade(words);
+  EXPECT_EQ(result.status, 0) << result.err;
+  std::error_code taken;  // by another test process: its recording is the same
+  fs::rename(draft, folder, taken);
+  if (taken) fs::remove_all(draft);
+  return folder.string();
+}
+
+// A copy to break.
+inline std::string CopyOf(const std::string& recording, const TempFolder& folder) {
+  namespace fs = std::filesystem;
+  const std::string copy = folder / "recording";
+  fs::copy(recording, copy, fs::copy_options::recursive);
+  return copy;
+}
+
+// Lines of a text file, without their ends.
+inline std::vector<std::string> ReadLines(const std::string& path) {
+  std::ifstream file(path);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+inline void WriteLines(const std::string& path, const std::vector<std::string>& lines) {
+  std::ofstream file(path, std::ios::trunc);
+  for (const std::string& line : lines) file << line << '\n';
+}
+
+}  // namespace alidade
