@@ -51,25 +51,17 @@ class BadInput : public testing::Test {
     EXPECT_EQ(stats["dropped_frames"], dropped);
     EXPECT_EQ(stats["tracked"], kFrames - dropped);
     EXPECT_THAT(stats["warnings"].dump(), HasSubstr(warning));
-    EXPECT_EQ(ReadLines(out_ + "/trajectory.txt").size(), static_cast<size_t>(kFrames - dropped));
+    EXPECT_EQ(DataLines(out_ + "/trajectory.txt").size(), static_cast<size_t>(kFrames - dropped));
   }
   // The image file of a frame.
   static std::string ImageOf(const std::string& recording, int frame) {
-    int number = 0;
-    for (const std::string& line : ReadLines(recording + "/rgb.txt")) {
-      if (line.empty() || line[0] == '#') continue;
-      if (number++ == frame) return recording + "/" + line.substr(line.find(' ') + 1);
-    }
-    ADD_FAILURE() << "no frame " << frame;
-    return "";
+    const std::string line = DataLines(recording + "/rgb.txt").at(static_cast<size_t>(frame));
+    return recording + "/" + line.substr(line.find(' ') + 1);
   }
   // Lets `change` rewrite the lines of rgb.txt that name images.
   template <typename Change>
   static void ChangeImageList(const std::string& recording, const Change& change) {
-    std::vector<std::string> lines;
-    for (const std::string& line : ReadLines(recording + "/rgb.txt")) {
-      if (!line.empty() && line[0] != '#') lines.push_back(line);
-    }
+    std::vector<std::string> lines = DataLines(recording + "/rgb.txt");
     change(lines);
     WriteLines(recording + "/rgb.txt", lines);
   }
@@ -154,7 +146,7 @@ TEST_F(BadInput, UnsortedTimeStampsAreSorted) {
                   [](std::vector<std::string>& lines) { std::swap(lines[10], lines[20]); });
   ExpectSkipped(Run(recording), 0, "time stamps");
   double last = 0;
-  for (const std::string& line : ReadLines(out_ + "/trajectory.txt")) {
+  for (const std::string& line : DataLines(out_ + "/trajectory.txt")) {
     const double time = std::strtod(line.c_str(), nullptr);
     EXPECT_GE(time, last);
     last = time;
@@ -299,7 +291,7 @@ TEST_F(BadInput, InterruptedInTheMiddleKeepsTheResultsSoFar) {
   ASSERT_TRUE(stats.is_object());
   EXPECT_GT(stats["frames"], 0);
   EXPECT_LT(stats["frames"], kFrames);
-  EXPECT_EQ(ReadLines(out_ + "/trajectory.txt").size(), stats["tracked"].get<size_t>());
+  EXPECT_EQ(DataLines(out_ + "/trajectory.txt").size(), stats["tracked"].get<size_t>());
 }
 
 }  // namespace

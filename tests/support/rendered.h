@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "support/program.h"
@@ -45,6 +46,15 @@ inline std::vector<std::string> ReadLines(const std::string& path) {
   std::ifstream file(path);
   std::vector<std::string> lines;
   for (std::string line; std::getline(file, line);) lines.push_back(line);
+  return lines;
+}
+
+// Those of them that are no comments.
+inline std::vector<std::string> DataLines(const std::string& path) {
+  std::vector<std::string> lines;
+  for (std::string& line : ReadLines(path)) {
+    if (!line.empty() && line[0] != '#') lines.push_back(std::move(line));
+  }
   return lines;
 }
 
