@@ -10,7 +10,7 @@ namespace alidade {
 
 // How well a keypoint is placed, pixels on level 0.
 struct MeasurementNoise {
-  double sigma_px = 1.0;        // of u and v; grows with the level's scale
+  double sigma_px = 0.8;        // of u and v; grows with the level's scale
   double sigma_right_px = 0.4;  // of the disparity; a matched one grows with the scale, a depth sensor's does not
   bool right_from_sensor = false;
 };

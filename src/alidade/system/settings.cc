@@ -28,6 +28,8 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.min_after_prediction", t.min_after_prediction);
   visit("tracker.min_tracked", t.min_tracked);
   visit("tracker.min_agreement", t.min_agreement);
+  visit("tracker.good_agreement", t.good_agreement);
+  visit("tracker.bad_frame_sigma", t.bad_frame_sigma);
   visit("tracker.max_distance", t.max_distance);
   visit("tracker.local_ratio", t.local_ratio);
   visit("tracker.last_frame_radius", t.last_frame_radius);

@@ -16,6 +16,8 @@ void TrackerSettings::Check() const {
   require(min_after_prediction >= 4, "min_after_prediction must be at least 4");
   require(min_tracked >= 6, "min_tracked must be at least 6");
   require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
+  require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");
+  require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");
   require(max_distance > 0 && max_distance <= 256, "max_distance must lie in 1..256 bits");
   require(local_ratio > 0 && local_ratio <= 1, "local_ratio must lie in (0, 1]");
   require(last_frame_radius > 0 && last_frame_radius_depth > 0 && local_radius > 0 && local_radius_depth > 0, "radii must be positive");

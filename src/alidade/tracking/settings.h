@@ -20,8 +20,9 @@ struct TrackerSettings {
   float local_radius = 4;        // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
   float local_radius_depth = 12; // the same with depth, whose landmarks are placed from a single view
   int local_keyframes = 40;      // at most, in the local map
-  // Of keypoints; wider than the mapper's, as blur and a rolling shutter bend whole frames.
-  MeasurementNoise noise{.sigma_px = 1.5};
+  MeasurementNoise noise{.sigma_px = 1.0};  // of keypoints
+  double good_agreement = 0.7;   // share of matches that fit one pose, below which a frame is taken as bent …
+  double bad_frame_sigma = 3.0;  // … and the noise of its keypoints as so many times larger
   // A keyframe is asked for when a frame's inliers fall below this share of the most since the last one …
   double keyframe_share_mono = 0.9;
   double keyframe_share_depth = 0.8;

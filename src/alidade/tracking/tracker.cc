@@ -165,7 +165,14 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
     keypoints.push_back(static_cast<int>(i));
   }
-  const PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
+  PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
+  const double enough = settings_.good_agreement * static_cast<double>(matches.size());
+  if (result.inliers < enough && settings_.bad_frame_sigma > 1) {
+    // Blur and a rolling shutter bend whole frames: with wider gates all of the picture has a say, not just the
+    // part that happened to agree first.
+    for (PoseMatch& match : matches) match.inv_sigma2 /= settings_.bad_frame_sigma * settings_.bad_frame_sigma;
+    result = OptimizePose(camera_, placed.T_camera_world, matches);
+  }
   placed.T_camera_world = result.T_camera_world;
   placed.inliers = result.inliers;
   for (size_t i = 0; i < keypoints.size(); ++i) {
