@@ -101,7 +101,8 @@ inline BundleProblem MakeBundleProblem(const BundleProblemOptions& options) {
       BundleObservation o;
       o.camera = order[i];
       o.point = index;
-      o.pixel = ProjectStereo(problem.camera, p) + RandomVector(random, sigma * options.noise_px);
+      o.pixel =
+          ProjectStereo(problem.camera, p) + RandomPixelError(random, sigma * options.noise_px);
       o.inv_sigma2 = o.inv_sigma2_right = 1 / (sigma * sigma);
       if (random.Uniform() >= options.stereo) {
         o.pixel.z() = std::numeric_limits<double>::quiet_NaN();

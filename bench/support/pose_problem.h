@@ -49,6 +49,12 @@ inline Eigen::Vector3d RandomVector(Random& random, double sigma) {
   return sigma * Eigen::Vector3d(x, y, z);
 }
 
+// Error of (u, v, u_right): column, row and disparity are each off by `sigma`, independently.
+inline Eigen::Vector3d RandomPixelError(Random& random, double sigma) {
+  const Eigen::Vector3d e = RandomVector(random, sigma);
+  return {e.x(), e.y(), e.x() - e.z()};
+}
+
 inline Vector6d RandomIncrement(Random& random, double sigma_translation, double sigma_rotation) {
   Vector6d xi;
   xi.head<3>() = RandomVector(random, sigma_translation);
@@ -70,7 +76,7 @@ inline PoseProblem MakePoseProblem(const PoseProblemOptions& options) {
     const double sigma = std::pow(1.2, random.Below(8));  // pyramid level
     PoseMatch m;
     m.p_world = T_world_camera * p;
-    m.pixel = ProjectStereo(problem.camera, p) + RandomVector(random, sigma * options.noise_px);
+    m.pixel = ProjectStereo(problem.camera, p) + RandomPixelError(random, sigma * options.noise_px);
     m.inv_sigma2 = m.inv_sigma2_right = 1 / (sigma * sigma);
     if (random.Uniform() >= options.stereo) {
       m.pixel.z() = std::numeric_limits<double>::quiet_NaN();
