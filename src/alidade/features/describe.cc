@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
-
-#include "alidade/base/random.h"
+#include <opencv2/core/hal/intrin.hpp>
 
 namespace alidade {
 namespace {
@@ -14,62 +13,59 @@ namespace {
 constexpr int kBits = 256;
 
 struct Pair {
-  double x0, y0, x1, y1;
+  int x0, y0, x1, y1;  // pixels from the patch's centre, upright
 };
 
-const std::array<Pair, kBits>& Pattern() {
-  static const std::array<Pair, kBits> kPattern = [] {
-    std::array<Pair, kBits> pattern{};
-    Random random(1);
-    const auto place = [&](double& x, double& y) {
-      do {
-        x = std::round(random.Gaussian() * 6.5);
-        y = std::round(random.Gaussian() * 6.5);
-      } while (x * x + y * y > kPatchRadius * kPatchRadius);
-    };
-    for (Pair& p : pattern) {
-      do {
-        place(p.x0, p.y0);
-        place(p.x1, p.y1);
-      } while (p.x0 == p.x1 && p.y0 == p.y1);
-    }
-    return pattern;
-  }();
-  return kPattern;
-}
+constexpr std::array<Pair, kBits> kPattern = {{
+#include "alidade/features/orb_pattern.inc"
+}};
 
-// Half-widths of the disc's rows.
-const std::array<int, kPatchRadius + 1>& DiscRows() {
-  static const std::array<int, kPatchRadius + 1> kRows = [] {
-    std::array<int, kPatchRadius + 1> rows{};
-    for (int v = 0; v <= kPatchRadius; ++v) {
-      rows[v] = static_cast<int>(std::sqrt(kPatchRadius * kPatchRadius - v * v + 0.5));
+// The disc's pixels row by row, as weights for the moments: 32 columns from -15 to 16.
+struct DiscWeights {
+  static constexpr int kColumns = 32;
+  using Row = std::array<uint8_t, kColumns>;
+  std::array<Row, 2 * kPatchRadius + 1> inside{};  // 1 in the disc
+  std::array<Row, 2 * kPatchRadius + 1> column{};  // there u + kBias
+  static constexpr int kBias = 16;                 // keeps weights positive
+};
+
+const DiscWeights& Disc() {
+  static const DiscWeights kDisc = [] {
+    DiscWeights disc;
+    for (int v = -kPatchRadius; v <= kPatchRadius; ++v) {
+      for (int u = -kPatchRadius; u <= kPatchRadius; ++u) {
+        if (u * u + v * v > kPatchRadius * kPatchRadius) continue;
+        disc.inside[v + kPatchRadius][u + kPatchRadius] = 1;
+        disc.column[v + kPatchRadius][u + kPatchRadius] =
+            static_cast<uint8_t>(u + DiscWeights::kBias);
+      }
     }
-    return rows;
+    return disc;
   }();
-  return kRows;
+  return kDisc;
 }
 
 }  // namespace
 
 float PatchAngle(const cv::Mat& level, int x, int y) {
-  const std::array<int, kPatchRadius + 1>& rows = DiscRows();
-  int moment_x = 0, moment_y = 0;
-  for (int v = -kPatchRadius; v <= kPatchRadius; ++v) {
-    const uint8_t* row = level.ptr<uint8_t>(y + v) + x;
-    const int half = rows[std::abs(v)];
-    int sum = 0;
-    for (int u = -half; u <= half; ++u) {
-      sum += row[u];
-      moment_x += u * row[u];
-    }
-    moment_y += v * sum;
+  const DiscWeights& disc = Disc();
+  cv::v_uint32x4 all = cv::v_setzero_u32(), by_column = all, by_row = all;
+  for (int row = 0; row <= 2 * kPatchRadius; ++row) {
+    const uint8_t* p = level.ptr<uint8_t>(y + row - kPatchRadius) + x - kPatchRadius;
+    const cv::v_uint8x16 left = cv::v_load(p), right = cv::v_load(p + 16);
+    const uint8_t* inside = disc.inside[row].data();
+    const uint8_t* column = disc.column[row].data();
+    const cv::v_uint32x4 sum = cv::v_dotprod_expand_fast(
+        right, cv::v_load(inside + 16), cv::v_dotprod_expand_fast(left, cv::v_load(inside)));
+    by_column = cv::v_dotprod_expand_fast(left, cv::v_load(column), by_column);
+    by_column = cv::v_dotprod_expand_fast(right, cv::v_load(column + 16), by_column);
+    by_row = by_row + sum * cv::v_setall_u32(static_cast<unsigned>(row));
+    all = all + sum;
   }
+  const int sum = static_cast<int>(cv::v_reduce_sum(all));
+  const int moment_x = static_cast<int>(cv::v_reduce_sum(by_column)) - DiscWeights::kBias * sum;
+  const int moment_y = static_cast<int>(cv::v_reduce_sum(by_row)) - kPatchRadius * sum;
   return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
-}
-
-void SmoothForDescriptors(const cv::Mat& level, cv::Mat& smooth) {
-  cv::GaussianBlur(level, smooth, cv::Size(7, 7), 2, 2, cv::BORDER_REFLECT_101);
 }
 
 SteeredPattern::SteeredPattern(int stride) : stride_(stride), offsets_(kTurns * kBits * 2) {
@@ -77,11 +73,11 @@ SteeredPattern::SteeredPattern(int stride) : stride_(stride), offsets_(kTurns * 
   for (int turn = 0; turn < kTurns; ++turn) {
     const double angle = 2 * std::numbers::pi * turn / kTurns;
     const double c = std::cos(angle), s = std::sin(angle);
-    const auto at = [&](double x, double y) {
+    const auto at = [&](int x, int y) {
       return static_cast<int>(std::lround(s * x + c * y)) * stride_ +
              static_cast<int>(std::lround(c * x - s * y));
     };
-    for (const Pair& p : Pattern()) {
+    for (const Pair& p : kPattern) {
       *offset++ = at(p.x0, p.y0);
       *offset++ = at(p.x1, p.y1);
     }
@@ -89,8 +85,8 @@ SteeredPattern::SteeredPattern(int stride) : stride_(stride), offsets_(kTurns * 
 }
 
 Descriptor SteeredPattern::Describe(const uint8_t* centre, float angle) const {
-  const int turn =
-      static_cast<int>(std::lround(angle * (kTurns / (2 * std::numbers::pi)))) & (kTurns - 1);
+  const double turns = angle * (kTurns / (2 * std::numbers::pi));
+  const int turn = static_cast<int>(std::lround(turns)) & (kTurns - 1);
   const int* offset = offsets_.data() + turn * kBits * 2;
   Descriptor descriptor;
   for (uint64_t& word : descriptor.words) {

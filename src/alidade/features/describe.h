@@ -8,28 +8,22 @@
 
 namespace alidade {
 
-// Pixels the patch reaches from its centre, for both the orientation and the rotated sampling
-// pattern.
-inline constexpr int kPatchRadius = 15;
-inline constexpr int kPatternReach = 16;  // pixels, after rounding at any angle
+inline constexpr int kPatchRadius = 15;   // pixels, of the disc that gives the orientation
+inline constexpr int kPatternReach = 18;  // pixels, of the disc that holds the sampling pattern
 
-// Direction from the patch's centre to its intensity centroid, radians in (-pi, pi]. `level` is not
-// blurred; (x, y) at least kPatchRadius + 1 pixels from its sides.
+// Direction from the patch's centre to its intensity centroid, radians in (-pi, pi]. (x, y) at
+// least kPatchRadius + 1 pixels from the sides of `level`.
 float PatchAngle(const cv::Mat& level, int x, int y);
-
-// The image a level's descriptors are read from: smoothed so that single pixels' noise decides no
-// bit.
-void SmoothForDescriptors(const cv::Mat& level, cv::Mat& smooth);
 
 // The sampling pattern turned to kTurns directions, as offsets into images of one row stride.
 class SteeredPattern {
  public:
-  static constexpr int kTurns =
-      128;  // 2.8°: at most 0.4 pixels at the rim, below the rounding to whole pixels
+  // 2.8° apart: at most 0.44 pixels off at the rim, less than the rounding to whole pixels.
+  static constexpr int kTurns = 128;
   explicit SteeredPattern(int stride);  // bytes
   int stride() const { return stride_; }
-  // Bit i of the result: the pixel at the first place of pair i is darker than the one at the
-  // second. `centre`: at least kPatternReach pixels from the sides of a smoothed image.
+  // Bit i: the pixel at the first end of pair i is darker than the one at the second.
+  // `centre`: at least kPatternReach pixels from the sides of a smoothed image.
   Descriptor Describe(const uint8_t* centre, float angle) const;
 
  private:

@@ -7,15 +7,16 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
-#include "alidade/features/corners.h"
 #include "alidade/features/pyramid.h"
+#include "alidade/features/smooth.h"
+#include "alidade/features/spread.h"
 
 namespace alidade {
 namespace {
 
-// Rows of a level that one thread looks through at a time; keypoints it describes at a time.
-constexpr int kBandRows = 96;
-constexpr int kChunk = 64;
+constexpr int kBandCells = 3;  // rows of cells that one thread looks through at a time
+constexpr int kChunk = 64;     // keypoints it describes at a time
+constexpr int kAround = 4;     // rows that FAST needs above and below
 
 // How many keypoints each level gets: shares fall with the level's side (1 / 1.2), and what a level
 // cannot fill goes to the others in the same proportion.
@@ -45,6 +46,20 @@ std::array<int, kPyramidLevels> LevelBudgets(const std::array<int, kPyramidLevel
   return budget;
 }
 
+// All rows of all levels, cut where rows of cells end.
+std::vector<Extractor::Band> CutIntoBands(const std::vector<cv::Size>& sizes,
+                                          const ExtractorSettings& settings) {
+  std::vector<Extractor::Band> bands;
+  for (int l = 0; l < static_cast<int>(sizes.size()); ++l) {
+    const int rows = sizes[l].height, step = kBandCells * settings.cell;
+    for (int row = 0, end; row < rows; row = end) {
+      end = std::min(rows, row == 0 ? settings.border + step : row + step);
+      bands.push_back({l, row, end});
+    }
+  }
+  return bands;
+}
+
 }  // namespace
 
 void ExtractorSettings::Check() const {
@@ -56,10 +71,47 @@ void ExtractorSettings::Check() const {
   require(fast_threshold >= fast_minimum && fast_threshold <= 255,
           "fast_threshold must be from fast_minimum to 255");
   require(cell >= 8, "cell must be at least 8 pixels");
-  require(border >= kPatternReach + 1, "border must be at least 17 pixels");
+  require(border >= kPatternReach + 1, "border must be at least 19 pixels");
+  require(evenness >= 0 && evenness <= 1, "evenness must be from 0 to 1");
 }
 
 Extractor::Extractor(ExtractorSettings settings) : settings_(settings) { settings_.Check(); }
+
+void Extractor::PrepareBuffers(const std::vector<cv::Size>& sizes) {
+  if (!smooth_.empty() && smooth_[0].size() == sizes[0]) return;
+  int rows = 0;
+  for (const cv::Size& size : sizes) rows += size.height;
+  const cv::Mat fine(rows, sizes[0].width, CV_8UC1), smooth(rows, sizes[0].width, CV_8UC1);
+  fine_.clear();
+  smooth_.clear();
+  int first_row = 0;
+  for (const cv::Size& size : sizes) {
+    const cv::Rect place(0, first_row, size.width, size.height);
+    fine_.push_back(fine(place));
+    smooth_.push_back(smooth(place));
+    first_row += size.height;
+  }
+  pattern_.emplace(static_cast<int>(smooth.step[0]));
+}
+
+std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& band) {
+  // The neighbours' rows that are needed too are smoothed once more: cheaper than waiting for them.
+  const int top = std::max(0, band.first_row - kAround);
+  const int bottom = std::min(level.rows, band.end_row + kAround);
+  cv::Mat fine(bottom - top, level.cols, CV_8UC1);
+  SmoothBinomial(level, top, fine);
+  fine.rowRange(band.first_row - top, band.end_row - top)
+      .copyTo(fine_[band.level].rowRange(band.first_row, band.end_row));
+  SmoothBox(fine, band.first_row - top, smooth_[band.level].rowRange(band.first_row, band.end_row));
+
+  const int first = std::max(band.first_row, settings_.border);
+  const int end = std::min(band.end_row, level.rows - settings_.border);
+  std::vector<Corner> corners =
+      FastCorners(fine, settings_.fast_minimum, settings_.border, first - top, end - top);
+  for (Corner& c : corners) c.y += top;
+  return StrongPerCell(corners, level.size(), settings_.border, settings_.cell,
+                       settings_.fast_threshold);
+}
 
 Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number) {
   if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8 bit grey");
@@ -72,57 +124,36 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
   frame.time = time;
   frame.number = number;
   frame.image = image.clone();  // the caller may reuse the buffer
-  frame.pyramid = BuildPyramid(frame.image);
+  const std::vector<cv::Size> sizes = PyramidSizes(frame.image.size());
+  PrepareBuffers(sizes);
 
-  // Corners in bands of rows, and the smoothed levels.
-  struct Band {
-    int level, first_row, end_row;
-  };
-  std::vector<Band> bands;
-  std::array<int, kPyramidLevels + 1> first_band{};
-  std::array<int, kPyramidLevels + 1> first_smooth_row{};
-  for (int l = 0; l < kPyramidLevels; ++l) {
-    first_band[l] = static_cast<int>(bands.size());
-    for (int row = 0; row < frame.pyramid[l].rows; row += kBandRows) {
-      bands.push_back({l, row, row + kBandRows});
-    }
-    first_smooth_row[l + 1] = first_smooth_row[l] + frame.pyramid[l].rows;
-  }
-  first_band[kPyramidLevels] = static_cast<int>(bands.size());
-  smooth_.create(first_smooth_row[kPyramidLevels], image.cols, CV_8UC1);
-  const int stride = static_cast<int>(smooth_.step[0]);
-  if (!pattern_ || pattern_->stride() != stride) pattern_.emplace(stride);
-  std::array<cv::Mat, kPyramidLevels> smooth;
-  for (int l = 0; l < kPyramidLevels; ++l) {
-    smooth[l] =
-        smooth_(cv::Rect(0, first_smooth_row[l], frame.pyramid[l].cols, frame.pyramid[l].rows));
-  }
+  // Corners and smoothed levels, in bands of rows. Meanwhile the smaller levels are made.
+  const std::vector<Band> bands = CutIntoBands(sizes, settings_);
   std::vector<std::vector<Corner>> found(bands.size());
-  ParallelFor(kPyramidLevels + static_cast<int>(bands.size()), [&](int i) {
-    if (i < kPyramidLevels) {
-      SmoothForDescriptors(frame.pyramid[i], smooth[i]);
-    } else {
-      const Band& band = bands[i - kPyramidLevels];
-      found[i - kPyramidLevels] = FastCorners(frame.pyramid[band.level], settings_.fast_minimum,
-                                              settings_.border, band.first_row, band.end_row);
-    }
+  const int of_level_0 = static_cast<int>(
+      std::count_if(bands.begin(), bands.end(), [](const Band& b) { return b.level == 0; }));
+  ParallelFor(1 + of_level_0, [&](int i) {
+    if (i == 0)
+      frame.pyramid = BuildPyramid(frame.image);
+    else
+      found[i - 1] = LookThrough(frame.image, bands[i - 1]);
+  });
+  ParallelFor(static_cast<int>(bands.size()) - of_level_0, [&](int i) {
+    const Band& band = bands[of_level_0 + i];
+    found[of_level_0 + i] = LookThrough(frame.pyramid[band.level], band);
   });
 
   // The choice among them, level by level.
   std::array<std::vector<Corner>, kPyramidLevels> corners;
-  ParallelFor(kPyramidLevels, [&](int l) {
-    std::vector<Corner> all;
-    for (int b = first_band[l]; b < first_band[l + 1]; ++b) {
-      all.insert(all.end(), found[b].begin(), found[b].end());
-    }
-    corners[l] = StrongPerCell(all, frame.pyramid[l].size(), settings_.border, settings_.cell,
-                               settings_.fast_threshold);
-  });
+  for (size_t b = 0; b < bands.size(); ++b) {
+    std::vector<Corner>& all = corners[bands[b].level];
+    all.insert(all.end(), found[b].begin(), found[b].end());
+  }
   std::array<int, kPyramidLevels> available{};
   for (int l = 0; l < kPyramidLevels; ++l) available[l] = static_cast<int>(corners[l].size());
   const std::array<int, kPyramidLevels> budget = LevelBudgets(available, settings_.features);
   ParallelFor(kPyramidLevels, [&](int l) {
-    corners[l] = SpreadCorners(corners[l], frame.pyramid[l].size(), budget[l]);
+    corners[l] = SpreadCorners(corners[l], sizes[l], budget[l], settings_.evenness);
   });
 
   // Direction, descriptor and position of each.
@@ -144,10 +175,11 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
       k.response = static_cast<float>(corner.score);
       k.angle = PatchAngle(frame.pyramid[l], corner.x, corner.y);
       frame.descriptors[i] =
-          pattern_->Describe(smooth[l].ptr<uint8_t>(corner.y) + corner.x, k.angle);
-      const double scale_x = static_cast<double>(image.cols) / frame.pyramid[l].cols;
-      const double scale_y = static_cast<double>(image.rows) / frame.pyramid[l].rows;
-      const Eigen::Vector2d raw(ToLevelZero(corner.x, scale_x), ToLevelZero(corner.y, scale_y));
+          pattern_->Describe(smooth_[l].ptr<uint8_t>(corner.y) + corner.x, k.angle);
+      const Eigen::Vector2d place = RefineCorner(fine_[l], corner);
+      const Eigen::Vector2d raw(
+          ToLevelZero(place.x(), static_cast<double>(image.cols) / sizes[l].width),
+          ToLevelZero(place.y(), static_cast<double>(image.rows) / sizes[l].height));
       const Eigen::Vector2d ideal = distorted ? camera.Undistort(raw) : raw;
       k.raw_x = static_cast<float>(raw.x());
       k.raw_y = static_cast<float>(raw.y());

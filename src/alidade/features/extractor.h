@@ -6,17 +6,21 @@
 #include <optional>
 
 #include "alidade/features/describe.h"
+#include "alidade/features/fast.h"
 #include "alidade/features/frame.h"
 
 namespace alidade {
 
 struct ExtractorSettings {
   int features = 1000;      // wanted per image, over all levels
-  int fast_threshold = 20;  // grey levels; first try in each cell
-  int fast_minimum = 7;     // grey levels; second try in cells the first left empty
-  int cell = 32;            // pixels, side of a detection cell on every level
-  int border = 19;          // pixels kept free on every level: descriptor patch and blur must fit
-  void Check() const;       // throws Error (usage) naming the field that cannot be
+  int fast_threshold = 14;  // grey levels of the lightly smoothed level; first try in each cell
+  int fast_minimum = 6;  // grey levels; second try in cells the first left empty. Pixel noise of 4
+                         // grey levels stays below
+  int cell = 32;         // pixels, side of a detection cell on every level
+  int border = 19;       // pixels kept free on every level: the descriptor's patch must fit
+  double evenness =
+      0.45;  // 0: the strongest corners; 1: as evenly spread as can be, at the price of weak ones
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 // One instance per stream: keeps buffers between frames. Extract() is not re-entrant.
@@ -29,9 +33,19 @@ class Extractor {
   // result does not depend on the number of threads. A structureless image gives an empty frame.
   Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number);
 
+  struct Band {
+    int level, first_row, end_row;
+  };
+
  private:
+  void PrepareBuffers(const std::vector<cv::Size>& sizes);
+  // Fills the band's rows of both buffers and finds its corners.
+  std::vector<Corner> LookThrough(const cv::Mat& level, const Band& band);
+
   ExtractorSettings settings_;
-  cv::Mat smooth_;  // the smoothed levels below each other, one row stride for all
+  // Every level lightly smoothed, for corners, and more so, for descriptors; one row stride for
+  // all.
+  std::vector<cv::Mat> fine_, smooth_;
   std::optional<SteeredPattern> pattern_;  // for that stride
 };
 

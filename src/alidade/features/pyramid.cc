@@ -8,14 +8,22 @@
 
 namespace alidade {
 
+std::vector<cv::Size> PyramidSizes(cv::Size image) {
+  std::vector<cv::Size> sizes;
+  for (int level = 0; level < kPyramidLevels; ++level) {
+    const double scale = ScaleOfLevel(level);
+    sizes.emplace_back(std::max(1, static_cast<int>(std::lround(image.width / scale))),
+                       std::max(1, static_cast<int>(std::lround(image.height / scale))));
+  }
+  return sizes;
+}
+
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image) {
+  const std::vector<cv::Size> sizes = PyramidSizes(image.size());
   std::vector<cv::Mat> pyramid(kPyramidLevels);
   pyramid[0] = image;
   for (int level = 1; level < kPyramidLevels; ++level) {
-    const double scale = ScaleOfLevel(level);
-    const cv::Size size(std::max(1, static_cast<int>(std::lround(image.cols / scale))),
-                        std::max(1, static_cast<int>(std::lround(image.rows / scale))));
-    cv::resize(pyramid[level - 1], pyramid[level], size, 0, 0, cv::INTER_LINEAR);
+    cv::resize(pyramid[level - 1], pyramid[level], sizes[level], 0, 0, cv::INTER_LINEAR);
   }
   return pyramid;
 }

@@ -6,6 +6,9 @@
 
 namespace alidade {
 
+// Of kPyramidLevels levels; no side gets below one pixel.
+std::vector<cv::Size> PyramidSizes(cv::Size image);
+
 // kPyramidLevels images, 8 bit grey. Level 0 is `image` itself (shared, not copied); no side gets
 // below one pixel.
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image);

@@ -1,0 +1,174 @@
+#include "alidade/features/fast.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <opencv2/core/hal/intrin.hpp>
+
+namespace alidade {
+namespace {
+
+constexpr int kCircle = 16;
+constexpr int kLanes = 16;  // pixels looked at together
+constexpr std::array<int, kCircle> kCircleX = {0, 1,  2,  3,  3,  3,  2,  1,
+                                               0, -1, -2, -3, -3, -3, -2, -1};
+constexpr std::array<int, kCircle> kCircleY = {-3, -3, -2, -1, 0, 1,  2,  3,
+                                               3,  3,  2,  1,  0, -1, -2, -3};
+
+using Offsets = std::array<int, kCircle>;
+
+Offsets CircleOffsets(const cv::Mat& image) {
+  Offsets offsets;
+  for (int k = 0; k < kCircle; ++k) {
+    offsets[k] = kCircleY[k] * static_cast<int>(image.step[0]) + kCircleX[k];
+  }
+  return offsets;
+}
+
+// The largest, over the 16 runs of nine, of the smallest of the nine. Runs k and k + 1 share eight:
+// with m the smallest of those, the better of both is min(m, max(first, last)).
+template <typename Vector>
+Vector BestRun(const std::array<Vector, kCircle>& d) {
+  using cv::v_max;
+  using cv::v_min;
+  std::array<Vector, kCircle / 2> two, four;  // runs that begin at odd places
+  for (int i = 0; i < kCircle / 2; ++i) two[i] = v_min(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
+  for (int i = 0; i < kCircle / 2; ++i) four[i] = v_min(two[i], two[(i + 1) % 8]);
+  Vector best;
+  for (int i = 0; i < kCircle / 2; ++i) {
+    const Vector eight = v_min(four[i], four[(i + 2) % 8]);
+    const Vector nine = v_min(eight, v_max(d[2 * i], d[(2 * i + 9) % kCircle]));
+    best = i == 0 ? nine : v_max(best, nine);
+  }
+  return best;
+}
+
+// Scores plus one of 16 pixels, 0 where at most `threshold`; false when all are.
+bool ScoreBlock(const uint8_t* p, const Offsets& circle, const cv::v_uint8x16& threshold,
+                cv::v_uint8x16& scores) {
+  using cv::v_max;
+  using cv::v_min;
+  const cv::v_uint8x16 centre = cv::v_load(p);
+  std::array<cv::v_uint8x16, kCircle> d;
+  // Nine in a row hold one of the top and bottom and one of the left and right pixel. Subtraction
+  // stops at 0.
+  const cv::v_uint8x16 top = cv::v_load(p + circle[0]), right = cv::v_load(p + circle[4]);
+  const cv::v_uint8x16 bottom = cv::v_load(p + circle[8]), left = cv::v_load(p + circle[12]);
+  const cv::v_uint8x16 bright = v_min(v_max(top, bottom), v_max(left, right)) - centre;
+  const cv::v_uint8x16 dark = centre - v_max(v_min(top, bottom), v_min(left, right));
+  const bool maybe_bright = cv::v_check_any(bright > threshold);
+  const bool maybe_dark = cv::v_check_any(dark > threshold);
+  if (!maybe_bright && !maybe_dark) return false;
+  cv::v_uint8x16 best = cv::v_setzero_u8();
+  if (maybe_bright) {
+    for (int k = 0; k < kCircle; ++k) d[k] = cv::v_load(p + circle[k]) - centre;
+    best = BestRun(d);
+  }
+  if (maybe_dark) {
+    for (int k = 0; k < kCircle; ++k) d[k] = centre - cv::v_load(p + circle[k]);
+    best = v_max(best, BestRun(d));
+  }
+  const cv::v_uint8x16 corner = best > threshold;
+  if (!cv::v_check_any(corner)) return false;
+  scores = best & corner;
+  return true;
+}
+
+// One image row of scores and the columns where they are not zero.
+struct ScoreRow {
+  std::vector<uint8_t> score;  // plus one; 0 = no corner
+  std::vector<int> columns;
+};
+
+void ScoreRowOf(const cv::Mat& image, int y, int first, int end, const Offsets& circle,
+                const cv::v_uint8x16& threshold, ScoreRow& row) {
+  std::fill(row.score.begin(), row.score.end(), uint8_t{0});
+  row.columns.clear();
+  const uint8_t* pixels = image.ptr<uint8_t>(y);
+  for (int x = first; x < end; x += kLanes) {
+    // The last block steps back to stay inside; what was seen already is masked by the column test
+    // below.
+    const int x0 = std::min(x, end - kLanes);
+    cv::v_uint8x16 scores;
+    if (!ScoreBlock(pixels + x0, circle, threshold, scores)) continue;
+    for (int mask = cv::v_signmask(scores > cv::v_setzero_u8()), lane = 0; mask != 0;
+         ++lane, mask >>= 1) {
+      if ((mask & 1) && x0 + lane >= x) row.columns.push_back(x0 + lane);
+    }
+    std::array<uint8_t, kLanes> values;
+    cv::v_store(values.data(), scores);
+    for (int lane = std::max(0, x - x0); lane < kLanes; ++lane) row.score[x0 + lane] = values[lane];
+  }
+}
+
+}  // namespace
+
+std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border, int first_row,
+                                int end_row) {
+  std::vector<Corner> corners;
+  const int first = border, end = image.cols - border;
+  // Blocks may reach past the border on narrow images, not past the image.
+  if (first_row >= end_row || first >= end || end - kLanes < 3) return corners;
+  const Offsets circle = CircleOffsets(image);
+  const cv::v_uint8x16 over = cv::v_setall_u8(static_cast<uint8_t>(threshold));
+  std::array<ScoreRow, 3> rows;  // above, this, below
+  for (ScoreRow& row : rows) row.score.assign(image.cols, 0);
+  ScoreRowOf(image, first_row - 1, first, end, circle, over, rows[0]);
+  ScoreRowOf(image, first_row, first, end, circle, over, rows[1]);
+  for (int y = first_row; y < end_row; ++y) {
+    ScoreRowOf(image, y + 1, first, end, circle, over, rows[2]);
+    const uint8_t *above = rows[0].score.data(), *here = rows[1].score.data(),
+                  *below = rows[2].score.data();
+    for (int x : rows[1].columns) {
+      const int s = here[x];
+      const bool top = s > above[x - 1] && s > above[x] && s > above[x + 1] && s > here[x - 1] &&
+                       s >= here[x + 1] && s >= below[x - 1] && s >= below[x] && s >= below[x + 1];
+      if (top) corners.push_back({x, y, s - 1});
+    }
+    std::swap(rows[0], rows[1]);
+    std::swap(rows[1], rows[2]);
+  }
+  return corners;
+}
+
+Eigen::Vector2d RefineCorner(const cv::Mat& image, const Corner& corner) {
+  constexpr double kFarthest =
+      0.6;  // beyond half a pixel the neighbour would have won, but for noise
+  const Offsets circle = CircleOffsets(image);
+  // Signed scores of three rows of eight pixels, of which three are used, as bright and as dark
+  // corners.
+  std::array<std::array<int16_t, 8>, 3> bright, dark;
+  for (int row = 0; row < 3; ++row) {
+    const uint8_t* p = image.ptr<uint8_t>(corner.y + row - 1) + corner.x - 1;
+    const cv::v_int16x8 centre = cv::v_reinterpret_as_s16(cv::v_load_expand(p));
+    std::array<cv::v_int16x8, kCircle> up, down;
+    for (int k = 0; k < kCircle; ++k) {
+      const cv::v_int16x8 rim = cv::v_reinterpret_as_s16(cv::v_load_expand(p + circle[k]));
+      up[k] = rim - centre;
+      down[k] = centre - rim;
+    }
+    cv::v_store(bright[row].data(), BestRun(up));
+    cv::v_store(dark[row].data(), BestRun(down));
+  }
+  const auto& s = bright[1][1] >= dark[1][1] ? bright : dark;
+  // Derivatives by differences, smoothed across with 1 2 1.
+  const double gx = ((s[0][2] - s[0][0]) + 2 * (s[1][2] - s[1][0]) + (s[2][2] - s[2][0])) / 8.0;
+  const double gy = ((s[2][0] - s[0][0]) + 2 * (s[2][1] - s[0][1]) + (s[2][2] - s[0][2])) / 8.0;
+  const double xx = ((s[0][2] + s[0][0] - 2 * s[0][1]) + 2 * (s[1][2] + s[1][0] - 2 * s[1][1]) +
+                     (s[2][2] + s[2][0] - 2 * s[2][1])) /
+                    4.0;
+  const double yy = ((s[2][0] + s[0][0] - 2 * s[1][0]) + 2 * (s[2][1] + s[0][1] - 2 * s[1][1]) +
+                     (s[2][2] + s[0][2] - 2 * s[1][2])) /
+                    4.0;
+  const double xy = (s[2][2] + s[0][0] - s[2][0] - s[0][2]) / 4.0;
+  Eigen::Vector2d place(corner.x, corner.y);
+  const double det = xx * yy - xy * xy;
+  if (!(xx < 0 && det > 0)) return place;
+  Eigen::Vector2d shift(-(yy * gx - xy * gy) / det, -(xx * gy - xy * gx) / det);
+  const double largest = shift.cwiseAbs().maxCoeff();
+  if (largest > kFarthest) shift *= kFarthest / largest;
+  return place + shift;
+}
+
+}  // namespace alidade
