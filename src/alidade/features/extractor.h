@@ -56,9 +56,9 @@ class Extractor {
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame);
 
 // Finds every keypoint of the rectified left image along its row in the right one (extracted with
-// the same settings): Hamming distance, then sum of absolute differences and a parabola for
-// sub-pixel disparity, then outliers by the median SAD. Fills right_x and depth. Needs both
-// pyramids.
+// the same settings): Hamming distance, then sum of absolute differences, then an alignment by
+// least squares for sub-pixel disparity, then outliers by the median SAD. Fills right_x and depth.
+// Needs both pyramids.
 void MatchStereo(const Frame& right, const Camera& camera, Frame& left);
 
 }  // namespace alidade

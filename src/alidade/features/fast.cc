@@ -107,9 +107,10 @@ void ScoreRowOf(const cv::Mat& image, int y, int first, int end, const Offsets& 
 std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border, int first_row,
                                 int end_row) {
   std::vector<Corner> corners;
-  const int first = border, end = image.cols - border;
+  // Suppression needs the scores of one column more on each side.
+  const int first = border - 1, end = image.cols - border + 1;
   // Blocks may reach past the border on narrow images, not past the image.
-  if (first_row >= end_row || first >= end || end - kLanes < 3) return corners;
+  if (first_row >= end_row || end - first <= 2 || end - kLanes < 3) return corners;
   const Offsets circle = CircleOffsets(image);
   const cv::v_uint8x16 over = cv::v_setall_u8(static_cast<uint8_t>(threshold));
   std::array<ScoreRow, 3> rows;  // above, this, below
@@ -121,6 +122,7 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
     const uint8_t *above = rows[0].score.data(), *here = rows[1].score.data(),
                   *below = rows[2].score.data();
     for (int x : rows[1].columns) {
+      if (x == first || x == end - 1) continue;
       const int s = here[x];
       const bool top = s > above[x - 1] && s > above[x] && s > above[x + 1] && s > here[x - 1] &&
                        s >= here[x + 1] && s >= below[x - 1] && s >= below[x] && s >= below[x + 1];

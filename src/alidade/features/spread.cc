@@ -20,26 +20,60 @@ std::vector<Corner> ByScore(const std::vector<Corner>& corners) {
   return sorted;
 }
 
-// Takes corners in the order given unless one taken before lies within `distance` pixels (in the
-// maximum norm, to the precision of a grid of half that width). Stops when `limit` are taken.
-void TakeApart(const std::vector<Corner>& corners, cv::Size level, int distance, int limit,
-               std::vector<uint8_t>& covered, std::vector<int>& taken) {
-  const int cell = std::max(1, distance / 2);
-  const int reach = distance / cell;
-  // A rim of `reach` cells all around saves asking where the image ends.
-  const int columns = level.width / cell + 1 + 2 * reach,
-            rows = level.height / cell + 1 + 2 * reach;
-  covered.assign(static_cast<size_t>(columns) * rows, 0);
-  taken.clear();
-  for (int i = 0; i < static_cast<int>(corners.size()); ++i) {
-    const int c = corners[i].x / cell, r = corners[i].y / cell;
-    if (covered[(r + reach) * columns + c + reach]) continue;
-    taken.push_back(i);
-    if (static_cast<int>(taken.size()) == limit) break;
-    for (int y = r; y <= r + 2 * reach; ++y) {
-      std::fill_n(covered.begin() + y * columns + c, 2 * reach + 1, uint8_t{1});
-    }
+// Takes corners one by one unless one taken before lies within `distance` pixels (in the maximum
+// norm, to the precision of a grid of half that width).
+class Apart {
+ public:
+  void Begin(cv::Size level, int distance) {
+    cell_ = std::max(1, distance / 2);
+    reach_ = distance / cell_;
+    // A rim of `reach` cells all around saves asking where the image ends.
+    columns_ = level.width / cell_ + 1 + 2 * reach_;
+    const int rows = level.height / cell_ + 1 + 2 * reach_;
+    covered_.assign(static_cast<size_t>(columns_) * rows, 0);
   }
+  bool Take(const Corner& corner) {
+    const int c = corner.x / cell_, r = corner.y / cell_;
+    if (covered_[(r + reach_) * columns_ + c + reach_]) return false;
+    for (int y = r; y <= r + 2 * reach_; ++y) {
+      std::fill_n(covered_.begin() + y * columns_ + c, 2 * reach_ + 1, uint8_t{1});
+    }
+    return true;
+  }
+
+ private:
+  int cell_ = 1, reach_ = 0, columns_ = 0;
+  std::vector<uint8_t> covered_;
+};
+
+// The first `count` of `corners` under the widest distance that leaves so many, as flags; and that
+// distance.
+struct EvenChoice {
+  std::vector<uint8_t> taken;
+  int distance = 0;
+};
+
+EvenChoice ChooseEvenly(const std::vector<Corner>& corners, cv::Size level, int count) {
+  EvenChoice best{std::vector<uint8_t>(corners.size(), 0), 0};
+  std::fill_n(best.taken.begin(), count, uint8_t{1});
+  Apart apart;
+  // Corners left to each other by `too_wide` would need more room than there is: a square of at
+  // least half of it each.
+  int too_wide = 2 + static_cast<int>(2 * std::sqrt(static_cast<double>(level.area()) / count));
+  while (too_wide - best.distance > 1) {
+    EvenChoice choice{std::vector<uint8_t>(corners.size(), 0), (best.distance + too_wide) / 2};
+    apart.Begin(level, choice.distance);
+    int taken = 0;
+    for (size_t i = 0; i < corners.size() && taken < count; ++i) {
+      choice.taken[i] = apart.Take(corners[i]);
+      taken += choice.taken[i];
+    }
+    if (taken == count)
+      best = std::move(choice);
+    else
+      too_wide = choice.distance;
+  }
+  return best;
 }
 
 }  // namespace
@@ -68,24 +102,28 @@ std::vector<Corner> SpreadCorners(const std::vector<Corner>& corners, cv::Size l
   if (static_cast<int>(corners.size()) <= count) return corners;
   if (count <= 0) return {};
   const std::vector<Corner> by_score = ByScore(corners);
-  std::vector<uint8_t> covered;
-  std::vector<int> taken;
-  const auto leaves_enough = [&](int distance) {
-    TakeApart(by_score, level, distance, count, covered, taken);
-    return static_cast<int>(taken.size()) == count;
-  };
-  // `enough` leaves `count`, `too_wide` does not: even filled without a gap, squares of half the
-  // distance (at least) per corner would need more than the level.
-  int enough = 0;
-  int too_wide = 2 + static_cast<int>(2 * std::sqrt(static_cast<double>(level.area()) / count));
-  while (too_wide - enough > 1) {
-    const int middle = (enough + too_wide) / 2;
-    (leaves_enough(middle) ? enough : too_wide) = middle;
+  const int even = std::clamp(static_cast<int>(std::lround(evenness * count)), 1, count);
+  EvenChoice choice = ChooseEvenly(by_score, level, even);
+
+  // The rest by strength, at a share of the distance that all `count` would have if they were
+  // evenly spread.
+  constexpr double kClose = 0.4;
+  Apart apart;
+  apart.Begin(level, static_cast<int>(kClose * choice.distance * std::sqrt(evenness)));
+  std::vector<Corner> kept;
+  kept.reserve(count);
+  for (size_t i = 0; i < by_score.size(); ++i) {
+    if (!choice.taken[i]) continue;
+    apart.Take(by_score[i]);
+    kept.push_back(by_score[i]);
   }
-  const int distance = static_cast<int>(std::lround(evenness * enough));
-  std::vector<Corner> kept(by_score.begin(), by_score.begin() + count);
-  if (distance > 0 && leaves_enough(distance)) {
-    for (int i = 0; i < count; ++i) kept[i] = by_score[taken[i]];
+  for (size_t i = 0; i < by_score.size() && static_cast<int>(kept.size()) < count; ++i) {
+    if (choice.taken[i] || !apart.Take(by_score[i])) continue;
+    choice.taken[i] = 1;
+    kept.push_back(by_score[i]);
+  }
+  for (size_t i = 0; i < by_score.size() && static_cast<int>(kept.size()) < count; ++i) {
+    if (!choice.taken[i]) kept.push_back(by_score[i]);
   }
   std::sort(kept.begin(), kept.end(),
             [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });

@@ -14,10 +14,10 @@ namespace alidade {
 std::vector<Corner> StrongPerCell(const std::vector<Corner>& corners, cv::Size level, int border,
                                   int cell, int strong);
 
-// At most `count` of the corners, spread evenly: the strongest under a minimum distance, which is
-// the share `evenness` of the widest that leaves `count` of them (0: simply the strongest; 1: as
-// even as can be). Adaptive non-maximal suppression (Brown et al. 2005) by square covering (Bailo
-// et al. 2018). Sorted by row, then column.
+// At most `count` of the corners. The share `evenness` of them is spread as evenly as can be: the
+// strongest under the widest distance that leaves so many (adaptive non-maximal suppression: Brown
+// et al. 2005, by square covering as in Bailo et al. 2018). So weak corners are kept where there is
+// nothing else. The rest are the strongest ones, not crowded. Sorted by row, then column.
 std::vector<Corner> SpreadCorners(const std::vector<Corner>& corners, cv::Size level, int count,
                                   double evenness);
 

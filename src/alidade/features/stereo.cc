@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
-#include <optional>
+#include <cstdint>
+#include <limits>
+#include <opencv2/core/hal/intrin.hpp>
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
@@ -34,16 +35,79 @@ std::vector<std::vector<int>> RowTable(const Frame& right, int rows) {
   return table;
 }
 
-// Sum of absolute differences of two windows, each less its centre's value (exposures may differ).
-int WindowDifference(const cv::Mat& left, int xl, const cv::Mat& right, int xr, int y) {
-  const int offset = left.at<uint8_t>(y, xl) - right.at<uint8_t>(y, xr);
-  int sum = 0;
+// The window's rows hold 11 pixels, read 16 at a time: these count.
+constexpr std::array<uint8_t, 16> kInWindow = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
+
+int WindowSum(const cv::Mat& image, int x, int y) {
+  const cv::v_uint8x16 inside = cv::v_load(kInWindow.data());
+  cv::v_uint32x4 sum = cv::v_setzero_u32();
   for (int v = -kWindow; v <= kWindow; ++v) {
-    const uint8_t* l = left.ptr<uint8_t>(y + v) + xl;
-    const uint8_t* r = right.ptr<uint8_t>(y + v) + xr;
-    for (int u = -kWindow; u <= kWindow; ++u) sum += std::abs(l[u] - r[u] - offset);
+    const uint8_t* row = image.ptr<uint8_t>(y + v) + x - kWindow;
+    sum = cv::v_dotprod_expand_fast(cv::v_load(row), inside, sum);
   }
-  return sum;
+  return static_cast<int>(cv::v_reduce_sum(sum));
+}
+
+// Sum of absolute differences of two windows after taking out the difference of their means:
+// exposures may differ.
+int WindowDifference(const cv::Mat& left, int xl, const cv::Mat& right, int xr, int y) {
+  constexpr int kPixels = (2 * kWindow + 1) * (2 * kWindow + 1);
+  const int offset = static_cast<int>(
+      std::lround(static_cast<double>(WindowSum(left, xl, y) - WindowSum(right, xr, y)) / kPixels));
+  // One of the two is zero; subtraction stops at 0.
+  const cv::v_uint8x16 from_left = cv::v_setall_u8(static_cast<uint8_t>(std::max(0, offset)));
+  const cv::v_uint8x16 from_right = cv::v_setall_u8(static_cast<uint8_t>(std::max(0, -offset)));
+  const cv::v_uint8x16 inside = cv::v_load(kInWindow.data());
+  cv::v_uint32x4 sum = cv::v_setzero_u32();
+  for (int v = -kWindow; v <= kWindow; ++v) {
+    const cv::v_uint8x16 l = cv::v_load(left.ptr<uint8_t>(y + v) + xl - kWindow) - from_left;
+    const cv::v_uint8x16 r = cv::v_load(right.ptr<uint8_t>(y + v) + xr - kWindow) - from_right;
+    sum = cv::v_dotprod_expand_fast(cv::v_absdiff(l, r), inside, sum);
+  }
+  return static_cast<int>(cv::v_reduce_sum(sum));
+}
+
+// Moves the window in the right image from xr to where it is most like the one in the left:
+// Gauss-Newton steps on the squared differences less their mean (Lucas & Kanade 1981, along the row
+// only). Slopes are the left window's. Not a number when it runs off or the window has no slope
+// along the row.
+double Align(const cv::Mat& left, int xl, const cv::Mat& right, double xr, int y) {
+  constexpr int kSteps = 4;
+  constexpr int kSide = 2 * kWindow + 1;
+  constexpr double kFarthest = 1.5;  // pixels: the start is the best whole pixel
+  constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
+  std::array<float, kSide * kSide> slope;
+  float mean_slope = 0, strength = 0;
+  for (int v = 0, i = 0; v < kSide; ++v) {
+    const uint8_t* row = left.ptr<uint8_t>(y + v - kWindow) + xl - kWindow;
+    for (int u = 0; u < kSide; ++u, ++i) {
+      slope[i] = 0.5f * static_cast<float>(row[u + 1] - row[u - 1]);
+      mean_slope += slope[i] / (kSide * kSide);
+    }
+  }
+  for (float& s : slope) {
+    s -= mean_slope;  // so that a difference in brightness has no say
+    strength += s * s;
+  }
+  if (strength < 1) return kLost;
+  double x = xr;
+  for (int step = 0; step < kSteps; ++step) {
+    const int whole = static_cast<int>(std::floor(x));
+    const float part = static_cast<float>(x - whole);
+    if (whole < kWindow || whole + kWindow + 1 >= right.cols) return kLost;
+    float sum = 0;
+    for (int v = 0, i = 0; v < kSide; ++v) {
+      const uint8_t* l = left.ptr<uint8_t>(y + v - kWindow) + xl - kWindow;
+      const uint8_t* r = right.ptr<uint8_t>(y + v - kWindow) + whole - kWindow;
+      for (int u = 0; u < kSide; ++u, ++i) {
+        const float value = r[u] + part * static_cast<float>(r[u + 1] - r[u]);
+        sum += slope[i] * (l[u] - value);
+      }
+    }
+    x += sum / strength;
+    if (!(std::abs(x - xr) <= kFarthest)) return kLost;
+  }
+  return x;
 }
 
 struct Disparity {
@@ -56,13 +120,12 @@ Disparity Refine(const Frame& left, const Keypoint& k, const Frame& right, float
   const cv::Mat& r = right.pyramid[k.level];
   const double scale_x = static_cast<double>(left.image.cols) / l.cols;
   const double scale_y = static_cast<double>(left.image.rows) / l.rows;
-  const double exact_x = FromLevelZero(k.raw_x, scale_x);
-  const int xl = static_cast<int>(std::lround(exact_x));
+  const int xl = static_cast<int>(std::lround(FromLevelZero(k.raw_x, scale_x)));
   const int y = static_cast<int>(std::lround(FromLevelZero(k.raw_y, scale_y)));
   const int xr = static_cast<int>(std::lround(FromLevelZero(right_x, scale_x)));
-  const int reach = kWindow + kSlide + 1;
-  if (y < kWindow || y >= l.rows - kWindow || xl < kWindow || xl >= l.cols - kWindow) return {};
-  if (xr < reach || xr >= r.cols - reach) return {};
+  constexpr int kRead = 16 - kWindow;  // columns read to the right of a window's centre
+  if (y < kWindow || y >= l.rows - kWindow || xl <= kWindow || xl >= l.cols - kRead) return {};
+  if (xr < kWindow + kSlide || xr >= r.cols - kSlide - kRead) return {};
   std::array<int, 2 * kSlide + 1> difference;
   for (int s = -kSlide; s <= kSlide; ++s) {
     difference[s + kSlide] = WindowDifference(l, xl, r, xr + s, y);
@@ -70,10 +133,9 @@ Disparity Refine(const Frame& left, const Keypoint& k, const Frame& right, float
   const int best =
       static_cast<int>(std::min_element(difference.begin(), difference.end()) - difference.begin());
   if (best == 0 || best == 2 * kSlide) return {};
-  const double before = difference[best - 1], here = difference[best], after = difference[best + 1];
-  const double curvature = before + after - 2 * here;
-  const double shift = curvature > 0 ? (before - after) / (2 * curvature) : 0;
-  return {(xl - (xr + best - kSlide + shift)) * scale_x, difference[best]};
+  const double aligned = Align(l, xl, r, xr + best - kSlide, y);
+  if (!std::isfinite(aligned)) return {};
+  return {(xl - aligned) * scale_x, difference[best]};
 }
 
 }  // namespace
