@@ -19,7 +19,7 @@ struct TwoViewSettings {
   double sigma = 1.0;              // standard deviation of a keypoint, pixels
   double homography_share = 0.45;  // S_H / (S_H + S_F) above which the scene counts as planar
   double min_parallax_degrees =
-      1.0;  // of the triangulated points (the 50th smallest from the top, or the last)
+      1.5;  // of the triangulated points (the 50th smallest from the top, or the last)
   int min_triangulated = 50;  // points
   double min_good_share =
       0.9;  // of the inliers that must triangulate in front of both, with small error
