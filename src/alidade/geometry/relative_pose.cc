@@ -23,8 +23,8 @@ struct Sampson {
   double inverse_gradient;
 };
 
-Sampson SampsonOf(const Eigen::Matrix3d& E, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
-                  const Eigen::Vector2d& sigma) {
+inline Sampson SampsonOf(const Eigen::Matrix3d& E, const Eigen::Vector3d& a,
+                         const Eigen::Vector3d& b, const Eigen::Vector2d& sigma) {
   const Eigen::Vector3d line_b = E * a;
   const Eigen::Vector2d line_a = E.leftCols<2>().transpose() * b;
   const double inverse_gradient =
@@ -145,27 +145,29 @@ RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
   return refined;
 }
 
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& m) {
+  if (!m.allFinite()) return Eigen::Matrix3d::Identity();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
 std::vector<bool> ExplainedByRotation(const Eigen::Matrix3d& start, const RayPairs& rays) {
   Eigen::Matrix3d R = start;
   std::vector<bool> explained(rays.size(), false);
   for (const double widening : {16.0, 4.0, 1.0, 1.0, 1.0}) {
-    const double bound =
-        widening * 2 * kChi2Homography;  // the difference of two images has twice the variance
+    // The difference of two images has twice the variance of one.
+    const double bound = widening * 2 * kChi2Homography;
     Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
     for (size_t i = 0; i < rays.size(); ++i) {
       const Eigen::Vector3d turned = R * rays.a[i];
       const Eigen::Vector2d error =
           (turned.head<2>() / turned.z() - rays.b[i].head<2>()).cwiseQuotient(rays.sigma);
       explained[i] = turned.z() > 0 && error.squaredNorm() < bound;
-      if (explained[i])
-        correlation += rays.b[i] * rays.a[i].transpose() / (rays.a[i].norm() * rays.b[i].norm());
+      if (!explained[i]) continue;
+      correlation += rays.b[i] * (rays.a[i].transpose() / (rays.a[i].norm() * rays.b[i].norm()));
     }
-    // Umeyama 1991: the rotation nearest to the correlation.
-    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation,
-                                                Eigen::ComputeFullU | Eigen::ComputeFullV);
-    const Eigen::Vector3d sign(
-        1, 1, svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
-    R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+    R = NearestRotation(correlation);  // Umeyama 1991
   }
   return explained;
 }

@@ -41,6 +41,9 @@ struct RefinedMotion {
 // does not get better.
 RefinedMotion RefineMotion(const Se3& T_b_a, const RayPairs& rays);
 
+// The rotation nearest to a matrix (in the Frobenius norm); identity when that is not finite.
+Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& m);
+
 // Matches that a camera which only turned would explain too (the rotation from a to b that explains
 // most, found from `start`): their images agree within the noise of both. Where it is nearly all
 // there is no parallax to speak of, whatever a motion made to fit the noise may claim.

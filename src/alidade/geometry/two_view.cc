@@ -57,11 +57,17 @@ void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
   result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kDegree;
 }
 
-double ShareBeyondRotation(const Hypothesis& best, const RayPairs& rays) {
-  const std::vector<bool> turned = ExplainedByRotation(best.T_b_a.R, rays);
-  int beyond = 0;
-  for (size_t i = 0; i < rays.size(); ++i) beyond += best.score.gain[i] > 0 && !turned[i];
-  return static_cast<double>(beyond) / std::max(1, best.score.consistent);
+// Whether a camera that only turned explains nearly all of the matches that `explained` picks.
+template <typename Explained>
+bool OnlyTurned(const Eigen::Matrix3d& start, const RayPairs& rays, Explained explained) {
+  const std::vector<bool> turned = ExplainedByRotation(start, rays);
+  int all = 0, beyond = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (!explained(i)) continue;
+    ++all;
+    beyond += !turned[i];
+  }
+  return beyond < kMinShareBeyondRotation * all;
 }
 
 TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
@@ -126,7 +132,16 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   const Eigen::Matrix3d K =
       Eigen::Vector3d(focal.x() / settings.sigma, focal.y() / settings.sigma, 1).asDiagonal();
   const Eigen::Matrix3d K_inverse = K.diagonal().cwiseInverse().asDiagonal();
-  std::vector<Se3> motions = MotionsFromHomography(K_inverse * models.homography.matrix * K);
+  const Eigen::Matrix3d H = K_inverse * models.homography.matrix * K;
+  const RansacModel& larger = models.homography.inliers > models.fundamental.inliers
+                                  ? models.homography
+                                  : models.fundamental;
+  // The usual case while a start is awaited, so the first to be told.
+  if (OnlyTurned(NearestRotation(H.determinant() < 0 ? -H : H), rays,
+                 [&](size_t i) { return larger.inlier[i]; })) {
+    return Refuse(std::move(result), TwoViewFailure::kLowParallax);
+  }
+  std::vector<Se3> motions = MotionsFromHomography(H);
   const std::vector<Se3> more = MotionsFromEssential(K * models.fundamental.matrix * K);
   motions.insert(motions.end(), more.begin(), more.end());
   const std::vector<Hypothesis> ranked = RankMotions(motions, rays);
@@ -138,7 +153,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   }
   result.T_b_a = best.T_b_a;
   Place(camera, a, b, settings.sigma, result);
-  if (ShareBeyondRotation(best, rays) < kMinShareBeyondRotation ||
+  if (OnlyTurned(best.T_b_a.R, rays, [&](size_t i) { return best.score.gain[i] > 0; }) ||
       result.parallax_degrees < settings.min_parallax_degrees ||
       best.direction_sigma > kMaxDirectionSigma) {
     return Refuse(std::move(result), TwoViewFailure::kLowParallax);

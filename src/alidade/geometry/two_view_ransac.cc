@@ -181,6 +181,7 @@ std::vector<Candidate> MostPromising(std::vector<Candidate> candidates) {
 template <typename Model>
 RansacModel Best(const std::vector<Candidate>& candidates, const Lanes& lanes, Points a, Points b) {
   RansacModel best;
+  best.inlier.assign(a.size(), false);
   for (const Candidate& candidate : candidates) {
     if (!(candidate.score > 0)) continue;
     RansacModel start;
