@@ -101,16 +101,16 @@ cv::Mat SenseDepth(const cv::Mat1f& exact, double focal, double factor, const No
   const int width = exact.cols, height = exact.rows;
   ParallelFor(height, [&](int y) {
     RowRandom random(key, y);
-    // From the left, the projector's rays reach columns x - fb / z of its own picture in order; a
-    // surface whose column comes before one already lit lies in the shadow of what stands in front.
-    float lit = -1e9f;
-    for (int x = 0; x < width; ++x) {
+    // From the right, the columns x - fb / z of the projector's own picture fall; where one rises
+    // again, what is seen lies in the shadow of something in front of it further to the right.
+    float lit = 1e9f;
+    for (int x = width - 1; x >= 0; --x) {
       const uint64_t bits = random.Next();
       const float here = exact(y, x);
       if (!(here > 0)) continue;
       const float column = static_cast<float>(x) - fb / here;
-      const bool shadow = column < lit - 1.0f;
-      lit = std::max(lit, column);
+      const bool shadow = column > lit + 1.0f;
+      lit = std::min(lit, column);
       const int sx = std::clamp(
           x + static_cast<int>(std::lround(ragged * gaussian[static_cast<uint32_t>(bits)])), 0,
           width - 1);

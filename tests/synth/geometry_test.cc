@@ -1,0 +1,159 @@
+// Depth, poses and pictures must belong together, exactly.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "alidade/synth/recording.h"
+
+namespace alidade {
+namespace {
+
+SynthSettings Small(const std::string& scene) {
+  SynthSettings settings;
+  settings.scene = scene;
+  settings.width = 320;
+  settings.height = 240;
+  return settings;
+}
+
+float Bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel) {
+  const int x = static_cast<int>(std::floor(pixel.x())),
+            y = static_cast<int>(std::floor(pixel.y()));
+  const float fx = static_cast<float>(pixel.x() - x), fy = static_cast<float>(pixel.y() - y);
+  const float top = image.at<float>(y, x) * (1 - fx) + image.at<float>(y, x + 1) * fx;
+  const float bottom = image.at<float>(y + 1, x) * (1 - fx) + image.at<float>(y + 1, x + 1) * fx;
+  return top * (1 - fy) + bottom * fy;
+}
+
+struct Agreement {
+  int tested = 0;           // pixels of the first view that land in the second, unhidden
+  double median_grey = 0;   // grey levels they differ by
+  double median_depth = 0;  // relative
+  double gain = 0;  // the same difference of grey levels when the pose of the second is a degree
+                    // wrong, over median_grey
+};
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+// Moves the first view's textured pixels into the second by depth and poses alone. `camera`:
+// T_camera_world of both, and how pixels are undistorted.
+Agreement Reproject(const Camera& camera, const RenderedFrame& a, const Se3& T_world_a,
+                    const RenderedFrame& b, const Se3& T_world_b) {
+  Agreement result;
+  std::vector<double> grey, wrong_grey, depth;
+  const Se3 T_b_a = T_world_b.Inverse() * T_world_a;
+  const Se3 wrong = Se3{ExpSo3({0.017, 0, 0}), Eigen::Vector3d::Zero()} * T_b_a;
+  const auto inside = [&](const Eigen::Vector2d& p) {
+    return p.x() > 1 && p.y() > 1 && p.x() < camera.width - 2 && p.y() < camera.height - 2;
+  };
+  for (int y = 2; y < camera.height - 2; y += 2) {
+    for (int x = 2; x < camera.width - 2; x += 2) {
+      const float step = std::abs(a.clean.at<float>(y, x + 1) - a.clean.at<float>(y, x - 1));
+      const float z = a.depth_exact.at<float>(y, x);
+      if (step < 10 || !(z > 0)) continue;  // plain places agree with anything
+      const Eigen::Vector3d p_a = camera.Unproject(camera.Undistort({x, y}), z);
+      const Eigen::Vector3d p_b = T_b_a * p_a, p_wrong = wrong * p_a;
+      if (p_b.z() < 0.1 || p_wrong.z() < 0.1) continue;
+      const Eigen::Vector2d pixel = camera.Distort(camera.Project(p_b)),
+                            pixel_wrong = camera.Distort(camera.Project(p_wrong));
+      if (!inside(pixel) || !inside(pixel_wrong)) continue;
+      const double there = Bilinear(b.depth_exact, pixel);
+      if (std::abs(there - p_b.z()) > 0.03 * there) continue;  // hidden, or an edge
+      const double here = a.clean.at<float>(y, x);
+      grey.push_back(std::abs(Bilinear(b.clean, pixel) - here));
+      wrong_grey.push_back(std::abs(Bilinear(b.clean, pixel_wrong) - here));
+      depth.push_back(std::abs(there - p_b.z()) / there);
+    }
+  }
+  result.tested = static_cast<int>(grey.size());
+  if (grey.empty()) return result;
+  result.median_grey = Median(grey);
+  result.median_depth = Median(depth);
+  result.gain = Median(wrong_grey) / result.median_grey;
+  return result;
+}
+
+void ExpectAgreement(const SynthSettings& settings, int first, int second) {
+  const SynthRecording recording(settings);
+  const Agreement found =
+      Reproject(recording.camera(), recording.Render(first), recording.Pose(first),
+                recording.Render(second), recording.Pose(second));
+  EXPECT_GT(found.tested, 400) << settings.scene;
+  EXPECT_LT(found.median_grey, 5) << settings.scene;
+  EXPECT_LT(found.median_depth, 1e-3) << settings.scene;
+  EXPECT_GT(found.gain, 2) << settings.scene;  // or the test could not fail
+}
+
+TEST(SynthGeometry, DepthAndPosesCarryTextureFromOneViewToAnother) {
+  for (const std::string& scene : SceneNames()) {
+    SynthSettings settings = Small(scene);
+    ExpectAgreement(settings, 40, 46);
+  }
+}
+
+TEST(SynthGeometry, LensDistortionIsTheCameraModels) {
+  SynthSettings settings = Small("room");
+  settings.distortion = true;
+  ExpectAgreement(settings, 100, 108);
+  const Camera camera = SynthRecording(settings).camera();
+  ASSERT_TRUE(camera.HasDistortion());
+  // Without it straight lines would stay straight: the corner moves by many pixels.
+  EXPECT_GT((camera.Undistort({0, 0}) - Eigen::Vector2d(0, 0)).norm(), 5);
+}
+
+TEST(SynthGeometry, DisparityOfTheSecondCameraIsBaselineTimesFocalLengthOverDepth) {
+  SynthSettings settings = Small("room");
+  settings.stereo = true;
+  settings.noise = 0;
+  const SynthRecording recording(settings);
+  const Camera& camera = recording.camera();
+  ASSERT_GT(camera.baseline, 0.05);
+  const RenderedFrame frame = recording.Render(150);
+  ASSERT_EQ(frame.right.size(), frame.image.size());
+  cv::Mat right;
+  frame.right.convertTo(right, CV_32F);
+  std::vector<double> true_error, wrong_error;
+  for (int y = 4; y < camera.height - 4; y += 2) {
+    for (int x = 4; x < camera.width - 4; x += 2) {
+      const float step =
+          std::abs(frame.clean.at<float>(y, x + 1) - frame.clean.at<float>(y, x - 1));
+      const double u = x - camera.fx * camera.baseline / frame.depth_exact.at<float>(y, x);
+      if (step < 12 || u < 3) continue;
+      const double here = frame.clean.at<float>(y, x);
+      true_error.push_back(std::abs(Bilinear(right, {u, y + 0.0}) - here));
+      wrong_error.push_back(std::abs(Bilinear(right, {u - 1.5, y + 0.0}) - here));
+    }
+  }
+  ASSERT_GT(true_error.size(), 500u);
+  EXPECT_LT(Median(true_error), 5);
+  EXPECT_GT(Median(wrong_error), 2 * Median(true_error));
+}
+
+TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
+  SynthSettings settings = Small("room");
+  settings.fps = 1000;  // poses and pictures at every millisecond
+  const SynthRecording global(settings);
+  settings.rolling = true;
+  const RenderedFrame moving = SynthRecording(settings).Render(4000);
+  // Row r is taken (r + 0.5) / 240 - 0.5 of 16 ms after the frame's time.
+  const auto row_difference = [&](int milliseconds, int row) {
+    const RenderedFrame still = global.Render(4000 + milliseconds);
+    return cv::norm(still.clean.row(row), moving.clean.row(row), cv::NORM_L1) / still.clean.cols;
+  };
+  const double first = row_difference(-8, 0), last = row_difference(8, 239),
+               middle = row_difference(0, 120);
+  EXPECT_LT(first, 1);
+  EXPECT_LT(last, 1);
+  EXPECT_LT(middle, 1);
+  EXPECT_GT(row_difference(8, 0), 2.5 * first);
+  EXPECT_GT(row_difference(-8, 239), 2.5 * last);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,126 @@
+// Every scene, with several seeds, is as hard and as long as it is meant to be.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "alidade/synth/recording.h"
+#include "alidade/synth/statistics.h"
+
+namespace alidade {
+namespace {
+
+class Scenes : public testing::TestWithParam<std::string> {};
+
+// Corners as FAST (Rosten & Drummond 2006) finds them, segment test of 9 of 16, without suppression
+// of neighbours: counts 8 × 6 cells that hold any.
+struct Corners {
+  int count = 0, cells = 0;
+};
+Corners FindCorners(const cv::Mat& image, int threshold) {
+  constexpr int kRing[16][2] = {{0, -3}, {1, -3},  {2, -2},  {3, -1}, {3, 0},  {3, 1},
+                                {2, 2},  {1, 3},   {0, 3},   {-1, 3}, {-2, 2}, {-3, 1},
+                                {-3, 0}, {-3, -1}, {-2, -2}, {-1, -3}};
+  Corners corners;
+  bool cell[48] = {};
+  cv::Mat1b found(image.size(), uint8_t{0});
+  for (int y = 3; y < image.rows - 3; ++y) {
+    for (int x = 3; x < image.cols - 3; ++x) {
+      const int centre = image.at<uint8_t>(y, x);
+      int brighter = 0, darker = 0;
+      bool corner = false;
+      for (int i = 0; i < 25 && !corner; ++i) {
+        const int value = image.at<uint8_t>(y + kRing[i % 16][1], x + kRing[i % 16][0]);
+        brighter = value > centre + threshold ? brighter + 1 : 0;
+        darker = value < centre - threshold ? darker + 1 : 0;
+        corner = brighter >= 9 || darker >= 9;
+      }
+      // One for each little group of neighbours.
+      if (!corner || found(y - 1, x) || found(y - 1, x - 1) || found(y - 1, x + 1) ||
+          found(y, x - 1)) {
+        found(y, x) = corner;
+        continue;
+      }
+      found(y, x) = 1;
+      ++corners.count;
+      cell[y * 6 / image.rows * 8 + x * 8 / image.cols] = true;
+    }
+  }
+  corners.cells = static_cast<int>(std::count(cell, cell + 48, true));
+  return corners;
+}
+
+TEST_P(Scenes, AreWalkedAtHumanSpeedWithManyTurns) {
+  for (const uint64_t seed : {1, 2, 3}) {
+    SynthSettings settings;
+    settings.scene = GetParam();
+    settings.frames = SceneFrames(settings.scene);
+    settings.seed = seed;
+    settings.width = 64;
+    settings.height = 48;
+    const SynthRecording recording(settings);
+    StatisticsCollector collector(settings.fps);
+    double fastest = 0, sharpest = 0;
+    for (int i = 0; i < recording.frames(); ++i) {
+      collector.AddPose(recording.Pose(i));
+      if (i == 0) continue;
+      fastest =
+          std::max(fastest, (recording.Pose(i).t - recording.Pose(i - 1).t).norm() * settings.fps);
+      sharpest = std::max(sharpest, RotationAngle(recording.Pose(i), recording.Pose(i - 1)) *
+                                        settings.fps * 180 / std::numbers::pi);
+    }
+    const SynthStatistics found = collector.Result();
+    EXPECT_GE(found.median_turn, 20) << seed;
+    EXPECT_LT(sharpest, 160) << seed;
+    EXPECT_GT(found.median_speed, 0.3) << seed;
+    EXPECT_LT(found.median_speed, 0.9) << seed;
+    EXPECT_LT(fastest, 1.6) << seed;
+    const double shortest = settings.scene == "room" ? 12 : (settings.scene == "loop" ? 40 : 5);
+    EXPECT_GE(found.path_length, shortest) << seed;
+    // Begins by moving, not by turning on the spot: a monocular map can start.
+    EXPECT_GT((recording.Pose(30).t - recording.Pose(0).t).norm(), 0.15) << seed;
+    // Comes back to where it began.
+    double nearest = 1e9;
+    for (int i = recording.frames() * 3 / 4; i < recording.frames(); ++i)
+      nearest = std::min(nearest, (recording.Pose(i).t - recording.Pose(0).t).norm());
+    EXPECT_LT(nearest, 0.6) << seed;
+  }
+}
+
+TEST_P(Scenes, HaveCornersEverywhereYetMuchThatIsPlain) {
+  SynthSettings settings;
+  settings.scene = GetParam();
+  settings.frames = SceneFrames(settings.scene);
+  const SynthRecording recording(settings);
+  StatisticsCollector collector(settings.fps);
+  constexpr int kLooks = 12;
+  int poor = 0;
+  std::string seen;
+  for (int i = 0; i < kLooks; ++i) {
+    const int number = settings.frames * i / kLooks;
+    const RenderedFrame frame = recording.Render(number);
+    collector.AddFrame(frame);
+    const Corners corners = FindCorners(frame.image, 20);
+    const bool enough = corners.count >= 300 && corners.cells >= 24;
+    if (!enough)
+      seen += "frame " + std::to_string(number) + ": " + std::to_string(corners.count) +
+              " corners in " + std::to_string(corners.cells) + " cells; ";
+    poor += !enough;
+    double nearest = 0;
+    cv::minMaxLoc(frame.depth_exact, &nearest, nullptr);
+    EXPECT_GT(nearest, 0.25) << "frame "
+                             << number;  // nothing is walked through, nothing is open to the void
+  }
+  EXPECT_EQ(poor, 0) << seen;
+  const SynthStatistics found = collector.Result();
+  EXPECT_GE(found.plain_share, 0.2);
+  EXPECT_LT(found.missing_depth, 0.45);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(SceneNames()),
+                         [](const auto& tested) { return tested.param; });
+
+}  // namespace
+}  // namespace alidade
