@@ -1,10 +1,13 @@
 // Every scene, with several seeds, is as hard and as long as it is meant to be.
+#include "alidade/synth/scenes.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numbers>
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "alidade/synth/recording.h"
 #include "alidade/synth/statistics.h"
@@ -54,22 +57,22 @@ Corners FindCorners(const cv::Mat& image, int threshold) {
 
 TEST_P(Scenes, AreWalkedAtHumanSpeedWithManyTurns) {
   for (const uint64_t seed : {1, 2, 3}) {
-    SynthSettings settings;
-    settings.scene = GetParam();
-    settings.frames = SceneFrames(settings.scene);
-    settings.seed = seed;
-    settings.width = 64;
-    settings.height = 48;
-    const SynthRecording recording(settings);
-    StatisticsCollector collector(settings.fps);
+    // Poses alone need nothing painted.
+    SceneBuilder builder(seed);
+    const Layout layout = LayOut(GetParam(), builder);
+    const CameraPath path(layout.knots, layout.period, layout.turns, layout.shake, seed);
+    const double fps = SynthSettings().fps;
+    const int frames = SceneFrames(GetParam());
+    std::vector<Se3> poses;
+    StatisticsCollector collector(fps);
     double fastest = 0, sharpest = 0;
-    for (int i = 0; i < recording.frames(); ++i) {
-      collector.AddPose(recording.Pose(i));
+    for (int i = 0; i < frames; ++i) {
+      poses.push_back(path.At(i / fps));
+      collector.AddPose(poses.back());
       if (i == 0) continue;
-      fastest =
-          std::max(fastest, (recording.Pose(i).t - recording.Pose(i - 1).t).norm() * settings.fps);
-      sharpest = std::max(sharpest, RotationAngle(recording.Pose(i), recording.Pose(i - 1)) *
-                                        settings.fps * 180 / std::numbers::pi);
+      fastest = std::max(fastest, (poses[i].t - poses[i - 1].t).norm() * fps);
+      sharpest =
+          std::max(sharpest, RotationAngle(poses[i], poses[i - 1]) * fps * 180 / std::numbers::pi);
     }
     const SynthStatistics found = collector.Result();
     EXPECT_GE(found.median_turn, 20) << seed;
@@ -77,14 +80,14 @@ TEST_P(Scenes, AreWalkedAtHumanSpeedWithManyTurns) {
     EXPECT_GT(found.median_speed, 0.3) << seed;
     EXPECT_LT(found.median_speed, 0.9) << seed;
     EXPECT_LT(fastest, 1.6) << seed;
-    const double shortest = settings.scene == "room" ? 12 : (settings.scene == "loop" ? 40 : 5);
+    const double shortest = GetParam() == "room" ? 12 : (GetParam() == "loop" ? 40 : 5);
     EXPECT_GE(found.path_length, shortest) << seed;
     // Begins by moving, not by turning on the spot: a monocular map can start.
-    EXPECT_GT((recording.Pose(30).t - recording.Pose(0).t).norm(), 0.15) << seed;
+    EXPECT_GT((poses[30].t - poses[0].t).norm(), 0.15) << seed;
     // Comes back to where it began.
     double nearest = 1e9;
-    for (int i = recording.frames() * 3 / 4; i < recording.frames(); ++i)
-      nearest = std::min(nearest, (recording.Pose(i).t - recording.Pose(0).t).norm());
+    for (int i = frames * 3 / 4; i < frames; ++i)
+      nearest = std::min(nearest, (poses[i].t - poses[0].t).norm());
     EXPECT_LT(nearest, 0.6) << seed;
   }
 }

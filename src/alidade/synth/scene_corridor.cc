@@ -13,7 +13,7 @@ constexpr double kSide = 1.3;  // half the width
 
 // Out on one side, round in a small bow, and back: knots at equal times.
 std::vector<PathKnot> OutAndBack() {
-  constexpr double kReach = 5.4, kLane = 0.22;  // metres
+  constexpr double kReach = 5.0, kLane = 0.22;  // metres
   constexpr int kStraight = 29, kTurn = 5;      // knots, half a second apart
   constexpr int kAll = 2 * (kStraight + kTurn);
   const double pi = std::numbers::pi;
@@ -37,7 +37,7 @@ std::vector<PathKnot> OutAndBack() {
     // Looks now at one wall, now at the other; straight ahead when about to turn.
     const double calm = step < kStraight ? std::sin(pi * step / (kStraight - 1.0)) : 0;
     knot.yaw = half * pi + yaw + 0.42 * std::sqrt(calm) * std::sin(2 * pi * i / 9.0 + 0.8);
-    knot.pitch = -0.1 + 0.06 * std::sin(2 * pi * 9 * i / kAll);
+    knot.pitch = -0.1 + 0.06 * std::sin(2 * pi * 9 * i / kAll) - (step < kStraight ? 0 : 0.15);
     knots.push_back(knot);
   }
   return knots;
@@ -66,7 +66,7 @@ Layout LayOutCorridor(SceneBuilder& builder) {
   const int lamp = builder.Tone(250), sign = furnish.Picture(PaintCover, 0.25, 0.12, 2);
   for (int side = 0; side < 2; ++side) {
     const Place wall = side == 0 ? AtWall(a, b, kHalf) : AtWall(c, d, kHalf);
-    for (int i = -2; i <= 2; ++i) {
+    for (int i = -2; i <= 1; ++i) {
       const double x = 3.0 * i + 0.6 * side;
       furnish.Hang(wall, x, 1.04, 0.95, 2.08, door, 0.03);
       furnish.Hang(wall, x + 0.72, 1.65, 0.25, 0.12, sign, 0.004);
@@ -82,9 +82,14 @@ Layout LayOutCorridor(SceneBuilder& builder) {
   furnish.Window(AtWall(b, c, kSide), 0);
   furnish.Hang(AtWall(d, a, kSide), -0.3, 1.04, 0.95, 2.08, door, 0.03);
   furnish.Hang(AtWall(d, a, kSide), 0.65, 1.5, 0.5, 0.7, posters[2], 0.008);
-  furnish.PottedPlant(AtWall(a, b, 1.9, 0.3), 1.1);
-  furnish.Cabinet(AtWall(c, d, 1.9, 0.2), 0.7, 0.36, 1.0, 3, 1);
+  for (const Place& wall :
+       {AtWall(a, b, kHalf), AtWall(c, d, kHalf)}) {  // where the camera turns round
+    furnish.Shelf(wall.At(6.2, -0.17, 0), 1.3, 0.3, 1.95);
+    furnish.Hang(wall, 4.9, 1.5, 0.9, 0.7, furnish.Picture(PaintBoard, 0.9, 0.7), 0.015);
+  }
+  furnish.PottedPlant(AtWall(a, b, 14.3, 0.4), 1.1);
   furnish.Cartons(AtWall(a, b, 13.0, 0.25), 2);
+  furnish.Cartons(AtWall(c, d, 13.9, 0.28), 3);
 
   const std::vector<Walk> walks = {{{-5.5, -0.95}, {5.5, -0.95}, {5.5, 0.95}, {-5.5, 0.95}}};
   return {OutAndBack(), 33.0, 1, {}, walks};

@@ -112,10 +112,10 @@ cv::Mat SenseDepth(const cv::Mat1f& exact, double focal, double factor, const No
       const bool shadow = column > lit + 1.0f;
       lit = std::min(lit, column);
       const int sx = std::clamp(
-          x + static_cast<int>(std::lround(ragged * gaussian[static_cast<uint32_t>(bits)])), 0,
+          x + static_cast<int>(ragged * gaussian[static_cast<uint32_t>(bits)] + 64.5f) - 64, 0,
           width - 1);
       const int sy = std::clamp(
-          y + static_cast<int>(std::lround(ragged * gaussian[static_cast<uint32_t>(bits >> 12)])),
+          y + static_cast<int>(ragged * gaussian[static_cast<uint32_t>(bits >> 12)] + 64.5f) - 64,
           0, height - 1);
       const float z = exact(sy, sx);
       if (shadow || !(z >= nearest) || z >= farthest) continue;
