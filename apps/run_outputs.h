@@ -1,37 +1,38 @@
-// What `alidade run` leaves behind (docs/formats.md).
+// The folder `alidade run` leaves behind (docs/formats.md).
 #pragma once
 
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "alidade/io/frame_source.h"
-#include "alidade/slam.h"
+#include "run_record.h"
 
 namespace alidade {
 
-// All that is known of a run besides the map.
-struct RunRecord {
-  SourceInfo source;
-  std::string source_path;
-  Sensor sensor = Sensor::kMono;
-  SlamSettings settings;
-  std::string profile;
-  std::vector<std::string> stamps;     // one per frame given to Track()
-  std::vector<int> numbers;            // their numbers in the recording
-  std::vector<TrackState> states;
-  int frames = 0;                      // of the recording, bad ones included
-  int dropped = 0;                     // bad or skipped ones
-  double cpu_s = 0, wall_s = 0;
-  int threads = 0;
-  std::vector<std::string> warnings;
+// A folder for results, made when it is not there. One that is there is taken when it is empty or
+// holds an earlier run, whose files are removed (ours only). Throws Error (input) for any other,
+// and when nothing can be written into it: better now than after the work.
+class OutputFolder {
+ public:
+  explicit OutputFolder(const std::string& path);
+  const std::string& path() const { return path_; }
+
+  // Writes a file whole or not at all.
+  void Write(const std::string& name, const std::string& bytes);
+  // Undoes the above, for a run that cannot leave results: our files, and the folder if we made it.
+  void Remove();
+
+ private:
+  std::string path_;
+  bool made_ = false;
 };
 
-// Makes the folder, or clears an earlier run's files out of it. Throws Error (input) when it holds anything else or
-// cannot be written.
-void PrepareOutput(const std::string& folder);
+struct RunSummary {
+  int frames = 0, tracked = 0;
+  int keyframes = 0, landmarks = 0;
+  double path_length = 0;  // metres (mono: map units)
+};
 
-// Writes everything; each file whole or not at all. Returns the number of tracked frames.
-int WriteOutputs(const std::string& folder, const Slam& slam, const RunRecord& record);
+// Writes everything. Throws Error (input) when a file cannot be written; what stays then is whole,
+// and is nothing at all unless stats.json is among it.
+RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record);
 
 }  // namespace alidade

@@ -143,6 +143,7 @@ class SynthSource : public FrameSource {
     SourceFrame frame;
     frame.time = rendered.time;
     frame.stamp = SynthStamp(rendered.time);
+    frame.T_world_camera = recording_.Pose(next_);
     frame.number = next_++;
     frame.image = preparation_.Left(rendered.image);
     if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);

@@ -100,7 +100,7 @@ class Pool {
 };
 
 std::atomic<int> g_threads{0};
-thread_local bool t_inside_loop = false;
+thread_local bool t_inside_loop = false;  // or asked to loop alone
 
 void Pool::Run() {
   t_inside_loop = true;
@@ -135,6 +135,8 @@ int ThreadCount() {
   const int set = g_threads;
   return set > 0 ? set : std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
+
+void KeepLoopsOnThisThread() { t_inside_loop = true; }
 
 void ParallelFor(int count, const std::function<void(int)>& body) {
   if (count <= 0) return;

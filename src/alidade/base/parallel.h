@@ -16,4 +16,8 @@ int ThreadCount();
 // workers, runs on the caller alone. The first exception thrown by a body is thrown again here.
 void ParallelFor(int count, const std::function<void(int)>& body);
 
+// From now on the calling thread's loops run on it alone, leaving the workers to the others: for a
+// thread beside the work, whose CPU time is to be told apart.
+void KeepLoopsOnThisThread();
+
 }  // namespace alidade

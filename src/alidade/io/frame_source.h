@@ -23,6 +23,8 @@ struct SourceFrame {
   // Not empty: this frame could not be read and why; images are empty. Whoever takes the frames
   // warns and counts.
   std::string problem;
+  // Where the camera truly was, in some world: rendered recordings know.
+  std::optional<Se3> T_world_camera = {};
 };
 
 struct SourceInfo {

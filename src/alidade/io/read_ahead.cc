@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "alidade/base/parallel.h"
+
 namespace alidade {
 namespace {
 
@@ -32,6 +34,7 @@ ReadAhead::~ReadAhead() {
 }
 
 void ReadAhead::Run() {
+  KeepLoopsOnThisThread();  // its clock sees all the CPU that reading takes
   std::exception_ptr failure;
   try {
     while (true) {

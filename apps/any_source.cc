@@ -1,0 +1,13 @@
+#include "any_source.h"
+
+#include "synth_source.h"
+
+namespace alidade {
+
+std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
+                                           const SourceOptions& options) {
+  if (IsSynthSource(source)) return OpenSynthSource(source, options);
+  return OpenSource(source, options);
+}
+
+}  // namespace alidade

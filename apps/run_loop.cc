@@ -1,0 +1,163 @@
+#include "run_loop.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <optional>
+#include <thread>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/base/timing.h"
+#include "run_progress.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kInterruptedStatus = 130;
+constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
+constexpr double kBlack = 10;      // mean grey level
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+void Interrupt(int) {
+  if (g_interrupted) _exit(kInterruptedStatus);
+  g_interrupted = 1;
+}
+
+// Waits for the moment a frame is due.
+class Pacer {
+ public:
+  explicit Pacer(const Rate& rate) : rate_(rate) {}
+
+  void WaitFor(double frame_time) {
+    if (rate_.kind == Rate::Kind::kMax || !std::isfinite(frame_time)) return;
+    if (count_ == 0) {
+      first_time_ = frame_time;
+      clock_ = Stopwatch();
+    }
+    const double due =
+        rate_.kind == Rate::Kind::kRealtime ? frame_time - first_time_ : count_ / rate_.fps;
+    ++count_;
+    // In slices, so that Ctrl-C is not kept waiting.
+    while (!Interrupted()) {
+      const double left = due - clock_.Milliseconds() * 1e-3;
+      if (left <= 0) return;
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, 0.05)));
+    }
+  }
+
+ private:
+  Rate rate_;
+  double first_time_ = 0;  // seconds
+  Stopwatch clock_;
+  int count_ = 0;  // frames so far
+};
+
+// CPU time of everything but reading images, from its making on.
+class CpuMeter {
+ public:
+  explicit CpuMeter(const ReadAhead& source) : source_(source), start_(Now()) {}
+  double Seconds() const { return Now() - start_; }
+
+ private:
+  double Now() const { return ProcessCpuSeconds() - source_.ReadCpuSeconds(); }
+  const ReadAhead& source_;
+  double start_;
+};
+
+void Drop(const SourceFrame& frame, const std::string& problem, RunRecord& record) {
+  if (record.dropped == 0) record.first_problem = problem;
+  if (++record.dropped <= kWarnedFrames) {
+    LogWarning("frame " + std::to_string(frame.number) + " skipped: " + problem);
+  }
+}
+
+TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, TrackState state) {
+  ++record.frames;
+  if (std::isfinite(frame.time)) {
+    if (!record.first_time) record.first_time = frame.time;
+    record.last_time = frame.time;
+  }
+  if (frame.T_world_camera) {
+    record.truth.push_back({frame.time, *frame.T_world_camera, frame.stamp});
+  }
+  if (!frame.problem.empty()) {
+    Drop(frame, frame.problem, record);
+    return state;
+  }
+  TrackResult result;
+  try {
+    result = slam.Track({frame.time, frame.image, frame.right, frame.depth});
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::kInput) throw;
+    Drop(frame, error.what(), record);
+    return state;
+  }
+  record.stamps.push_back(frame.stamp);
+  record.numbers.push_back(frame.number);
+  if (result.state != TrackState::kTracking) {
+    ++record.untracked_reasons[result.reason];
+    record.dark += cv::mean(frame.image)[0] < kBlack;
+  }
+  return result.state;
+}
+
+}  // namespace
+
+void CatchInterrupts() {
+  std::signal(SIGINT, Interrupt);
+  std::signal(SIGTERM, Interrupt);
+}
+
+bool Interrupted() { return g_interrupted != 0; }
+
+void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
+               RunRecord& record) {
+  Pacer pacer(rate);
+  RunProgress progress(terminal, source.Info().frames);
+  std::optional<CpuMeter> cpu;
+  std::optional<Stopwatch> wall;
+  TrackState state = TrackState::kInitialising;
+  try {
+    while (!Interrupted()) {
+      const std::optional<SourceFrame> frame = source.Next();
+      if (!frame) break;
+      if (!cpu) {
+        cpu.emplace(source);
+        wall.emplace();
+      }
+      pacer.WaitFor(frame->time);
+      state = Feed(*frame, slam, record, state);
+      progress.Show(record.frames, state, slam);
+    }
+  } catch (const Error&) {
+    record.failure = std::current_exception();
+  }
+  slam.Finish();
+  if (cpu) record.cpu_s = cpu->Seconds();
+  if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
+  record.interrupted = Interrupted();
+  if (record.dropped > kWarnedFrames) {
+    LogWarning(std::to_string(record.dropped) + " frames were skipped in all");
+  }
+}
+
+std::string WhyNothing(const RunRecord& record) {
+  if (record.frames == 0) return "there was no frame";
+  if (record.dropped == record.frames) {
+    return "none of the " + std::to_string(record.frames) + " frames could be used (" +
+           record.first_problem + ")";
+  }
+  const int used = record.frames - record.dropped;
+  if (2 * record.dark > used) return "the images are black";
+  const auto most =
+      std::max_element(record.untracked_reasons.begin(), record.untracked_reasons.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == record.untracked_reasons.end() ? "no frame was tracked" : most->first;
+}
+
+}  // namespace alidade

@@ -1,0 +1,138 @@
+#include "run_options.h"
+
+#include <CLI/CLI.hpp>
+
+#include "alidade/base/error.h"
+#include "alidade/io/text.h"
+#include "arguments.h"
+#include "settings_file.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kExamples[] =
+    "\nExamples:\n"
+    "  alidade run my_recording                     best sensor the recording has\n"
+    "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
+    "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
+    "  alidade run my_recording --schedule threaded --profile phone\n"
+    "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
+    "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
+    "--out.";
+
+void Refuse(bool asked, const std::string& flag) {
+  if (asked) ThrowUsage(flag + " is not in this version yet");
+}
+
+}  // namespace
+
+void AddRunOptions(CLI::App& command, RunOptions& options) {
+  command
+      .add_option("SOURCE", options.source,
+                  "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, camera:0 or "
+                  "synth:SCENE?frames=N&...")
+      ->required();
+  command.add_option("--sensor", options.sensor,
+                     "mono, stereo or rgbd; default: what the recording has");
+  command.add_option("--camera", options.camera_file,
+                     "Calibration (camera.yaml) instead of the recording's own");
+  command.add_option("--fov", options.fov_degrees,
+                     "Horizontal field of view, degrees, instead of a calibration (66)");
+  command.add_option("--profile", options.profile,
+                     "desktop (1000 features, full size) or phone (500, 400 pixels wide)");
+  command.add_option("--config", options.config, "YAML file of settings");
+  command.add_option("--set", options.settings, "One setting, name=value; may be given many times")
+      ->take_all()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command.add_option("--schedule", options.schedule,
+                     "inline (same result every time) or threaded (live); default: inline for "
+                     "recordings");
+  command.add_option("--rate", options.rate,
+                     "realtime, max or frames per second; default: realtime when threaded");
+  command.add_option("--repeat", options.repeat, "Play forth and back this many times");
+  command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores");
+  command.add_option("--seed", options.seed, "Seed of every random choice");
+  command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)");
+  command.add_option("--first", options.first, "First frame, counted from 0");
+  command.add_option("--last", options.last, "Last frame, included");
+  command.add_flag("--quiet", options.quiet, "Say nothing but errors");
+  const std::string later = "Not in this version";
+  command.add_option("--dynamics", options.dynamics, "off (later versions: geometry, full)");
+  for (auto& [name, target] :
+       {std::pair<const char*, std::optional<std::string>&>{"--detector", options.detector},
+        {"--load", options.load},
+        {"--host", options.host}}) {
+    command.add_option(name, target, later)->group("");
+  }
+  command.add_option("--viewer", options.viewer, later)->expected(0, 1)->group("");
+  command.add_flag("--semidense", options.semidense, later)->group("");
+  command.add_flag("--write-masks", options.write_masks, later)->group("");
+  command.footer(kExamples);
+}
+
+void CheckRunOptions(const RunOptions& options) {
+  enum class Dynamics { kOff, kGeometry, kFull };
+  const auto dynamics = Choice<Dynamics>(
+      "--dynamics", options.dynamics,
+      {{"off", Dynamics::kOff}, {"geometry", Dynamics::kGeometry}, {"full", Dynamics::kFull}});
+  if (dynamics == Dynamics::kFull && !options.detector) {
+    ThrowUsage("--dynamics full needs --detector MODEL.onnx");
+  }
+  Refuse(options.detector.has_value(), "--detector");
+  Refuse(dynamics != Dynamics::kOff, "--dynamics " + options.dynamics);
+  Refuse(options.semidense, "--semidense");
+  Refuse(options.load.has_value(), "--load");
+  Refuse(options.viewer.has_value(), "--viewer");
+  Refuse(options.host.has_value(), "--host");
+  Refuse(options.write_masks, "--write-masks");
+  if (options.threads < 0) ThrowUsage("--threads must not be negative");
+  if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
+  if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
+}
+
+SourceOptions SourceOptionsFrom(const RunOptions& options) {
+  SourceOptions source;
+  if (options.sensor) {
+    source.sensor = Choice<Sensor>(
+        "--sensor", *options.sensor,
+        {{"mono", Sensor::kMono}, {"stereo", Sensor::kStereo}, {"rgbd", Sensor::kRgbd}});
+  }
+  source.camera_file = options.camera_file;
+  source.fov_degrees = options.fov_degrees;
+  source.first = options.first;
+  source.last = options.last;
+  return source;
+}
+
+SlamSettings SettingsFrom(const RunOptions& options) {
+  SlamSettings settings;
+  settings.ApplyProfile(options.profile);
+  if (options.config) ApplySettingsFile(*options.config, settings);
+  for (const std::string& assignment : options.settings) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos) ThrowUsage("--set " + assignment + ": expected name=value");
+    settings.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  if (options.seed) settings.seed = *options.seed;
+  settings.Check();
+  return settings;
+}
+
+bool ThreadedFrom(const RunOptions& options, bool live) {
+  if (!options.schedule) return live;
+  return Choice<bool>("--schedule", *options.schedule, {{"inline", false}, {"threaded", true}});
+}
+
+Rate RateFrom(const RunOptions& options, bool threaded) {
+  if (!options.rate) return {threaded ? Rate::Kind::kRealtime : Rate::Kind::kMax, 0};
+  if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
+  if (*options.rate == "max") return {};
+  const std::optional<double> fps = ParseNumber(*options.rate);
+  if (!fps || !(*fps > 0 && *fps <= 1e6)) {
+    ThrowUsage("--rate is realtime, max or frames per second, not '" + *options.rate + "'");
+  }
+  return {Rate::Kind::kFixed, *fps};
+}
+
+}  // namespace alidade

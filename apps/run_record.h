@@ -1,0 +1,43 @@
+// What happened in a run, besides the map and the trajectory.
+#pragma once
+
+#include <exception>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alidade/io/frame_source.h"
+#include "alidade/io/trajectory.h"
+#include "alidade/system/slam.h"
+
+namespace alidade {
+
+struct RunRecord {
+  std::string source_path;  // as typed
+  SourceInfo source;
+  SlamSettings settings;
+  std::string profile;
+  int threads = 0;
+
+  std::vector<std::string> stamps;              // one per frame that Track() took
+  std::vector<int> numbers;                     // their numbers in the recording
+  int frames = 0;                               // all that came, bad ones included
+  std::optional<double> first_time, last_time;  // of those, seconds
+  int dropped = 0;                              // bad ones
+  int dark = 0;                                 // black ones among those that were not tracked
+  std::map<std::string, int> untracked_reasons;
+  std::string first_problem;  // of a bad frame
+  Trajectory truth;           // of rendered recordings
+
+  double cpu_s = 0;   // CPU time of all threads, reading images left out, seconds
+  double wall_s = 0;  // seconds
+  std::vector<std::string> warnings;
+  bool interrupted = false;
+  std::exception_ptr failure;  // the source's, that ended the run early
+};
+
+// Why nothing could be mapped, to be said to the user.
+std::string WhyNothing(const RunRecord& record);
+
+}  // namespace alidade

@@ -1,0 +1,97 @@
+#include <cstdio>
+
+#include "alidade/base/timing.h"
+#include "alidade/view/report.h"
+#include "run_stats.h"
+
+namespace alidade {
+namespace {
+
+std::string Format(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+PlaceDrawing PlaceOf(const RunResults& results, const std::string& unit) {
+  PlaceDrawing place;
+  place.unit = unit;
+  bool going_on = false;
+  size_t next = 0;  // of the trajectory
+  for (const FramePose& frame : results.frames) {
+    if (frame.tracked) {
+      if (!going_on) place.path.emplace_back();
+      place.path.back().push_back(results.trajectory[next++].T_world_camera);
+    }
+    going_on = frame.tracked;
+  }
+  for (const StampedPose& pose : results.keyframes) {
+    place.keyframes.push_back(pose.T_world_camera.t);
+  }
+  for (LandmarkId id : results.map.Landmarks()) {
+    place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
+  }
+  return place;
+}
+
+std::vector<FrameFate> FatesOf(const std::vector<FramePose>& frames) {
+  std::vector<FrameFate> fates;
+  bool started = false;
+  for (const FramePose& frame : frames) {
+    started = started || frame.tracked;
+    fates.push_back(frame.tracked ? FrameFate::kTracked
+                    : started     ? FrameFate::kLost
+                                  : FrameFate::kStarting);
+  }
+  return fates;
+}
+
+std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
+                                                         const RunResults& results,
+                                                         const std::string& unit) {
+  const size_t tracked = results.trajectory.size();
+  const double share = record.frames > 0 ? 100.0 * static_cast<double>(tracked) / record.frames : 0;
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"source", record.source_path},
+      {"sensor", NameOf(record.settings.sensor)},
+      {"frames tracked", std::to_string(tracked) + " of " + std::to_string(record.frames) +
+                             Format(" (%.1f %%)", share)},
+      {"first tracked frame",
+       results.initialised_at ? std::to_string(*results.initialised_at) : "none"},
+      {"keyframes", std::to_string(results.map.keyframe_count())},
+      {"landmarks", std::to_string(results.map.landmark_count())},
+      {"path", Format("%.2f ", PathLength(results.trajectory)) + unit},
+      {"wall time", Format("%.2f s", record.wall_s)},
+      {"CPU time", Format("%.2f s", record.cpu_s)},
+      {"peak memory", Format("%.0f MB", PeakMegabytes())}};
+  if (results.trajectory.empty()) facts.push_back({"nothing mapped", WhyNothing(record)});
+  if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
+  if (record.interrupted) facts.push_back({"interrupted", "results as far as it got"});
+  return facts;
+}
+
+}  // namespace
+
+std::string ReportHtml(const RunRecord& record, const RunResults& results) {
+  const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
+  RunReport report;
+  report.title = record.source.name;
+  report.facts = FactsOf(record, results, unit);
+  report.place = PlaceOf(results, unit);
+  report.frames = FatesOf(results.frames);
+  report.milliseconds = {{"frame", results.times.frame},
+                         {"extract", results.times.extract},
+                         {"track", results.times.track},
+                         {"map", results.times.map}};
+  for (const auto& [from, to] : results.lost_spans) {
+    report.lost_spans.push_back(Format("%.3f s", from) + Format(" to %.3f s", to));
+  }
+  report.warnings = record.warnings;
+  report.settings = {{"profile", record.profile},
+                     {"schedule", record.settings.threaded ? "threaded" : "inline"},
+                     {"threads", std::to_string(record.threads)}};
+  for (const auto& setting : record.settings.All()) report.settings.push_back(setting);
+  return RenderReport(report);
+}
+
+}  // namespace alidade

@@ -1,0 +1,86 @@
+#include "run_stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include "alidade/base/timing.h"
+
+namespace alidade {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kStatsVersion = 1;
+
+ordered_json ToJson(const std::vector<double>& samples) {
+  if (samples.empty()) return nullptr;
+  const Summary s = Summarise(samples);
+  return {
+      {"median", s.median}, {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}, {"count", s.count}};
+}
+
+ordered_json SettingsJson(const RunRecord& record) {
+  ordered_json settings = {{"profile", record.profile},
+                           {"schedule", record.settings.threaded ? "threaded" : "inline"},
+                           {"threads", record.threads}};
+  for (const auto& [name, value] : record.settings.All()) {
+    const ordered_json parsed = ordered_json::parse(value, nullptr, false);
+    settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
+  }
+  return settings;
+}
+
+}  // namespace
+
+const char* NameOf(Sensor sensor) {
+  switch (sensor) {
+    case Sensor::kMono:
+      return "mono";
+    case Sensor::kStereo:
+      return "stereo";
+    case Sensor::kRgbd:
+      return "rgbd";
+  }
+  return "";
+}
+
+std::string StatsJson(const RunRecord& record, const RunResults& results) {
+  const auto tracked = results.trajectory.size();
+  const auto optional = [](const std::optional<int>& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  const ordered_json stats = {
+      {"version", kStatsVersion},
+      {"source", record.source_path},
+      {"sensor", NameOf(record.settings.sensor)},
+      {"settings", SettingsJson(record)},
+      {"frames", record.frames},
+      {"tracked", tracked},
+      {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
+      {"initialised_at", optional(results.initialised_at)},
+      {"lost_spans", results.lost_spans},
+      {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
+                                 : ordered_json(nullptr)},
+      {"relocalisations", results.relocalisations},
+      {"loops", 0},
+      {"maps", results.map.keyframe_count() > 0 ? 1 : 0},
+      {"keyframes", results.map.keyframe_count()},
+      {"landmarks", results.map.landmark_count()},
+      {"ms",
+       {{"frame", ToJson(results.times.frame)},
+        {"extract", ToJson(results.times.extract)},
+        {"track", ToJson(results.times.track)},
+        {"map", ToJson(results.times.map)},
+        {"loop", nullptr},
+        {"detect", nullptr},
+        {"dynamics", nullptr},
+        {"semidense", nullptr}}},
+      {"cpu_s", record.cpu_s},
+      {"wall_s", record.wall_s},
+      {"peak_mb", PeakMegabytes()},
+      {"dropped_frames", record.dropped},
+      {"warnings", record.warnings}};
+  // A path may be in any encoding.
+  return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace alidade

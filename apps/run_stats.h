@@ -1,0 +1,17 @@
+// A run in numbers: stats.json and report.html.
+#pragma once
+
+#include <string>
+
+#include "run_record.h"
+#include "run_results.h"
+
+namespace alidade {
+
+const char* NameOf(Sensor sensor);  // as after --sensor
+
+// Both as the bytes of the file. Fields and units: docs/formats.md.
+std::string StatsJson(const RunRecord& record, const RunResults& results);
+std::string ReportHtml(const RunRecord& record, const RunResults& results);
+
+}  // namespace alidade

@@ -1,0 +1,32 @@
+// What a command says while it works: warnings, and on a terminal one line that is kept up to date.
+#pragma once
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace alidade {
+
+// Takes the library's warnings while it lives. Any thread may warn.
+class Terminal {
+ public:
+  explicit Terminal(bool quiet);
+  ~Terminal();
+  Terminal(const Terminal&) = delete;
+  Terminal& operator=(const Terminal&) = delete;
+
+  bool shows_progress() const { return shows_progress_; }  // stderr is a terminal, and not quiet
+  void SetProgress(const std::string& line);               // replaces the line; empty: none
+  void Warn(const std::string& message);
+  std::vector<std::string> warnings() const;  // all so far, printed or not
+
+ private:
+  void Erase();
+
+  const bool quiet_, shows_progress_;
+  mutable std::mutex mutex_;
+  std::string line_;  // as it stands on the terminal
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace alidade

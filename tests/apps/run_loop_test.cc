@@ -1,0 +1,127 @@
+// How `alidade run` plays: bad frames, Ctrl-C, recordings in which there is nothing.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "alidade/io/files/trajectory_file.h"
+#include "support/program.h"
+#include "support/sliding_recording.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class RunLoop : public testing::Test {
+ protected:
+  void WriteRecording(int frames = 12) {
+    SlidingRecording options;
+    options.frames = frames;
+    WriteSlidingTum(recording_, options);
+  }
+  ProgramResult Run(std::vector<std::string> more = {},
+                    const std::function<void(pid_t)>& while_running = nullptr) {
+    std::vector<std::string> arguments = {"run", recording_.path(), "--out", out_};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunAlidade(arguments, while_running);
+  }
+  nlohmann::json Stats() { return nlohmann::json::parse(ReadText(out_ + "/stats.json")); }
+  void Blank(const cv::Mat& image, int frames) {
+    for (int i = 0; i < frames; ++i) WriteImage(recording_ / SlidingImage(i), image);
+  }
+
+  TempFolder recording_, results_;
+  const std::string out_ = results_ / "out";
+};
+
+TEST_F(RunLoop, BadFramesAreSkippedWarnedAndCounted) {
+  WriteRecording();
+  const std::string whole = ReadText(recording_ / SlidingImage(3));
+  recording_.Write(SlidingImage(3), whole.substr(0, whole.size() / 2));
+  recording_.Write(SlidingImage(6), "");
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("frame 3 skipped"));
+  EXPECT_THAT(result.err, HasSubstr("frame 6 skipped"));
+  const nlohmann::json stats = Stats();
+  EXPECT_EQ(stats["frames"], 12);
+  EXPECT_EQ(stats["tracked"], 10);
+  EXPECT_EQ(stats["dropped_frames"], 2);
+  EXPECT_EQ(stats["warnings"].size(), 2u);
+}
+
+TEST_F(RunLoop, QuietSaysNothing) {
+  WriteRecording();
+  recording_.Write(SlidingImage(6), "");
+  const ProgramResult result = Run({"--quiet"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out + result.err, "");
+  EXPECT_EQ(Stats()["warnings"].size(), 1u);
+}
+
+TEST_F(RunLoop, RepeatPlaysForthAndBack) {
+  WriteRecording(6);
+  ASSERT_EQ(Run({"--repeat", "2"}).status, 0);
+  const Trajectory trajectory = ReadTrajectory(out_ + "/trajectory.txt");
+  ASSERT_EQ(trajectory.size(), 21u);  // 6, then 5 for each of the three other ways
+  EXPECT_LT(trajectory[10].T_world_camera.t.norm(), 0.004);
+  EXPECT_LT((trajectory[15].T_world_camera.t - trajectory[5].T_world_camera.t).norm(), 0.004);
+}
+
+TEST_F(RunLoop, BlackImagesMapNothingAndStillGiveResults) {
+  WriteRecording();
+  Blank(cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)), 12);
+  const ProgramResult result = Run();
+  EXPECT_EQ(result.status, 4);
+  EXPECT_THAT(result.err, HasSubstr("nothing could be mapped: the images are black"));
+  EXPECT_EQ(LineCount(result.err), 1) << result.err;
+  EXPECT_EQ(Stats()["tracked"], 0);
+  EXPECT_TRUE(Stats()["initialised_at"].is_null());
+  EXPECT_TRUE(fs::exists(out_ + "/report.html"));
+}
+
+TEST_F(RunLoop, ImagesWithoutCornersMapNothing) {
+  WriteRecording();
+  Blank(cv::Mat(240, 320, CV_8UC1, cv::Scalar(128)), 12);
+  for (const char* sensor : {"rgbd", "mono"}) {
+    const ProgramResult result = Run({"--sensor", sensor});
+    EXPECT_EQ(result.status, 4);
+    EXPECT_THAT(result.err, HasSubstr("nothing could be mapped: too few corners")) << sensor;
+  }
+}
+
+TEST_F(RunLoop, RealtimeTakesAsLongAsTheRecording) {
+  WriteRecording(16);
+  ASSERT_EQ(Run({"--schedule", "threaded"}).status, 0);
+  EXPECT_GE(Stats()["wall_s"], 15 / 30.0);
+  EXPECT_EQ(Stats()["tracked"], 16);
+}
+
+// Waits until the program has begun to track, as far as can be seen from outside.
+void InterruptSoon(pid_t program, const std::string& out) {
+  using namespace std::chrono_literals;
+  for (int i = 0; i < 1000 && !fs::exists(out); ++i) std::this_thread::sleep_for(10ms);
+  std::this_thread::sleep_for(700ms);
+  kill(program, SIGINT);
+}
+
+TEST_F(RunLoop, InterruptedRunWritesResultsSoFar) {
+  WriteRecording();
+  // A minute if left alone.
+  const ProgramResult result =
+      Run({"--rate", "0.2"}, [this](pid_t program) { InterruptSoon(program, out_); });
+  EXPECT_EQ(result.status, 130);
+  EXPECT_THAT(result.out, HasSubstr("Interrupted"));
+  const nlohmann::json stats = Stats();
+  EXPECT_LT(stats["frames"], 12);
+  EXPECT_TRUE(fs::exists(out_ + "/trajectory.txt"));
+  EXPECT_TRUE(fs::exists(out_ + "/report.html"));
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,102 @@
+// What `alidade run` says to options and settings that cannot be.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "support/program.h"
+#include "support/sliding_recording.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+class RunOptions : public testing::Test {
+ protected:
+  RunOptions() { WriteSlidingTum(recording_); }
+
+  ProgramResult Run(std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"run", recording_.path(), "--out", results_ / "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunAlidade(arguments);
+  }
+
+  void ExpectError(int status, const std::vector<std::string>& more, const std::string& words) {
+    const ProgramResult result = Run(more);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(words));
+    EXPECT_EQ(LineCount(result.err), 1) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(results_ / "out"));
+  }
+
+  nlohmann::json Settings() {
+    return nlohmann::json::parse(ReadText(results_ / "out/stats.json"))["settings"];
+  }
+
+  TempFolder recording_, results_;
+};
+
+TEST_F(RunOptions, UnknownSettingNamesTheNearest) {
+  ExpectError(2, {"--set", "tracker.min_trackd=20"}, "did you mean 'tracker.min_tracked'");
+  ExpectError(2, {"--set", "seed"}, "expected name=value");
+  ExpectError(2, {"--set", "tracker.min_tracked=many"}, "'many' is not a whole number");
+}
+
+TEST_F(RunOptions, UnknownOptionAndWordNameTheNearest) {
+  ExpectError(2, {"--shedule", "inline"}, "did you mean '--schedule'");
+  ExpectError(2, {"--schedule", "inlin"}, "did you mean 'inline'");
+  ExpectError(2, {"--sensor", "rgb-d"}, "did you mean 'rgbd'");
+  ExpectError(2, {"--profile", "tablet"}, "phone");
+  ExpectError(2, {"--rate", "fast"}, "--rate");
+  ExpectError(2, {"--rate", "-3"}, "--rate");
+}
+
+TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
+  for (const std::vector<std::string>& flags :
+       std::vector<std::vector<std::string>>{{"--dynamics", "geometry"},
+                                             {"--detector", "model.onnx"},
+                                             {"--semidense"},
+                                             {"--viewer"},
+                                             {"--viewer", "8080"},
+                                             {"--load", "room.alidade"},
+                                             {"--write-masks"}}) {
+    ExpectError(2, flags, flags[0]);
+    ExpectError(2, flags, "not in this version yet");
+  }
+  ExpectError(2, {"--dynamics", "full"}, "needs --detector");
+}
+
+TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
+  const std::string file =
+      results_.Write("settings.yaml", "tracker:\n  min_tracked: 20\n  min_predictd: 3\n");
+  ExpectError(2, {"--config", file},
+              file +
+                  ":3: unknown setting 'tracker.min_predictd'; did you mean "
+                  "'tracker.min_predicted'");
+  ExpectError(2, {"--config", results_.Write("b.yaml", "seed: 1\ntracker.min_tracked: [1, 2]\n")},
+              "b.yaml:2: setting tracker.min_tracked needs one value");
+  ExpectError(2, {"--config", results_.Write("c.yaml", "\nimage_width: wide\n")}, "c.yaml:2: ");
+  ExpectError(3, {"--config", results_.Write("d.yaml", "a: 1\nb: {\n")}, "d.yaml:");
+  ExpectError(3, {"--config", results_ / "none.yaml"}, "none.yaml");
+}
+
+TEST_F(RunOptions, LaterOnesHold) {
+  const std::string file = results_.Write(
+      "settings.yaml", "seed: 5\ntracker:\n  extractor:\n    features: 700\nstart.window: 40\n");
+  const ProgramResult result =
+      Run({"--profile", "phone", "--config", file, "--set", "start.window=41", "--seed", "9"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json settings = Settings();
+  EXPECT_EQ(settings["profile"], "phone");
+  EXPECT_EQ(settings["image_width"], 400);                 // the profile's
+  EXPECT_EQ(settings["tracker.extractor.features"], 700);  // the file's, over the profile's 500
+  EXPECT_EQ(settings["start.window"], 41);                 // --set over the file's
+  EXPECT_EQ(settings["seed"], 9);                          // the flag over the file's
+}
+
+TEST_F(RunOptions, DynamicsOffIsTheDefault) { EXPECT_EQ(Run({"--dynamics", "off"}).status, 0); }
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,189 @@
+// What `alidade run` leaves behind, and where.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+
+#include "alidade/io/files/trajectory_file.h"
+#include "support/program.h"
+#include "support/sliding_recording.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+std::set<std::string> NamesIn(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+class RunOutputs : public testing::Test {
+ protected:
+  RunOutputs() { WriteSlidingTum(recording_); }
+
+  ProgramResult Run(const std::string& out, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"run", recording_.path(), "--out", out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return RunAlidade(arguments);
+  }
+  nlohmann::json Stats(const std::string& out) {
+    return nlohmann::json::parse(ReadText(out + "/stats.json"));
+  }
+
+  SlidingRecording truth_;
+  TempFolder recording_, results_;
+};
+
+TEST_F(RunOutputs, TrajectoryIsTheCamerasWithStampsLetterByLetter) {
+  const std::string out = results_ / "out";
+  ASSERT_EQ(Run(out).status, 0);
+  const Trajectory trajectory = ReadTrajectory(out + "/trajectory.txt");
+  ASSERT_EQ(trajectory.size(), static_cast<size_t>(truth_.frames));
+  std::istringstream lines(ReadText(out + "/trajectory.txt"));
+  for (int i = 0; i < truth_.frames; ++i) {
+    const Se3& T = trajectory[static_cast<size_t>(i)].T_world_camera;
+    // A tenth of a pixel is 0.8 mm at the wall.
+    EXPECT_LT((T.t - Eigen::Vector3d(i * truth_.metres(), 0, 0)).norm(), 0.004) << i;
+    std::string line;
+    do {
+      std::getline(lines, line);
+    } while (line[0] == '#');
+    EXPECT_EQ(line.substr(0, line.find(' ')), SlidingStamp(i));
+  }
+}
+
+TEST_F(RunOutputs, StatsHaveEveryFieldOfTheContract) {
+  const std::string out = results_ / "out";
+  ASSERT_EQ(Run(out, {"--first", "2", "--last", "9"}).status, 0);
+  const nlohmann::json stats = Stats(out);
+  for (const char* field :
+       {"version", "source",   "sensor",         "settings",       "frames",
+        "tracked", "coverage", "initialised_at", "lost_spans",     "relocalisations",
+        "loops",   "maps",     "keyframes",      "landmarks",      "ms",
+        "cpu_s",   "wall_s",   "peak_mb",        "dropped_frames", "warnings"}) {
+    EXPECT_TRUE(stats.contains(field)) << field;
+  }
+  for (const char* stage :
+       {"frame", "extract", "track", "map", "loop", "detect", "dynamics", "semidense"}) {
+    EXPECT_TRUE(stats["ms"].contains(stage)) << stage;
+  }
+  EXPECT_EQ(stats["ms"]["frame"]["count"], 8);
+  EXPECT_EQ(stats["source"], recording_.path());
+  EXPECT_EQ(stats["sensor"], "rgbd");
+  EXPECT_EQ(stats["frames"], 8);
+  EXPECT_EQ(stats["tracked"], 8);
+  EXPECT_EQ(stats["coverage"], 1.0);
+  EXPECT_EQ(stats["initialised_at"], 2);  // numbers are the recording's
+  EXPECT_EQ(stats["dropped_frames"], 0);
+  EXPECT_GT(stats["cpu_s"], 0.0);
+  EXPECT_GT(stats["peak_mb"], 5.0);
+}
+
+TEST_F(RunOutputs, ReportNeedsNothingElse) {
+  const std::string out = results_ / "out";
+  ASSERT_EQ(Run(out).status, 0);
+  const std::string report = ReadText(out + "/report.html");
+  EXPECT_THAT(report, HasSubstr("<svg"));
+  EXPECT_THAT(report, HasSubstr("class=\"path\""));
+  for (const char* outside : {"http:", "https:", "src=", "href=", "@import", "url("}) {
+    EXPECT_THAT(report, Not(HasSubstr(outside)));
+  }
+}
+
+TEST_F(RunOutputs, AnotherFolderIsLeftAlone) {
+  const std::string out = results_.Folder("mine");
+  results_.Write("mine/thesis.txt", "years of work");
+  const ProgramResult result = Run(out);
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr(out));
+  EXPECT_EQ(LineCount(result.err), 1) << result.err;
+  EXPECT_EQ(NamesIn(out), (std::set<std::string>{"thesis.txt"}));
+  // A stats.json is not ours because of its name.
+  results_.Write("mine/stats.json", "{\"players\": 11}");
+  EXPECT_EQ(Run(out).status, 3);
+  EXPECT_EQ(ReadText(out + "/stats.json"), "{\"players\": 11}");
+}
+
+TEST_F(RunOutputs, EarlierRunIsReplacedAndOnlyOurFilesGo) {
+  const std::string out = results_ / "out";
+  ASSERT_EQ(Run(out).status, 0);
+  results_.Write("out/notes.txt", "mine");
+  results_.Write("out/groundtruth.txt", "of a run on another source");
+  results_.Write("out/trajectory.txt.tmp123-4", "left by a run that was killed");
+  ASSERT_EQ(Run(out, {"--last", "5"}).status, 0);
+  EXPECT_EQ(Stats(out)["frames"], 6);
+  const std::set<std::string> names = NamesIn(out);
+  EXPECT_TRUE(names.count("notes.txt"));
+  EXPECT_TRUE(names.count("trajectory.txt"));
+  EXPECT_FALSE(names.count("groundtruth.txt"));
+  EXPECT_FALSE(names.count("trajectory.txt.tmp123-4"));
+}
+
+TEST_F(RunOutputs, OutThatCannotBeAFolderIsSaidBeforeTheWork) {
+  const std::string file = results_.Write("file", "x");
+  for (const std::string& out : {file, file + "/below", std::string("/proc/alidade")}) {
+    const ProgramResult result = Run(out);
+    EXPECT_EQ(result.status, 3) << out;
+    EXPECT_THAT(result.err, HasSubstr("--out " + out));
+    EXPECT_EQ(LineCount(result.err), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+}
+
+TEST_F(RunOutputs, BadSourceLeavesNoFolder) {
+  const std::string out = results_ / "out";
+  EXPECT_EQ(RunAlidade({"run", results_ / "nothing-here", "--out", out}).status, 3);
+  EXPECT_FALSE(fs::exists(out));
+}
+
+// A file system of its own, of some kilobytes.
+class SmallDisk {
+ public:
+  SmallDisk(const std::string& folder, int kilobytes)
+      : folder_(folder),
+        mounted_(mount("tmpfs", folder.c_str(), "tmpfs", 0,
+                       ("size=" + std::to_string(kilobytes) + "k").c_str()) == 0) {}
+  ~SmallDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::string folder_;
+  bool mounted_;
+};
+
+TEST_F(RunOutputs, FullDiskLeavesNoPartOfAFile) {
+  // Too small to begin with; room for the trajectory but not for all; for nearly all.
+  for (const int kilobytes : {16, 72, 96}) {
+    const std::string folder = results_.Folder("disk" + std::to_string(kilobytes));
+    const SmallDisk disk(folder, kilobytes);
+    if (!disk.mounted()) GTEST_SKIP() << "mounting is not permitted here";
+    const std::string out = folder + "/out";
+    const ProgramResult result = Run(out);
+    EXPECT_EQ(result.status, 3) << kilobytes;
+    EXPECT_THAT(result.err, HasSubstr("No space left on device"));
+    EXPECT_EQ(LineCount(result.err), 1) << result.err;
+    if (!fs::exists(out)) continue;
+    const std::set<std::string> names = NamesIn(out);
+    EXPECT_TRUE(names.count("stats.json")) << "what stays can be written over";
+    for (const std::string& name : names) EXPECT_THAT(name, Not(HasSubstr("tmp")));
+    EXPECT_EQ(ReadTrajectory(out + "/trajectory.txt").size(), static_cast<size_t>(truth_.frames));
+  }
+}
+
+}  // namespace
+}  // namespace alidade
