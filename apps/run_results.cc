@@ -12,17 +12,17 @@ Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified
 std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frames) {
   std::vector<std::array<double, 2>> spans;
   bool started = false;
-  std::optional<double> lost_at;
+  const FramePose* lost = nullptr;  // first frame of the span that is open
   for (const FramePose& frame : frames) {
     if (frame.tracked) {
-      if (lost_at) spans.push_back({*lost_at, frame.time});
-      lost_at.reset();
+      if (lost) spans.push_back({lost->time, frame.time});
+      lost = nullptr;
       started = true;
-    } else if (started && !lost_at) {
-      lost_at = frame.time;
+    } else if (started && !lost) {
+      lost = &frame;
     }
   }
-  if (lost_at) spans.push_back({*lost_at, frames.back().time});
+  if (lost) spans.push_back({lost->time, frames.back().time});
   return spans;
 }
 

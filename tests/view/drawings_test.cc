@@ -1,0 +1,110 @@
+// The pictures of a report say what happened.
+#include "alidade/view/drawings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <regex>
+
+#include "alidade/view/report.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+int Count(const std::string& text, const std::string& what) {
+  int count = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+Se3 CameraAt(double x, double y, double z) { return {Eigen::Matrix3d::Identity(), {x, y, z}}; }
+
+// Page coordinates of the first path.
+std::vector<Eigen::Vector2d> PathPoints(const std::string& svg) {
+  std::smatch match;
+  std::regex_search(svg, match, std::regex("<polyline class=\"path\" points=\"([^\"]*)\""));
+  const std::string list = match[1];
+  std::vector<Eigen::Vector2d> points;
+  const std::regex pair("([-0-9.]+),([-0-9.]+)");
+  for (std::sregex_iterator it(list.begin(), list.end(), pair), end; it != end; ++it) {
+    points.emplace_back(std::stod((*it)[1]), std::stod((*it)[2]));
+  }
+  return points;
+}
+
+TEST(Drawings, ForwardIsUpAndRightIsRightOnThePage) {
+  PlaceDrawing place;
+  place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 2), CameraAt(1, 0, 2)}};
+  place.unit = "m";
+  const auto p = PathPoints(DrawFromAbove(place));
+  ASSERT_EQ(p.size(), 3u);
+  EXPECT_NEAR(p[1].x(), p[0].x(), 0.11);
+  EXPECT_LT(p[1].y(), p[0].y());
+  EXPECT_GT(p[2].x(), p[1].x());
+  EXPECT_NEAR(p[2].y(), p[1].y(), 0.11);
+  EXPECT_NEAR((p[1] - p[0]).norm(), 2 * (p[2] - p[1]).norm(), 0.3);  // one scale for both
+}
+
+TEST(Drawings, TiltedCameraIsStillSeenFromAbove) {
+  // Looks 40 degrees down while it walks on the level.
+  const double tilt = 40 * M_PI / 180;
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(-tilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
+  PlaceDrawing place;
+  for (int turn = 0; turn < 12; ++turn) {  // a full turn, so that the tilt averages out
+    const double yaw = turn * M_PI / 6;
+    const Eigen::Matrix3d Y = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY()).toRotationMatrix();
+    if (turn == 0) place.path.emplace_back();
+    place.path[0].push_back({Y * R, {std::sin(yaw), 0, 1 - std::cos(yaw)}});
+  }
+  const auto p = PathPoints(DrawFromAbove(place));
+  ASSERT_EQ(p.size(), 12u);
+  const Eigen::Vector2d middle = 0.5 * (p[0] + p[6]);
+  for (const auto& q : p) EXPECT_NEAR((q - middle).norm(), (p[0] - middle).norm(), 0.3);
+}
+
+TEST(Drawings, EachStretchIsALineOfItsOwn) {
+  PlaceDrawing place;
+  place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}, {CameraAt(1, 0, 1), CameraAt(1, 0, 2)}};
+  EXPECT_EQ(Count(DrawFromAbove(place), "<polyline class=\"path\""), 2);
+}
+
+TEST(Drawings, NothingAtAllCanBeDrawn) {
+  EXPECT_THAT(DrawFromAbove({}), HasSubstr("</svg>"));
+  EXPECT_THAT(DrawTimeline({}), HasSubstr("</svg>"));
+  EXPECT_THAT(DrawSeries({}, 0, "ms"), HasSubstr("</svg>"));
+  EXPECT_THAT(RenderReport({}), HasSubstr("</html>"));
+  EXPECT_THAT(RenderReport({}), Not(HasSubstr("nan")));
+}
+
+TEST(Drawings, FarOffLandmarksDoNotShrinkThePlace) {
+  PlaceDrawing place;
+  place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
+  for (int i = 0; i < 100; ++i) place.landmarks.emplace_back(0.02 * i - 1, 0, 0.02 * i - 1);
+  place.landmarks.emplace_back(0, 0, 1e6);
+  const auto p = PathPoints(DrawFromAbove(place));
+  EXPECT_GT((p[1] - p[0]).norm(), 100);
+}
+
+TEST(Drawings, TimelineBarsAreAsLongAsTheirFrames) {
+  using enum FrameFate;
+  const std::string svg = DrawTimeline({kStarting, kTracked, kTracked, kLost});
+  EXPECT_THAT(svg, HasSubstr("class=\"starting\" x=\"0.00\" y=\"0\" width=\"225.00\""));
+  EXPECT_THAT(svg, HasSubstr("class=\"tracked\" x=\"225.00\" y=\"0\" width=\"450.00\""));
+  EXPECT_THAT(svg, HasSubstr("class=\"lost\" x=\"675.00\" y=\"0\" width=\"225.00\""));
+}
+
+TEST(Report, WordsOfOthersCannotBecomeMarkup) {
+  RunReport report;
+  report.title = "<script>alert(1)</script>";
+  report.warnings = {"a & b < c"};
+  const std::string html = RenderReport(report);
+  EXPECT_THAT(html, Not(HasSubstr("<script>")));
+  EXPECT_THAT(html, HasSubstr("a &amp; b &lt; c"));
+}
+
+}  // namespace
+}  // namespace alidade
