@@ -63,17 +63,10 @@ TEST_F(RunOutputs, TrajectoryIsTheCamerasWithStampsLetterByLetter) {
   }
 }
 
-TEST_F(RunOutputs, StatsHaveEveryFieldOfTheContract) {
+TEST_F(RunOutputs, StatsCountThePartThatWasPlayed) {
   const std::string out = results_ / "out";
   ASSERT_EQ(Run(out, {"--first", "2", "--last", "9"}).status, 0);
   const nlohmann::json stats = Stats(out);
-  for (const char* field :
-       {"version", "source",   "sensor",         "settings",       "frames",
-        "tracked", "coverage", "initialised_at", "lost_spans",     "relocalisations",
-        "loops",   "maps",     "keyframes",      "landmarks",      "ms",
-        "cpu_s",   "wall_s",   "peak_mb",        "dropped_frames", "warnings"}) {
-    EXPECT_TRUE(stats.contains(field)) << field;
-  }
   for (const char* stage :
        {"frame", "extract", "track", "map", "loop", "detect", "dynamics", "semidense"}) {
     EXPECT_TRUE(stats["ms"].contains(stage)) << stage;
@@ -128,17 +121,6 @@ TEST_F(RunOutputs, EarlierRunIsReplacedAndOnlyOurFilesGo) {
   EXPECT_TRUE(names.count("trajectory.txt"));
   EXPECT_FALSE(names.count("groundtruth.txt"));
   EXPECT_FALSE(names.count("trajectory.txt.tmp123-4"));
-}
-
-TEST_F(RunOutputs, OutThatCannotBeAFolderIsSaidBeforeTheWork) {
-  const std::string file = results_.Write("file", "x");
-  for (const std::string& out : {file, file + "/below", std::string("/proc/alidade")}) {
-    const ProgramResult result = Run(out);
-    EXPECT_EQ(result.status, 3) << out;
-    EXPECT_THAT(result.err, HasSubstr("--out " + out));
-    EXPECT_EQ(LineCount(result.err), 1) << result.err;
-    EXPECT_EQ(result.out, "");
-  }
 }
 
 TEST_F(RunOutputs, BadSourceLeavesNoFolder) {
