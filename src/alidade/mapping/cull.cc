@@ -33,6 +33,7 @@ std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameI
   std::vector<KeyFrameId> redundant;
   const auto named = [&](KeyFrameId k) { return std::find(redundant.begin(), redundant.end(), k) != redundant.end(); };
   for (const Neighbour& n : map.Find(id)->covisible) {
+    if (n.id > id) continue;  // yet to be processed, and the tracker still counts on it
     const KeyFrame* keyframe = map.Find(n.id);
     if (!keyframe || !keyframe->parent.valid()) continue;
     int counted = 0, covered = 0;

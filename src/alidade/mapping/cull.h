@@ -22,7 +22,7 @@ std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map, const std::vec
                                           std::vector<LandmarkId>& still_young);
 
 // Covisible keyframes of `id` nearly all of whose landmarks are seen by three others at the same or a finer
-// scale (ORB-SLAM §VI-E). Judged one after the other, each without those already named.
+// scale (ORB-SLAM §VI-E). Judged one after the other, each without those already named; younger ones are not judged.
 std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id, bool has_depth,
                                                const MapperSettings& settings);
 

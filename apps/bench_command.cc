@@ -1,0 +1,106 @@
+// `alidade bench`: how long the parts take, in milliseconds and in U (docs/benchmarks.md).
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+
+#include "alidade/base/parallel.h"
+#include "alidade/base/timing.h"
+#include "alidade/io/files/file.h"
+#include "arguments.h"
+#include "bench/bench.h"
+#include "commands.h"
+
+namespace alidade {
+namespace {
+
+using nlohmann::ordered_json;
+
+struct BenchArguments {
+  std::vector<std::string> names;
+  std::string source = "synth:room", out;
+  int frames = 150;
+};
+
+using Bench = bench::Section (*)(const bench::Recording&);
+
+Bench BenchNamed(const std::string& name) {
+  return Choice<Bench>("NAME", name,
+                       {{"features", bench::BenchFeatures},
+                        {"ransac", bench::BenchRansac},
+                        {"ba", bench::BenchBundle},
+                        {"frame", bench::BenchFrame}});
+}
+
+void Print(const bench::Section& section) {
+  const Summary u = Summarise(section.u_milliseconds);
+  std::printf("\n%s (U = %.2f ms, median of %d)\n", section.name.c_str(), u.median, u.count);
+  std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
+  for (const bench::Row& row : section.rows) {
+    const Summary s = Summarise(row.milliseconds);
+    std::printf("  %-44s %10.3f %8.3f %10.3f %7d  %s\n", row.name.c_str(), s.median,
+                s.median / u.median, s.p95, s.count, row.note.c_str());
+  }
+}
+
+ordered_json ToJson(const bench::Section& section) {
+  const Summary u = Summarise(section.u_milliseconds);
+  ordered_json rows = ordered_json::array();
+  for (const bench::Row& row : section.rows) {
+    const Summary s = Summarise(row.milliseconds);
+    rows.push_back({{"name", row.name},
+                    {"median_ms", s.median},
+                    {"p95_ms", s.p95},
+                    {"median_u", s.median / u.median},
+                    {"count", s.count},
+                    {"note", row.note}});
+  }
+  return {{"name", section.name}, {"u_ms", u.median}, {"u_count", u.count}, {"rows", rows}};
+}
+
+int Run(const BenchArguments& arguments) {
+  std::vector<Bench> benches;
+  for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
+  cv::setNumThreads(1);
+  SetThreadCount(0);
+  const bench::Recording recording = bench::LoadRecording(arguments.source, arguments.frames);
+  const Camera& camera = recording.info.camera;
+  std::printf(
+      "%s: %d frames of %dx%d pixels, %d threads. U: cv::ORB, 1000 features, one thread, same "
+      "frames.\n",
+      recording.source.c_str(), static_cast<int>(recording.frames.size()), camera.width,
+      camera.height, ThreadCount());
+  ordered_json sections = ordered_json::array();
+  for (Bench bench : benches) {
+    const bench::Section section = bench(recording);
+    Print(section);
+    std::fflush(stdout);
+    sections.push_back(ToJson(section));
+  }
+  if (!arguments.out.empty()) {
+    const ordered_json all = {
+        {"version", 1},          {"source", recording.source}, {"frames", recording.frames.size()},
+        {"width", camera.width}, {"height", camera.height},    {"threads", ThreadCount()},
+        {"benches", sections}};
+    AtomicWriteFile(arguments.out, all.dump(2) + "\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddBenchCommand(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("bench", "Time the parts, beside OpenCV's ORB on the same frames");
+  auto arguments = std::make_shared<BenchArguments>();
+  command->add_option("NAME", arguments->names, "features, ransac, ba, frame: one or more")
+      ->required();
+  command->add_option("--source", arguments->source, "Recording to take frames from (synth:room)");
+  command->add_option("--frames", arguments->frames, "Frames of it, at most (150)")
+      ->check(CLI::Range(2, 100000));
+  command->add_option("--out", arguments->out, "JSON file to write the numbers to");
+  command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });
+}
+
+}  // namespace alidade

@@ -1,0 +1,233 @@
+#include "alidade/mapping/local_window.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/check_map.h"
+#include "support/synthetic_map.h"
+
+namespace alidade {
+namespace {
+
+double Distance(const Se3& a, const Se3& b) { return (a * b.Inverse()).Log().norm(); }
+
+// Of all observations of the landmarks that were adjusted, pixels.
+double RmsReprojection(const MapSnapshot& map, const Camera& camera, const WindowResult& window) {
+  double sum = 0;
+  int count = 0;
+  for (const auto& point : window.points) {
+    const LandmarkId id = point.first;
+    if (!map.Find(id)) continue;
+    for (const Observation& o : map.Find(id)->observations) {
+      const KeyFrame& keyframe = *map.Find(o.keyframe);
+      const Eigen::Vector2d seen = keyframe.frame->keypoints[o.keypoint].pixel();
+      sum += (camera.Project(keyframe.T_camera_world * map.Find(id)->p_world) - seen).squaredNorm();
+      ++count;
+    }
+  }
+  return std::sqrt(sum / count);
+}
+
+MapperSettings Patient() {
+  MapperSettings settings;
+  settings.bundle.max_iterations = 60;
+  settings.bundle.min_relative_decrease = 1e-9;
+  return settings;
+}
+
+class WindowTest : public testing::TestWithParam<bool> {  // with depth?
+ protected:
+  // The first two keyframes are where they were, everything else is off by centimetres.
+  void Make(const SyntheticMapSettings& settings, double noise_px = 0) {
+    world_ = MakeSyntheticWorld(
+        {.points = 250, .cameras = 7, .noise_px = noise_px, .depth = GetParam()});
+    made_ = FillMap(world_, settings, store_);
+  }
+  SyntheticWorld world_;
+  MapStore store_;
+  SyntheticMap made_;
+};
+
+TEST_P(WindowTest, ReturnsToTheTruthOfAnExactWorld) {
+  Make({.pose_sigma = 0.01, .point_sigma = 0.03});
+  const MapSnapshot before = store_.Snapshot();
+  const WindowResult result =
+      AdjustWindow(before, made_.keyframes.back(), world_.camera, Patient(), nullptr);
+  const MapSnapshot after =
+      store_.Commit([&](MapCommit& commit) { CommitWindow(commit, before, result); });
+  EXPECT_GT(RmsReprojection(before, world_.camera, result), 3);
+  EXPECT_LT(RmsReprojection(after, world_.camera, result), 0.01);
+  for (size_t v = 0; v < world_.views.size(); ++v) {
+    EXPECT_LT(Distance(after.PoseOf(made_.keyframes[v]), world_.views[v].T_camera_world), 1e-3)
+        << v;
+  }
+  EXPECT_TRUE(result.outliers.empty());
+}
+
+TEST_P(WindowTest, LowersTheErrorAndHoldsTheGauge) {
+  Make({.pose_sigma = 0.01, .point_sigma = 0.03}, /*noise_px=*/1);
+  MapperSettings settings;
+  settings.window_keyframes = 3;  // the others hold it
+  const MapSnapshot before = store_.Snapshot();
+  const WindowResult result =
+      AdjustWindow(before, made_.keyframes.back(), world_.camera, settings, nullptr);
+  EXPECT_EQ(result.poses.size(), 3u);
+  EXPECT_LT(result.report.final_cost, 0.5 * result.report.initial_cost);
+  const MapSnapshot after = store_.Commit([&](MapCommit& commit) {
+    CommitWindow(commit, before, result);
+    for (const auto& point : result.points)
+      commit.RefreshLandmark(point.first);  // nobody may see it now
+  });
+  EXPECT_LT(RmsReprojection(after, world_.camera, result),
+            RmsReprojection(before, world_.camera, result));
+  for (KeyFrameId id : made_.keyframes) {
+    const bool adjusted = std::any_of(result.poses.begin(), result.poses.end(),
+                                      [&](const auto& p) { return p.first == id; });
+    const Se3 &a = before.Find(id)->T_camera_world, &b = after.Find(id)->T_camera_world;
+    EXPECT_EQ(a.R != b.R || a.t != b.t, adjusted);
+  }
+  ExpectConsistent(after);
+}
+
+TEST_P(WindowTest, TheFirstKeyframeNeverMoves) {
+  Make({.pose_sigma = 0.01, .point_sigma = 0.03}, /*noise_px=*/1);
+  for (KeyFrameId id : made_.keyframes) {
+    if (id == made_.keyframes.front()) continue;
+    const WindowResult result = AdjustWindow(store_.Snapshot(), id, world_.camera, {}, nullptr);
+    size_t moved = 0;
+    for (const auto& [adjusted, T] : result.poses) {
+      EXPECT_NE(adjusted, made_.keyframes.front());
+      ++moved;
+    }
+    // And in a monocular map a second one holds the scale.
+    EXPECT_LE(moved, made_.keyframes.size() - (GetParam() ? 1 : 2));
+  }
+}
+
+TEST_P(WindowTest, NamesObservationsThatDoNotFit) {
+  Make({}, /*noise_px=*/0.3);
+  // One keyframe takes two far-apart landmarks for each other.
+  LandmarkId one, other;
+  const KeyFrameId confused = made_.keyframes[4];
+  store_.Commit([&](MapCommit& commit) {
+    const KeyFrame& keyframe = *commit.Find(confused);
+    int a = -1, b = -1;
+    for (size_t k = 0; k < keyframe.landmarks.size(); ++k) {
+      if (!keyframe.landmarks[k].valid() ||
+          commit.Find(keyframe.landmarks[k])->observations.size() < 4)
+        continue;
+      if (a < 0) a = static_cast<int>(k);
+      const Eigen::Vector2d away =
+          keyframe.frame->keypoints[k].pixel() - keyframe.frame->keypoints[a].pixel();
+      if (away.norm() > 100) b = static_cast<int>(k);
+    }
+    one = keyframe.landmarks[a];
+    other = keyframe.landmarks[b];
+    commit.RemoveObservation(one, confused);
+    commit.RemoveObservation(other, confused);
+    commit.AddObservation(one, confused, b);
+    commit.AddObservation(other, confused, a);
+  });
+  const MapSnapshot before = store_.Snapshot();
+  const WindowResult result =
+      AdjustWindow(before, made_.keyframes.back(), world_.camera, Patient(), nullptr);
+  const auto named = [&](LandmarkId id) {
+    return std::count(result.outliers.begin(), result.outliers.end(),
+                      std::make_pair(id, confused)) == 1;
+  };
+  EXPECT_TRUE(named(one));
+  EXPECT_TRUE(named(other));
+  const MapSnapshot after =
+      store_.Commit([&](MapCommit& commit) { CommitWindow(commit, before, result); });
+  for (const Observation& o : after.Find(one)->observations) EXPECT_NE(o.keyframe, confused);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, WindowTest, testing::Bool(), [](const auto& sensor) {
+  return sensor.param ? "WithDepth" : "Monocular";
+});
+
+TEST(CommitWindow, LeavesOutWhatDiedMeanwhile) {
+  const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {.pose_sigma = 0.01, .point_sigma = 0.03}, store);
+  const MapSnapshot base = store.Snapshot();
+  const WindowResult result = AdjustWindow(base, made.keyframes.back(), world.camera, {}, nullptr);
+  const LandmarkId gone = result.points[5].first, fused = result.points[6].first,
+                   kept = result.points[7].first;
+  store.Commit([&](MapCommit& commit) {
+    commit.Remove(gone);
+    commit.Replace(fused, kept);
+    commit.Remove(made.keyframes[3]);
+    for (LandmarkId id : base.Landmarks()) commit.RefreshLandmark(id);
+  });
+  const MapSnapshot after =
+      store.Commit([&](MapCommit& commit) { CommitWindow(commit, base, result); });
+  EXPECT_EQ(after.Find(gone), nullptr);
+  EXPECT_EQ(after.Find(fused), nullptr);
+  EXPECT_EQ(after.Find(made.keyframes[3]), nullptr);
+  EXPECT_EQ(after.Find(kept)->p_world, result.points[7].second);
+}
+
+TEST(CommitWindow, TheYoungFollow) {
+  const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
+  MapStore store;
+  const SyntheticMap made =
+      FillMap(world, {.pose_sigma = 0.02, .point_sigma = 0.03, .keyframes = 5}, store);
+  const MapSnapshot base = store.Snapshot();
+  const KeyFrameId parent = made.keyframes.back();
+  const WindowResult result = AdjustWindow(base, parent, world.camera, {}, nullptr);
+  // Meanwhile: a child of the adjusted keyframe, its child, and a landmark in each.
+  KeyFrameId child, grandchild;
+  LandmarkId in_parent, in_grandchild;
+  store.Commit([&](MapCommit& commit) {
+    KeyFrame keyframe;
+    keyframe.frame = world.views.back().frame;
+    keyframe.T_camera_world = world.views.back().T_camera_world;
+    keyframe.parent = parent;
+    child = commit.Add(keyframe);
+    keyframe.parent = child;
+    keyframe.T_camera_world.t.x() -= 0.1;
+    grandchild = commit.Add(keyframe);
+    Landmark landmark;
+    landmark.p_world = {0.3, 0.2, 4};
+    landmark.reference = landmark.born = parent;
+    int free = 0;
+    while (commit.Find(parent)->landmarks[free].valid()) ++free;
+    landmark.observations = {{parent, free}};
+    in_parent = commit.Add(landmark);
+    landmark.reference = landmark.born = grandchild;
+    landmark.observations = {{grandchild, 0}};
+    in_grandchild = commit.Add(landmark);
+  });
+  const MapSnapshot before = store.Snapshot();
+  const MapSnapshot after =
+      store.Commit([&](MapCommit& commit) { CommitWindow(commit, base, result); });
+  ASSERT_GT(Distance(before.PoseOf(parent), after.PoseOf(parent)), 1e-3);
+  const auto between = [](const MapSnapshot& map, KeyFrameId a, KeyFrameId b) {
+    return map.PoseOf(a) * map.PoseOf(b).Inverse();
+  };
+  EXPECT_LT(Distance(between(before, child, parent), between(after, child, parent)), 1e-12);
+  EXPECT_LT(Distance(between(before, grandchild, parent), between(after, grandchild, parent)),
+            1e-12);
+  const auto in_camera = [](const MapSnapshot& map, LandmarkId id) {
+    return Eigen::Vector3d(map.PoseOf(map.Find(id)->reference) * map.Find(id)->p_world);
+  };
+  EXPECT_LT((in_camera(before, in_parent) - in_camera(after, in_parent)).norm(), 1e-12);
+  EXPECT_LT((in_camera(before, in_grandchild) - in_camera(after, in_grandchild)).norm(), 1e-12);
+}
+
+TEST(AdjustWindow, StopsWhenTold) {
+  const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {.pose_sigma = 0.02, .point_sigma = 0.03}, store);
+  const std::atomic<bool> stop{true};
+  const WindowResult result =
+      AdjustWindow(store.Snapshot(), made.keyframes.back(), world.camera, {}, &stop);
+  EXPECT_EQ(result.report.iterations, 0);
+  EXPECT_EQ(result.report.final_cost, result.report.initial_cost);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,159 @@
+#include "alidade/mapping/mapper.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+
+#include "alidade/base/parallel.h"
+#include "alidade/map/map_file.h"
+#include "support/check_map.h"
+#include "support/synthetic_world.h"
+
+namespace alidade {
+namespace {
+
+constexpr SyntheticWorldSettings kWorld{
+    .points = 600, .cameras = 14, .noise_px = 0.7, .flipped_bits = 12, .clutter = 150};
+
+// What the map thinks each keypoint of a view is, as a perfect tracker would know it.
+std::vector<LandmarkId> MatchesOf(const SyntheticWorld& world, const MapSnapshot& map,
+                                  const SyntheticView& view) {
+  std::map<int, LandmarkId> landmark_of;  // points
+  for (LandmarkId id : map.Landmarks()) {
+    const Observation& first = map.Find(id)->observations.front();
+    const int number = map.Find(first.keyframe)->frame->number;
+    landmark_of[world.views[number].points[first.keypoint]] = id;
+  }
+  std::vector<LandmarkId> matches;
+  for (int point : view.points) {
+    matches.push_back(point >= 0 && landmark_of.count(point) ? landmark_of[point] : LandmarkId{});
+  }
+  return matches;
+}
+
+// Median distance of landmarks to the points their first observations show, in units of the world's
+// metres.
+double MedianError(const SyntheticWorld& world, const MapSnapshot& map, double scale) {
+  std::vector<double> errors;
+  for (LandmarkId id : map.Landmarks()) {
+    const Observation& first = map.Find(id)->observations.front();
+    const int point = world.views[map.Find(first.keyframe)->frame->number].points[first.keypoint];
+    errors.push_back(point < 0 ? 1e9
+                               : (map.Find(id)->p_world * scale - world.points[point]).norm());
+  }
+  std::nth_element(errors.begin(), errors.begin() + static_cast<long>(errors.size() / 2),
+                   errors.end());
+  return errors[errors.size() / 2];
+}
+
+void MapWithDepth(const SyntheticWorld& world, MapStore& store) {
+  Mapper mapper(store, world.camera, {});
+  KeyFrameId parent;
+  for (const SyntheticView& view : world.views) {
+    const auto matches = MatchesOf(world, store.Snapshot(), view);
+    const KeyFrameId id = mapper.Insert(view.frame, view.T_camera_world, matches, parent);
+    mapper.Process(id);
+    ExpectConsistent(store.Snapshot());
+    parent = id;
+  }
+}
+
+TEST(Mapper, MapsAWorldSeenWithDepth) {
+  SyntheticWorldSettings settings = kWorld;
+  settings.depth = true;
+  const SyntheticWorld world = MakeSyntheticWorld(settings);
+  MapStore store;
+  MapWithDepth(world, store);
+  const MapSnapshot map = store.Snapshot();
+  EXPECT_GT(map.landmark_count(), 300);
+  // Half of them lie beyond the depth that is used, and are triangulated from little parallax.
+  EXPECT_LT(MedianError(world, map, 1), 0.03);
+  for (KeyFrameId id : map.KeyFrames()) {
+    const KeyFrame& keyframe = *map.Find(id);
+    const Se3& truth = world.views[keyframe.frame->number].T_camera_world;
+    EXPECT_LT((keyframe.Centre() - truth.Inverse().t).norm(), 0.01);
+  }
+}
+
+TEST(Mapper, GivesTheSameMapWithAnyNumberOfThreads) {
+  SyntheticWorldSettings settings = kWorld;
+  settings.depth = true;
+  const SyntheticWorld world = MakeSyntheticWorld(settings);
+  std::vector<std::string> maps;
+  for (int threads : {1, 2, 5}) {
+    SetThreadCount(threads);
+    MapStore store;
+    MapWithDepth(world, store);
+    maps.push_back(EncodeMap({store.Snapshot(), world.camera, "rgbd", {}}));
+  }
+  SetThreadCount(0);
+  EXPECT_TRUE(maps[0] == maps[1]);
+  EXPECT_TRUE(maps[0] == maps[2]);
+}
+
+TEST(Mapper, MapsAWorldFromTwoMonocularViewsOn) {
+  const SyntheticWorld world = MakeSyntheticWorld(kWorld);
+  MapStore store;
+  Mapper mapper(store, world.camera, {});
+  const SyntheticView &a = world.views[0], &b = world.views[2];
+  Mapper::TwoViewMap start;
+  start.a = a.frame;
+  start.b = b.frame;
+  start.T_b_a = b.T_camera_world;  // the first camera is the world
+  for (size_t i = 0; i < a.points.size(); ++i) {
+    const auto j = std::find(b.points.begin(), b.points.end(), a.points[i]);
+    if (a.points[i] < 0 || j == b.points.end()) continue;
+    start.points.push_back(
+        {world.points[a.points[i]], static_cast<int>(i), static_cast<int>(j - b.points.begin())});
+  }
+  ASSERT_GT(start.points.size(), 80u);
+  KeyFrameId parent = mapper.InsertTwoViews(start);
+  MapSnapshot map = store.Snapshot();
+  ExpectConsistent(map);
+  std::vector<double> depths;  // the unit of the map is the median depth
+  for (LandmarkId id : map.Landmarks()) depths.push_back(map.Find(id)->p_world.z());
+  std::nth_element(depths.begin(), depths.begin() + static_cast<long>(depths.size() / 2),
+                   depths.end());
+  EXPECT_NEAR(depths[depths.size() / 2], 1, 1e-9);
+  const double scale = b.T_camera_world.t.norm() / map.Find(parent)->T_camera_world.t.norm();
+
+  const int started_with = map.landmark_count();
+  for (size_t v = 3; v < world.views.size(); ++v) {
+    Se3 T = world.views[v].T_camera_world;
+    T.t /= scale;
+    parent = mapper.Insert(world.views[v].frame, T,
+                           MatchesOf(world, store.Snapshot(), world.views[v]), parent);
+    mapper.Process(parent);
+    ExpectConsistent(store.Snapshot());
+  }
+  map = store.Snapshot();
+  EXPECT_GT(map.landmark_count(),
+            started_with + 80);                    // most of the 600 points were in view at once
+  EXPECT_LT(MedianError(world, map, scale), 0.1);  // 2 % of their distance
+}
+
+TEST(Mapper, RemovesLandmarksTheTrackerSeldomFinds) {
+  SyntheticWorldSettings settings = kWorld;
+  settings.depth = true;
+  const SyntheticWorld world = MakeSyntheticWorld(settings);
+  MapStore store;
+  Mapper mapper(store, world.camera, {});
+  const KeyFrameId first = mapper.Insert(world.views[0].frame, {}, {}, {});
+  const LandmarkId lost = store.Snapshot().Landmarks()[10];
+  for (int i = 0; i < 8; ++i) {
+    const std::pair<LandmarkId, bool> sighting{lost, i == 0};
+    mapper.Count({&sighting, 1});
+  }
+  mapper.Process(first);
+  EXPECT_EQ(store.Snapshot().Find(lost), nullptr);
+}
+
+TEST(Mapper, ProcessingAKeyframeThatIsGoneDoesNothing) {
+  MapStore store;
+  Mapper mapper(store, Camera::FromFieldOfView(640, 480, 66), {});
+  EXPECT_EQ(mapper.Process(KeyFrameId{3}).triangulated, 0);
+}
+
+}  // namespace
+}  // namespace alidade

@@ -1,0 +1,117 @@
+// The same recording gives the same bytes: with any number of threads, run after run.
+#include <gtest/gtest.h>
+
+#include "alidade/base/parallel.h"
+#include "alidade/io/trajectory.h"
+#include "alidade/map/map_file.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+#include "support/check_map.h"
+
+namespace alidade {
+namespace {
+
+// Small pictures of a furnished room, rendered once for all tests.
+struct Rendered {
+  Camera camera;
+  std::vector<RenderedFrame> frames;
+  std::vector<Se3> T_world_camera;
+};
+
+const Rendered& Recording() {
+  static const Rendered rendered = [] {
+    SynthSettings settings;
+    settings.scene = "room";
+    settings.frames = 60;
+    settings.width = 320;
+    settings.height = 240;
+    const SynthRecording recording(settings);
+    Rendered made;
+    made.camera = recording.camera();
+    for (int i = 0; i < settings.frames; ++i) {
+      made.frames.push_back(recording.Render(i));
+      made.T_world_camera.push_back(recording.Pose(i));
+    }
+    return made;
+  }();
+  return rendered;
+}
+
+struct Outcome {
+  std::string trajectory, keyframes, map;  // bytes
+  int tracked = 0;
+  double worst = 0;  // distance to the truth, in units of the map
+};
+
+Outcome Play(Sensor sensor, int threads, bool threaded = false) {
+  const Rendered& recording = Recording();
+  SetThreadCount(threads);
+  SlamSettings settings;
+  settings.sensor = sensor;
+  settings.threaded = threaded;
+  settings.tracker.extractor.features = 600;  // the picture is small
+  settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
+  Slam slam(recording.camera, settings);
+  for (const RenderedFrame& frame : recording.frames)
+    slam.Track({frame.time, frame.image, frame.right, frame.depth});
+  slam.Finish();
+  SetThreadCount(0);
+
+  Outcome outcome;
+  Trajectory trajectory, keyframes;
+  const Se3 T_first_world = recording.T_world_camera[0].Inverse();
+  for (const FramePose& pose : slam.Trajectory()) {
+    if (!pose.tracked) continue;
+    ++outcome.tracked;
+    trajectory.push_back({pose.time, pose.T_world_camera, {}});
+    const Se3 truth = T_first_world * recording.T_world_camera[pose.index];
+    outcome.worst = std::max(outcome.worst, (pose.T_world_camera.t - truth.t).norm());
+  }
+  const MapSnapshot map = slam.Snapshot();
+  for (KeyFrameId id : map.KeyFrames()) {
+    keyframes.push_back({map.Find(id)->frame->time, map.Find(id)->T_camera_world.Inverse(), {}});
+  }
+  ExpectConsistent(map);
+  outcome.trajectory = FormatTumTrajectory(trajectory);
+  outcome.keyframes = FormatTumTrajectory(keyframes);
+  outcome.map = slam.SaveMap();
+  return outcome;
+}
+
+void ExpectSame(const Outcome& a, const Outcome& b) {
+  EXPECT_EQ(a.trajectory, b.trajectory);
+  EXPECT_EQ(a.keyframes, b.keyframes);
+  EXPECT_TRUE(a.map == b.map);
+}
+
+TEST(InlineSchedule, GivesTheSameBytesWithOneAndTwoThreadsRunAfterRun) {
+  const Outcome one = Play(Sensor::kRgbd, 1);
+  EXPECT_EQ(one.tracked, 60);
+  ExpectSame(one, Play(Sensor::kRgbd, 2));
+  ExpectSame(one, Play(Sensor::kRgbd, 2));
+}
+
+TEST(InlineSchedule, GivesTheSameBytesForOneCamera) {
+  const Outcome one = Play(Sensor::kMono, 1);
+  EXPECT_GT(one.tracked, 20);
+  ExpectSame(one, Play(Sensor::kMono, 2));
+}
+
+TEST(InlineSchedule, ItsMapIsReadBack) {
+  const Outcome run = Play(Sensor::kRgbd, 2);
+  const SavedMap saved = DecodeMap(run.map);
+  ExpectConsistent(saved.map);
+  EXPECT_EQ(saved.sensor, "rgbd");
+  EXPECT_EQ(saved.camera.width, 320);
+  EXPECT_TRUE(EncodeMap(saved) == run.map);
+}
+
+TEST(ThreadedSchedule, FinishesAndTracks) {
+  const Outcome run = Play(Sensor::kRgbd, 2, /*threaded=*/true);
+  EXPECT_GE(run.tracked, 57);  // how far the mapper gets meanwhile is not ours to say
+  EXPECT_LT(run.worst, 0.1);
+  EXPECT_EQ(DecodeMap(run.map).sensor, "rgbd");
+}
+
+}  // namespace
+}  // namespace alidade
