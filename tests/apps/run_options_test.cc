@@ -84,15 +84,15 @@ TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
 
 TEST_F(RunOptions, LaterOnesHold) {
   const std::string file = results_.Write(
-      "settings.yaml", "seed: 5\ntracker:\n  extractor:\n    features: 700\nstart.window: 40\n");
+      "settings.yaml", "seed: 5\ntracker:\n  extractor:\n    features: 700\nstart.window: 0.4\n");
   const ProgramResult result =
-      Run({"--profile", "phone", "--config", file, "--set", "start.window=41", "--seed", "9"});
+      Run({"--profile", "phone", "--config", file, "--set", "start.window=0.25", "--seed", "9"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json settings = Settings();
   EXPECT_EQ(settings["profile"], "phone");
   EXPECT_EQ(settings["image_width"], 400);                 // the profile's
   EXPECT_EQ(settings["tracker.extractor.features"], 700);  // the file's, over the profile's 500
-  EXPECT_EQ(settings["start.window"], 41);                 // --set over the file's
+  EXPECT_EQ(settings["start.window"], 0.25);               // --set over the file's
   EXPECT_EQ(settings["seed"], 9);                          // the flag over the file's
 }
 
