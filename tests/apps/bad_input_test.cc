@@ -220,7 +220,8 @@ TEST_F(BadInput, FullDisk) {
   EXPECT_THAT(result.err, HasSubstr(disk));
   EXPECT_EQ(LineCount(result.err), 1) << result.err;
   // Nothing half-written stays: what is there is a complete file under its own name.
-  for (const auto& entry : fs::directory_iterator(disk + "/out")) {
+  for (const auto& entry : fs::recursive_directory_iterator(disk)) {
+    if (entry.is_directory()) continue;
     const std::string name = entry.path().filename().string();
     EXPECT_THAT(name,
                 AnyOf("trajectory.txt", "trajectory_live.txt", "keyframes.txt", "stats.json"));
