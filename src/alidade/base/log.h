@@ -1,4 +1,5 @@
-// What the library has to say while it runs. Warnings go to stderr, one line each, unless a listener takes them.
+// What the library has to say while it runs. Warnings go to stderr, one line each, unless a
+// listener takes them.
 #pragma once
 
 #include <functional>

@@ -19,7 +19,8 @@ uint32_t Random::Next() {
 }
 
 uint32_t Random::Below(uint32_t bound) {
-  const uint32_t threshold = (0u - bound) % bound;  // below it the low values would come up once too often
+  const uint32_t threshold =
+      (0u - bound) % bound;  // below it the low values would come up once too often
   while (true) {
     const uint32_t drawn = Next();
     if (drawn >= threshold) return drawn % bound;

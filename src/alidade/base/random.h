@@ -14,7 +14,7 @@ class Random {
   uint32_t Below(uint32_t bound);  // uniform in [0, bound), bound > 0, unbiased
   double Uniform();                // [0, 1)
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
-  double Gaussian();               // mean 0, standard deviation 1 (Marsaglia's polar method)
+  double Gaussian();  // mean 0, standard deviation 1 (Marsaglia's polar method)
   // `count` different numbers below `bound`, in the order drawn. Needs count <= bound.
   std::vector<int> Sample(int count, int bound);
 

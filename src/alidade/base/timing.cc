@@ -23,7 +23,8 @@ Summary Summarise(std::vector<double> samples) {
   summary.median = rank(0.5);
   summary.p95 = rank(0.95);
   summary.max = samples.back();
-  summary.mean = std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
+  summary.mean =
+      std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
   return summary;
 }
 

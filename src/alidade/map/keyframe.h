@@ -17,13 +17,14 @@ struct Neighbour {
 
 struct KeyFrame {
   KeyFrameId id;
-  std::shared_ptr<const Frame> frame;  // null once culled: then only the pose is kept, for the trajectory
+  std::shared_ptr<const Frame>
+      frame;  // null once culled: then only the pose is kept, for the trajectory
   Se3 T_camera_world;
-  KeyFrameId parent;                   // spanning tree; none for the first
-  Se3 T_camera_parent;                 // once culled: its place relative to the parent
-  std::vector<LandmarkId> landmarks;   // one for each keypoint; none where nothing is known
-  std::vector<Neighbour> covisible;    // most shared landmarks first, then by id
-  uint64_t version = 0;                // commit that wrote it
+  KeyFrameId parent;                  // spanning tree; none for the first
+  Se3 T_camera_parent;                // once culled: its place relative to the parent
+  std::vector<LandmarkId> landmarks;  // one for each keypoint; none where nothing is known
+  std::vector<Neighbour> covisible;   // most shared landmarks first, then by id
+  uint64_t version = 0;               // commit that wrote it
 
   bool culled() const { return frame == nullptr; }
   Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }  // in the world

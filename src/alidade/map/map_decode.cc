@@ -41,8 +41,9 @@ Se3 DecodePose(const fb::Pose* pose) {
   T.R.row(2) = Decode(pose->row2()).transpose();
   T.t = Decode(pose->t());
   const Eigen::Matrix3d error = T.R * T.R.transpose() - Eigen::Matrix3d::Identity();
-  Require(T.R.allFinite() && error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0 && Finite(T.t),
-          "a pose is no rigid motion");
+  Require(
+      T.R.allFinite() && error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0 && Finite(T.t),
+      "a pose is no rigid motion");
   return T;
 }
 

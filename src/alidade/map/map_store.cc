@@ -6,7 +6,8 @@
 namespace alidade {
 namespace {
 
-constexpr int kMinShared = 15;  // landmarks two keyframes must share to count as covisible (ORB-SLAM §III-D)
+constexpr int kMinShared =
+    15;  // landmarks two keyframes must share to count as covisible (ORB-SLAM §III-D)
 
 bool MoreShared(const Neighbour& a, const Neighbour& b) {
   return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
@@ -46,7 +47,8 @@ Se3 MapSnapshot::PoseOf(KeyFrameId id) const {
 }
 
 std::vector<KeyFrameId> MapSnapshot::KeyFrames() const {
-  return Alive<KeyFrameId, KeyFrame>(state_->keyframes, [](const KeyFrame& k) { return !k.culled(); });
+  return Alive<KeyFrameId, KeyFrame>(state_->keyframes,
+                                     [](const KeyFrame& k) { return !k.culled(); });
 }
 
 std::vector<LandmarkId> MapSnapshot::Landmarks() const {
@@ -66,7 +68,8 @@ MapPage<Object>& MapCommit::EditPage(MapTable<Object>& table, uint32_t index) {
 }
 
 template <typename Object>
-void MapCommit::SetSlot(MapTable<Object>& table, uint32_t index, std::shared_ptr<const Object> object) {
+void MapCommit::SetSlot(MapTable<Object>& table, uint32_t index,
+                        std::shared_ptr<const Object> object) {
   EditPage(table, index).slots[index % MapPage<Object>::kSize] = std::move(object);
 }
 
@@ -137,9 +140,9 @@ bool MapCommit::AddObservation(LandmarkId landmark_id, KeyFrameId keyframe_id, i
   const Landmark* landmark = Find(landmark_id);
   const KeyFrame* keyframe = Find(keyframe_id);
   if (!landmark || !keyframe || keyframe->landmarks[keypoint].valid()) return false;
-  const auto place = std::lower_bound(
-      landmark->observations.begin(), landmark->observations.end(), keyframe_id,
-      [](const Observation& seen, KeyFrameId id) { return seen.keyframe < id; });
+  const auto place =
+      std::lower_bound(landmark->observations.begin(), landmark->observations.end(), keyframe_id,
+                       [](const Observation& seen, KeyFrameId id) { return seen.keyframe < id; });
   if (place != landmark->observations.end() && place->keyframe == keyframe_id) return false;
   const auto offset = place - landmark->observations.begin();
   auto& observations = Edit(landmark_id)->observations;
@@ -201,7 +204,8 @@ void MapCommit::Remove(KeyFrameId id) {
   }
   for (uint32_t i = id.value + 1; i < state_.keyframes.next; ++i) {  // children are younger
     const KeyFrame* child = state_.keyframes.At(i);
-    if (child && !child->culled() && child->parent == id) Edit(child->id)->parent = keyframe->parent;
+    if (child && !child->culled() && child->parent == id)
+      Edit(child->id)->parent = keyframe->parent;
   }
   const KeyFrame* parent = Find(keyframe->parent);
   keyframe->T_camera_parent = keyframe->T_camera_world * parent->T_camera_world.Inverse();
@@ -243,8 +247,9 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
   landmark->normal = direction.normalized().cast<float>();
 
   const KeyFrame* reference = Find(landmark->reference);
-  const auto seen = std::find_if(landmark->observations.begin(), landmark->observations.end(),
-                                 [&](const Observation& o) { return o.keyframe == landmark->reference; });
+  const auto seen =
+      std::find_if(landmark->observations.begin(), landmark->observations.end(),
+                   [&](const Observation& o) { return o.keyframe == landmark->reference; });
   const int level = reference->frame->keypoints[seen->keypoint].level;
   const double distance = (landmark->p_world - reference->Centre()).norm();
   landmark->max_distance = static_cast<float>(distance * ScaleOfLevel(level));
@@ -278,7 +283,8 @@ void MapCommit::RefreshCovisibility(KeyFrameId id) {
     if (count == 0) return;
     const Neighbour entry{id, count};
     other->covisible.insert(
-        std::upper_bound(other->covisible.begin(), other->covisible.end(), entry, MoreShared), entry);
+        std::upper_bound(other->covisible.begin(), other->covisible.end(), entry, MoreShared),
+        entry);
   };
   for (const Neighbour& old : keyframe->covisible) {
     const bool still = std::any_of(neighbours.begin(), neighbours.end(),

@@ -1,6 +1,6 @@
 // The map: read through snapshots that never change, written through commits, one at a time.
-// Objects sit behind shared pointers in pages of 64; a commit copies what it touches and publishes a new
-// table, so that readers never wait and never see half a change.
+// Objects sit behind shared pointers in pages of 64; a commit copies what it touches and publishes
+// a new table, so that readers never wait and never see half a change.
 #pragma once
 
 #include <array>
@@ -49,7 +49,8 @@ class MapSnapshot {
     const KeyFrame* keyframe = state_->keyframes.At(id.value);
     return keyframe && !keyframe->culled() ? keyframe : nullptr;
   }
-  const Landmark* Find(LandmarkId id) const {  // null when there is none, it was culled or fused away
+  const Landmark* Find(
+      LandmarkId id) const {  // null when there is none, it was culled or fused away
     const Landmark* landmark = state_->landmarks.At(id.value);
     return landmark && !landmark->replaced_by.valid() ? landmark : nullptr;
   }
@@ -65,7 +66,9 @@ class MapSnapshot {
   uint32_t next_keyframe() const { return state_->keyframes.next; }
   uint32_t next_landmark() const { return state_->landmarks.next; }
   uint64_t version() const { return state_->version; }
-  const MapState& state() const { return *state_; }  // all there is, the culled and fused included: for saving
+  const MapState& state() const {
+    return *state_;
+  }  // all there is, the culled and fused included: for saving
 
  private:
   friend class MapStore;
@@ -84,17 +87,19 @@ class MapCommit {
   KeyFrame* Edit(KeyFrameId id);  // null when it is not alive
   Landmark* Edit(LandmarkId id);
 
-  KeyFrameId Add(KeyFrame keyframe);  // sets its id; a parent removed meanwhile gives way to its own
-  LandmarkId Add(Landmark landmark);  // sets its id; its observations are entered in the keyframes too
+  KeyFrameId Add(
+      KeyFrame keyframe);  // sets its id; a parent removed meanwhile gives way to its own
+  LandmarkId Add(
+      Landmark landmark);  // sets its id; its observations are entered in the keyframes too
 
-  // Both sides of an observation. A keyframe sees a landmark at most once, a keypoint shows at most one:
-  // does nothing and returns false when that would break, or one of them is gone.
+  // Both sides of an observation. A keyframe sees a landmark at most once, a keypoint shows at most
+  // one: does nothing and returns false when that would break, or one of them is gone.
   bool AddObservation(LandmarkId landmark, KeyFrameId keyframe, int keypoint);
   void RemoveObservation(LandmarkId landmark, KeyFrameId keyframe);
 
   void Remove(LandmarkId id);                   // and all its observations
   void Replace(LandmarkId old, LandmarkId by);  // moves the observations that fit, forwards the id
-  void Remove(KeyFrameId id);                   // hands its children to its parent; its observations go
+  void Remove(KeyFrameId id);  // hands its children to its parent; its observations go
 
   // Recomputes what tracking needs to look for it. Removes it when no observation is left.
   void RefreshLandmark(LandmarkId id);
@@ -125,7 +130,8 @@ class MapStore {
     return MapSnapshot(current_);
   }
 
-  // Runs change(MapCommit&) and publishes its result. Writers wait for each other, readers for nobody.
+  // Runs change(MapCommit&) and publishes its result. Writers wait for each other, readers for
+  // nobody.
   template <typename Change>
   MapSnapshot Commit(Change&& change) {
     std::lock_guard<std::mutex> writer(writer_mutex_);
@@ -134,7 +140,8 @@ class MapStore {
     return Publish(std::move(commit.state_));
   }
   void Clear();  // empties the map; ids and versions go on
-  void Restore(const MapSnapshot& saved);  // makes `saved` the map; its ids go on, versions of this store too
+  void Restore(const MapSnapshot&
+                   saved);  // makes `saved` the map; its ids go on, versions of this store too
 
  private:
   MapSnapshot Publish(MapState&& state);

@@ -10,13 +10,14 @@ namespace alidade {
 
 // How well a keypoint is placed, pixels on level 0.
 struct MeasurementNoise {
-  double sigma_px = 0.8;        // of u and v; grows with the level's scale
-  double sigma_right_px = 0.4;  // of the disparity; a matched one grows with the scale, a depth sensor's does not
+  double sigma_px = 0.8;  // of u and v; grows with the level's scale
+  double sigma_right_px =
+      0.4;  // of the disparity; a matched one grows with the scale, a depth sensor's does not
   bool right_from_sensor = false;
 };
 
 struct Measurement {
-  Eigen::Vector3d pixel;        // u, v, right column (u - disparity) or NaN
+  Eigen::Vector3d pixel;                        // u, v, right column (u - disparity) or NaN
   double inv_sigma2 = 1, inv_sigma2_right = 1;  // 1/px²
 };
 

@@ -15,7 +15,8 @@ std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera&
                       view.pixel.y() >= -margin && view.pixel.y() < camera.height + margin;
   if (!inside) return {};
   view.distance = p.norm();
-  if (view.distance < 0.8 * landmark.min_distance || view.distance > 1.2 * landmark.max_distance) return {};
+  if (view.distance < 0.8 * landmark.min_distance || view.distance > 1.2 * landmark.max_distance)
+    return {};
   const Eigen::Vector3d sight = T_camera_world.R.transpose() * p;
   view.cosine = sight.dot(landmark.normal.cast<double>()) / view.distance;
   if (view.cosine < 0.5) return {};

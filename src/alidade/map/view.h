@@ -9,15 +9,15 @@
 namespace alidade {
 
 struct LandmarkView {
-  Eigen::Vector2d pixel;   // undistorted
-  double right_x = -1;     // column in the right image; -1 for a monocular camera
-  double distance = 0;     // metres, from the camera's centre
-  double cosine = 1;       // between the line of sight and the mean viewing direction
-  int level = 0;           // pyramid level it should be found on
+  Eigen::Vector2d pixel;  // undistorted
+  double right_x = -1;    // column in the right image; -1 for a monocular camera
+  double distance = 0;    // metres, from the camera's centre
+  double cosine = 1;      // between the line of sight and the mean viewing direction
+  int level = 0;          // pyramid level it should be found on
 };
 
-// nullopt: behind the camera, outside the image (by more than `margin` pixels), outside the range of
-// distances where its scale is in the pyramid, or seen from more than 60° off its mean direction
+// nullopt: behind the camera, outside the image (by more than `margin` pixels), outside the range
+// of distances where its scale is in the pyramid, or seen from more than 60° off its mean direction
 // (ORB-SLAM §V-D).
 std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera& camera,
                                          const Se3& T_camera_world, double margin = 0);

@@ -4,9 +4,11 @@
 
 namespace alidade {
 
-std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map, const std::vector<LandmarkId>& young,
-                                          const std::vector<SightingTally>& tallies, KeyFrameId newest,
-                                          bool has_depth, const MapperSettings& settings,
+std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
+                                          const std::vector<LandmarkId>& young,
+                                          const std::vector<SightingTally>& tallies,
+                                          KeyFrameId newest, bool has_depth,
+                                          const MapperSettings& settings,
                                           std::vector<LandmarkId>& still_young) {
   std::vector<LandmarkId> weak;
   still_young.clear();
@@ -27,18 +29,21 @@ std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map, const std::vec
   return weak;
 }
 
-std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id, bool has_depth,
-                                               const MapperSettings& settings) {
+std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id,
+                                               bool has_depth, const MapperSettings& settings) {
   constexpr int kOthers = 3;
   std::vector<KeyFrameId> redundant;
-  const auto named = [&](KeyFrameId k) { return std::find(redundant.begin(), redundant.end(), k) != redundant.end(); };
+  const auto named = [&](KeyFrameId k) {
+    return std::find(redundant.begin(), redundant.end(), k) != redundant.end();
+  };
   for (const Neighbour& n : map.Find(id)->covisible) {
     if (n.id > id) continue;  // yet to be processed, and the tracker still counts on it
     const KeyFrame* keyframe = map.Find(n.id);
     if (!keyframe || !keyframe->parent.valid()) continue;
     int counted = 0, covered = 0;
     for (size_t i = 0; i < keyframe->landmarks.size(); ++i) {
-      const Landmark* landmark = keyframe->landmarks[i].valid() ? map.Find(keyframe->landmarks[i]) : nullptr;
+      const Landmark* landmark =
+          keyframe->landmarks[i].valid() ? map.Find(keyframe->landmarks[i]) : nullptr;
       if (!landmark) continue;
       const Keypoint& keypoint = keyframe->frame->keypoints[i];
       if (has_depth && !keypoint.has_depth()) continue;
@@ -46,7 +51,8 @@ std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameI
       int others = 0;
       for (const Observation& o : landmark->observations) {
         if (o.keyframe == keyframe->id || named(o.keyframe)) continue;
-        if (map.Find(o.keyframe)->frame->keypoints[o.keypoint].level <= keypoint.level + 1) ++others;
+        if (map.Find(o.keyframe)->frame->keypoints[o.keypoint].level <= keypoint.level + 1)
+          ++others;
         if (others >= kOthers) break;
       }
       covered += others >= kOthers;

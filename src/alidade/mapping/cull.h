@@ -14,16 +14,19 @@ struct SightingTally {
   uint32_t expected = 0, found = 0;
 };
 
-// Landmarks on trial that failed: seldom found, or seen by too few keyframes since (ORB-SLAM §VI-B).
-// `tallies` by landmark id; `still_young` gets those whose trial goes on.
-std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map, const std::vector<LandmarkId>& young,
-                                          const std::vector<SightingTally>& tallies, KeyFrameId newest,
-                                          bool has_depth, const MapperSettings& settings,
+// Landmarks on trial that failed: seldom found, or seen by too few keyframes since (ORB-SLAM
+// §VI-B). `tallies` by landmark id; `still_young` gets those whose trial goes on.
+std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
+                                          const std::vector<LandmarkId>& young,
+                                          const std::vector<SightingTally>& tallies,
+                                          KeyFrameId newest, bool has_depth,
+                                          const MapperSettings& settings,
                                           std::vector<LandmarkId>& still_young);
 
-// Covisible keyframes of `id` nearly all of whose landmarks are seen by three others at the same or a finer
-// scale (ORB-SLAM §VI-E). Judged one after the other, each without those already named; younger ones are not judged.
-std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id, bool has_depth,
-                                               const MapperSettings& settings);
+// Covisible keyframes of `id` nearly all of whose landmarks are seen by three others at the same or
+// a finer scale (ORB-SLAM §VI-E). Judged one after the other, each without those already named;
+// younger ones are not judged.
+std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id,
+                                               bool has_depth, const MapperSettings& settings);
 
 }  // namespace alidade

@@ -9,8 +9,9 @@
 namespace alidade {
 namespace {
 
-void FindIn(const MapSnapshot& map, const std::vector<LandmarkId>& landmarks, const KeyFrame& keyframe,
-            const Camera& camera, const MapperSettings& settings, std::vector<FusedSighting>& found) {
+void FindIn(const MapSnapshot& map, const std::vector<LandmarkId>& landmarks,
+            const KeyFrame& keyframe, const Camera& camera, const MapperSettings& settings,
+            std::vector<FusedSighting>& found) {
   const double bf = camera.bf();
   for (LandmarkId id : landmarks) {
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
@@ -42,8 +43,8 @@ void FindIn(const MapSnapshot& map, const std::vector<LandmarkId>& landmarks, co
 
 }  // namespace
 
-std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
-                                          const MapperSettings& settings) {
+std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id,
+                                          const Camera& camera, const MapperSettings& settings) {
   const KeyFrame& keyframe = *map.Find(id);
   std::vector<const KeyFrame*> targets;
   for (const Neighbour& n : keyframe.covisible) {
@@ -70,7 +71,8 @@ std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id,
   return all;
 }
 
-std::vector<LandmarkId> CommitFusion(MapCommit& commit, const std::vector<FusedSighting>& sightings) {
+std::vector<LandmarkId> CommitFusion(MapCommit& commit,
+                                     const std::vector<FusedSighting>& sightings) {
   std::vector<LandmarkId> touched;
   for (const FusedSighting& s : sightings) {
     const Landmark* landmark = commit.Find(s.landmark);
@@ -82,8 +84,10 @@ std::vector<LandmarkId> CommitFusion(MapCommit& commit, const std::vector<FusedS
       continue;
     }
     if (holder == s.landmark || !commit.Find(holder)) continue;
-    const bool keep_holder = commit.Find(holder)->observations.size() > landmark->observations.size();
-    const LandmarkId kept = keep_holder ? holder : s.landmark, gone = keep_holder ? s.landmark : holder;
+    const bool keep_holder =
+        commit.Find(holder)->observations.size() > landmark->observations.size();
+    const LandmarkId kept = keep_holder ? holder : s.landmark,
+                     gone = keep_holder ? s.landmark : holder;
     commit.Replace(gone, kept);
     touched.push_back(kept);
   }

@@ -17,11 +17,12 @@ struct FusedSighting {
 };
 
 // Projects the landmarks of `id` into its covisible keyframes, and theirs into it (ORB-SLAM §VI-C).
-std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
-                                          const MapperSettings& settings);
+std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id,
+                                          const Camera& camera, const MapperSettings& settings);
 
-// Enters them: adds the observation, or merges the two landmarks into the one seen more often. What no
-// longer fits is passed over. Returns the landmarks touched, sorted.
-std::vector<LandmarkId> CommitFusion(MapCommit& commit, const std::vector<FusedSighting>& sightings);
+// Enters them: adds the observation, or merges the two landmarks into the one seen more often. What
+// no longer fits is passed over. Returns the landmarks touched, sorted.
+std::vector<LandmarkId> CommitFusion(MapCommit& commit,
+                                     const std::vector<FusedSighting>& sightings);
 
 }  // namespace alidade

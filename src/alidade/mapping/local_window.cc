@@ -44,7 +44,8 @@ WindowResult AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& c
     if (static_cast<int>(fixed.size()) >= settings.window_fixed) break;
     fixed.push_back(n.id);
   }
-  // The world's own frame stays; something must hold a young map's gauge (and a monocular one's scale).
+  // The world's own frame stays; something must hold a young map's gauge (and a monocular one's
+  // scale).
   const size_t wanted = camera.StereoBaseline() > 0 ? 1 : 2;
   while (fixed.size() < wanted && free.size() > 1) {
     fixed.push_back(free.front());
@@ -90,7 +91,8 @@ WindowResult AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameI
     for (const Observation& o : landmark->observations) {
       const int index = camera_index[o.keyframe.value];
       if (index < 0) continue;
-      const Measurement m = Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
+      const Measurement m =
+          Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
       problem.observations.push_back({index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
     }
     points.push_back(id);
@@ -99,10 +101,13 @@ WindowResult AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameI
 
   WindowResult result;
   result.report = AdjustBundle(problem, settings.bundle, stop);
-  for (size_t i = 0; i < free.size(); ++i) result.poses.push_back({free[i], problem.T_camera_world[i]});
-  for (size_t i = 0; i < points.size(); ++i) result.points.push_back({points[i], problem.points[i]});
+  for (size_t i = 0; i < free.size(); ++i)
+    result.poses.push_back({free[i], problem.T_camera_world[i]});
+  for (size_t i = 0; i < points.size(); ++i)
+    result.points.push_back({points[i], problem.points[i]});
   for (const BundleObservation& o : problem.observations) {
-    const double chi2 = ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
+    const double chi2 =
+        ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
     if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});
   }
   return result;
@@ -118,8 +123,9 @@ void CommitWindow(MapCommit& commit, const MapSnapshot& base, const WindowResult
     keyframe->T_camera_world = T_camera_world;
   }
   const auto correction = [&](KeyFrameId id) -> const Se3* {
-    const auto it = std::lower_bound(moved.begin(), moved.end(), id,
-                                     [](const auto& entry, KeyFrameId key) { return entry.first < key; });
+    const auto it =
+        std::lower_bound(moved.begin(), moved.end(), id,
+                         [](const auto& entry, KeyFrameId key) { return entry.first < key; });
     return it != moved.end() && it->first == id ? &it->second : nullptr;
   };
   for (uint32_t i = base.next_keyframe(); i < commit.next_keyframe(); ++i) {
@@ -137,7 +143,8 @@ void CommitWindow(MapCommit& commit, const MapSnapshot& base, const WindowResult
     const Se3* T = young ? correction(young->reference) : nullptr;
     if (T) commit.Edit(young->id)->p_world = *T * young->p_world;
   }
-  for (const auto& [landmark, keyframe] : result.outliers) commit.RemoveObservation(landmark, keyframe);
+  for (const auto& [landmark, keyframe] : result.outliers)
+    commit.RemoveObservation(landmark, keyframe);
 }
 
 }  // namespace alidade

@@ -42,7 +42,8 @@ class Mapper {
   // What the tracker looked for and found since the last call. Thread-safe.
   void Count(std::span<const std::pair<LandmarkId, bool>> sightings);
 
-  // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the adjustment short.
+  // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the
+  // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
   void Reset();  // after the map was cleared
 
@@ -51,9 +52,9 @@ class Mapper {
   Camera camera_;
   MapperSettings settings_;
   bool has_depth_;
-  std::vector<LandmarkId> young_;        // on trial
+  std::vector<LandmarkId> young_;  // on trial
   std::mutex tallies_mutex_;
-  std::vector<SightingTally> tallies_;   // by landmark id
+  std::vector<SightingTally> tallies_;  // by landmark id
 };
 
 }  // namespace alidade

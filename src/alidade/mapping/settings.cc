@@ -13,9 +13,11 @@ void MapperSettings::Check() const {
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
   require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
   require(max_depth > 0, "max_depth must be positive");
-  require(triangulate_keyframes_mono > 0 && triangulate_keyframes_depth >= 0, "triangulate_keyframes_* cannot be negative");
+  require(triangulate_keyframes_mono > 0 && triangulate_keyframes_depth >= 0,
+          "triangulate_keyframes_* cannot be negative");
   require(triangulate_ratio > 0 && triangulate_ratio <= 1, "triangulate_ratio must lie in (0, 1]");
-  require(min_parallax_degrees > 0 && min_parallax_degrees < 90, "min_parallax_degrees must lie in (0, 90)");
+  require(min_parallax_degrees > 0 && min_parallax_degrees < 90,
+          "min_parallax_degrees must lie in (0, 90)");
   require(fuse_keyframes >= 0 && fuse_radius > 0, "fuse_* cannot be negative");
   require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must lie in [0, 1]");
   require(redundant_share > 0, "redundant_share must be positive");

@@ -7,36 +7,38 @@
 namespace alidade {
 
 struct MapperSettings {
-  MeasurementNoise noise;            // of keypoints
-  double match_scale = 1.0;          // multiplies counts of matches; phone 0.8
+  MeasurementNoise noise;    // of keypoints
+  double match_scale = 1.0;  // multiplies counts of matches; phone 0.8
 
   // Landmarks from depth.
-  double max_depth = 8.0;            // metres; beyond, a depth sensor says little
+  double max_depth = 8.0;  // metres; beyond, a depth sensor says little
 
   // Triangulation (ORB-SLAM §VI-C).
-  int triangulate_keyframes_mono = 10;   // best covisible keyframes searched for partners
+  int triangulate_keyframes_mono = 10;  // best covisible keyframes searched for partners
   int triangulate_keyframes_depth = 6;
-  int triangulate_distance = 50;     // bits of 256: only the epipolar line guides the search
-  double triangulate_ratio = 0.85;   // best to second-best distance
-  double min_parallax_degrees = 0.4; // between the two rays; far points hold the rotation, their depth comes later
+  int triangulate_distance = 50;    // bits of 256: only the epipolar line guides the search
+  double triangulate_ratio = 0.85;  // best to second-best distance
+  double min_parallax_degrees =
+      0.4;  // between the two rays; far points hold the rotation, their depth comes later
   double min_baseline_ratio = 0.01;  // baseline to median depth, monocular
 
   // Fusion of duplicates.
-  int fuse_keyframes = 15;           // covisible keyframes landmarks are projected into
-  double fuse_radius = 3.0;          // pixels on level 0
-  int fuse_distance = 50;            // bits of 256
+  int fuse_keyframes = 15;   // covisible keyframes landmarks are projected into
+  double fuse_radius = 3.0;  // pixels on level 0
+  int fuse_distance = 50;    // bits of 256
 
   // Culling (ORB-SLAM §VI-B, VI-E).
-  double min_found_share = 0.25;     // found / expected sightings of a landmark on trial
-  int trial_keyframes = 3;           // a landmark is on trial for as many keyframes after its own
-  double redundant_share = 0.9;      // of a keyframe's landmarks seen in 3 others at the same or a finer scale
+  double min_found_share = 0.25;  // found / expected sightings of a landmark on trial
+  int trial_keyframes = 3;        // a landmark is on trial for as many keyframes after its own
+  double redundant_share =
+      0.9;  // of a keyframe's landmarks seen in 3 others at the same or a finer scale
 
   // Local bundle adjustment (ORB-SLAM §VI-D).
-  int window_keyframes = 15;         // adjusted: the newest and its best covisible ones
-  int window_fixed = 20;             // held: those that see most of the same landmarks
+  int window_keyframes = 15;  // adjusted: the newest and its best covisible ones
+  int window_fixed = 20;      // held: those that see most of the same landmarks
   BundleSettings bundle{.max_iterations = 10, .min_relative_decrease = 1e-4};
 
-  void Check() const;                // throws Error (usage) naming the field that cannot be
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 }  // namespace alidade

@@ -22,7 +22,8 @@ struct Partner {
 // Fundamental matrix: x_b^T F x_a = 0 (Hartley & Zisserman 9.1).
 Eigen::Matrix3d FundamentalOf(const Camera& camera, const Se3& T_b_a) {
   Eigen::Matrix3d K_inverse;
-  K_inverse << 1 / camera.fx, 0, -camera.cx / camera.fx, 0, 1 / camera.fy, -camera.cy / camera.fy, 0, 0, 1;
+  K_inverse << 1 / camera.fx, 0, -camera.cx / camera.fx, 0, 1 / camera.fy, -camera.cy / camera.fy,
+      0, 0, 1;
   return K_inverse.transpose() * Skew(T_b_a.t) * T_b_a.R * K_inverse;
 }
 
@@ -47,13 +48,14 @@ double MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe) {
 }
 
 // Best descriptor partner along the epipolar line, clearly better than the second.
-std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& free_a, const KeyFrame& b,
-                                     const std::vector<int>& free_b, const Camera& camera,
-                                     const MapperSettings& settings) {
+std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& free_a,
+                                     const KeyFrame& b, const std::vector<int>& free_b,
+                                     const Camera& camera, const MapperSettings& settings) {
   const Se3 T_b_a = b.T_camera_world * a.T_camera_world.Inverse();
   const Eigen::Matrix3d F = FundamentalOf(camera, T_b_a);
   const bool epipole_seen = T_b_a.t.z() > 1e-6;
-  const Eigen::Vector2d epipole = epipole_seen ? camera.Project(T_b_a.t) : Eigen::Vector2d(-1e9, -1e9);
+  const Eigen::Vector2d epipole =
+      epipole_seen ? camera.Project(T_b_a.t) : Eigen::Vector2d(-1e9, -1e9);
 
   std::vector<float> x(free_b.size()), y(free_b.size()), reach(free_b.size());
   for (size_t j = 0; j < free_b.size(); ++j) {
@@ -63,7 +65,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
     const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
     reach[j] = static_cast<float>(kChiSquared1 * sigma * sigma);
     // Next to the epipole every direction fits and the depth is not determined.
-    if ((keypoint.pixel() - epipole).squaredNorm() < 100 * ScaleOfLevel(keypoint.level)) reach[j] = -1;
+    if ((keypoint.pixel() - epipole).squaredNorm() < 100 * ScaleOfLevel(keypoint.level))
+      reach[j] = -1;
   }
   std::vector<Partner> best_for_b(free_b.size());
   for (int i : free_a) {
@@ -77,7 +80,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
     for (size_t j = 0; j < free_b.size(); ++j) {
       const float off = lx * x[j] + ly * y[j] + lc;
       if (off * off > reach[j]) continue;
-      const int distance = HammingDistance(a.frame->descriptors[i], b.frame->descriptors[free_b[j]]);
+      const int distance =
+          HammingDistance(a.frame->descriptors[i], b.frame->descriptors[free_b[j]]);
       if (distance < best) {
         second = best;
         best = distance;
@@ -86,7 +90,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
         second = distance;
       }
     }
-    if (best > settings.triangulate_distance || best > settings.triangulate_ratio * second) continue;
+    if (best > settings.triangulate_distance || best > settings.triangulate_ratio * second)
+      continue;
     Partner& held = best_for_b[best_j];
     if (held.a < 0 || best < held.distance) held = {i, free_b[best_j], best};
   }
@@ -106,8 +111,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
   return kept;
 }
 
-bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint, const Eigen::Vector3d& p_world,
-          const MapperSettings& settings) {
+bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
+          const Eigen::Vector3d& p_world, const MapperSettings& settings) {
   const Eigen::Vector3d p = keyframe.T_camera_world * p_world;
   if (p.z() <= 0) return false;
   const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
@@ -131,12 +136,15 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
     const KeyFrame* b = map.Find(a.covisible[i].id);
     if (!b) continue;
     const double baseline = (b->Centre() - centre_a).norm();
-    if (baseline < (has_depth ? camera.StereoBaseline() : settings.min_baseline_ratio * median_depth)) continue;
+    if (baseline <
+        (has_depth ? camera.StereoBaseline() : settings.min_baseline_ratio * median_depth))
+      continue;
     others.push_back(b);
   }
   std::vector<std::vector<Partner>> partners(others.size());
   ParallelFor(static_cast<int>(others.size()), [&](int i) {
-    partners[i] = MatchAlongLines(a, free_a, *others[i], WithoutLandmark(*others[i]), camera, settings);
+    partners[i] =
+        MatchAlongLines(a, free_a, *others[i], WithoutLandmark(*others[i]), camera, settings);
   });
 
   const double max_cosine = std::cos(settings.min_parallax_degrees * std::numbers::pi / 180);
@@ -148,13 +156,16 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
     for (const Partner& partner : partners[n]) {
       if (used[partner.a]) continue;
       const Keypoint &key_a = a.frame->keypoints[partner.a], &key_b = b.frame->keypoints[partner.b];
-      const auto p = Triangulate(camera, a.T_camera_world, key_a.pixel(), b.T_camera_world, key_b.pixel());
-      if (!p || !Fits(camera, a, key_a, *p, settings) || !Fits(camera, b, key_b, *p, settings)) continue;
+      const auto p =
+          Triangulate(camera, a.T_camera_world, key_a.pixel(), b.T_camera_world, key_b.pixel());
+      if (!p || !Fits(camera, a, key_a, *p, settings) || !Fits(camera, b, key_b, *p, settings))
+        continue;
       const Eigen::Vector3d ray_a = *p - centre_a, ray_b = *p - centre_b;
       const double distance_a = ray_a.norm(), distance_b = ray_b.norm();
       if (ray_a.dot(ray_b) > max_cosine * distance_a * distance_b) continue;
       // Its size in the two images must change as its distance does.
-      const double change = distance_b / distance_a * ScaleOfLevel(key_b.level) / ScaleOfLevel(key_a.level);
+      const double change =
+          distance_b / distance_a * ScaleOfLevel(key_b.level) / ScaleOfLevel(key_a.level);
       constexpr double kTolerance = 1.5 * kPyramidScale;
       if (change > kTolerance || change < 1 / kTolerance) continue;
       used[partner.a] = 1;

@@ -14,8 +14,9 @@ struct NewLandmark {
   Observation first, second;
 };
 
-// Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible keyframes and
-// triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A keypoint is used at most once.
+// Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible
+// keyframes and triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A
+// keypoint is used at most once.
 std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
                                         const MapperSettings& settings);
 

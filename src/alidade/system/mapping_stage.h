@@ -18,9 +18,10 @@ class MappingStage {
   MappingStage(Mapper& mapper, bool threaded);
   ~MappingStage();  // drops what is queued
 
-  void Add(KeyFrameId id);  // inline: done on return. Threaded: queued; a running adjustment is cut short
-  int backlog() const;      // keyframes waiting or in work
-  void Drain();             // returns when nothing is waiting or in work; throws what the worker threw
+  void Add(KeyFrameId
+               id);  // inline: done on return. Threaded: queued; a running adjustment is cut short
+  int backlog() const;  // keyframes waiting or in work
+  void Drain();         // returns when nothing is waiting or in work; throws what the worker threw
   std::vector<double> Milliseconds() const;  // one per keyframe done
 
  private:

@@ -85,10 +85,13 @@ Value Parse(const std::string& name, const std::string& text) {
   char* end = nullptr;
   double number = std::strtod(text.c_str(), &end);
   const bool whole = std::is_integral_v<Value>;
-  if (text.empty() || *end != '\0' || !std::isfinite(number) || (whole && number != std::floor(number))) {
-    ThrowUsage("setting " + name + ": '" + text + "' is not " + (whole ? "a whole number" : "a number"));
+  if (text.empty() || *end != '\0' || !std::isfinite(number) ||
+      (whole && number != std::floor(number))) {
+    ThrowUsage("setting " + name + ": '" + text + "' is not " +
+               (whole ? "a whole number" : "a number"));
   }
-  if (whole && (number < (std::is_unsigned_v<Value> ? 0.0 : -2147483648.0) || number > (std::is_unsigned_v<Value> ? 9e15 : 2147483647.0))) {
+  if (whole && (number < (std::is_unsigned_v<Value> ? 0.0 : -2147483648.0) ||
+                number > (std::is_unsigned_v<Value> ? 9e15 : 2147483647.0))) {
     ThrowUsage("setting " + name + ": " + text + " is out of range");
   }
   return static_cast<Value>(number);
@@ -118,7 +121,9 @@ void SlamSettings::Set(const std::string& name, const std::string& value) {
 
 std::vector<std::pair<std::string, std::string>> SlamSettings::All() const {
   std::vector<std::pair<std::string, std::string>> all;
-  VisitFields(*this, [&](const char* field, const auto& member) { all.push_back({field, Format(member)}); });
+  VisitFields(*this, [&](const char* field, const auto& member) {
+    all.push_back({field, Format(member)});
+  });
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -132,7 +137,8 @@ void SlamSettings::ApplyProfile(const std::string& profile) {
 }
 
 void SlamSettings::Check() const {
-  if (image_width != 0 && image_width < 100) ThrowUsage("image_width must be 0 or at least 100 pixels");
+  if (image_width != 0 && image_width < 100)
+    ThrowUsage("image_width must be 0 or at least 100 pixels");
   tracker.Check();
   mapper.Check();
   start.Check();

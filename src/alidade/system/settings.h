@@ -1,5 +1,5 @@
-// All settings of the system in one place. Each is a field; the name in YAML and after --set is its path here,
-// e.g. tracker.extractor.features.
+// All settings of the system in one place. Each is a field; the name in YAML and after --set is its
+// path here, e.g. tracker.extractor.features.
 #pragma once
 
 #include <functional>
@@ -15,20 +15,20 @@ namespace alidade {
 
 struct SlamSettings {
   Sensor sensor = Sensor::kMono;
-  bool threaded = false;      // each stage on its own thread; false: in a fixed order after each frame
-  int image_width = 0;        // pixels; images are scaled down to it, 0 = as they come. Phone: 400
-  uint64_t seed = 1;          // of every random choice
+  bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
+  int image_width = 0;    // pixels; images are scaled down to it, 0 = as they come. Phone: 400
+  uint64_t seed = 1;      // of every random choice
   TrackerSettings tracker;
   MapperSettings mapper;
   MonoStartSettings start;
 
-  // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts × 0.8.
-  // Throws Error (usage) for another name.
+  // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts ×
+  // 0.8. Throws Error (usage) for another name.
   void ApplyProfile(const std::string& profile);
-  void Check() const;         // throws Error (usage) naming the field that cannot be
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 
-  // Sets one field from text. Throws Error (usage) for an unknown name, with the nearest known one, or a value
-  // that is not of its type.
+  // Sets one field from text. Throws Error (usage) for an unknown name, with the nearest known one,
+  // or a value that is not of its type.
   void Set(const std::string& name, const std::string& value);
   // Every field as (name, value), in order of name.
   std::vector<std::pair<std::string, std::string>> All() const;

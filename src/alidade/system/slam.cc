@@ -81,11 +81,13 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings)
 FrameInput Slam::Impl::Prepare(const FrameInput& input) const {
   const auto check = [&](const cv::Mat& image, const char* what) {
     if (image.cols == given_.width && image.rows == given_.height) return;
-    ThrowInput(std::string(what) + " of " + std::to_string(image.cols) + "x" + std::to_string(image.rows) +
-               " pixels, but the camera has " + std::to_string(given_.width) + "x" + std::to_string(given_.height));
+    ThrowInput(std::string(what) + " of " + std::to_string(image.cols) + "x" +
+               std::to_string(image.rows) + " pixels, but the camera has " +
+               std::to_string(given_.width) + "x" + std::to_string(given_.height));
   };
   if (!std::isfinite(input.time)) ThrowInput("the frame's time is not a number");
-  if (!records_.empty() && input.time <= records_.back().time) ThrowInput("the frame's time does not grow");
+  if (!records_.empty() && input.time <= records_.back().time)
+    ThrowInput("the frame's time does not grow");
   check(input.image, "image");
   FrameInput prepared = input;
   if (settings_.sensor != Sensor::kStereo) prepared.right.release();
@@ -93,17 +95,20 @@ FrameInput Slam::Impl::Prepare(const FrameInput& input) const {
   if (!prepared.right.empty()) check(prepared.right, "right image");
   if (!prepared.depth.empty()) {
     check(prepared.depth, "depth image");
-    if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F) ThrowInput("depth must be 16 bit or float");
+    if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
+      ThrowInput("depth must be 16 bit or float");
   }
   for (cv::Mat* image : {&prepared.image, &prepared.right}) {
     if (image->empty()) continue;
     if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");
     if (image->channels() == 3) cv::cvtColor(*image, *image, cv::COLOR_BGR2GRAY);
     if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2GRAY);
-    if (camera_.width != given_.width) cv::resize(*image, *image, {camera_.width, camera_.height}, 0, 0, cv::INTER_AREA);
+    if (camera_.width != given_.width)
+      cv::resize(*image, *image, {camera_.width, camera_.height}, 0, 0, cv::INTER_AREA);
   }
   if (!prepared.depth.empty() && camera_.width != given_.width) {
-    cv::resize(prepared.depth, prepared.depth, {camera_.width, camera_.height}, 0, 0, cv::INTER_NEAREST);
+    cv::resize(prepared.depth, prepared.depth, {camera_.width, camera_.height}, 0, 0,
+               cv::INTER_NEAREST);
   }
   return prepared;
 }
@@ -132,7 +137,8 @@ void Slam::Impl::Place(FrameRecord& record, const PlacedFrame& placed, KeyFrameI
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, KeyFrameId reference) {
-  const KeyFrameId id = mapper_.Insert(placed.frame, placed.T_camera_world, placed.matches, reference);
+  const KeyFrameId id =
+      mapper_.Insert(placed.frame, placed.T_camera_world, placed.matches, reference);
   placed.matches = map_.Snapshot().Find(id)->landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(records_.back(), placed, id);
@@ -209,7 +215,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
 
   TrackResult result;
   if (trial_left_ > 0) {
-    if (!estimate.tracked || estimate.placed.inliers < settings_.start.trial_share * trial_points_) {
+    if (!estimate.tracked ||
+        estimate.placed.inliers < settings_.start.trial_share * trial_points_) {
       GiveUpStart();
       result.reason = "the first points did not hold";
       times_.track.push_back(watch.Milliseconds());
@@ -227,7 +234,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   }
   relocalisations_ += was_lost;
   state_ = TrackState::kTracking;
-  // A busy mapper is not given more than it can chew; with depth the tracker lives on new keyframes, so it may queue some.
+  // A busy mapper is not given more than it can chew; with depth the tracker lives on new
+  // keyframes, so it may queue some.
   const bool may_insert = mapping_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
   result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert;
   times_.track.push_back(watch.Milliseconds());
@@ -242,7 +250,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   return result;
 }
 
-Slam::Slam(const Camera& camera, const SlamSettings& settings) : impl_(std::make_unique<Impl>(camera, settings)) {}
+Slam::Slam(const Camera& camera, const SlamSettings& settings)
+    : impl_(std::make_unique<Impl>(camera, settings)) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Finish() { impl_->mapping_.Drain(); }
@@ -252,7 +261,9 @@ int Slam::relocalisations() const { return impl_->relocalisations_; }
 
 std::string Slam::SaveMap() const {
   const Sensor sensor = impl_->settings_.sensor;
-  const char* name = sensor == Sensor::kMono ? "mono" : sensor == Sensor::kStereo ? "stereo" : "rgbd";
+  const char* name = sensor == Sensor::kMono     ? "mono"
+                     : sensor == Sensor::kStereo ? "stereo"
+                                                 : "rgbd";
   return EncodeMap({Snapshot(), impl_->camera_, name, impl_->settings_.All()});
 }
 

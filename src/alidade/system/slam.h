@@ -17,7 +17,8 @@ struct FrameInput {
   double time = 0;  // seconds
   cv::Mat image;    // 8 bit grey (or BGR), the camera's size
   cv::Mat right;    // stereo: the rectified right image
-  cv::Mat depth;    // RGB-D: registered depth, CV_16U in camera.depth_factor units or CV_32F metres; empty = none
+  cv::Mat depth;  // RGB-D: registered depth, CV_16U in camera.depth_factor units or CV_32F metres;
+                  // empty = none
 };
 
 struct TrackResult {
@@ -30,8 +31,8 @@ struct TrackResult {
 
 // One frame of the finished trajectory.
 struct FramePose {
-  int index = 0;            // call of Track() it came from, from 0
-  double time = 0;          // seconds
+  int index = 0;    // call of Track() it came from, from 0
+  double time = 0;  // seconds
   bool tracked = false;
   Se3 T_world_camera;       // corrected by all that was learnt since
   Se3 T_world_camera_live;  // as it was when the frame was done
@@ -44,22 +45,23 @@ struct StageTimes {
 
 class Slam {
  public:
-  // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo camera.baseline.
+  // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo
+  // camera.baseline.
   Slam(const Camera& camera, const SlamSettings& settings);
   ~Slam();
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
 
-  // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a time that does not
-  // grow; the system stays as it was then.
+  // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a
+  // time that does not grow; the system stays as it was then.
   TrackResult Track(const FrameInput& input);
   void Finish();  // waits until the workers have nothing left to do
 
-  MapSnapshot Snapshot() const;             // cheap, consistent, safe to keep
+  MapSnapshot Snapshot() const;               // cheap, consistent, safe to keep
   std::vector<FramePose> Trajectory() const;  // every frame so far
-  std::string SaveMap() const;              // the map as bytes (map.alidade), to be written where it pleases
+  std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
-  const Camera& camera() const;             // as used: scaled by the profile
+  const Camera& camera() const;  // as used: scaled by the profile
   int relocalisations() const;
 
  private:

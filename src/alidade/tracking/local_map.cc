@@ -5,9 +5,10 @@
 namespace alidade {
 
 namespace {
-constexpr int kNeighboursEach = 10;  // best covisible keyframes looked at for one that shares landmarks
-constexpr double kMaxTurn = 0.7;       // cosine: optical axes within 45°
-constexpr double kMaxMove = 0.5;       // of the depth of what is seen
+constexpr int kNeighboursEach =
+    10;  // best covisible keyframes looked at for one that shares landmarks
+constexpr double kMaxTurn = 0.7;  // cosine: optical axes within 45°
+constexpr double kMaxMove = 0.5;  // of the depth of what is seen
 
 double Median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -16,15 +17,18 @@ double Median(std::vector<double>& values) {
 }
 
 // Keyframes from whose place and direction much the same must be seen, best first.
-std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, const Se3& T_camera_world, double depth) {
-  const Eigen::Vector3d centre = T_camera_world.Inverse().t, axis = T_camera_world.R.row(2).transpose();
+std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, const Se3& T_camera_world,
+                                          double depth) {
+  const Eigen::Vector3d centre = T_camera_world.Inverse().t,
+                        axis = T_camera_world.R.row(2).transpose();
   std::vector<std::pair<double, KeyFrameId>> scored;
   for (uint32_t i = 0; i < map.next_keyframe(); ++i) {
     const KeyFrame* keyframe = map.Find(KeyFrameId{i});
     if (!keyframe) continue;
     const double turn = axis.dot(keyframe->T_camera_world.R.row(2).transpose());
     const double move = (keyframe->Centre() - centre).norm() / depth;
-    if (turn > kMaxTurn && move < kMaxMove) scored.push_back({(1 - turn) / (1 - kMaxTurn) + move / kMaxMove, {i}});
+    if (turn > kMaxTurn && move < kMaxMove)
+      scored.push_back({(1 - turn) / (1 - kMaxTurn) + move / kMaxMove, {i}});
   }
   std::sort(scored.begin(), scored.end());
   std::vector<KeyFrameId> ids;

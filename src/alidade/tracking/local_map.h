@@ -9,22 +9,23 @@
 namespace alidade {
 
 struct LocalMap {
-  // Those that share landmarks with the frame, those that look the same way from nearby (where covisibility was
-  // lost by a turn away and back), then their neighbours.
+  // Those that share landmarks with the frame, those that look the same way from nearby (where
+  // covisibility was lost by a turn away and back), then their neighbours.
   std::vector<KeyFrameId> keyframes;
-  std::vector<const Landmark*> landmarks;   // all they see, each once; valid as long as the snapshot
-  KeyFrameId reference;                     // the one that shares most
+  std::vector<const Landmark*> landmarks;  // all they see, each once; valid as long as the snapshot
+  KeyFrameId reference;                    // the one that shares most
 };
 
 // Keeps its marks between frames so that gathering allocates little.
 class LocalMapGatherer {
  public:
   // `matches`: the frame's landmarks so far (invalid and stale ids are passed over).
-  LocalMap Gather(const MapSnapshot& map, std::span<const LandmarkId> matches, const Se3& T_camera_world,
-                  int max_keyframes);
+  LocalMap Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
+                  const Se3& T_camera_world, int max_keyframes);
 
  private:
-  std::vector<uint32_t> landmark_mark_, keyframe_mark_;  // by id; equal to mark_ = seen in this call
+  std::vector<uint32_t> landmark_mark_,
+      keyframe_mark_;  // by id; equal to mark_ = seen in this call
   uint32_t mark_ = 0;
 };
 

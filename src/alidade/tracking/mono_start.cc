@@ -18,7 +18,8 @@ void MonoStartSettings::Check() const {
   require(references >= 1 && reference_gap >= 1, "references and reference_gap must be positive");
   require(window > 0 && window <= 1, "window must lie in (0, 1]");
   require(min_motion >= 0 && min_motion < window, "min_motion must lie in [0, window)");
-  require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1, "trial_share must lie in [0, 1]");
+  require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
+          "trial_share must lie in [0, 1]");
 }
 
 MonoStart::MonoStart(const Camera& camera, MonoStartSettings settings)
@@ -26,12 +27,14 @@ MonoStart::MonoStart(const Camera& camera, MonoStartSettings settings)
   settings_.Check();
 }
 
-std::optional<MonoStartResult> MonoStart::Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
+std::optional<MonoStartResult> MonoStart::Try(Reference& reference,
+                                              const std::shared_ptr<const Frame>& frame,
                                               bool& lost) {
   MatchSettings matching;
   matching.ratio = 0.9;
   const auto radius = static_cast<float>(settings_.window * camera_.width);
-  const std::vector<IndexMatch> matches = MatchWindow(*reference.frame, *frame, reference.guess, radius, matching);
+  const std::vector<IndexMatch> matches =
+      MatchWindow(*reference.frame, *frame, reference.guess, radius, matching);
   lost = static_cast<double>(matches.size()) < settings_.min_matches * settings_.match_scale;
   if (lost) {
     reason_ = "too few matches between frames";
@@ -54,12 +57,21 @@ std::optional<MonoStartResult> MonoStart::Try(Reference& reference, const std::s
   }
   const TwoViewResult views = ReconstructTwoViews(camera_, pixels_a, pixels_b, settings_.two_view);
   switch (views.failure) {
-    case TwoViewFailure::kNone: break;
-    case TwoViewFailure::kLowParallax: reason_ = "too little parallax: move the camera sideways"; return {};
-    case TwoViewFailure::kAmbiguous: reason_ = "two motions explain what is seen"; return {};
-    case TwoViewFailure::kTooFewMatches: reason_ = "too few matches between frames"; return {};
+    case TwoViewFailure::kNone:
+      break;
+    case TwoViewFailure::kLowParallax:
+      reason_ = "too little parallax: move the camera sideways";
+      return {};
+    case TwoViewFailure::kAmbiguous:
+      reason_ = "two motions explain what is seen";
+      return {};
+    case TwoViewFailure::kTooFewMatches:
+      reason_ = "too few matches between frames";
+      return {};
     case TwoViewFailure::kNoModel:
-    case TwoViewFailure::kTooFewPoints: reason_ = "too few points agree on one motion"; return {};
+    case TwoViewFailure::kTooFewPoints:
+      reason_ = "too few points agree on one motion";
+      return {};
   }
   MonoStartResult result;
   result.a = reference.frame;
@@ -73,7 +85,8 @@ std::optional<MonoStartResult> MonoStart::Try(Reference& reference, const std::s
 }
 
 std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame) {
-  if (static_cast<double>(frame->keypoints.size()) < settings_.min_matches * settings_.match_scale) {
+  if (static_cast<double>(frame->keypoints.size()) <
+      settings_.min_matches * settings_.match_scale) {
     reason_ = "too few corners in the image";
     return {};
   }
@@ -85,11 +98,13 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
     if (!lost) kept.push_back(std::move(reference));
   }
   references_ = std::move(kept);
-  if (references_.empty() || frame->number - references_.back().frame->number >= settings_.reference_gap) {
+  if (references_.empty() ||
+      frame->number - references_.back().frame->number >= settings_.reference_gap) {
     // The oldest pairs have the most parallax; a newer one gives way.
     if (static_cast<int>(references_.size()) >= settings_.references) references_.pop_back();
     Reference reference{frame, {}};
-    for (const Keypoint& keypoint : frame->keypoints) reference.guess.push_back({keypoint.x, keypoint.y});
+    for (const Keypoint& keypoint : frame->keypoints)
+      reference.guess.push_back({keypoint.x, keypoint.y});
     references_.push_back(std::move(reference));
   }
   return result;

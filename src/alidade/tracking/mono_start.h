@@ -14,20 +14,20 @@ namespace alidade {
 
 struct MonoStartSettings {
   TwoViewSettings two_view;
-  int min_matches = 100;       // for 1000 features; with the reference frame, below which it is given up
-  double match_scale = 1.0;    // multiplies counts of matches; phone 0.8
-  int references = 4;          // kept at a time, at most
-  int reference_gap = 6;       // frames between them
-  double window = 0.16;        // of the image's width: how far a keypoint may move between two frames
-  double min_motion = 0.015;   // of the image's width: median motion below which a pair can't tell
-  int trial_frames = 5;        // frames that must confirm the map before it is believed
-  double trial_share = 0.3;    // of its points, tracked in each of them
-  void Check() const;          // throws Error (usage) naming the field that cannot be
+  int min_matches = 100;  // for 1000 features; with the reference frame, below which it is given up
+  double match_scale = 1.0;  // multiplies counts of matches; phone 0.8
+  int references = 4;        // kept at a time, at most
+  int reference_gap = 6;     // frames between them
+  double window = 0.16;      // of the image's width: how far a keypoint may move between two frames
+  double min_motion = 0.015;  // of the image's width: median motion below which a pair can't tell
+  int trial_frames = 5;       // frames that must confirm the map before it is believed
+  double trial_share = 0.3;   // of its points, tracked in each of them
+  void Check() const;         // throws Error (usage) naming the field that cannot be
 };
 
 struct MonoStartResult {
   std::shared_ptr<const Frame> a, b;
-  Se3 T_b_a;                       // |t| = 1
+  Se3 T_b_a;  // |t| = 1
   struct Point {
     Eigen::Vector3d p_a;
     int keypoint_a, keypoint_b;
@@ -49,7 +49,8 @@ class MonoStart {
     std::shared_ptr<const Frame> frame;
     std::vector<Eigen::Vector2f> guess;  // where each keypoint was last seen
   };
-  std::optional<MonoStartResult> Try(Reference& reference, const std::shared_ptr<const Frame>& frame, bool& lost);
+  std::optional<MonoStartResult> Try(Reference& reference,
+                                     const std::shared_ptr<const Frame>& frame, bool& lost);
 
   Camera camera_;
   MonoStartSettings settings_;

@@ -20,10 +20,13 @@ void TrackerSettings::Check() const {
   require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");
   require(max_distance > 0 && max_distance <= 256, "max_distance must lie in 1..256 bits");
   require(local_ratio > 0 && local_ratio <= 1, "local_ratio must lie in (0, 1]");
-  require(last_frame_radius > 0 && last_frame_radius_depth > 0 && local_radius > 0 && local_radius_depth > 0, "radii must be positive");
+  require(last_frame_radius > 0 && last_frame_radius_depth > 0 && local_radius > 0 &&
+              local_radius_depth > 0,
+          "radii must be positive");
   require(local_keyframes > 0, "local_keyframes must be positive");
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
-  require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap, "keyframe_max_gap must exceed keyframe_min_gap");
+  require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap,
+          "keyframe_max_gap must exceed keyframe_min_gap");
   require(keyframe_share_mono > 0 && keyframe_share_depth > 0, "keyframe_share_* must be positive");
 }
 

@@ -8,27 +8,32 @@ namespace alidade {
 
 struct TrackerSettings {
   ExtractorSettings extractor;
-  double match_scale = 1.0;      // multiplies the counts of matches below; phone 0.8 (half the features)
-  int min_predicted = 20;        // matches with the last frame, below which the search is widened
-  int min_after_prediction = 10; // inliers, below which the reference keyframe is tried instead
-  int min_tracked = 20;          // inliers with the local map, below which the frame is lost
-  double min_agreement = 0.4;    // share of a frame's matches that must fit one pose for it to be trusted
-  int max_distance = 100;        // bits of 256; with a pose to guide the search
-  double local_ratio = 0.8;      // best to second-best descriptor distance on the same level
-  float last_frame_radius = 15;  // pixels on level 0 around the predicted place, monocular
+  double match_scale =
+      1.0;                 // multiplies the counts of matches below; phone 0.8 (half the features)
+  int min_predicted = 20;  // matches with the last frame, below which the search is widened
+  int min_after_prediction = 10;  // inliers, below which the reference keyframe is tried instead
+  int min_tracked = 20;           // inliers with the local map, below which the frame is lost
+  double min_agreement =
+      0.4;                 // share of a frame's matches that must fit one pose for it to be trusted
+  int max_distance = 100;  // bits of 256; with a pose to guide the search
+  double local_ratio = 0.8;            // best to second-best descriptor distance on the same level
+  float last_frame_radius = 15;        // pixels on level 0 around the predicted place, monocular
   float last_frame_radius_depth = 10;  // the same with depth: the prediction is better
-  float local_radius = 4;        // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
-  float local_radius_depth = 12; // the same with depth, whose landmarks are placed from a single view
-  int local_keyframes = 40;      // at most, in the local map
+  float local_radius = 4;  // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
+  float local_radius_depth =
+      12;                    // the same with depth, whose landmarks are placed from a single view
+  int local_keyframes = 40;  // at most, in the local map
   MeasurementNoise noise{.sigma_px = 1.0};  // of keypoints
-  double good_agreement = 0.7;   // share of matches that fit one pose, below which a frame is taken as bent …
+  double good_agreement =
+      0.7;  // share of matches that fit one pose, below which a frame is taken as bent …
   double bad_frame_sigma = 3.0;  // … and the noise of its keypoints as so many times larger
-  // A keyframe is asked for when a frame's inliers fall below this share of the most since the last one …
+  // A keyframe is asked for when a frame's inliers fall below this share of the most since the last
+  // one …
   double keyframe_share_mono = 0.9;
   double keyframe_share_depth = 0.8;
-  int keyframe_min_gap = 1;      // … but not sooner after the last than this many frames,
-  int keyframe_max_gap = 30;     // and at the latest after this many
-  void Check() const;            // throws Error (usage) naming the field that cannot be
+  int keyframe_min_gap = 1;   // … but not sooner after the last than this many frames,
+  int keyframe_max_gap = 30;  // and at the latest after this many
+  void Check() const;         // throws Error (usage) naming the field that cannot be
 };
 
 }  // namespace alidade

@@ -21,11 +21,12 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
   settings_.noise.right_from_sensor = camera.baseline <= 0;
 }
 
-std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
-                                        double time, int number) {
+std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right,
+                                        const cv::Mat& depth, double time, int number) {
   auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number));
   if (!depth.empty()) AttachDepth(depth, camera_, *frame);
-  if (!right.empty()) MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+  if (!right.empty())
+    MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
   frame->pyramid.clear();  // only extraction and stereo matching need it
   frame->image.release();
   return frame;
@@ -43,8 +44,10 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
     guess.T_camera_world = has_velocity_ ? velocity_ * T_last_world : T_last_world;
     MatchLastFrame(guess, map, widen * radius);
     const double share = Optimise(guess, map);
-    // A window that misses the true places still finds something in them: then few agree on one pose.
-    if (guess.inliers >= Scaled(settings_.min_predicted) && share > settings_.min_agreement) return guess;
+    // A window that misses the true places still finds something in them: then few agree on one
+    // pose.
+    if (guess.inliers >= Scaled(settings_.min_predicted) && share > settings_.min_agreement)
+      return guess;
     if (guess.inliers > best.inliers) best = guess;
   }
   MatchKeyFrame(guess, map, reference_);
@@ -55,7 +58,8 @@ void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float r
   const Frame& now = *guess.frame;
   guess.matches.assign(now.keypoints.size(), {});
   const Se3 T_last_now = last_.T_camera_world * guess.T_camera_world.Inverse();
-  const double forward = T_last_now.t.z();  // metres; what is nearer now is found on a coarser level
+  const double forward =
+      T_last_now.t.z();  // metres; what is nearer now is found on a coarser level
   const double baseline = camera_.StereoBaseline();
 
   std::vector<int> matched;
@@ -67,7 +71,9 @@ void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float r
     const Eigen::Vector3d p = guess.T_camera_world * landmark->p_world;
     if (p.z() <= 0.01) continue;
     const Eigen::Vector2d pixel = camera_.Project(p);
-    if (!(pixel.x() >= 0 && pixel.x() < camera_.width && pixel.y() >= 0 && pixel.y() < camera_.height)) continue;
+    if (!(pixel.x() >= 0 && pixel.x() < camera_.width && pixel.y() >= 0 &&
+          pixel.y() < camera_.height))
+      continue;
 
     const Keypoint& before = last_.frame->keypoints[i];
     Sought sought;
@@ -168,9 +174,10 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
   PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
   const double enough = settings_.good_agreement * static_cast<double>(matches.size());
   if (result.inliers < enough && settings_.bad_frame_sigma > 1) {
-    // Blur and a rolling shutter bend whole frames: with wider gates all of the picture has a say, not just the
-    // part that happened to agree first.
-    for (PoseMatch& match : matches) match.inv_sigma2 /= settings_.bad_frame_sigma * settings_.bad_frame_sigma;
+    // Blur and a rolling shutter bend whole frames: with wider gates all of the picture has a say,
+    // not just the part that happened to agree first.
+    for (PoseMatch& match : matches)
+      match.inv_sigma2 /= settings_.bad_frame_sigma * settings_.bad_frame_sigma;
     result = OptimizePose(camera_, placed.T_camera_world, matches);
   }
   placed.T_camera_world = result.T_camera_world;
@@ -178,7 +185,9 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (!result.inlier[i]) placed.matches[keypoints[i]] = {};
   }
-  return keypoints.empty() ? 0 : static_cast<double>(result.inliers) / static_cast<double>(keypoints.size());
+  return keypoints.empty()
+             ? 0
+             : static_cast<double>(result.inliers) / static_cast<double>(keypoints.size());
 }
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
@@ -188,7 +197,8 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     estimate.placed = std::move(guess);
     return estimate;
   }
-  const LocalMap local = gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
+  const LocalMap local =
+      gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
   const Frame& frame = *guess.frame;
 
   std::vector<uint8_t> matched_already(map.next_landmark(), 0);
@@ -224,16 +234,19 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       sought.radius = radius * static_cast<float>(ScaleOfLevel(view->level));
       sought.min_level = view->level - 1;
       sought.max_level = view->level;
-      candidates[i].sighting = FindNear(frame, sought, [&](int k) { return !guess.matches[k].valid(); });
+      candidates[i].sighting =
+          FindNear(frame, sought, [&](int k) { return !guess.matches[k].valid(); });
     }
   });
   std::vector<int> taken_by(frame.keypoints.size(), -1);
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Sighting& s = candidates[i].sighting;
     if (s.keypoint < 0 || s.distance > settings_.max_distance) continue;
-    if (s.level == s.second_level && s.distance > settings_.local_ratio * s.second_distance) continue;
+    if (s.level == s.second_level && s.distance > settings_.local_ratio * s.second_distance)
+      continue;
     int& holder = taken_by[s.keypoint];
-    if (holder < 0 || s.distance < candidates[holder].sighting.distance) holder = static_cast<int>(i);
+    if (holder < 0 || s.distance < candidates[holder].sighting.distance)
+      holder = static_cast<int>(i);
   }
   for (size_t k = 0; k < taken_by.size(); ++k) {
     if (taken_by[k] >= 0) guess.matches[k] = candidates[taken_by[k]].landmark->id;
@@ -242,12 +255,14 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   const double share = Optimise(guess, map);
 
   for (size_t k = 0; k < before_optimising.size(); ++k) {
-    if (before_optimising[k].valid()) estimate.sightings.push_back({before_optimising[k], guess.matches[k].valid()});
+    if (before_optimising[k].valid())
+      estimate.sightings.push_back({before_optimising[k], guess.matches[k].valid()});
   }
   std::vector<uint8_t> counted(map.next_landmark(), 0);
   for (const SightingCount& s : estimate.sightings) counted[s.landmark.value] = 1;
   for (const Candidate& c : candidates) {
-    if (c.visible && !counted[c.landmark->id.value]) estimate.sightings.push_back({c.landmark->id, false});
+    if (c.visible && !counted[c.landmark->id.value])
+      estimate.sightings.push_back({c.landmark->id, false});
   }
   estimate.reference = local.reference;
   estimate.tracked = guess.inliers >= Scaled(settings_.min_tracked);
@@ -261,8 +276,10 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
 
 bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   const int since = placed.frame->number - last_keyframe_number_;
-  // A blurred or badly placed frame would bend the map; a better one comes soon, unless tracking is at its end.
-  if (agreement < settings_.min_agreement && placed.inliers > 2 * Scaled(settings_.min_tracked)) return false;
+  // A blurred or badly placed frame would bend the map; a better one comes soon, unless tracking is
+  // at its end.
+  if (agreement < settings_.min_agreement && placed.inliers > 2 * Scaled(settings_.min_tracked))
+    return false;
   if (since >= settings_.keyframe_max_gap) return true;
   if (since < settings_.keyframe_min_gap) return false;
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;

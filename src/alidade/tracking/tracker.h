@@ -42,14 +42,16 @@ class Tracker {
   // Turns images into a frame. `right` and `depth` may be empty.
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number);
-  // First guess of the pose: constant velocity and the last frame's landmarks, or the reference keyframe.
+  // First guess of the pose: constant velocity and the last frame's landmarks, or the reference
+  // keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // Pose from the local map, starting at the guess.
   TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
   // A guess with no last frame to lean on: descriptors against the keyframes last in use, RANSAC.
   PlacedFrame Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
 
-  // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added), or a loss.
+  // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
+  // or a loss.
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void Forget();  // the frame was lost: no velocity
 
@@ -75,12 +77,12 @@ class Tracker {
   LocalMapGatherer gatherer_;
 
   PlacedFrame last_;
-  Se3 T_last_reference_;     // last frame in its reference keyframe: follows when the map is adjusted
+  Se3 T_last_reference_;  // last frame in its reference keyframe: follows when the map is adjusted
   KeyFrameId reference_;
-  Se3 velocity_;             // T_now_last of one frame
+  Se3 velocity_;  // T_now_last of one frame
   bool has_velocity_ = false;
   int last_keyframe_number_ = 0;
-  int most_inliers_ = 0;     // of a frame since the last keyframe: what it could show at best
+  int most_inliers_ = 0;  // of a frame since the last keyframe: what it could show at best
 };
 
 }  // namespace alidade
