@@ -25,6 +25,12 @@ Camera CameraInUse(Camera camera, const SlamSettings& settings) {
   return shrink ? camera.ScaledToWidth(settings.image_width) : camera;
 }
 
+// One seed for every random choice.
+SlamSettings Seeded(SlamSettings settings) {
+  settings.tracker.seed = settings.start.two_view.seed = settings.seed;
+  return settings;
+}
+
 // Where a frame is, by the keyframe it was placed against.
 struct FrameRecord {
   double time = 0;
@@ -69,12 +75,12 @@ class Slam::Impl {
 
 Slam::Impl::Impl(const Camera& given, const SlamSettings& settings)
     : given_(given),
-      settings_(settings),
+      settings_(Seeded(settings)),
       camera_(CameraInUse(given, settings)),
-      tracker_(camera_, settings.tracker),
-      start_(camera_, settings.start),
-      mapper_(map_, camera_, settings.mapper),
-      mapping_(mapper_, settings.threaded) {
+      tracker_(camera_, settings_.tracker),
+      start_(camera_, settings_.start),
+      mapper_(map_, camera_, settings_.mapper),
+      mapping_(mapper_, settings_.threaded) {
   settings_.Check();
 }
 

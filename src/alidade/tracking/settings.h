@@ -33,6 +33,7 @@ struct TrackerSettings {
   double keyframe_share_depth = 0.8;
   int keyframe_min_gap = 1;   // … but not sooner after the last than this many frames,
   int keyframe_max_gap = 30;  // and at the latest after this many
+  uint64_t seed = 1;          // of the random samples when a frame is placed anew
   void Check() const;         // throws Error (usage) naming the field that cannot be
 };
 

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alidade/base/parallel.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/pnp.h"
-#include "alidade/map/view.h"
+#include "alidade/tracking/local_search.h"
 
 namespace alidade {
 
@@ -131,7 +130,7 @@ void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrame
   if (static_cast<int>(matches.size()) < enough) return;
   PnpSettings pnp;
   pnp.min_inliers = enough;
-  pnp.seed = static_cast<uint64_t>(guess.frame->number) + 1;
+  pnp.seed = settings_.seed + static_cast<uint64_t>(guess.frame->number);
   const PnpResult pose = SolvePnpRansac(camera_, points, pixels, scales, pnp);
   if (!pose.success) return;
   guess.T_camera_world = pose.T_camera_world;
@@ -199,70 +198,18 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   }
   const LocalMap local =
       gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
-  const Frame& frame = *guess.frame;
-
-  std::vector<uint8_t> matched_already(map.next_landmark(), 0);
-  for (LandmarkId id : guess.matches) {
-    if (id.valid()) matched_already[id.value] = 1;
-  }
-  // Landmarks are looked for side by side; conflicts are settled afterwards, in order.
-  struct Candidate {
-    const Landmark* landmark;
-    Sighting sighting;
-    bool visible = false;
-  };
-  std::vector<Candidate> candidates;
-  candidates.reserve(local.landmarks.size());
-  for (const Landmark* landmark : local.landmarks) {
-    if (!matched_already[landmark->id.value]) candidates.push_back({landmark, {}, false});
-  }
-  const float local_radius = has_depth_ ? settings_.local_radius_depth : settings_.local_radius;
-  constexpr int kChunk = 256;
-  const int chunks = (static_cast<int>(candidates.size()) + kChunk - 1) / kChunk;
-  ParallelFor(chunks, [&](int chunk) {
-    const size_t end = std::min(candidates.size(), static_cast<size_t>(chunk + 1) * kChunk);
-    for (size_t i = static_cast<size_t>(chunk) * kChunk; i < end; ++i) {
-      const auto view = ViewLandmark(*candidates[i].landmark, camera_, guess.T_camera_world);
-      if (!view) continue;
-      candidates[i].visible = true;
-      Sought sought;
-      sought.descriptor = &candidates[i].landmark->descriptor;
-      sought.x = static_cast<float>(view->pixel.x());
-      sought.y = static_cast<float>(view->pixel.y());
-      sought.right_x = static_cast<float>(view->right_x);
-      const float radius = local_radius * (view->cosine > 0.998 ? 0.625f : 1.0f);
-      sought.radius = radius * static_cast<float>(ScaleOfLevel(view->level));
-      sought.min_level = view->level - 1;
-      sought.max_level = view->level;
-      candidates[i].sighting =
-          FindNear(frame, sought, [&](int k) { return !guess.matches[k].valid(); });
-    }
-  });
-  std::vector<int> taken_by(frame.keypoints.size(), -1);
-  for (size_t i = 0; i < candidates.size(); ++i) {
-    const Sighting& s = candidates[i].sighting;
-    if (s.keypoint < 0 || s.distance > settings_.max_distance) continue;
-    if (s.level == s.second_level && s.distance > settings_.local_ratio * s.second_distance)
-      continue;
-    int& holder = taken_by[s.keypoint];
-    if (holder < 0 || s.distance < candidates[holder].sighting.distance)
-      holder = static_cast<int>(i);
-  }
-  for (size_t k = 0; k < taken_by.size(); ++k) {
-    if (taken_by[k] >= 0) guess.matches[k] = candidates[taken_by[k]].landmark->id;
-  }
-  std::vector<LandmarkId> before_optimising = guess.matches;
+  LocalMatches found = MatchLocalMap(guess, map, local, camera_, settings_);
+  guess.matches = found.matches;
   const double share = Optimise(guess, map);
 
-  for (size_t k = 0; k < before_optimising.size(); ++k) {
-    if (before_optimising[k].valid())
-      estimate.sightings.push_back({before_optimising[k], guess.matches[k].valid()});
-  }
   std::vector<uint8_t> counted(map.next_landmark(), 0);
-  for (const SightingCount& s : estimate.sightings) counted[s.landmark.value] = 1;
-  for (const Candidate& c : candidates) {
-    if (c.visible && !counted[c.landmark->id.value])
-      estimate.sightings.push_back({c.landmark->id, false});
+  for (size_t k = 0; k < found.matches.size(); ++k) {
+    if (!found.matches[k].valid()) continue;
+    counted[found.matches[k].value] = 1;
+    estimate.sightings.push_back({found.matches[k], guess.matches[k].valid()});
+  }
+  for (LandmarkId id : found.visible) {
+    if (!counted[id.value]) estimate.sightings.push_back({id, false});
   }
   estimate.reference = local.reference;
   estimate.tracked = guess.inliers >= Scaled(settings_.min_tracked);

@@ -9,17 +9,10 @@
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/tracking/local_map.h"
+#include "alidade/tracking/placed_frame.h"
 #include "alidade/tracking/settings.h"
 
 namespace alidade {
-
-// A frame placed in the map.
-struct PlacedFrame {
-  std::shared_ptr<const Frame> frame;
-  Se3 T_camera_world;
-  std::vector<LandmarkId> matches;  // one for each keypoint; none where nothing is known
-  int inliers = 0;                  // matches that agree with the pose
-};
 
 struct SightingCount {
   LandmarkId landmark;

@@ -1,0 +1,78 @@
+#include "alidade/tracking/local_search.h"
+
+#include <algorithm>
+
+#include "alidade/base/parallel.h"
+#include "alidade/features/guided_search.h"
+#include "alidade/map/view.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kChunk = 256;             // landmarks a thread looks for at a time
+constexpr double kHeadOn = 0.998;       // cosine to the mean viewing direction
+constexpr float kHeadOnRadius = 0.625;  // of the radius from the side: 2.5 to 4 (ORB-SLAM)
+
+struct Candidate {
+  const Landmark* landmark;
+  Sighting sighting;
+  bool visible = false;
+};
+
+void LookFor(Candidate& candidate, const PlacedFrame& placed, const Camera& camera, float radius) {
+  const auto view = ViewLandmark(*candidate.landmark, camera, placed.T_camera_world);
+  if (!view) return;
+  candidate.visible = true;
+  Sought sought;
+  sought.descriptor = &candidate.landmark->descriptor;
+  sought.x = static_cast<float>(view->pixel.x());
+  sought.y = static_cast<float>(view->pixel.y());
+  sought.right_x = static_cast<float>(view->right_x);
+  sought.radius = radius * (view->cosine > kHeadOn ? kHeadOnRadius : 1.0f) *
+                  static_cast<float>(ScaleOfLevel(view->level));
+  sought.min_level = view->level - 1;
+  sought.max_level = view->level;
+  candidate.sighting =
+      FindNear(*placed.frame, sought, [&](int k) { return !placed.matches[k].valid(); });
+}
+
+}  // namespace
+
+LocalMatches MatchLocalMap(const PlacedFrame& placed, const MapSnapshot& map, const LocalMap& local,
+                           const Camera& camera, const TrackerSettings& settings) {
+  LocalMatches found{placed.matches, {}};
+  std::vector<uint8_t> known(map.next_landmark(), 0);
+  for (LandmarkId id : placed.matches) {
+    if (id.valid()) known[id.value] = 1;
+  }
+  std::vector<Candidate> candidates;
+  candidates.reserve(local.landmarks.size());
+  for (const Landmark* landmark : local.landmarks) {
+    if (!known[landmark->id.value]) candidates.push_back({landmark, {}, false});
+  }
+  // Side by side; conflicts are settled afterwards, in order.
+  const float radius =
+      camera.StereoBaseline() > 0 ? settings.local_radius_depth : settings.local_radius;
+  const int count = static_cast<int>(candidates.size());
+  ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
+    const int end = std::min(count, (chunk + 1) * kChunk);
+    for (int i = chunk * kChunk; i < end; ++i) LookFor(candidates[i], placed, camera, radius);
+  });
+
+  std::vector<int> holder(found.matches.size(), -1);  // candidate, by keypoint
+  for (int i = 0; i < count; ++i) {
+    if (candidates[i].visible) found.visible.push_back(candidates[i].landmark->id);
+    const Sighting& s = candidates[i].sighting;
+    if (s.keypoint < 0 || s.distance > settings.max_distance) continue;
+    const bool rival = s.level == s.second_level;
+    if (rival && s.distance > settings.local_ratio * s.second_distance) continue;
+    int& held = holder[s.keypoint];
+    if (held < 0 || s.distance < candidates[held].sighting.distance) held = i;
+  }
+  for (size_t k = 0; k < holder.size(); ++k) {
+    if (holder[k] >= 0) found.matches[k] = candidates[holder[k]].landmark->id;
+  }
+  return found;
+}
+
+}  // namespace alidade
