@@ -1,6 +1,7 @@
 #include "alidade/mapping/local_window.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace alidade {
 namespace {
@@ -122,15 +123,16 @@ void CommitWindow(MapCommit& commit, const MapSnapshot& base, const WindowResult
     moved.push_back({id, T_camera_world.Inverse() * keyframe->T_camera_world});
     keyframe->T_camera_world = T_camera_world;
   }
-  const auto correction = [&](KeyFrameId id) -> const Se3* {
+  const auto correction = [&](KeyFrameId id) -> std::optional<Se3> {
     const auto it =
         std::lower_bound(moved.begin(), moved.end(), id,
                          [](const auto& entry, KeyFrameId key) { return entry.first < key; });
-    return it != moved.end() && it->first == id ? &it->second : nullptr;
+    if (it == moved.end() || it->first != id) return {};
+    return it->second;
   };
   for (uint32_t i = base.next_keyframe(); i < commit.next_keyframe(); ++i) {
     const KeyFrame* young = commit.Find(KeyFrameId{i});
-    const Se3* T = young ? correction(young->parent) : nullptr;
+    const std::optional<Se3> T = young ? correction(young->parent) : std::nullopt;
     if (!T) continue;
     moved.push_back({young->id, *T});
     commit.Edit(young->id)->T_camera_world = young->T_camera_world * T->Inverse();
@@ -140,7 +142,7 @@ void CommitWindow(MapCommit& commit, const MapSnapshot& base, const WindowResult
   }
   for (uint32_t i = base.next_landmark(); i < commit.next_landmark(); ++i) {
     const Landmark* young = commit.Find(LandmarkId{i});
-    const Se3* T = young ? correction(young->reference) : nullptr;
+    const std::optional<Se3> T = young ? correction(young->reference) : std::nullopt;
     if (T) commit.Edit(young->id)->p_world = *T * young->p_world;
   }
   for (const auto& [landmark, keyframe] : result.outliers)
