@@ -1,0 +1,140 @@
+// Growing the tree: each node's descriptors are parted among at most `branching` centres.
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "alidade/base/random.h"
+#include "alidade/place/vocabulary.h"
+
+namespace alidade {
+namespace {
+
+struct Clusters {
+  std::vector<Descriptor> centres;
+  std::vector<int> of;  // the centre of each member
+};
+
+// The bits most members have; at a draw, none.
+Descriptor Majority(std::span<const Descriptor> sample, std::span<const int> members,
+                    std::span<const int> of, int cluster) {
+  std::array<int, 256> ones{};
+  int count = 0;
+  for (size_t i = 0; i < members.size(); ++i) {
+    if (of[i] != cluster) continue;
+    ++count;
+    const Descriptor& descriptor = sample[members[i]];
+    for (int bit = 0; bit < 256; ++bit) ones[bit] += (descriptor.words[bit / 64] >> (bit % 64)) & 1;
+  }
+  Descriptor centre;
+  for (int bit = 0; bit < 256; ++bit) {
+    if (2 * ones[bit] > count) centre.words[bit / 64] |= uint64_t{1} << (bit % 64);
+  }
+  return centre;
+}
+
+// Far apart from each other: each next one is drawn with a chance that grows with the square of
+// its distance to those there are (k-means++, Arthur & Vassilvitskii 2007). Fewer when there are
+// not as many different ones.
+std::vector<Descriptor> DrawCentres(std::span<const Descriptor> sample,
+                                    std::span<const int> members, int count, Random& random) {
+  std::vector<Descriptor> centres;
+  std::vector<int> nearest(members.size(), 256);
+  int next = static_cast<int>(random.Below(static_cast<uint32_t>(members.size())));
+  while (true) {
+    centres.push_back(sample[members[next]]);
+    if (static_cast<int>(centres.size()) == count) return centres;
+    int64_t sum = 0;
+    for (size_t i = 0; i < members.size(); ++i) {
+      nearest[i] = std::min(nearest[i], HammingDistance(sample[members[i]], centres.back()));
+      sum += nearest[i] * nearest[i];
+    }
+    if (sum == 0) return centres;
+    auto left = static_cast<int64_t>(random.Uniform() * static_cast<double>(sum));
+    next = 0;
+    for (size_t i = 0; i < members.size() && left >= 0; ++i) {
+      left -= nearest[i] * nearest[i];
+      next = static_cast<int>(i);
+    }
+  }
+}
+
+// Assigns each member to its nearest centre, the first of equals; true when any changed.
+bool Assign(std::span<const Descriptor> sample, std::span<const int> members, Clusters& clusters) {
+  bool changed = false;
+  for (size_t i = 0; i < members.size(); ++i) {
+    const Descriptor& descriptor = sample[members[i]];
+    int best = 0, nearest = 257;
+    for (int c = 0; c < static_cast<int>(clusters.centres.size()); ++c) {
+      const int distance = HammingDistance(descriptor, clusters.centres[c]);
+      if (distance < nearest) {
+        nearest = distance;
+        best = c;
+      }
+    }
+    changed = changed || clusters.of[i] != best;
+    clusters.of[i] = best;
+  }
+  return changed;
+}
+
+Clusters Part(std::span<const Descriptor> sample, std::span<const int> members,
+              const VocabularySettings& settings, Random& random) {
+  Clusters clusters;
+  clusters.centres = DrawCentres(sample, members, settings.branching, random);
+  clusters.of.assign(members.size(), -1);
+  for (int round = 0; Assign(sample, members, clusters) && round < settings.rounds; ++round) {
+    for (int c = 0; c < static_cast<int>(clusters.centres.size()); ++c) {
+      if (std::find(clusters.of.begin(), clusters.of.end(), c) == clusters.of.end()) continue;
+      clusters.centres[c] = Majority(sample, members, clusters.of, c);
+    }
+  }
+  return clusters;
+}
+
+}  // namespace
+
+Vocabulary Vocabulary::Grow(std::span<const Descriptor> sample, const VocabularySettings& settings,
+                            uint64_t seed) {
+  settings.Check();
+  Vocabulary vocabulary;
+  if (sample.empty()) return vocabulary;
+  Random random(seed);
+  struct Branch {
+    int level = 0;
+    std::vector<int> members;  // indices into the sample
+  };
+  std::vector<Branch> branches(1);  // one for each node
+  branches[0].members.resize(sample.size());
+  std::iota(branches[0].members.begin(), branches[0].members.end(), 0);
+  vocabulary.nodes_.emplace_back();
+  for (size_t i = 0; i < branches.size(); ++i) {
+    const Branch branch = std::move(branches[i]);
+    if (branch.level == settings.levels ||
+        static_cast<int>(branch.members.size()) < settings.min_split ||
+        vocabulary.nodes_.size() + settings.branching > kMaxNodes) {
+      continue;
+    }
+    const Clusters clusters = Part(sample, branch.members, settings, random);
+    std::vector<Branch> children(clusters.centres.size());
+    for (size_t m = 0; m < branch.members.size(); ++m) {
+      children[clusters.of[m]].members.push_back(branch.members[m]);
+    }
+    const auto empty = [](const Branch& child) { return child.members.empty(); };
+    if (std::count_if(children.begin(), children.end(), empty) + 2 >
+        static_cast<int>(children.size())) {
+      continue;  // all went to one
+    }
+    vocabulary.nodes_[i].first_child = static_cast<uint32_t>(vocabulary.nodes_.size());
+    for (size_t c = 0; c < children.size(); ++c) {
+      if (children[c].members.empty()) continue;
+      children[c].level = branch.level + 1;
+      branches.push_back(std::move(children[c]));
+      vocabulary.nodes_.push_back({clusters.centres[c], 0, 0});
+      ++vocabulary.nodes_[i].children;
+    }
+  }
+  vocabulary.NumberWords();
+  return vocabulary;
+}
+
+}  // namespace alidade

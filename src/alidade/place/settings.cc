@@ -1,0 +1,12 @@
+#include "alidade/place/settings.h"
+
+#include "alidade/base/error.h"
+
+namespace alidade {
+
+void PlaceSettings::Check() const {
+  vocabulary.Check();
+  if (sample < 1) ThrowUsage("place.sample must be positive");
+}
+
+}  // namespace alidade
