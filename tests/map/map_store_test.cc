@@ -1,10 +1,12 @@
 #include "alidade/map/map_store.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <thread>
 
+#include "alidade/map/anchor.h"
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
@@ -159,11 +161,72 @@ TEST_F(MapStoreTest, IdsAreNeverGivenTwice) {
   store_.Commit([&](MapCommit& commit) { commit.Remove(in_b_); });
   store_.Commit([&](MapCommit& commit) { EXPECT_GT(commit.Add(SeenBy({{a_, 2}})), in_b_); });
   const uint32_t next = store_.Snapshot().next_keyframe();
-  store_.Clear();
+  store_.Commit([&](MapCommit& commit) { commit.Remove(commit.Find(a_)->map); });
   EXPECT_EQ(store_.Snapshot().keyframe_count(), 0);
   EXPECT_EQ(store_.Snapshot().Find(a_), nullptr);
   store_.Commit([&](MapCommit& commit) { EXPECT_EQ(commit.Add(BareKeyFrame(1)).value, next); });
   EXPECT_EQ(store_.Snapshot().KeyFrames().size(), 1u);
+}
+
+TEST_F(MapStoreTest, AKeyframeWithoutAParentBeginsAMap) {
+  KeyFrameId root, child;
+  store_.Commit([&](MapCommit& commit) {
+    root = commit.Add(BareKeyFrame(1));
+    KeyFrame keyframe = BareKeyFrame(2);
+    keyframe.parent = root;
+    child = commit.Add(std::move(keyframe));
+  });
+  const MapSnapshot map = store_.Snapshot();
+  EXPECT_NE(map.MapOf(root), map.MapOf(a_));
+  EXPECT_EQ(map.MapOf(child), map.MapOf(root));
+  EXPECT_EQ(map.Maps().size(), 2u);
+  EXPECT_THAT(map.KeyFramesOf(map.MapOf(root)), testing::ElementsAre(root, child));
+  store_.Commit([&](MapCommit& commit) { commit.Remove(map.MapOf(root)); });
+  EXPECT_EQ(store_.Snapshot().Maps().size(), 1u);
+  EXPECT_NE(store_.Snapshot().Find(in_b_), nullptr);
+  ExpectConsistent(store_.Snapshot());
+}
+
+TEST_F(MapStoreTest, AnAnchorFollowsPlaceAndScaleOfItsKeyframeEvenAfterCulling) {
+  KeyFrameId c;
+  store_.Commit([&](MapCommit& commit) {
+    KeyFrame keyframe = BareKeyFrame(2);
+    keyframe.parent = b_;
+    keyframe.T_camera_world.t = {0, 0, 3};
+    c = commit.Add(std::move(keyframe));
+  });
+  const Se3 T_frame_c{ExpSo3({0.1, 0.2, 0}), {0.5, 0, 0}};
+  const MapSnapshot before = store_.Snapshot();
+  const Anchor anchor = AnchorTo(before.state(), c, T_frame_c * before.PoseOf(c));
+  const Se3 T_c_b = before.PoseOf(c) * before.PoseOf(b_).Inverse();
+  store_.Commit([&](MapCommit& commit) { commit.Remove(c); });
+  EXPECT_LT(Distance(PoseOf(store_.Snapshot().state(), anchor), T_frame_c * before.PoseOf(c)),
+            1e-12);
+  store_.Commit([&](MapCommit& commit) {  // a loop doubles all lengths around b
+    KeyFrame* b = commit.Edit(b_);
+    b->T_camera_world = Se3{ExpSo3({0, 0.3, 0}), {1, 2, 3}};
+    b->scale *= 2;
+  });
+  const MapSnapshot after = store_.Snapshot();
+  Se3 frame = T_frame_c, c_in_b = T_c_b;
+  frame.t *= 2;
+  c_in_b.t *= 2;
+  EXPECT_DOUBLE_EQ(after.ScaleOf(c), 2);
+  EXPECT_LT(Distance(PoseOf(after.state(), anchor), frame * c_in_b * after.PoseOf(b_)), 1e-12);
+}
+
+TEST_F(MapStoreTest, ALongChangeIsDoneAnewWhenAnotherWasQuicker) {
+  int runs = 0;
+  store_.CommitAside([&](MapCommit& commit) {
+    if (++runs == 1) store_.Commit([&](MapCommit& quick) { quick.Remove(in_b_); });
+    EXPECT_EQ(commit.Find(in_b_) == nullptr, runs == 2);
+    commit.AddLoop(a_, b_);
+  });
+  EXPECT_EQ(runs, 2);
+  const MapSnapshot map = store_.Snapshot();
+  EXPECT_EQ(map.Find(in_b_), nullptr);
+  EXPECT_THAT(map.Find(a_)->loops, testing::ElementsAre(b_));
+  EXPECT_THAT(map.Find(b_)->loops, testing::ElementsAre(a_));
 }
 
 TEST_F(MapStoreTest, RemovingAKeyframeHandsItsChildrenToItsParent) {

@@ -52,7 +52,8 @@ void MapWithDepth(const SyntheticWorld& world, MapStore& store) {
   KeyFrameId parent;
   for (const SyntheticView& view : world.views) {
     const auto matches = MatchesOf(world, store.Snapshot(), view);
-    const KeyFrameId id = mapper.Insert(view.frame, view.T_camera_world, matches, parent);
+    const KeyFrameId id = mapper.Insert(
+        view.frame, AnchorTo(store.Snapshot().state(), parent, view.T_camera_world), matches);
     mapper.Process(id);
     ExpectConsistent(store.Snapshot());
     parent = id;
@@ -122,8 +123,8 @@ TEST(Mapper, MapsAWorldFromTwoMonocularViewsOn) {
   for (size_t v = 3; v < world.views.size(); ++v) {
     Se3 T = world.views[v].T_camera_world;
     T.t /= scale;
-    parent = mapper.Insert(world.views[v].frame, T,
-                           MatchesOf(world, store.Snapshot(), world.views[v]), parent);
+    parent = mapper.Insert(world.views[v].frame, AnchorTo(store.Snapshot().state(), parent, T),
+                           MatchesOf(world, store.Snapshot(), world.views[v]));
     mapper.Process(parent);
     ExpectConsistent(store.Snapshot());
   }
@@ -139,7 +140,7 @@ TEST(Mapper, RemovesLandmarksTheTrackerSeldomFinds) {
   const SyntheticWorld world = MakeSyntheticWorld(settings);
   MapStore store;
   Mapper mapper(store, world.camera, {});
-  const KeyFrameId first = mapper.Insert(world.views[0].frame, {}, {}, {});
+  const KeyFrameId first = mapper.Insert(world.views[0].frame, {}, {});
   const LandmarkId lost = store.Snapshot().Landmarks()[10];
   for (int i = 0; i < 8; ++i) {
     const std::pair<LandmarkId, bool> sighting{lost, i == 0};

@@ -19,6 +19,7 @@ struct Id {
 
 using KeyFrameId = Id<struct KeyFrameTag>;
 using LandmarkId = Id<struct LandmarkTag>;
+using MapId = Id<struct MapTag>;  // of a part of the map with a world frame of its own
 
 }  // namespace alidade
 

@@ -152,6 +152,7 @@ class Decoder {
     auto state = std::make_shared<MapState>();
     state->keyframes = keyframes_.Finish(static_cast<int>(SizeOf(file_.keyframes())));
     state->landmarks = landmarks_.Finish(static_cast<int>(SizeOf(file_.landmarks())));
+    state->next_map = state->keyframes.next > 0;
     saved.map = MapSnapshot(std::move(state));
     return saved;
   }
@@ -168,6 +169,7 @@ class Decoder {
       keyframe.frame = DecodeFrame(from, camera_);
       keyframe.T_camera_world = DecodePose(from.t_camera_world());
       keyframe.parent = {from.parent()};
+      keyframe.map = {0};
       keyframe.landmarks.resize(keyframe.frame->keypoints.size());
       for (uint32_t n = 0; n < SizeOf(from.covisible()); ++n) {
         const fb::Neighbour& neighbour = *from.covisible()->Get(n);

@@ -36,14 +36,49 @@ LandmarkId MapSnapshot::Current(LandmarkId id) const {
   return {};
 }
 
-Se3 MapSnapshot::PoseOf(KeyFrameId id) const {
-  Se3 T_here_ancestor;
-  const KeyFrame* keyframe = state_->keyframes.At(id.value);
-  while (keyframe && keyframe->culled()) {
-    T_here_ancestor = T_here_ancestor * keyframe->T_camera_parent;
-    keyframe = state_->keyframes.At(keyframe->parent.value);
+double MapState::ScaleOf(KeyFrameId id) const {
+  double scale = 1;
+  const KeyFrame* keyframe = keyframes.At(id.value);
+  while (keyframe) {
+    scale *= keyframe->scale;
+    if (!keyframe->culled()) break;
+    keyframe = keyframes.At(keyframe->parent.value);
   }
-  return keyframe ? T_here_ancestor * keyframe->T_camera_world : T_here_ancestor;
+  return scale;
+}
+
+MapId MapState::MapOf(KeyFrameId id) const {
+  const KeyFrame* keyframe = keyframes.At(id.value);
+  while (keyframe && keyframe->culled()) keyframe = keyframes.At(keyframe->parent.value);
+  return keyframe ? keyframe->map : MapId{};
+}
+
+Se3 MapState::PoseOf(KeyFrameId id) const {
+  const KeyFrame* keyframe = keyframes.At(id.value);
+  Se3 T_here_ancestor;
+  while (keyframe && keyframe->culled()) {
+    Se3 T_camera_parent = keyframe->T_camera_parent;
+    T_camera_parent.t *= ScaleOf(keyframe->parent);
+    T_here_ancestor = T_here_ancestor * T_camera_parent;
+    keyframe = keyframes.At(keyframe->parent.value);
+  }
+  return keyframe ? T_here_ancestor * keyframe->T_camera_world : Se3{};
+}
+
+std::vector<MapId> MapSnapshot::Maps() const {
+  std::vector<uint8_t> seen(state_->next_map, 0);
+  for (KeyFrameId id : KeyFrames()) seen[Find(id)->map.value] = 1;
+  std::vector<MapId> maps;
+  for (uint32_t i = 0; i < seen.size(); ++i) {
+    if (seen[i]) maps.push_back({i});
+  }
+  return maps;
+}
+
+std::vector<KeyFrameId> MapSnapshot::KeyFramesOf(MapId map) const {
+  std::vector<KeyFrameId> ids = KeyFrames();
+  std::erase_if(ids, [&](KeyFrameId id) { return Find(id)->map != map; });
+  return ids;
 }
 
 std::vector<KeyFrameId> MapSnapshot::KeyFrames() const {
@@ -125,6 +160,7 @@ KeyFrameId MapCommit::Add(KeyFrame keyframe) {
     const KeyFrame* gone = state_.keyframes.At(keyframe.parent.value);
     keyframe.parent = gone ? gone->parent : KeyFrameId{};
   }
+  keyframe.map = keyframe.parent.valid() ? Find(keyframe.parent)->map : MapId{state_.next_map++};
   return {Append(state_.keyframes, std::move(keyframe))};
 }
 
@@ -209,11 +245,45 @@ void MapCommit::Remove(KeyFrameId id) {
   }
   const KeyFrame* parent = Find(keyframe->parent);
   keyframe->T_camera_parent = keyframe->T_camera_world * parent->T_camera_world.Inverse();
+  keyframe->T_camera_parent.t /= parent->scale;
+  keyframe->scale /= parent->scale;
+  for (KeyFrameId other_id : keyframe->loops) {
+    if (KeyFrame* other = Edit(other_id)) std::erase(other->loops, id);
+  }
+  keyframe->loops.clear();
   keyframe->frame = nullptr;
   keyframe->landmarks.clear();
   keyframe->landmarks.shrink_to_fit();
   keyframe->covisible.clear();
   --state_.keyframes.alive;
+}
+
+void MapCommit::Remove(MapId id) {
+  for (uint32_t i = 0; i < state_.landmarks.next; ++i) {
+    const Landmark* landmark = Find(LandmarkId{i});
+    if (!landmark || Find(landmark->reference)->map != id) continue;
+    SetSlot<Landmark>(state_.landmarks, i, nullptr);
+    --state_.landmarks.alive;
+  }
+  std::vector<uint32_t> gone;  // gathered first: a culled one's map is its parent's
+  for (uint32_t i = 0; i < state_.keyframes.next; ++i) {
+    if (state_.keyframes.At(i) && state_.MapOf({i}) == id) gone.push_back(i);
+  }
+  for (uint32_t i : gone) {
+    state_.keyframes.alive -= !state_.keyframes.At(i)->culled();
+    SetSlot<KeyFrame>(state_.keyframes, i, nullptr);
+  }
+}
+
+void MapCommit::AddLoop(KeyFrameId a, KeyFrameId b) {
+  if (a == b || !Find(a) || !Find(b)) return;
+  const auto enter = [&](KeyFrameId from, KeyFrameId to) {
+    auto& loops = Edit(from)->loops;
+    const auto place = std::lower_bound(loops.begin(), loops.end(), to);
+    if (place == loops.end() || *place != to) loops.insert(place, to);
+  };
+  enter(a, b);
+  enter(b, a);
 }
 
 void MapCommit::RefreshLandmark(LandmarkId id) {
@@ -300,15 +370,6 @@ MapSnapshot MapStore::Publish(MapState&& state) {
   std::lock_guard<std::mutex> lock(publish_mutex_);
   current_ = published;
   return MapSnapshot(std::move(published));
-}
-
-void MapStore::Clear() {
-  Commit([](MapCommit& commit) {
-    MapState& state = commit.state_;
-    for (auto& page : state.keyframes.pages) page = std::make_shared<const MapPage<KeyFrame>>();
-    for (auto& page : state.landmarks.pages) page = std::make_shared<const MapPage<Landmark>>();
-    state.keyframes.alive = state.landmarks.alive = 0;
-  });
 }
 
 void MapStore::Restore(const MapSnapshot& saved) {

@@ -36,7 +36,14 @@ struct MapTable {
 struct MapState {
   MapTable<KeyFrame> keyframes;
   MapTable<Landmark> landmarks;
+  uint32_t next_map = 0;     // id the next map gets
+  uint64_t corrections = 0;  // how often loops, merges and full adjustments moved large parts
   uint64_t version = 0;
+
+  // Of any keyframe that ever was; a culled one's follow its parent.
+  Se3 PoseOf(KeyFrameId id) const;      // identity when its map was dropped
+  double ScaleOf(KeyFrameId id) const;  // see KeyFrame::scale
+  MapId MapOf(KeyFrameId id) const;     // none when its map was dropped
 };
 
 // A consistent view of the map at one moment. Cheap to copy, safe to keep.
@@ -56,16 +63,20 @@ class MapSnapshot {
   }
   // The landmark it was fused into, itself, or none when culled.
   LandmarkId Current(LandmarkId id) const;
-  // Pose of any keyframe that ever was; a culled one's follows its parent.
-  Se3 PoseOf(KeyFrameId id) const;
+  Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // as in MapState
+  double ScaleOf(KeyFrameId id) const { return state_->ScaleOf(id); }
+  MapId MapOf(KeyFrameId id) const { return state_->MapOf(id); }
 
-  std::vector<KeyFrameId> KeyFrames() const;  // alive, in order of id
-  std::vector<LandmarkId> Landmarks() const;  // alive, in order of id
+  std::vector<MapId> Maps() const;                       // that have keyframes, in order of id
+  std::vector<KeyFrameId> KeyFramesOf(MapId map) const;  // alive, in order of id
+  std::vector<KeyFrameId> KeyFrames() const;             // alive, in order of id
+  std::vector<LandmarkId> Landmarks() const;             // alive, in order of id
   int keyframe_count() const { return state_->keyframes.alive; }
   int landmark_count() const { return state_->landmarks.alive; }
   uint32_t next_keyframe() const { return state_->keyframes.next; }
   uint32_t next_landmark() const { return state_->landmarks.next; }
   uint64_t version() const { return state_->version; }
+  uint64_t corrections() const { return state_->corrections; }
   const MapState& state() const {
     return *state_;
   }  // all there is, the culled and fused included: for saving
@@ -87,8 +98,11 @@ class MapCommit {
   KeyFrame* Edit(KeyFrameId id);  // null when it is not alive
   Landmark* Edit(LandmarkId id);
 
-  KeyFrameId Add(
-      KeyFrame keyframe);  // sets its id; a parent removed meanwhile gives way to its own
+  const MapState& state() const { return state_; }
+
+  // Sets its id; a parent removed meanwhile gives way to its own. Without a parent it is the first
+  // of a new map.
+  KeyFrameId Add(KeyFrame keyframe);
   LandmarkId Add(
       Landmark landmark);  // sets its id; its observations are entered in the keyframes too
 
@@ -100,6 +114,9 @@ class MapCommit {
   void Remove(LandmarkId id);                   // and all its observations
   void Replace(LandmarkId old, LandmarkId by);  // moves the observations that fit, forwards the id
   void Remove(KeyFrameId id);  // hands its children to its parent; its observations go
+  void Remove(MapId id);       // all that is in that map, without a trace
+  void AddLoop(KeyFrameId a, KeyFrameId b);
+  void CountCorrection() { ++state_.corrections; }
 
   // Recomputes what tracking needs to look for it. Removes it when no observation is left.
   void RefreshLandmark(LandmarkId id);
@@ -139,7 +156,19 @@ class MapStore {
     change(commit);
     return Publish(std::move(commit.state_));
   }
-  void Clear();  // empties the map; ids and versions go on
+  // The same, but worked out beside other writers, who need not wait for a long change: done anew
+  // on what they left when one of them was quicker, and at last with all of them waiting.
+  template <typename Change>
+  MapSnapshot CommitAside(Change&& change) {
+    for (int attempt = 0; attempt < 3; ++attempt) {
+      const MapSnapshot base = Snapshot();
+      MapCommit commit(*base.state_);
+      change(commit);
+      std::lock_guard<std::mutex> writer(writer_mutex_);
+      if (Snapshot().version() == base.version()) return Publish(std::move(commit.state_));
+    }
+    return Commit(change);
+  }
   void Restore(const MapSnapshot&
                    saved);  // makes `saved` the map; its ids go on, versions of this store too
 

@@ -39,7 +39,7 @@ std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameI
   for (const Neighbour& n : map.Find(id)->covisible) {
     if (n.id > id) continue;  // yet to be processed, and the tracker still counts on it
     const KeyFrame* keyframe = map.Find(n.id);
-    if (!keyframe || !keyframe->parent.valid()) continue;
+    if (!keyframe || !keyframe->parent.valid() || !keyframe->loops.empty()) continue;
     int counted = 0, covered = 0;
     for (size_t i = 0; i < keyframe->landmarks.size(); ++i) {
       const Landmark* landmark =

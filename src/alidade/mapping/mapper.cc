@@ -14,14 +14,15 @@ Mapper::Mapper(MapStore& map, const Camera& camera, MapperSettings settings)
   settings_.noise.right_from_sensor = camera.baseline <= 0;
 }
 
-KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Se3& T_camera_world,
-                          std::span<const LandmarkId> matches, KeyFrameId parent) {
+KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anchor,
+                          std::span<const LandmarkId> matches) {
   KeyFrameId id;
   map_.Commit([&](MapCommit& commit) {
+    const Se3 T_camera_world = PoseOf(commit.state(), anchor);
     KeyFrame keyframe;
     keyframe.frame = frame;
     keyframe.T_camera_world = T_camera_world;
-    keyframe.parent = parent;
+    keyframe.parent = anchor.keyframe;
     id = commit.Add(std::move(keyframe));
     for (size_t i = 0; i < matches.size(); ++i) {
       if (matches[i].valid()) commit.AddObservation(matches[i], id, static_cast<int>(i));
@@ -151,8 +152,9 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     commit.RefreshCovisibility(id);
   });
 
-  if (map.keyframe_count() > 2 || has_depth_) {
-    if (map.keyframe_count() < 2) return report;
+  const size_t keyframes = map.KeyFramesOf(map.Find(id)->map).size();
+  if (keyframes < 2) return report;
+  if (keyframes > 2 || has_depth_) {
     const WindowResult adjusted = AdjustWindow(map, id, camera_, settings_, stop);
     report.bundle = adjusted.report;
     map = map_.Commit([&](MapCommit& commit) {
@@ -181,12 +183,6 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     });
   }
   return report;
-}
-
-void Mapper::Reset() {
-  young_.clear();
-  std::lock_guard<std::mutex> lock(tallies_mutex_);
-  tallies_.clear();
 }
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "alidade/map/anchor.h"
 #include "alidade/map/map_store.h"
 #include "alidade/mapping/cull.h"
 #include "alidade/mapping/settings.h"
@@ -23,9 +24,10 @@ class Mapper {
   Mapper(MapStore& map, const Camera& camera, MapperSettings settings);
 
   // Enters a keyframe and the landmarks its depth gives, at once: quick, on the tracker's thread.
-  // `matches`: one for each keypoint. `parent`: none for the first.
-  KeyFrameId Insert(std::shared_ptr<const Frame> frame, const Se3& T_camera_world,
-                    std::span<const LandmarkId> matches, KeyFrameId parent);
+  // `matches`: one for each keypoint. `anchor`: where it is, told by its parent, which may have
+  // been corrected since; without a keyframe it begins a map.
+  KeyFrameId Insert(std::shared_ptr<const Frame> frame, const Anchor& anchor,
+                    std::span<const LandmarkId> matches);
   // Enters two keyframes and the points between them: a monocular map begins.
   struct TwoViewMap {
     std::shared_ptr<const Frame> a, b;
@@ -45,7 +47,6 @@ class Mapper {
   // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the
   // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
-  void Reset();  // after the map was cleared
 
  private:
   MapStore& map_;

@@ -1,9 +1,11 @@
 #include "alidade/system/slam.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
 #include "alidade/base/error.h"
+#include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
 #include "alidade/system/mapping_stage.h"
 #include "alidade/tracking/tracker.h"
@@ -35,8 +37,7 @@ SlamSettings Seeded(SlamSettings settings) {
 struct FrameRecord {
   double time = 0;
   bool tracked = false;
-  KeyFrameId reference;
-  Se3 T_camera_reference;
+  Anchor anchor;
   Se3 T_world_camera_live;
 };
 
@@ -64,12 +65,13 @@ class Slam::Impl {
   FrameInput Prepare(const FrameInput& input) const;
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
-  void Place(FrameRecord& record, const PlacedFrame& placed, KeyFrameId reference);
-  void AddKeyFrame(PlacedFrame& placed, KeyFrameId reference);
+  void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
+  void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void GiveUpStart();
 
   int trial_left_ = 0;      // frames that have yet to confirm a young monocular map
   int trial_points_ = 0;    // landmarks it started with
+  MapId map_id_;            // of that map
   size_t trial_begin_ = 0;  // first record placed in it
 };
 
@@ -133,21 +135,23 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   return result;
 }
 
-void Slam::Impl::Place(FrameRecord& record, const PlacedFrame& placed, KeyFrameId reference) {
-  const MapSnapshot map = map_.Snapshot();
+// `map`: the one the pose is in.
+void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
+  FrameRecord& record = records_.back();
   record.tracked = true;
-  record.reference = reference;
-  record.T_camera_reference = placed.T_camera_world * map.PoseOf(reference).Inverse();
+  record.anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   record.T_world_camera_live = placed.T_camera_world.Inverse();
   tracker_.Remember(placed, reference, map);
 }
 
-void Slam::Impl::AddKeyFrame(PlacedFrame& placed, KeyFrameId reference) {
-  const KeyFrameId id =
-      mapper_.Insert(placed.frame, placed.T_camera_world, placed.matches, reference);
-  placed.matches = map_.Snapshot().Find(id)->landmarks;
+void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
+  const KeyFrameId id = mapper_.Insert(placed.frame, anchor, placed.matches);
+  const MapSnapshot map = map_.Snapshot();
+  const KeyFrame& keyframe = *map.Find(id);
+  placed.T_camera_world = keyframe.T_camera_world;
+  placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
-  Place(records_.back(), placed, id);
+  Place(placed, id, map);
   mapping_.Add(id);
 }
 
@@ -164,7 +168,8 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
     PlacedFrame placed;
     placed.frame = frame;
     placed.inliers = with_depth;
-    AddKeyFrame(placed, {});
+    AddKeyFrame(placed, Anchor{});
+    result.matches = with_depth;
   } else {
     const auto views = start_.Add(frame);
     if (!views) {
@@ -178,7 +183,11 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
     for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
     const KeyFrameId id = mapper_.InsertTwoViews(two);
     const MapSnapshot map = map_.Snapshot();
-    trial_points_ = map.landmark_count();
+    const KeyFrame* keyframe = map.Find(id);
+    map_id_ = keyframe->map;
+    trial_points_ =
+        static_cast<int>(std::count_if(keyframe->landmarks.begin(), keyframe->landmarks.end(),
+                                       [](LandmarkId landmark) { return landmark.valid(); }));
     trial_begin_ = records_.size() - 1;
     if (trial_points_ < settings_.start.two_view.min_triangulated) {
       GiveUpStart();
@@ -186,22 +195,20 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
       return result;
     }
     trial_left_ = settings_.start.trial_frames;
-    const KeyFrame* keyframe = map.Find(id);
     PlacedFrame placed{frame, keyframe->T_camera_world, keyframe->landmarks, trial_points_};
     tracker_.KeyFrameInserted(frame->number);
-    Place(records_.back(), placed, id);
+    Place(placed, id, map);
+    result.matches = trial_points_;
   }
   state_ = TrackState::kTracking;
   result.state = state_;
   result.keyframe = true;
-  result.matches = map_.Snapshot().landmark_count();
   result.T_world_camera = records_.back().T_world_camera_live;
   return result;
 }
 
 void Slam::Impl::GiveUpStart() {
-  map_.Clear();
-  mapper_.Reset();
+  map_.Commit([&](MapCommit& commit) { commit.Remove(map_id_); });
   tracker_.Forget();
   start_.Reset();
   trial_left_ = 0;
@@ -246,9 +253,10 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert;
   times_.track.push_back(watch.Milliseconds());
   if (result.keyframe) {
-    AddKeyFrame(estimate.placed, estimate.reference);
+    AddKeyFrame(estimate.placed,
+                AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));
   } else {
-    Place(records_.back(), estimate.placed, estimate.reference);
+    Place(estimate.placed, estimate.reference, map);
   }
   result.state = state_;
   result.matches = estimate.placed.inliers;
@@ -289,7 +297,7 @@ std::vector<FramePose> Slam::Trajectory() const {
     pose.time = record.time;
     pose.tracked = record.tracked;
     if (record.tracked) {
-      pose.T_world_camera = (record.T_camera_reference * map.PoseOf(record.reference)).Inverse();
+      pose.T_world_camera = PoseOf(map.state(), record.anchor).Inverse();
       pose.T_world_camera_live = record.T_world_camera_live;
     }
     trajectory.push_back(pose);

@@ -17,14 +17,14 @@ double Median(std::vector<double>& values) {
 }
 
 // Keyframes from whose place and direction much the same must be seen, best first.
-std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, const Se3& T_camera_world,
-                                          double depth) {
+std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
+                                          const Se3& T_camera_world, double depth) {
   const Eigen::Vector3d centre = T_camera_world.Inverse().t,
                         axis = T_camera_world.R.row(2).transpose();
   std::vector<std::pair<double, KeyFrameId>> scored;
   for (uint32_t i = 0; i < map.next_keyframe(); ++i) {
     const KeyFrame* keyframe = map.Find(KeyFrameId{i});
-    if (!keyframe) continue;
+    if (!keyframe || keyframe->map != within) continue;
     const double turn = axis.dot(keyframe->T_camera_world.R.row(2).transpose());
     const double move = (keyframe->Centre() - centre).norm() / depth;
     if (turn > kMaxTurn && move < kMaxMove)
@@ -71,7 +71,9 @@ LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const Landma
     return true;
   };
   for (const Neighbour& n : sharing) take(n.id);
-  for (const KeyFrameId id : LookingTheSameWay(map, T_camera_world, Median(depths))) take(id);
+  for (const KeyFrameId id :
+       LookingTheSameWay(map, map.MapOf(local.reference), T_camera_world, Median(depths)))
+    take(id);
   const size_t direct = local.keyframes.size();
   for (size_t i = 0; i < direct; ++i) {
     const auto& covisible = map.Find(local.keyframes[i])->covisible;

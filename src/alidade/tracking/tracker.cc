@@ -34,13 +34,15 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
 PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
   PlacedFrame guess;
   guess.frame = std::move(frame);
-  const Se3 T_last_world = T_last_reference_ * map.PoseOf(reference_);
+  const Se3 T_last_world = PoseOf(map.state(), last_anchor_);
   last_.T_camera_world = T_last_world;
+  Se3 velocity = velocity_;
+  velocity.t *= map.ScaleOf(reference()) / last_anchor_.scale;
 
   const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
   PlacedFrame best;
   for (float widen : {1.0f, 2.0f, 4.0f}) {
-    guess.T_camera_world = has_velocity_ ? velocity_ * T_last_world : T_last_world;
+    guess.T_camera_world = has_velocity_ ? velocity * T_last_world : T_last_world;
     MatchLastFrame(guess, map, widen * radius);
     const double share = Optimise(guess, map);
     // A window that misses the true places still finds something in them: then few agree on one
@@ -49,7 +51,7 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
       return guess;
     if (guess.inliers > best.inliers) best = guess;
   }
-  MatchKeyFrame(guess, map, reference_);
+  MatchKeyFrame(guess, map, reference());
   return guess.inliers > best.inliers ? guess : best.frame ? best : guess;
 }
 
@@ -142,8 +144,8 @@ void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrame
 
 PlacedFrame Tracker::Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
   std::vector<KeyFrameId> candidates;
-  if (const KeyFrame* reference = map.Find(reference_)) {
-    candidates.push_back(reference_);
+  if (const KeyFrame* reference = map.Find(this->reference())) {
+    candidates.push_back(reference->id);
     for (size_t i = 0; i < reference->covisible.size() && i < 4; ++i) {
       candidates.push_back(reference->covisible[i].id);
     }
@@ -241,12 +243,11 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  const Se3 T_last_world = last_.frame ? T_last_reference_ * map.PoseOf(reference_) : Se3{};
   has_velocity_ = last_.frame && placed.frame->number > last_.frame->number;
-  if (has_velocity_) velocity_ = placed.T_camera_world * T_last_world.Inverse();
+  if (has_velocity_)
+    velocity_ = placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse();
   last_ = placed;
-  reference_ = reference;
-  T_last_reference_ = placed.T_camera_world * map.PoseOf(reference).Inverse();
+  last_anchor_ = AnchorTo(map.state(), reference, placed.T_camera_world);
 }
 
 void Tracker::Forget() {

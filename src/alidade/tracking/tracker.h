@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/map/anchor.h"
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/tracking/local_map.h"
@@ -45,10 +46,13 @@ class Tracker {
 
   // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
   // or a loss.
+  // `map`: the one its pose is in.
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void Forget();  // the frame was lost: no velocity
 
-  KeyFrameId reference() const { return reference_; }
+  KeyFrameId reference() const {
+    return last_anchor_.keyframe;
+  }  // of the last frame that was tracked
   const Camera& camera() const { return camera_; }
   void KeyFrameInserted(int frame_number) {
     last_keyframe_number_ = frame_number;
@@ -70,9 +74,8 @@ class Tracker {
   LocalMapGatherer gatherer_;
 
   PlacedFrame last_;
-  Se3 T_last_reference_;  // last frame in its reference keyframe: follows when the map is adjusted
-  KeyFrameId reference_;
-  Se3 velocity_;  // T_now_last of one frame
+  Anchor last_anchor_;  // where the last frame is, by its reference keyframe
+  Se3 velocity_;        // T_now_last of one frame, in the scale of the anchor
   bool has_velocity_ = false;
   int last_keyframe_number_ = 0;
   int most_inliers_ = 0;  // of a frame since the last keyframe: what it could show at best
