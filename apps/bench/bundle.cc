@@ -87,7 +87,7 @@ Section BenchBundle(const Recording& recording) {
   for (const PoseTask& task : tasks)
     matches += static_cast<double>(task.matches.size()) / static_cast<double>(tasks.size());
   for (KeyFrameId id : keyframes) {
-    const WindowResult result = AdjustWindow(shaken, id, slam.camera(), mapper, nullptr);
+    const Adjustment result = AdjustWindow(shaken, id, slam.camera(), mapper, nullptr);
     windows += static_cast<double>(result.poses.size()) / static_cast<double>(keyframes.size());
     points += static_cast<double>(result.points.size()) / static_cast<double>(keyframes.size());
   }

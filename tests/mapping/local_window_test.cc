@@ -14,7 +14,7 @@ namespace {
 double Distance(const Se3& a, const Se3& b) { return (a * b.Inverse()).Log().norm(); }
 
 // Of all observations of the landmarks that were adjusted, pixels.
-double RmsReprojection(const MapSnapshot& map, const Camera& camera, const WindowResult& window) {
+double RmsReprojection(const MapSnapshot& map, const Camera& camera, const Adjustment& window) {
   double sum = 0;
   int count = 0;
   for (const auto& point : window.points) {
@@ -53,10 +53,10 @@ class WindowTest : public testing::TestWithParam<bool> {  // with depth?
 TEST_P(WindowTest, ReturnsToTheTruthOfAnExactWorld) {
   Make({.pose_sigma = 0.01, .point_sigma = 0.03});
   const MapSnapshot before = store_.Snapshot();
-  const WindowResult result =
+  const Adjustment result =
       AdjustWindow(before, made_.keyframes.back(), world_.camera, Patient(), nullptr);
   const MapSnapshot after =
-      store_.Commit([&](MapCommit& commit) { CommitWindow(commit, before, result); });
+      store_.Commit([&](MapCommit& commit) { CommitAdjustment(commit, before, result); });
   EXPECT_GT(RmsReprojection(before, world_.camera, result), 3);
   EXPECT_LT(RmsReprojection(after, world_.camera, result), 0.01);
   for (size_t v = 0; v < world_.views.size(); ++v) {
@@ -71,12 +71,12 @@ TEST_P(WindowTest, LowersTheErrorAndHoldsTheGauge) {
   MapperSettings settings;
   settings.window_keyframes = 3;  // the others hold it
   const MapSnapshot before = store_.Snapshot();
-  const WindowResult result =
+  const Adjustment result =
       AdjustWindow(before, made_.keyframes.back(), world_.camera, settings, nullptr);
   EXPECT_EQ(result.poses.size(), 3u);
   EXPECT_LT(result.report.final_cost, 0.5 * result.report.initial_cost);
   const MapSnapshot after = store_.Commit([&](MapCommit& commit) {
-    CommitWindow(commit, before, result);
+    CommitAdjustment(commit, before, result);
     for (const auto& point : result.points)
       commit.RefreshLandmark(point.first);  // nobody may see it now
   });
@@ -95,7 +95,7 @@ TEST_P(WindowTest, TheFirstKeyframeNeverMoves) {
   Make({.pose_sigma = 0.01, .point_sigma = 0.03}, /*noise_px=*/1);
   for (KeyFrameId id : made_.keyframes) {
     if (id == made_.keyframes.front()) continue;
-    const WindowResult result = AdjustWindow(store_.Snapshot(), id, world_.camera, {}, nullptr);
+    const Adjustment result = AdjustWindow(store_.Snapshot(), id, world_.camera, {}, nullptr);
     size_t moved = 0;
     for (const auto& [adjusted, T] : result.poses) {
       EXPECT_NE(adjusted, made_.keyframes.front());
@@ -131,7 +131,7 @@ TEST_P(WindowTest, NamesObservationsThatDoNotFit) {
     commit.AddObservation(other, confused, a);
   });
   const MapSnapshot before = store_.Snapshot();
-  const WindowResult result =
+  const Adjustment result =
       AdjustWindow(before, made_.keyframes.back(), world_.camera, Patient(), nullptr);
   const auto named = [&](LandmarkId id) {
     return std::count(result.outliers.begin(), result.outliers.end(),
@@ -140,7 +140,7 @@ TEST_P(WindowTest, NamesObservationsThatDoNotFit) {
   EXPECT_TRUE(named(one));
   EXPECT_TRUE(named(other));
   const MapSnapshot after =
-      store_.Commit([&](MapCommit& commit) { CommitWindow(commit, before, result); });
+      store_.Commit([&](MapCommit& commit) { CommitAdjustment(commit, before, result); });
   for (const Observation& o : after.Find(one)->observations) EXPECT_NE(o.keyframe, confused);
 }
 
@@ -148,12 +148,12 @@ INSTANTIATE_TEST_SUITE_P(Sensors, WindowTest, testing::Bool(), [](const auto& se
   return sensor.param ? "WithDepth" : "Monocular";
 });
 
-TEST(CommitWindow, LeavesOutWhatDiedMeanwhile) {
+TEST(CommitAdjustment, LeavesOutWhatDiedMeanwhile) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
   MapStore store;
   const SyntheticMap made = FillMap(world, {.pose_sigma = 0.01, .point_sigma = 0.03}, store);
   const MapSnapshot base = store.Snapshot();
-  const WindowResult result = AdjustWindow(base, made.keyframes.back(), world.camera, {}, nullptr);
+  const Adjustment result = AdjustWindow(base, made.keyframes.back(), world.camera, {}, nullptr);
   const LandmarkId gone = result.points[5].first, fused = result.points[6].first,
                    kept = result.points[7].first;
   store.Commit([&](MapCommit& commit) {
@@ -163,21 +163,21 @@ TEST(CommitWindow, LeavesOutWhatDiedMeanwhile) {
     for (LandmarkId id : base.Landmarks()) commit.RefreshLandmark(id);
   });
   const MapSnapshot after =
-      store.Commit([&](MapCommit& commit) { CommitWindow(commit, base, result); });
+      store.Commit([&](MapCommit& commit) { CommitAdjustment(commit, base, result); });
   EXPECT_EQ(after.Find(gone), nullptr);
   EXPECT_EQ(after.Find(fused), nullptr);
   EXPECT_EQ(after.Find(made.keyframes[3]), nullptr);
   EXPECT_EQ(after.Find(kept)->p_world, result.points[7].second);
 }
 
-TEST(CommitWindow, TheYoungFollow) {
+TEST(CommitAdjustment, TheYoungFollow) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
   MapStore store;
   const SyntheticMap made =
       FillMap(world, {.pose_sigma = 0.02, .point_sigma = 0.03, .keyframes = 5}, store);
   const MapSnapshot base = store.Snapshot();
   const KeyFrameId parent = made.keyframes.back();
-  const WindowResult result = AdjustWindow(base, parent, world.camera, {}, nullptr);
+  const Adjustment result = AdjustWindow(base, parent, world.camera, {}, nullptr);
   // Meanwhile: a child of the adjusted keyframe, its child, and a landmark in each.
   KeyFrameId child, grandchild;
   LandmarkId in_parent, in_grandchild;
@@ -203,7 +203,7 @@ TEST(CommitWindow, TheYoungFollow) {
   });
   const MapSnapshot before = store.Snapshot();
   const MapSnapshot after =
-      store.Commit([&](MapCommit& commit) { CommitWindow(commit, base, result); });
+      store.Commit([&](MapCommit& commit) { CommitAdjustment(commit, base, result); });
   ASSERT_GT(Distance(before.PoseOf(parent), after.PoseOf(parent)), 1e-3);
   const auto between = [](const MapSnapshot& map, KeyFrameId a, KeyFrameId b) {
     return map.PoseOf(a) * map.PoseOf(b).Inverse();
@@ -223,7 +223,7 @@ TEST(AdjustWindow, StopsWhenTold) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {.pose_sigma = 0.02, .point_sigma = 0.03}, store);
   const std::atomic<bool> stop{true};
-  const WindowResult result =
+  const Adjustment result =
       AdjustWindow(store.Snapshot(), made.keyframes.back(), world.camera, {}, &stop);
   EXPECT_EQ(result.report.iterations, 0);
   EXPECT_EQ(result.report.final_cost, result.report.initial_cost);

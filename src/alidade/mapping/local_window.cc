@@ -1,17 +1,11 @@
 #include "alidade/mapping/local_window.h"
 
 #include <algorithm>
-#include <optional>
 
 namespace alidade {
-namespace {
 
-double Gate(const BundleObservation& o) { return std::isnan(o.pixel.z()) ? 5.991 : 7.815; }
-
-}  // namespace
-
-WindowResult AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
-                          const MapperSettings& settings, const std::atomic<bool>* stop) {
+Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
+                        const MapperSettings& settings, const std::atomic<bool>* stop) {
   const KeyFrame& newest = *map.Find(id);
   std::vector<KeyFrameId> free{id};
   for (const Neighbour& n : newest.covisible) {
@@ -57,96 +51,7 @@ WindowResult AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& c
     free.erase(free.begin());
   }
   std::sort(fixed.begin(), fixed.end());
-  return AdjustKeyFrames(map, free, fixed, camera, settings, stop);
-}
-
-WindowResult AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
-                             const std::vector<KeyFrameId>& fixed, const Camera& camera,
-                             const MapperSettings& settings, const std::atomic<bool>* stop) {
-  BundleProblem problem;
-  problem.camera = camera;
-  std::vector<int> camera_index(map.next_keyframe(), -1);
-  std::vector<KeyFrameId> cameras;
-  for (const auto* set : {&free, &fixed}) {
-    for (KeyFrameId id : *set) {
-      camera_index[id.value] = static_cast<int>(problem.T_camera_world.size());
-      problem.T_camera_world.push_back(map.Find(id)->T_camera_world);
-      problem.fixed.push_back(set == &fixed);
-      cameras.push_back(id);
-    }
-  }
-  std::vector<LandmarkId> landmarks;
-  for (KeyFrameId id : free) {
-    for (LandmarkId landmark : map.Find(id)->landmarks) {
-      if (landmark.valid()) landmarks.push_back(landmark);
-    }
-  }
-  std::sort(landmarks.begin(), landmarks.end());
-  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
-
-  std::vector<LandmarkId> points;
-  for (LandmarkId id : landmarks) {
-    const Landmark* landmark = map.Find(id);
-    if (!landmark) continue;
-    const int point = static_cast<int>(points.size());
-    for (const Observation& o : landmark->observations) {
-      const int index = camera_index[o.keyframe.value];
-      if (index < 0) continue;
-      const Measurement m =
-          Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
-      problem.observations.push_back({index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
-    }
-    points.push_back(id);
-    problem.points.push_back(landmark->p_world);
-  }
-
-  WindowResult result;
-  result.report = AdjustBundle(problem, settings.bundle, stop);
-  for (size_t i = 0; i < free.size(); ++i)
-    result.poses.push_back({free[i], problem.T_camera_world[i]});
-  for (size_t i = 0; i < points.size(); ++i)
-    result.points.push_back({points[i], problem.points[i]});
-  for (const BundleObservation& o : problem.observations) {
-    const double chi2 =
-        ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
-    if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});
-  }
-  return result;
-}
-
-void CommitWindow(MapCommit& commit, const MapSnapshot& base, const WindowResult& result) {
-  // Corrections in the world: T_new_old of every keyframe that moved.
-  std::vector<std::pair<KeyFrameId, Se3>> moved;
-  for (const auto& [id, T_camera_world] : result.poses) {
-    KeyFrame* keyframe = commit.Edit(id);
-    if (!keyframe) continue;
-    moved.push_back({id, T_camera_world.Inverse() * keyframe->T_camera_world});
-    keyframe->T_camera_world = T_camera_world;
-  }
-  const auto correction = [&](KeyFrameId id) -> std::optional<Se3> {
-    const auto it =
-        std::lower_bound(moved.begin(), moved.end(), id,
-                         [](const auto& entry, KeyFrameId key) { return entry.first < key; });
-    if (it == moved.end() || it->first != id) return {};
-    return it->second;
-  };
-  for (uint32_t i = base.next_keyframe(); i < commit.next_keyframe(); ++i) {
-    const KeyFrame* young = commit.Find(KeyFrameId{i});
-    const std::optional<Se3> T = young ? correction(young->parent) : std::nullopt;
-    if (!T) continue;
-    moved.push_back({young->id, *T});
-    commit.Edit(young->id)->T_camera_world = young->T_camera_world * T->Inverse();
-  }
-  for (const auto& [id, p_world] : result.points) {
-    if (Landmark* landmark = commit.Edit(id)) landmark->p_world = p_world;
-  }
-  for (uint32_t i = base.next_landmark(); i < commit.next_landmark(); ++i) {
-    const Landmark* young = commit.Find(LandmarkId{i});
-    const std::optional<Se3> T = young ? correction(young->reference) : std::nullopt;
-    if (T) commit.Edit(young->id)->p_world = *T * young->p_world;
-  }
-  for (const auto& [landmark, keyframe] : result.outliers)
-    commit.RemoveObservation(landmark, keyframe);
+  return AdjustKeyFrames(map, free, fixed, camera, {settings.noise, settings.bundle}, stop);
 }
 
 }  // namespace alidade

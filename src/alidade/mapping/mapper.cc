@@ -63,11 +63,11 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
     }
     commit.RefreshCovisibility(second);
   });
-  MapperSettings thorough = settings_;
+  AdjustSettings thorough{settings_.noise, settings_.bundle};
   thorough.bundle.max_iterations = 20;
-  const WindowResult adjusted = AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr);
+  const Adjustment adjusted = AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr);
   map_.Commit([&](MapCommit& commit) {
-    CommitWindow(commit, map, adjusted);
+    CommitAdjustment(commit, map, adjusted);
     std::vector<double> depths;
     std::vector<LandmarkId> good;
     for (const auto& [id, p_world] : adjusted.points) {
@@ -155,10 +155,10 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   const size_t keyframes = map.KeyFramesOf(map.Find(id)->map).size();
   if (keyframes < 2) return report;
   if (keyframes > 2 || has_depth_) {
-    const WindowResult adjusted = AdjustWindow(map, id, camera_, settings_, stop);
+    const Adjustment adjusted = AdjustWindow(map, id, camera_, settings_, stop);
     report.bundle = adjusted.report;
     map = map_.Commit([&](MapCommit& commit) {
-      CommitWindow(commit, map, adjusted);
+      CommitAdjustment(commit, map, adjusted);
       for (const auto& [landmark, keyframe] : adjusted.outliers) {
         const Landmark* l = commit.Find(landmark);
         if (l && l->observations.size() < (has_depth_ ? 1 : 2)) commit.Remove(landmark);
