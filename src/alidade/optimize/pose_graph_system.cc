@@ -1,0 +1,196 @@
+#include "alidade/optimize/pose_graph_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "alidade/base/parallel.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kChunk = 128;  // edges worked on as one piece
+
+int Chunks(size_t edges) { return static_cast<int>((edges + kChunk - 1) / kChunk); }
+
+// Half of Huber's loss of a squared length, and the weight that makes its gradient.
+double Loss(double squared, double huber, double* weight) {
+  const double root = std::sqrt(squared);
+  const bool within = huber <= 0 || root <= huber;
+  if (weight) *weight = within ? 1 : huber / root;
+  return within ? 0.5 * squared : huber * (root - 0.5 * huber);
+}
+
+}  // namespace
+
+Vector7d EdgeResidual(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_world) {
+  return LogSim3(T_a_b * (T_b_world * T_a_world.Inverse()));
+}
+
+PoseGraphResidual LineariseEdge(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_world) {
+  PoseGraphResidual e;
+  e.r = EdgeResidual(T_a_b, T_a_world, T_b_world);
+  const Matrix7d right = LeftJacobianInverseSim3(-e.r);  // the right Jacobian is the left one at -r
+  e.J_a = -right;
+  e.J_b = right * AdjointSim3(T_a_world * T_b_world.Inverse());
+  return e;
+}
+
+template <int kDof>
+PoseGraphSystem<kDof>::PoseGraphSystem(const PoseGraph& graph, std::vector<int> slot,
+                                       std::vector<int> edges, double length_scale, double huber)
+    : graph_(graph),
+      slot_(std::move(slot)),
+      edges_(std::move(edges)),
+      unit_(Vector::Ones()),
+      huber_(huber),
+      terms_(edges_.size()) {
+  unit_.template head<3>().setConstant(1 / length_scale);
+  for (const int s : slot_) free_nodes_ = std::max(free_nodes_, s + 1);
+  diagonal_.resize(free_nodes_);
+  gradient_.resize(free_nodes_);
+  FindBlocks();
+}
+
+template <int kDof>
+void PoseGraphSystem<kDof>::FindBlocks() {
+  std::vector<std::pair<int, int>> blocks;  // column, row
+  const auto block_of = [&](int edge) {
+    const auto [low, high] =
+        std::minmax({slot_[graph_.edges[edge].a], slot_[graph_.edges[edge].b]});
+    return std::pair(low, high);
+  };
+  for (const int edge : edges_) {
+    if (block_of(edge).first >= 0) blocks.push_back(block_of(edge));
+  }
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  for (const int edge : edges_) {
+    const auto found = std::lower_bound(blocks.begin(), blocks.end(), block_of(edge));
+    below_.push_back(block_of(edge).first < 0 ? -1 : static_cast<int>(found - blocks.begin()));
+  }
+  off_.resize(blocks.size());
+  column_begin_.assign(free_nodes_ + 1, 0);
+  for (const auto& [column, row] : blocks) {
+    ++column_begin_[column + 1];
+    row_.push_back(row);
+  }
+  for (int i = 0; i < free_nodes_; ++i) column_begin_[i + 1] += column_begin_[i];
+
+  std::vector<Eigen::Triplet<double>> triplets;
+  for (int column = 0; column < free_nodes_; ++column) {
+    for (int j = 0; j < kDof; ++j) {
+      for (int i = j; i < kDof; ++i) {
+        triplets.emplace_back(kDof * column + i, kDof * column + j, 0.0);
+      }
+      for (int k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
+        for (int i = 0; i < kDof; ++i) {
+          triplets.emplace_back(kDof * row_[k] + i, kDof * column + j, 0.0);
+        }
+      }
+    }
+  }
+  matrix_.resize(kDof * free_nodes_, kDof * free_nodes_);
+  matrix_.setFromTriplets(triplets.begin(), triplets.end());
+  factor_.analyzePattern(matrix_);
+}
+
+template <int kDof>
+double PoseGraphSystem<kDof>::Cost(const std::vector<Sim3>& nodes) const {
+  std::vector<double> costs(Chunks(edges_.size()));
+  ParallelFor(static_cast<int>(costs.size()), [&](int chunk) {
+    const size_t end = std::min(edges_.size(), static_cast<size_t>(chunk + 1) * kChunk);
+    for (size_t n = static_cast<size_t>(chunk) * kChunk; n < end; ++n) {
+      const PoseGraphEdge& edge = graph_.edges[edges_[n]];
+      const Vector r = EdgeResidual(edge.T_a_b, nodes[edge.a], nodes[edge.b]).template head<kDof>();
+      costs[chunk] += Loss(edge.weight * r.cwiseProduct(unit_).squaredNorm(), huber_, nullptr);
+    }
+  });
+  double cost = 0;
+  for (const double c : costs) cost += c;
+  return cost;
+}
+
+template <int kDof>
+void PoseGraphSystem<kDof>::Linearise(const std::vector<Sim3>& nodes) {
+  ParallelFor(Chunks(edges_.size()), [&](int chunk) {
+    const size_t end = std::min(edges_.size(), static_cast<size_t>(chunk + 1) * kChunk);
+    for (size_t n = static_cast<size_t>(chunk) * kChunk; n < end; ++n) {
+      const PoseGraphEdge& edge = graph_.edges[edges_[n]];
+      const PoseGraphResidual e = LineariseEdge(edge.T_a_b, nodes[edge.a], nodes[edge.b]);
+      Term& term = terms_[n];
+      term.r = e.r.template head<kDof>().cwiseProduct(unit_);
+      double weight;
+      Loss(edge.weight * term.r.squaredNorm(), huber_, &weight);
+      const double root = std::sqrt(weight * edge.weight);
+      const Vector scale = root * unit_;
+      term.r *= root;
+      term.J_a = scale.asDiagonal() * e.J_a.template topLeftCorner<kDof, kDof>();
+      term.J_b = scale.asDiagonal() * e.J_b.template topLeftCorner<kDof, kDof>();
+    }
+  });
+  for (Block& block : diagonal_) block.setZero();
+  for (Block& block : off_) block.setZero();
+  for (Vector& g : gradient_) g.setZero();
+  for (size_t n = 0; n < edges_.size(); ++n) {
+    const int a = slot_[graph_.edges[edges_[n]].a], b = slot_[graph_.edges[edges_[n]].b];
+    const Term& term = terms_[n];
+    if (a >= 0) {
+      diagonal_[a].noalias() += term.J_a.transpose() * term.J_a;
+      gradient_[a].noalias() += term.J_a.transpose() * term.r;
+    }
+    if (b >= 0) {
+      diagonal_[b].noalias() += term.J_b.transpose() * term.J_b;
+      gradient_[b].noalias() += term.J_b.transpose() * term.r;
+    }
+    if (a < 0 || b < 0) continue;
+    if (a > b) {
+      off_[below_[n]].noalias() += term.J_a.transpose() * term.J_b;
+    } else {
+      off_[below_[n]].noalias() += term.J_b.transpose() * term.J_a;
+    }
+  }
+}
+
+template <int kDof>
+void PoseGraphSystem<kDof>::Fill(double lambda) {
+  double* value = matrix_.valuePtr();
+  for (int column = 0; column < free_nodes_; ++column) {
+    for (int j = 0; j < kDof; ++j) {
+      *value++ = (1 + lambda) * diagonal_[column](j, j);
+      for (int i = j + 1; i < kDof; ++i) *value++ = diagonal_[column](i, j);
+      for (int k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
+        for (int i = 0; i < kDof; ++i) *value++ = off_[k](i, j);
+      }
+    }
+  }
+}
+
+template <int kDof>
+bool PoseGraphSystem<kDof>::Solve(double lambda, std::vector<Vector>& step) {
+  Fill(lambda);
+  factor_.factorize(matrix_);
+  if (factor_.info() != Eigen::Success) return false;
+  Eigen::VectorXd right(kDof * free_nodes_);
+  for (int i = 0; i < free_nodes_; ++i) right.segment<kDof>(kDof * i) = -gradient_[i];
+  const Eigen::VectorXd x = factor_.solve(right);
+  if (!x.allFinite()) return false;
+  step.resize(free_nodes_);
+  for (int i = 0; i < free_nodes_; ++i) step[i] = x.segment<kDof>(kDof * i);
+  return true;
+}
+
+// ½ (λ δ' diag(H) δ - g' δ): what -g' δ - ½ δ' H δ is where (H + D) δ = -g.
+template <int kDof>
+double PoseGraphSystem<kDof>::Predicted(double lambda, const std::vector<Vector>& step) const {
+  double twice = 0;
+  for (int i = 0; i < free_nodes_; ++i) {
+    twice += lambda * step[i].cwiseAbs2().dot(diagonal_[i].diagonal()) - step[i].dot(gradient_[i]);
+  }
+  return 0.5 * twice;
+}
+
+template class PoseGraphSystem<6>;
+template class PoseGraphSystem<7>;
+
+}  // namespace alidade
