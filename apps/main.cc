@@ -33,6 +33,12 @@ void AddCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] alidade::Actio
 #ifdef ALIDADE_COMMAND_SYNTH
   alidade::AddSynthCommand(app, action);
 #endif
+#ifdef ALIDADE_COMMAND_EXPORT
+  alidade::AddExportCommand(app, action);
+#endif
+#ifdef ALIDADE_COMMAND_INFO
+  alidade::AddInfoCommand(app, action);
+#endif
 #ifdef ALIDADE_COMMAND_BENCH
   alidade::AddBenchCommand(app, action);
 #endif
@@ -62,6 +68,7 @@ int Run(int argc, char** argv) {
       "video\n"
       "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
       "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
+      "  alidade info alidade-out/my_recording       what is in a map\n"
       "  alidade run --help                          all of a command's options\n"
       "\nExit status: 0 done, 2 usage, 3 input, 4 nothing could be mapped, 70 a bug of ours, 130 "
       "interrupted.");

@@ -57,7 +57,7 @@ std::string LandmarksPly(const RunResults& results) {
     cloud.points.push_back(
         (results.R_camera_rectified * results.map.Find(id)->p_world).cast<float>());
   }
-  return EncodePly(cloud, PlyFormat::kAscii);
+  return EncodePly(cloud, CloudFormat::kAscii);
 }
 
 }  // namespace

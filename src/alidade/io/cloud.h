@@ -1,4 +1,4 @@
-// Point clouds as PLY (Turk 1994).
+// Point clouds as PLY (Turk 1994) and PCD (Point Cloud Library, v0.7).
 #pragma once
 
 #include <Eigen/Core>
@@ -15,9 +15,10 @@ struct Cloud {
       {};  // red green blue; empty: none, else one for each point
 };
 
-enum class PlyFormat { kAscii, kBinary };  // binary is little endian, on any machine
+enum class CloudFormat { kAscii, kBinary };  // binary is little endian, on any machine
 
 // The file's bytes.
-std::string EncodePly(const Cloud& cloud, PlyFormat format);
+std::string EncodePly(const Cloud& cloud, CloudFormat format);
+std::string EncodePcd(const Cloud& cloud, CloudFormat format);  // colours as the field `rgb`
 
 }  // namespace alidade

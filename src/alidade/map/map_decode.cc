@@ -141,6 +141,7 @@ class Decoder {
     for (uint32_t i = 0; i < SizeOf(file_.forwards()); ++i) ReadForward(*file_.forwards()->Get(i));
 
     SavedMap saved;
+    saved.version = file_.version();
     saved.camera = camera_;
     saved.sensor = file_.sensor()->str();
     Require(saved.sensor == "mono" || saved.sensor == "stereo" || saved.sensor == "rgbd",

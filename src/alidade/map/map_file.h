@@ -18,6 +18,7 @@ struct SavedMap {
   Camera camera;       // that of the keypoints: after rectifying and scaling
   std::string sensor;  // "mono", "stereo" or "rgbd"
   std::vector<std::pair<std::string, std::string>> settings;  // name and value
+  uint32_t version = 0;  // of the format it was read from; it is always written in the newest
 };
 
 std::string EncodeMap(const SavedMap& saved);

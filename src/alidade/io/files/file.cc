@@ -1,17 +1,21 @@
 #include "alidade/io/files/file.h"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 
 #include "alidade/base/error.h"
 
 namespace alidade {
 namespace {
+
+constexpr const char* kTemporary = ".tmp";  // path.tmpPID-NUMBER
 
 // Closes on the way out, whatever that is.
 class Descriptor {
@@ -78,16 +82,54 @@ std::string ReadFile(const std::string& path) {
   return bytes;
 }
 
-void AtomicWriteFile(const std::string& path, std::string_view bytes, Sync sync) {
+std::string TemporaryBeside(const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  const std::string temporary =
-      path + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(counter.fetch_add(1));
+  return path + kTemporary + std::to_string(::getpid()) + "-" +
+         std::to_string(counter.fetch_add(1));
+}
+
+bool Occupy(int fd) { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; }
+
+std::vector<std::string> StaleTemporaries(const std::string& path) {
+  namespace fs = std::filesystem;
+  const std::string stem = fs::path(path).filename().string() + kTemporary;
+  const fs::path folder = fs::path(path).parent_path();
+  std::vector<std::string> stale;
+  std::error_code error;
+  fs::directory_iterator entry(folder.empty() ? "." : folder, error);
+  for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.compare(0, stem.size(), stem) != 0) continue;
+    const std::string rest = name.substr(stem.size());  // PID-NUMBER, and nothing else
+    const size_t dash = rest.find('-');
+    const bool ours = dash != std::string::npos && dash > 0 && dash + 1 < rest.size() &&
+                      rest.find_first_not_of("0123456789") == dash &&
+                      rest.find_first_not_of("0123456789", dash + 1) == std::string::npos;
+    if (!ours) continue;
+    const Descriptor fd(::open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
+    if (fd.get() >= 0 && Occupy(fd.get())) stale.push_back(entry->path().string());
+  }
+  return stale;
+}
+
+void AtomicWriteFile(const std::string& path, std::string_view bytes, Sync sync) {
+  if (sync == Sync::kYes) {
+    for (const std::string& left : StaleTemporaries(path)) ::unlink(left.c_str());
+  }
+  std::string temporary = TemporaryBeside(path);
   const auto fail = [&path] {
     const int error = errno;
     ThrowInput("cannot write " + path + ": " + std::strerror(error));
   };
-  Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  const auto open_new = [&] {
+    return ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  };
+  int opened = open_new();
+  // In containers a process may well have the number of one that was killed.
+  for (; opened < 0 && errno == EEXIST; opened = open_new()) temporary = TemporaryBeside(path);
+  Descriptor fd(opened);
   if (fd.get() < 0) fail();
+  Occupy(fd.get());  // where that cannot be, the temporary of a killed program stays
   const bool written = WriteAll(fd.get(), bytes) && (sync == Sync::kNo || ::fsync(fd.get()) == 0) &&
                        fd.Close() && std::rename(temporary.c_str(), path.c_str()) == 0;
   if (!written) {

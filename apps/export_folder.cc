@@ -1,0 +1,100 @@
+#include "export_folder.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kMarker = "export.json";
+constexpr std::array<const char*, 7> kOurFiles = {"cameras.txt", "images.txt", "points3D.txt",
+                                                  "cameras.bin", "images.bin", "points3D.bin",
+                                                  kMarker};
+
+bool HoldsOnlyOurs(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    bool ours = false;
+    for (const char* known : kOurFiles) ours = ours || name == known;
+    if (!ours || !entry.is_regular_file(error)) return false;
+  }
+  return !error;
+}
+
+bool HoldsOurMarker(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / kMarker, error)) return false;
+  const auto marker = nlohmann::json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
+  return marker.is_object() && marker.contains("version") && marker.contains("colmap");
+}
+
+void CheckFree(const fs::path& path) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(path, error))) return;
+  if (!fs::is_directory(path, error)) ThrowInput(path.string() + ": there is a file of that name");
+  const bool empty = fs::is_empty(path, error);
+  if (error) ThrowInput(path.string() + ": " + error.message());
+  if (!empty && !(HoldsOurMarker(path) && HoldsOnlyOurs(path))) {
+    ThrowInput(path.string() +
+               ": the folder exists and holds other things than an earlier export; "
+               "name another");
+  }
+}
+
+// Gone at the end unless it was renamed.
+class Draft {
+ public:
+  explicit Draft(const fs::path& path) : path_(path) {
+    std::error_code error;
+    fs::create_directories(path_, error);
+    if (error) ThrowInput(path_.string() + ": cannot be made: " + error.message());
+    fd_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (fd_ >= 0) Occupy(fd_);
+  }
+  ~Draft() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Draft(const Draft&) = delete;
+  Draft& operator=(const Draft&) = delete;
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  int fd_ = -1;
+};
+
+}  // namespace
+
+void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>& files) {
+  fs::path path = fs::path(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // written with a slash at its end
+  CheckFree(path);
+  for (const std::string& left : StaleTemporaries(path.string())) {
+    std::error_code ignored;
+    if (HoldsOnlyOurs(left)) fs::remove_all(left, ignored);
+  }
+  const Draft draft(TemporaryBeside(path.string()));
+  for (const ColmapFile& file : files) {
+    AtomicWriteFile((draft.path() / file.name).string(), file.bytes);
+  }
+  const nlohmann::ordered_json marker = {{"version", 1}, {"colmap", files.size()}};
+  AtomicWriteFile((draft.path() / kMarker).string(), marker.dump(2) + "\n");
+  std::error_code error;
+  for (const char* name : kOurFiles) fs::remove(path / name, error);
+  fs::rename(draft.path(), path, error);
+  if (error) ThrowInput(path.string() + ": cannot be written: " + error.message());
+}
+
+}  // namespace alidade

@@ -1,0 +1,155 @@
+// `alidade info`: what is in a map.
+#include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "map_export.h"
+#include "saved_map.h"
+
+namespace alidade {
+namespace {
+
+using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+
+struct InfoOptions {
+  std::string map;  // path
+  bool as_json = false;
+};
+
+json ObservationsOf(const MapSnapshot& map, const std::vector<LandmarkId>& landmarks) {
+  std::vector<size_t> counts;
+  size_t total = 0;
+  for (LandmarkId id : landmarks) {
+    counts.push_back(map.Find(id)->observations.size());
+    total += counts.back();
+  }
+  if (counts.empty())
+    return {{"total", 0}, {"mean", nullptr}, {"median", nullptr}, {"max", nullptr}};
+  std::sort(counts.begin(), counts.end());
+  return {{"total", total},
+          {"mean", static_cast<double>(total) / static_cast<double>(counts.size())},
+          {"median", counts[counts.size() / 2]},
+          {"max", counts.back()}};
+}
+
+json PartInfo(const SavedMap& saved, const MapPart& part) {
+  const Trajectory trajectory = TrajectoryOf(saved, part);
+  Eigen::AlignedBox3d box;
+  double length = 0;
+  for (size_t i = 0; i < trajectory.size(); ++i) {
+    box.extend(trajectory[i].T_world_camera.t);
+    if (i > 0)
+      length += (trajectory[i].T_world_camera.t - trajectory[i - 1].T_world_camera.t).norm();
+  }
+  const Eigen::Vector3d size = box.sizes();
+  return {{"keyframes", part.keyframes.size()},
+          {"landmarks", part.landmarks.size()},
+          {"observations", ObservationsOf(saved.map, part.landmarks)},
+          {"time", {trajectory.front().time, trajectory.back().time}},
+          {"path_length", length},
+          {"extent", {size.x(), size.y(), size.z()}}};
+}
+
+json InfoOf(const SavedMap& saved, const std::string& path) {
+  const Camera& camera = saved.camera;
+  json maps = json::array();
+  for (const MapPart& part : PartsOf(saved.map)) maps.push_back(PartInfo(saved, part));
+  json settings = json::object();
+  for (const auto& [name, value] : saved.settings) settings[name] = value;
+  return {{"version", saved.version},
+          {"bytes", std::filesystem::file_size(path)},
+          {"sensor", saved.sensor},
+          {"camera",
+           {{"width", camera.width},
+            {"height", camera.height},
+            {"fx", camera.fx},
+            {"fy", camera.fy},
+            {"cx", camera.cx},
+            {"cy", camera.cy},
+            {"distortion", camera.distortion},
+            {"fps", camera.fps},
+            {"depth_factor", camera.depth_factor},
+            {"baseline", camera.baseline}}},
+          {"keyframes", saved.map.keyframe_count()},
+          {"landmarks", saved.map.landmark_count()},
+          {"maps", maps},
+          {"settings", settings}};
+}
+
+void PrintPart(const json& part, const char* unit) {
+  std::printf("  keyframes     %d, %.3f to %.3f s\n", part["keyframes"].get<int>(),
+              part["time"][0].get<double>(), part["time"][1].get<double>());
+  std::printf("  path          %.2f %s within %.2f x %.2f x %.2f %s\n",
+              part["path_length"].get<double>(), unit, part["extent"][0].get<double>(),
+              part["extent"][1].get<double>(), part["extent"][2].get<double>(), unit);
+  const json& seen = part["observations"];
+  if (seen["total"] == 0) {
+    std::printf("  landmarks     none\n");
+  } else {
+    std::printf("  landmarks     %d, each seen by %.1f keyframes (median %d, at most %d)\n",
+                part["landmarks"].get<int>(), seen["mean"].get<double>(), seen["median"].get<int>(),
+                seen["max"].get<int>());
+  }
+}
+
+void PrintInfo(const json& info, const std::string& path) {
+  const json& camera = info["camera"];
+  const std::string sensor = info["sensor"];
+  std::printf("%s: %.1f MB, format version %d\n", path.c_str(), info["bytes"].get<double>() / 1e6,
+              info["version"].get<int>());
+  std::printf("sensor          %s\n", sensor.c_str());
+  std::printf("camera          %dx%d, fx %.2f fy %.2f cx %.2f cy %.2f", camera["width"].get<int>(),
+              camera["height"].get<int>(), camera["fx"].get<double>(), camera["fy"].get<double>(),
+              camera["cx"].get<double>(), camera["cy"].get<double>());
+  const auto distortion = camera["distortion"].get<std::array<double, 5>>();
+  if (std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0; })) {
+    std::printf(", distortion %g %g %g %g %g", distortion[0], distortion[1], distortion[2],
+                distortion[3], distortion[4]);
+  }
+  if (camera["baseline"] > 0) std::printf(", baseline %g m", camera["baseline"].get<double>());
+  std::printf("\n");
+  const json& maps = info["maps"];
+  std::printf("maps            %zu\n", maps.size());
+  for (size_t i = 0; i < maps.size(); ++i) {
+    if (maps.size() > 1) std::printf("map %zu\n", i);
+    PrintPart(maps[i], sensor == "mono" ? "units" : "m");
+  }
+}
+
+int InfoCommand(const InfoOptions& options) {
+  const std::string path = SavedMapPath(options.map);
+  const json info = InfoOf(ReadSavedMap(path), path);
+  if (options.as_json) {
+    std::printf("%s\n", info.dump(2).c_str());
+  } else {
+    PrintInfo(info, path);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddInfoCommand(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("info", "What is in a map");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_option("MAP", options->map, "The map: a file, or the folder `run` left")
+      ->required()
+      ->type_name("PATH");
+  command->add_flag("--json", options->as_json, "Print JSON instead of a table");
+  command->footer(
+      "\nExamples:\n"
+      "  alidade info alidade-out/kitchen\n"
+      "  alidade info map.alidade --json\n"
+      "\nJSON: version, bytes, sensor, camera, keyframes, landmarks, maps, settings.");
+  command->callback([options, &action] { action = [options] { return InfoCommand(*options); }; });
+}
+
+}  // namespace alidade
