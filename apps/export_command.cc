@@ -18,7 +18,8 @@ namespace {
 struct ExportOptions {
   std::string map, out;  // paths
   std::string to, format = "default";
-  int part = 0;  // 0: the largest of the maps in the file
+  int part = 0;              // 0: the largest of the maps in the file
+  int min_observations = 1;  // landmarks fewer keyframes see are left out
 };
 
 enum class Target { kPly, kPcd, kTum, kColmap };
@@ -55,8 +56,8 @@ MapPart PartOf(const SavedMap& saved, const ExportOptions& options) {
   const std::vector<MapPart> parts = PartsOf(saved.map);
   if (parts.empty() && options.part == 0) return {};
   if (options.part < 0 || static_cast<size_t>(options.part) >= parts.size()) {
-    ThrowUsage("--part " + std::to_string(options.part) + ": the file holds " +
-               std::to_string(parts.size()) + " maps, numbered from 0");
+    ThrowUsage("--part " + std::to_string(options.part) +
+               ": maps are numbered from 0, and here are " + std::to_string(parts.size()));
   }
   return parts[static_cast<size_t>(options.part)];
 }
@@ -76,7 +77,7 @@ int ExportCommand(const ExportOptions& options) {
     ThrowUsage("OUT is the map itself; name another");
   }
   const SavedMap saved = ReadSavedMap(options.map);
-  const MapPart part = PartOf(saved, options);
+  const MapPart part = SeenOften(saved, PartOf(saved, options), options.min_observations);
   const auto cloud_format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
   std::string what = std::to_string(part.landmarks.size()) + " points";
   switch (plan.target) {
@@ -133,6 +134,12 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command
       ->add_option("--part", options->part,
                    "Which map, when the file holds several: 0 is the largest (see `alidade info`)")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--min-observations", options->min_observations,
+                   "Leave out landmarks that fewer keyframes see; COLMAP's own bundle adjuster "
+                   "wants 2")
       ->type_name("N")
       ->capture_default_str();
   command->footer(

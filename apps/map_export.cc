@@ -52,6 +52,13 @@ Trajectory TrajectoryOf(const SavedMap& saved, const MapPart& part) {
   return trajectory;
 }
 
+MapPart SeenOften(const SavedMap& saved, MapPart part, int min_observations) {
+  std::erase_if(part.landmarks, [&](LandmarkId id) {
+    return static_cast<int>(saved.map.Find(id)->observations.size()) < min_observations;
+  });
+  return part;
+}
+
 Cloud CloudOf(const SavedMap& saved, const MapPart& part) {
   Cloud cloud;
   for (LandmarkId id : part.landmarks) {

@@ -11,6 +11,9 @@ namespace alidade {
 // Poses of the keyframes, in order of time.
 Trajectory TrajectoryOf(const SavedMap& saved, const MapPart& part);
 
+// The map without the landmarks that fewer keyframes see.
+MapPart SeenOften(const SavedMap& saved, MapPart part, int min_observations);
+
 // The landmarks.
 Cloud CloudOf(const SavedMap& saved, const MapPart& part);
 

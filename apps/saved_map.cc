@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
@@ -26,9 +27,11 @@ SavedMap ReadSavedMap(const std::string& path) {
 }
 
 std::vector<MapPart> PartsOf(const MapSnapshot& map) {
-  std::map<uint32_t, MapPart> by_id;
-  for (KeyFrameId id : map.KeyFrames()) by_id[0].keyframes.push_back(id);
-  for (LandmarkId id : map.Landmarks()) by_id[0].landmarks.push_back(id);
+  std::map<MapId, MapPart> by_id;
+  for (KeyFrameId id : map.KeyFrames()) by_id[map.MapOf(id)].keyframes.push_back(id);
+  for (LandmarkId id : map.Landmarks()) {
+    by_id[map.MapOf(map.Find(id)->reference)].landmarks.push_back(id);
+  }
   std::vector<MapPart> parts;
   for (auto& [id, part] : by_id) parts.push_back(std::move(part));
   std::stable_sort(parts.begin(), parts.end(), [](const MapPart& a, const MapPart& b) {

@@ -1,5 +1,6 @@
 #include "alidade/io/files/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -72,6 +73,35 @@ TEST(File, DiskThatFillsUpLeavesTheOldFileAndNoTemporary) {
   EXPECT_THAT(message, testing::HasSubstr("File too large"));
   EXPECT_EQ(ReadFile(folder / "a"), "old");
   EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(File, TemporariesOfKilledProgramsAreRemovedByTheNextWrite) {
+  const TempFolder folder;
+  const std::string left = folder.Write("a.tmp123-0", "half");
+  const std::string in_use = folder.Write("a.tmp123-1", "another program is at it");
+  const std::string foreign = folder.Write("a.tmp123", "not one of ours");
+  const int fd = open(in_use.c_str(), O_RDONLY);
+  ASSERT_TRUE(Occupy(fd));
+  AtomicWriteFile(folder / "a", "many small files", Sync::kNo);  // does not look
+  EXPECT_TRUE(std::filesystem::exists(left));
+  AtomicWriteFile(folder / "a", "new");
+  EXPECT_FALSE(std::filesystem::exists(left));
+  EXPECT_TRUE(std::filesystem::exists(in_use));
+  EXPECT_TRUE(std::filesystem::exists(foreign));
+  close(fd);
+  AtomicWriteFile(folder / "a", "newer");
+  EXPECT_FALSE(std::filesystem::exists(in_use));
+  EXPECT_EQ(FilesIn(folder.path()), 2);
+}
+
+// As in a container, where the next process may have the number of the killed one.
+TEST(File, ATemporaryOfTheSameNameIsNoObstacle) {
+  const TempFolder folder;
+  for (int number = 0; number < 50; ++number) {
+    folder.Write("a.tmp" + std::to_string(getpid()) + "-" + std::to_string(number), "half");
+  }
+  AtomicWriteFile(folder / "a", "new", Sync::kNo);
+  EXPECT_EQ(ReadFile(folder / "a"), "new");
 }
 
 }  // namespace

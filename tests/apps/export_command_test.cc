@@ -1,0 +1,337 @@
+// `alidade export` and `alidade info` as a user meets them, and as COLMAP does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <opencv2/calib3d.hpp>
+#include <sstream>
+
+#include "alidade/io/files/file.h"
+#include "support/rendered.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class SavedMapCommand : public testing::Test {
+ protected:
+  // The folder of a short run with a camera that distorts.
+  static std::string Result(const std::string& sensor) {
+    const std::string recording = Rendered({"room", "--frames", "40", "--distortion"});
+    const std::string out = recording + "." + sensor;
+    if (fs::exists(out)) return out;
+    const std::string draft = out + "." + std::to_string(getpid());
+    const ProgramResult run =
+        RunAlidade({"run", recording, "--sensor", sensor, "--out", draft, "--quiet"});
+    EXPECT_EQ(run.status, 0) << run.err;
+    std::error_code taken;  // by another test process: its map is the same
+    fs::rename(draft, out, taken);
+    if (taken) fs::remove_all(draft);
+    return out;
+  }
+  static json Info(const std::string& map) {
+    const ProgramResult info = RunAlidade({"info", map, "--json"});
+    EXPECT_EQ(info.status, 0) << info.err;
+    return json::parse(info.out, nullptr, false);
+  }
+  void Export(const std::string& map, const std::string& to, const std::string& out,
+              const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments = {"export", map, "--to", to, out};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const ProgramResult result = RunAlidade(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(LineCount(result.out), 1);
+  }
+  void ExpectRefused(const std::vector<std::string>& arguments, int status,
+                     const std::string& words) {
+    const ProgramResult result = RunAlidade(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(words));
+    EXPECT_EQ(LineCount(result.err), 1) << result.err;
+    EXPECT_EQ(result.out, "");
+  }
+  std::vector<std::string> NamesIn(const std::string& folder) const {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      names.push_back(entry.path().filename().string());
+    }
+    return names;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(SavedMapCommand, InfoSaysWhatTheRunSaid) {
+  const std::string result = Result("rgbd");
+  const json info = Info(result), stats = json::parse(ReadText(result + "/stats.json"));
+  EXPECT_EQ(info["sensor"], "rgbd");
+  EXPECT_EQ(info["keyframes"], stats["keyframes"]);
+  EXPECT_EQ(info["landmarks"], stats["landmarks"]);
+  EXPECT_EQ(info["bytes"], fs::file_size(result + "/map.alidade"));
+  EXPECT_EQ(info["camera"]["width"], 640);
+  EXPECT_EQ(info["camera"]["distortion"].size(), 5u);
+  ASSERT_EQ(info["maps"].size(), 1u);
+  const json& map = info["maps"][0];
+  EXPECT_EQ(map["keyframes"], info["keyframes"]);
+  EXPECT_GE(map["observations"]["mean"], 1);
+  EXPECT_GE(map["time"][1], 0.5);
+  EXPECT_GE(map["path_length"], map["extent"][0]);
+  EXPECT_EQ(RunAlidade({"info", result + "/map.alidade", "--json"}).out,
+            RunAlidade({"info", result, "--json"}).out);  // the folder or the file
+
+  const ProgramResult table = RunAlidade({"info", result});
+  EXPECT_EQ(table.status, 0);
+  EXPECT_THAT(table.out, HasSubstr("640x480"));
+  EXPECT_THAT(table.out, HasSubstr(std::to_string(info["landmarks"].get<int>()) + ", each seen"));
+}
+
+TEST_F(SavedMapCommand, TumIsTheTrajectoryOfTheKeyframes) {
+  const std::string result = Result("rgbd");
+  Export(result, "tum", folder_ / "keyframes.txt");
+  const auto wanted = DataLines(result + "/keyframes.txt");
+  const auto lines = DataLines(folder_ / "keyframes.txt");
+  ASSERT_EQ(lines.size(), wanted.size());
+  for (size_t i = 0; i < lines.size(); ++i) {
+    std::istringstream a(lines[i]), b(wanted[i]);
+    for (int field = 0; field < 8; ++field) {
+      double x = 0, y = 1;
+      a >> x;
+      b >> y;
+      EXPECT_NEAR(x, y, 1e-8) << lines[i];
+    }
+    EXPECT_EQ(lines[i].substr(0, lines[i].find(' ')), wanted[i].substr(0, wanted[i].find(' ')));
+  }
+}
+
+TEST_F(SavedMapCommand, CloudsHoldTheLandmarks) {
+  const std::string result = Result("rgbd");
+  const int landmarks = Info(result)["landmarks"];
+  Export(result, "ply", folder_ / "a.ply", {"--format", "text"});
+  EXPECT_EQ(ReadText(folder_ / "a.ply"), ReadText(result + "/landmarks.ply"));
+  Export(result, "ply", folder_ / "b.ply");
+  EXPECT_THAT(ReadText(folder_ / "b.ply"),
+              HasSubstr("element vertex " + std::to_string(landmarks) + "\n"));
+  Export(result, "pcd", folder_ / "a.pcd", {"--format", "text"});
+  EXPECT_EQ(ReadLines(folder_ / "a.pcd").size(), static_cast<size_t>(landmarks) + 11);
+  Export(result, "pcd", folder_ / "b.pcd");
+  const std::string pcd = ReadText(folder_ / "b.pcd");
+  EXPECT_EQ(pcd.size(), pcd.find("DATA binary\n") + 12 + 12 * static_cast<size_t>(landmarks));
+  Export(result, "pcd", folder_ / "c.pcd", {"--min-observations", "3"});
+  EXPECT_LT(fs::file_size(folder_ / "c.pcd"), pcd.size());
+}
+
+// The text model, read as COLMAP's documentation says and projected by OpenCV.
+TEST_F(SavedMapCommand, ColmapModelProjectsToItsKeypoints) {
+  const std::string out = folder_ / "model";
+  Export(Result("mono"), "colmap", out);
+  std::istringstream camera(DataLines(out + "/cameras.txt").at(0));
+  std::string skipped, model;
+  double fx, fy, cx, cy, k1, k2, p1, p2;
+  camera >> skipped >> model >> skipped >> skipped >> fx >> fy >> cx >> cy >> k1 >> k2 >> p1 >> p2;
+  ASSERT_EQ(model, "OPENCV");
+  const cv::Matx33d K(fx, 0, cx, 0, fy, cy, 0, 0, 1);
+  const cv::Vec4d distortion(k1, k2, p1, p2);
+
+  struct Image {
+    cv::Vec3d r, t;
+    std::vector<cv::Point2d> keypoints;
+    std::vector<int> points;
+  };
+  std::map<int, Image> images;
+  const auto lines = ReadLines(out + "/images.txt");
+  for (size_t i = 0; i < lines.size(); ++i) {
+    if (lines[i][0] == '#') continue;
+    std::istringstream head(lines[i]), keypoints(lines[i + 1]);
+    int id = 0;
+    double w, x, y, z, tx, ty, tz;
+    head >> id >> w >> x >> y >> z >> tx >> ty >> tz;
+    Image& image = images[id];
+    const double angle = 2 * std::acos(std::min(1.0, w)), sine = std::sqrt(x * x + y * y + z * z);
+    if (sine > 0) image.r = cv::Vec3d(x, y, z) * (angle / sine);
+    image.t = {tx, ty, tz};
+    int point = 0;
+    for (cv::Point2d pixel; keypoints >> pixel.x >> pixel.y >> point;) {
+      image.keypoints.push_back(pixel);
+      image.points.push_back(point);
+    }
+    ++i;
+  }
+  double sum = 0;
+  int count = 0;
+  for (const std::string& line : DataLines(out + "/points3D.txt")) {
+    std::istringstream in(line);
+    int id = 0, image = 0, keypoint = 0;
+    double error = 0, mean = 0;
+    cv::Point3d p;
+    in >> id >> p.x >> p.y >> p.z >> skipped >> skipped >> skipped >> error;
+    EXPECT_THAT(line, HasSubstr(" 128 128 128 "));
+    int seen = 0;
+    for (; in >> image >> keypoint; ++seen) {
+      const Image& in_image = images.at(image);
+      EXPECT_EQ(in_image.points.at(keypoint), id);
+      std::vector<cv::Point2d> projected;
+      cv::projectPoints(std::vector<cv::Point3d>{p}, in_image.r, in_image.t, K, distortion,
+                        projected);
+      mean += cv::norm(projected[0] - in_image.keypoints[keypoint]);
+    }
+    mean /= seen;
+    EXPECT_NEAR(mean, error, 1e-3) << line;
+    sum += mean;
+    ++count;
+  }
+  EXPECT_GT(count, 100);
+  EXPECT_LT(sum / count, 1.5);
+}
+
+// Runs the real program; its words and its exit status.
+ProgramResult Colmap(const std::string& arguments) {
+  const std::string command = "QT_QPA_PLATFORM=offscreen colmap " + arguments + " 2>&1";
+  ProgramResult result;
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return result;
+  char buffer[4096];
+  for (size_t got; (got = fread(buffer, 1, sizeof(buffer), pipe)) > 0;) {
+    result.out.append(buffer, got);
+  }
+  result.status = pclose(pipe);
+  return result;
+}
+
+// The number after `words`.
+double NumberAfter(const std::string& text, const std::string& words) {
+  const size_t at = text.find(words);
+  if (at == std::string::npos) {
+    ADD_FAILURE() << "no '" << words << "' in: " << text;
+    return NAN;
+  }
+  return std::strtod(text.c_str() + at + words.size(), nullptr);
+}
+
+class RealColmap : public SavedMapCommand {
+ protected:
+  void SetUp() override {
+    if (Colmap("help").status != 0) {
+      GTEST_SKIP() << "needs COLMAP (scripts/setup --tests installs Debian's)";
+    }
+  }
+};
+
+TEST_F(RealColmap, ReadsTextAndBinary) {
+  for (const char* sensor : {"rgbd", "mono"}) {
+    const std::string result = Result(sensor);
+    const json info = Info(result);
+    for (const char* format : {"text", "binary", "both"}) {
+      const std::string out = folder_ / (std::string(sensor) + format);
+      Export(result, "colmap", out, {"--format", format});
+      const ProgramResult analysis = Colmap("model_analyzer --path " + out);
+      EXPECT_EQ(analysis.status, 0) << analysis.out;
+      EXPECT_EQ(NumberAfter(analysis.out, "\nRegistered images:"), info["keyframes"]);
+      EXPECT_EQ(NumberAfter(analysis.out, "\nPoints:"), info["landmarks"]);
+      EXPECT_EQ(NumberAfter(analysis.out, "\nObservations:"),
+                info["maps"][0]["observations"]["total"]);
+      EXPECT_LT(NumberAfter(analysis.out, "\nMean reprojection error:"), 1.5);
+    }
+  }
+}
+
+TEST_F(RealColmap, ConvertsEachIntoTheOther) {
+  const std::string text = folder_ / "text", binary = folder_ / "binary";
+  Export(Result("rgbd"), "colmap", text, {"--format", "text"});
+  Export(Result("rgbd"), "colmap", binary, {"--format", "binary"});
+  const std::string out = folder_.Folder("converted");
+  const ProgramResult converted =
+      Colmap("model_converter --output_type TXT --input_path " + binary + " --output_path " + out);
+  EXPECT_EQ(converted.status, 0) << converted.out;
+  for (const char* name : {"cameras.txt", "images.txt", "points3D.txt"}) {
+    auto ours = DataLines(text + "/" + name), theirs = DataLines(out + "/" + name);
+    for (std::string& line : theirs) line.erase(line.find_last_not_of(' ') + 1);
+    std::sort(ours.begin(), ours.end());  // COLMAP's own order is that of a hash table
+    std::sort(theirs.begin(), theirs.end());
+    EXPECT_TRUE(ours == theirs) << name;
+  }
+}
+
+// COLMAP's own projection agrees too: its bundle adjustment starts at our error, and hardly lowers
+// it.
+TEST_F(RealColmap, AdjustsTheModel) {
+  const std::string model = folder_ / "model", out = folder_.Folder("adjusted");
+  Export(Result("mono"), "colmap", model, {"--min-observations", "2"});
+  const double before = NumberAfter(Colmap("model_analyzer --path " + model).out, "error:");
+  const ProgramResult adjusted =
+      Colmap("bundle_adjuster --input_path " + model + " --output_path " + out);
+  EXPECT_EQ(adjusted.status, 0) << adjusted.out;
+  const double start = NumberAfter(adjusted.out, "Initial cost :"),
+               end = NumberAfter(adjusted.out, "Final cost :");
+  EXPECT_LT(start, 1.5);
+  EXPECT_LT(std::abs(start - before), 0.5 * before);  // a root mean square beside a mean
+  EXPECT_GT(end, 0.5 * start);
+}
+
+TEST_F(SavedMapCommand, ColmapFolderIsReplacedOnlyWhenItIsOurs) {
+  const std::string result = Result("rgbd");
+  const std::string out = folder_ / "deep/model";
+  Export(result, "colmap", out + "/");
+  EXPECT_EQ(NamesIn(out).size(), 7u);  // the model twice, and what tells it is ours
+  Export(result, "colmap", out, {"--format", "text"});
+  EXPECT_EQ(NamesIn(out).size(), 4u);
+  Export(result, "colmap", folder_.Folder("empty"));
+
+  const std::string foreign = folder_ / "foreign";
+  folder_.Write("foreign/images.txt", "months of work");
+  ExpectRefused({"export", result, "--to", "colmap", foreign}, 3, "foreign");
+  EXPECT_EQ(ReadText(foreign + "/images.txt"), "months of work");
+  folder_.Write("deep/model/notes.txt", "dear diary");
+  ExpectRefused({"export", result, "--to", "colmap", out}, 3, "other things");
+  ExpectRefused({"export", result, "--to", "colmap", foreign + "/images.txt"}, 3, "file");
+  ExpectRefused({"export", result, "--to", "colmap", "/proc/model"}, 3, "/proc/model");
+  EXPECT_EQ(NamesIn(folder_.path()).size(), 3u);  // no drafts
+  EXPECT_EQ(NamesIn(folder_ / "deep").size(), 1u);
+}
+
+TEST_F(SavedMapCommand, WhatAKilledExportLeftIsRemoved) {
+  const std::string left = folder_.Folder("model.tmp99999-0");
+  folder_.Write("model.tmp99999-0/images.txt", "half");
+  folder_.Write("model.tmp99999-1/thesis.txt", "someone else's");
+  Export(Result("rgbd"), "colmap", folder_ / "model");
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_TRUE(fs::exists(folder_ / "model.tmp99999-1"));
+}
+
+TEST_F(SavedMapCommand, ExportsThatCannotBeAreUsageErrors) {
+  const std::string map = Result("rgbd") + "/map.alidade", out = folder_ / "out";
+  ExpectRefused({"export", map, "--to", "obj", out}, 2, "obj");
+  ExpectRefused({"export", map, "--to", "tum", out, "--format", "binary"}, 2, "text");
+  ExpectRefused({"export", map, "--to", "ply", out, "--format", "both"}, 2, "colmap");
+  ExpectRefused({"export", map, "--to", "ply", out, "--part", "1"}, 2, "here are 1");
+  ExpectRefused({"export", map, "--to", "ply", map}, 2, "the map itself");
+  ExpectRefused({"export", map, "--to", "ply", folder_.path()}, 3, "is a folder");
+  EXPECT_TRUE(NamesIn(folder_.path()).empty());
+}
+
+TEST_F(SavedMapCommand, MapsThatAreNoneAreOneLineAndStatusThree) {
+  const std::string whole = ReadText(Result("rgbd") + "/map.alidade");
+  std::string damaged = whole;
+  damaged[whole.size() / 2] ^= 4;
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {folder_ / "nowhere.alidade", "nowhere.alidade"},
+      {folder_.Folder("empty"), "map.alidade"},
+      {folder_.Write("letter.txt", "Dear all, this is not a map."), "letter.txt: not a map"},
+      {folder_.Write("none.alidade", ""), "none.alidade: not a map"},
+      {folder_.Write("cut.alidade", whole.substr(0, whole.size() - 1000)), "cut.alidade: the map"},
+      {folder_.Write("damaged.alidade", damaged), "damaged.alidade: the map is damaged"}};
+  for (const auto& [map, words] : cases) {
+    ExpectRefused({"info", map}, 3, words);
+    ExpectRefused({"info", map, "--json"}, 3, words);
+    ExpectRefused({"export", map, "--to", "ply", folder_ / "out.ply"}, 3, words);
+    ExpectRefused({"export", map, "--to", "colmap", folder_ / "model"}, 3, words);
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "out.ply"));
+  EXPECT_FALSE(fs::exists(folder_ / "model"));
+}
+
+}  // namespace
+}  // namespace alidade
