@@ -14,23 +14,44 @@ struct Clusters {
   std::vector<int> of;  // the centre of each member
 };
 
-// The bits most members have; at a draw, none.
-Descriptor Majority(std::span<const Descriptor> sample, std::span<const int> members,
-                    std::span<const int> of, int cluster) {
-  std::array<int, 256> ones{};
-  int count = 0;
-  for (size_t i = 0; i < members.size(); ++i) {
-    if (of[i] != cluster) continue;
-    ++count;
-    const Descriptor& descriptor = sample[members[i]];
-    for (int bit = 0; bit < 256; ++bit) ones[bit] += (descriptor.words[bit / 64] >> (bit % 64)) & 1;
+// How many of many descriptors have each bit, 256 counters at once: plane p holds bit p of every
+// counter, so adding a descriptor is a ripple of carries from plane to plane.
+class BitCounter {
+ public:
+  void Add(const Descriptor& descriptor) {
+    ++count_;
+    Descriptor carry = descriptor;
+    for (size_t p = 0; carry != Descriptor(); ++p) {
+      if (p == planes_.size()) planes_.emplace_back();
+      for (int w = 0; w < 4; ++w) {
+        const uint64_t both = planes_[p].words[w] & carry.words[w];
+        planes_[p].words[w] ^= carry.words[w];
+        carry.words[w] = both;
+      }
+    }
   }
-  Descriptor centre;
-  for (int bit = 0; bit < 256; ++bit) {
-    if (2 * ones[bit] > count) centre.words[bit / 64] |= uint64_t{1} << (bit % 64);
+  int count() const { return count_; }
+  // The bits more than half of them have: counters compared with count / 2, highest plane first.
+  Descriptor Majority() const {
+    const int half = count_ / 2;
+    Descriptor majority;
+    for (int w = 0; w < 4; ++w) {
+      uint64_t more = 0, equal = ~uint64_t{0};
+      for (size_t p = 31; p-- > 0;) {
+        const uint64_t plane = p < planes_.size() ? planes_[p].words[w] : 0;
+        const uint64_t bit = (half >> p) & 1 ? ~uint64_t{0} : 0;
+        more |= equal & plane & ~bit;
+        equal &= ~(plane ^ bit);
+      }
+      majority.words[w] = more;
+    }
+    return majority;
   }
-  return centre;
-}
+
+ private:
+  int count_ = 0;
+  std::vector<Descriptor> planes_;  // lowest first
+};
 
 // Far apart from each other: each next one is drawn with a chance that grows with the square of
 // its distance to those there are (k-means++, Arthur & Vassilvitskii 2007). Fewer when there are
@@ -83,9 +104,10 @@ Clusters Part(std::span<const Descriptor> sample, std::span<const int> members,
   clusters.centres = DrawCentres(sample, members, settings.branching, random);
   clusters.of.assign(members.size(), -1);
   for (int round = 0; Assign(sample, members, clusters) && round < settings.rounds; ++round) {
-    for (int c = 0; c < static_cast<int>(clusters.centres.size()); ++c) {
-      if (std::find(clusters.of.begin(), clusters.of.end(), c) == clusters.of.end()) continue;
-      clusters.centres[c] = Majority(sample, members, clusters.of, c);
+    std::vector<BitCounter> counters(clusters.centres.size());
+    for (size_t i = 0; i < members.size(); ++i) counters[clusters.of[i]].Add(sample[members[i]]);
+    for (size_t c = 0; c < counters.size(); ++c) {
+      if (counters[c].count() > 0) clusters.centres[c] = counters[c].Majority();
     }
   }
   return clusters;

@@ -8,17 +8,19 @@
 namespace alidade {
 
 PlaceIndex::PlaceIndex(PlaceSettings settings, uint64_t seed)
-    : settings_(settings), seed_(seed), index_(std::make_shared<WordIndex>(Vocabulary())) {
+    : settings_(settings),
+      seed_(seed),
+      index_(std::make_shared<WordIndex>(Vocabulary(), settings)) {
   settings_.Check();
 }
 
 void PlaceIndex::Add(KeyFrameId id, std::shared_ptr<const Frame> frame) {
   const std::lock_guard<std::mutex> writing(writer_);
-  WordIndex::Bag bag = index_->BagOf(*frame);
+  std::vector<KeypointWord> words = WordsOf(*frame, index_->vocabulary());
   {
     const std::unique_lock<std::shared_mutex> lock(content_);
     index_->Erase(id);
-    index_->Insert(id, std::move(frame), std::move(bag));
+    index_->Insert(id, std::move(frame), std::move(words));
   }
   GrowWhenDoubled();
 }
@@ -54,9 +56,9 @@ std::shared_ptr<WordIndex> PlaceIndex::Grown() const {
     sample.insert(sample.end(), descriptors.begin(), descriptors.begin() + static_cast<int>(count));
   }
   auto grown = std::make_shared<WordIndex>(
-      Vocabulary::Grow(sample, settings_.vocabulary, seed_ + keyframes.size()));
+      Vocabulary::Grow(sample, settings_.vocabulary, seed_ + keyframes.size()), settings_);
   for (const auto& keyframe : keyframes) {
-    grown->Insert(keyframe.first, keyframe.second, grown->BagOf(*keyframe.second));
+    grown->Insert(keyframe.first, keyframe.second, WordsOf(*keyframe.second, grown->vocabulary()));
   }
   return grown;
 }
@@ -83,19 +85,18 @@ SavedPlaces PlaceIndex::Save() const {
   return {index_->vocabulary().nodes(), grown_at_};
 }
 
-void PlaceIndex::Restore(
-    const SavedPlaces& saved,
-    const std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>>& keyframes) {
+void PlaceIndex::Restore(const SavedPlaces& saved, const std::vector<PlaceKeyFrame>& keyframes) {
   if (saved.nodes.empty() != (saved.grown_at == 0)) {
     ThrowInput("places: a vocabulary and the number of keyframes it was grown at contradict");
   }
-  auto restored = std::make_shared<WordIndex>(Vocabulary(saved.nodes));
+  auto restored = std::make_shared<WordIndex>(Vocabulary(saved.nodes), settings_);
   for (const auto& keyframe : keyframes) {
     if (!keyframe.second || restored->Has(keyframe.first)) {
       ThrowInput("places: keyframe " + std::to_string(keyframe.first.value) +
                  " is given twice or without its frame");
     }
-    restored->Insert(keyframe.first, keyframe.second, restored->BagOf(*keyframe.second));
+    restored->Insert(keyframe.first, keyframe.second,
+                     WordsOf(*keyframe.second, restored->vocabulary()));
   }
   const std::lock_guard<std::mutex> writing(writer_);
   {

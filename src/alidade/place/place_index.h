@@ -45,8 +45,7 @@ class PlaceIndex {
   SavedPlaces Save() const;
   // Replaces all there was. Throws Error (input) on nodes that make no vocabulary, leaving the
   // index as it was.
-  void Restore(const SavedPlaces& saved,
-               const std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>>& keyframes);
+  void Restore(const SavedPlaces& saved, const std::vector<PlaceKeyFrame>& keyframes);
 
   size_t MemoryBytes() const;  // of words and index, the frames' own descriptors apart
 

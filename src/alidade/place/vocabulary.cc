@@ -58,6 +58,22 @@ void Vocabulary::NumberWords() {
   word_count_ = words[0];
 }
 
+std::vector<uint32_t> Vocabulary::GroupsAt(int level) const {
+  std::vector<uint32_t> of_word(word_count_, 0);
+  std::vector<uint32_t> of_node(nodes_.size(), 0);
+  std::vector<int> levels(nodes_.size(), 0);
+  for (uint32_t i = 0; i < nodes_.size(); ++i) {
+    const Node& node = nodes_[i];
+    if (levels[i] <= level) of_node[i] = first_word_[i];
+    if (node.children == 0) of_word[first_word_[i]] = of_node[i];
+    for (uint32_t c = node.first_child; c < node.first_child + node.children; ++c) {
+      levels[c] = levels[i] + 1;
+      of_node[c] = of_node[i];
+    }
+  }
+  return of_word;
+}
+
 uint32_t Vocabulary::WordOf(const Descriptor& descriptor) const {
   if (nodes_.empty()) return 0;
   uint32_t at = 0;

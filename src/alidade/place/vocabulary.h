@@ -41,6 +41,9 @@ class Vocabulary {
   // the left to the right of the tree, so those below one node follow each other.
   uint32_t WordOf(const Descriptor& descriptor) const;
   uint32_t word_count() const { return word_count_; }
+  // For each word the first word below the node above it that lies `level` levels below the root;
+  // itself when it is nearer to the root. Words with the same one are neighbours in the tree.
+  std::vector<uint32_t> GroupsAt(int level) const;
   const std::vector<Node>& nodes() const { return nodes_; }
 
  private:

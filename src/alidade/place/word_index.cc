@@ -2,38 +2,50 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace alidade {
+namespace {
 
-WordIndex::WordIndex(Vocabulary vocabulary)
-    : vocabulary_(std::move(vocabulary)), postings_(vocabulary_.word_count()) {}
-
-WordIndex::Bag WordIndex::BagOf(const Frame& frame) const {
-  std::vector<uint32_t> words;
-  words.reserve(frame.descriptors.size());
-  for (const Descriptor& descriptor : frame.descriptors) {
-    words.push_back(vocabulary_.WordOf(descriptor));
+// Calls visit(word, count) for each word there is, in order.
+template <typename Visit>
+void VisitWords(const std::vector<KeypointWord>& words, Visit&& visit) {
+  for (size_t begin = 0, end = 0; begin < words.size(); begin = end) {
+    while (end < words.size() && words[end].word == words[begin].word) ++end;
+    visit(words[begin].word, static_cast<uint32_t>(end - begin));
   }
-  std::sort(words.begin(), words.end());
-  Bag bag;
-  for (uint32_t word : words) {
-    if (bag.empty() || bag.back().word != word) bag.push_back({word, 0});
-    ++bag.back().count;
-  }
-  return bag;
 }
 
-void WordIndex::Insert(KeyFrameId id, std::shared_ptr<const Frame> frame, Bag bag) {
-  uint32_t slot = static_cast<uint32_t>(entries_.size());
+void SortBestFirst(std::vector<PlaceMatch>& matches, size_t most) {
+  const auto better = [](const PlaceMatch& a, const PlaceMatch& b) {
+    return a.score != b.score ? a.score > b.score : a.id < b.id;
+  };
+  const size_t kept = std::min(most, matches.size());
+  std::partial_sort(matches.begin(), matches.begin() + static_cast<int>(kept), matches.end(),
+                    better);
+  matches.resize(kept);
+}
+
+}  // namespace
+
+WordIndex::WordIndex(Vocabulary vocabulary, const PlaceSettings& settings)
+    : vocabulary_(std::move(vocabulary)),
+      settings_(settings),
+      groups_(vocabulary_.GroupsAt(settings.matching.level)),
+      postings_(vocabulary_.word_count()) {}
+
+void WordIndex::Insert(KeyFrameId id, std::shared_ptr<const Frame> frame,
+                       std::vector<KeypointWord> words) {
+  auto slot = static_cast<uint32_t>(entries_.size());
   if (free_.empty()) {
     entries_.emplace_back();
   } else {
     slot = free_.back();
     free_.pop_back();
   }
-  for (const WordCount& word : bag) postings_[word.word].push_back({slot, word.count});
-  entries_[slot] = {id, std::move(frame), std::move(bag)};
+  VisitWords(words, [&](uint32_t word, uint32_t count) {
+    postings_[word].push_back({slot, count});
+  });
+  entries_[slot] = {id, std::move(frame), std::move(words)};
   slots_[id] = slot;
 }
 
@@ -41,72 +53,82 @@ void WordIndex::Erase(KeyFrameId id) {
   const auto found = slots_.find(id);
   if (found == slots_.end()) return;
   const uint32_t slot = found->second;
-  for (const WordCount& word : entries_[slot].bag) {
-    std::vector<Posting>& list = postings_[word.word];
+  VisitWords(entries_[slot].words, [&](uint32_t word, uint32_t) {
+    std::vector<Posting>& list = postings_[word];
     const auto of_slot = [&](const Posting& posting) { return posting.slot == slot; };
     list.erase(std::find_if(list.begin(), list.end(), of_slot));
-  }
+  });
   entries_[slot] = {};
   free_.push_back(slot);
   slots_.erase(found);
 }
 
-std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> WordIndex::KeyFrames() const {
-  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
+std::vector<PlaceKeyFrame> WordIndex::KeyFrames() const {
+  std::vector<PlaceKeyFrame> keyframes;
   for (const auto& [id, slot] : slots_) keyframes.emplace_back(id, entries_[slot].frame);
   return keyframes;
 }
 
-double WordIndex::Weight(uint32_t word) const {
-  const auto with_word = static_cast<double>(std::max<size_t>(1, postings_[word].size()));
-  return std::log((static_cast<double>(slots_.size()) + 1) / with_word);
+// Words both have, weighted by how few keyframes have them (inverse document frequency, of the
+// keyframes that are in now). Not normalised by the keyframe's words: it only sorts.
+std::vector<PlaceMatch> WordIndex::Shortlist(const std::vector<KeypointWord>& words,
+                                             const std::function<bool(KeyFrameId)>& may_be,
+                                             size_t most) const {
+  std::vector<double> common(entries_.size(), 0);
+  VisitWords(words, [&](uint32_t word, uint32_t count) {
+    const std::vector<Posting>& list = postings_[word];
+    if (list.empty()) return;
+    const double weight =
+        std::log((static_cast<double>(size()) + 1) / static_cast<double>(list.size()));
+    for (const Posting& posting : list) {
+      common[posting.slot] += weight * std::min(count, posting.count);
+    }
+  });
+  std::vector<PlaceMatch> matches;
+  for (const auto& [id, slot] : slots_) {
+    if (common[slot] > 0 && (!may_be || may_be(id))) matches.push_back({id, common[slot]});
+  }
+  SortBestFirst(matches, most);
+  return matches;
+}
+
+double WordIndex::Score(const Frame& frame, const std::vector<KeypointWord>& words,
+                        const Entry& entry) const {
+  const int matches =
+      CountMatches(frame, words, *entry.frame, entry.words, groups_, settings_.matching);
+  if (matches == 0) return 0;
+  return matches /
+         std::sqrt(static_cast<double>(words.size()) * static_cast<double>(entry.words.size()));
 }
 
 std::vector<PlaceMatch> WordIndex::Query(const Frame& frame,
                                          const std::function<bool(KeyFrameId)>& may_be,
                                          size_t most) const {
-  std::vector<double> common(entries_.size(), 0);
-  double all = 0;
-  for (const WordCount& word : BagOf(frame)) {
-    const double weight = Weight(word.word);
-    all += weight * word.count;
-    for (const Posting& posting : postings_[word.word]) {
-      common[posting.slot] += weight * std::min(word.count, posting.count);
-    }
-  }
+  const std::vector<KeypointWord> words = WordsOf(frame, vocabulary_);
+  const size_t listed = std::max(most, static_cast<size_t>(settings_.shortlist));
   std::vector<PlaceMatch> matches;
-  for (const auto& [id, slot] : slots_) {
-    if (common[slot] > 0 && (!may_be || may_be(id))) matches.push_back({id, common[slot] / all});
+  for (const PlaceMatch& likely : Shortlist(words, may_be, listed)) {
+    const double score = Score(frame, words, entries_[slots_.at(likely.id)]);
+    if (score > 0) matches.push_back({likely.id, score});
   }
-  std::stable_sort(matches.begin(), matches.end(),
-                   [](const PlaceMatch& a, const PlaceMatch& b) { return a.score > b.score; });
-  if (matches.size() > most) matches.resize(most);
+  SortBestFirst(matches, most);
   return matches;
 }
 
 double WordIndex::Score(const Frame& frame, KeyFrameId id) const {
   const auto found = slots_.find(id);
   if (found == slots_.end()) return 0;
-  const Bag& bag = entries_[found->second].bag;
-  double common = 0, all = 0;
-  size_t at = 0;
-  for (const WordCount& word : BagOf(frame)) {
-    const double weight = Weight(word.word);
-    all += weight * word.count;
-    while (at < bag.size() && bag[at].word < word.word) ++at;
-    if (at < bag.size() && bag[at].word == word.word) {
-      common += weight * std::min(word.count, bag[at].count);
-    }
-  }
-  return common > 0 ? common / all : 0;
+  return Score(frame, WordsOf(frame, vocabulary_), entries_[found->second]);
 }
 
 size_t WordIndex::MemoryBytes() const {
-  size_t bytes = vocabulary_.nodes().size() * (sizeof(Vocabulary::Node) + sizeof(uint32_t));
-  bytes += postings_.capacity() * sizeof(postings_[0]) + entries_.capacity() * sizeof(Entry);
+  constexpr size_t kMapNode = 48;  // of std::map: three pointers, a colour, key and value
+  size_t bytes = vocabulary_.nodes().size() * (sizeof(Vocabulary::Node) + sizeof(uint32_t)) +
+                 groups_.size() * sizeof(groups_[0]) + entries_.capacity() * sizeof(Entry) +
+                 postings_.capacity() * sizeof(postings_[0]) + slots_.size() * kMapNode;
   for (const auto& list : postings_) bytes += list.capacity() * sizeof(Posting);
-  for (const Entry& entry : entries_) bytes += entry.bag.capacity() * sizeof(WordCount);
-  return bytes + slots_.size() * 48;  // a node of the map
+  for (const Entry& entry : entries_) bytes += entry.words.capacity() * sizeof(KeypointWord);
+  return bytes;
 }
 
 }  // namespace alidade

@@ -4,39 +4,38 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
+#include "alidade/place/settings.h"
 #include "alidade/place/vocabulary.h"
+#include "alidade/place/word_matching.h"
 
 namespace alidade {
 
 struct PlaceMatch {
   KeyFrameId id;
-  double score = 0;  // 0…1, the more the more alike
+  double score = 0;  // matches found / geometric mean of the keypoints of both: 0…1
 };
+
+using PlaceKeyFrame = std::pair<KeyFrameId, std::shared_ptr<const Frame>>;
 
 // One writer or many readers at a time. What it answers depends on the vocabulary and on which
 // keyframes are in, not on the order they came in.
 class WordIndex {
  public:
-  explicit WordIndex(Vocabulary vocabulary);
+  WordIndex(Vocabulary vocabulary, const PlaceSettings& settings);
 
-  // How often each word of a frame occurs in it, sorted by word.
-  struct WordCount {
-    uint32_t word = 0;
-    uint32_t count = 0;
-  };
-  using Bag = std::vector<WordCount>;
-  Bag BagOf(const Frame& frame) const;
-
-  void Insert(KeyFrameId id, std::shared_ptr<const Frame> frame, Bag bag);  // id must not be in
+  // `words` are WordsOf(*frame, vocabulary()); the id must not be in yet.
+  void Insert(KeyFrameId id, std::shared_ptr<const Frame> frame, std::vector<KeypointWord> words);
   void Erase(KeyFrameId id);
   bool Has(KeyFrameId id) const { return slots_.count(id) > 0; }
   int size() const { return static_cast<int>(slots_.size()); }
-  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> KeyFrames() const;  // by id
+  std::vector<PlaceKeyFrame> KeyFrames() const;  // by id
 
+  // See PlaceIndex.
   std::vector<PlaceMatch> Query(const Frame& frame, const std::function<bool(KeyFrameId)>& may_be,
                                 size_t most) const;
   double Score(const Frame& frame, KeyFrameId id) const;
@@ -48,16 +47,22 @@ class WordIndex {
   struct Entry {
     KeyFrameId id;
     std::shared_ptr<const Frame> frame;
-    Bag bag;
+    std::vector<KeypointWord> words;
   };
   struct Posting {
     uint32_t slot = 0;
-    uint32_t count = 0;
+    uint32_t count = 0;  // keypoints of the word
   };
-  double Weight(uint32_t word) const;  // inverse document frequency
+  std::vector<PlaceMatch> Shortlist(const std::vector<KeypointWord>& words,
+                                    const std::function<bool(KeyFrameId)>& may_be,
+                                    size_t most) const;
+  double Score(const Frame& frame, const std::vector<KeypointWord>& words,
+               const Entry& entry) const;
 
   Vocabulary vocabulary_;
-  std::vector<Entry> entries_;  // by slot; a free one has no frame
+  PlaceSettings settings_;
+  std::vector<uint32_t> groups_;  // of each word
+  std::vector<Entry> entries_;    // by slot; a free one has no frame
   std::vector<uint32_t> free_;
   std::map<KeyFrameId, uint32_t> slots_;
   std::vector<std::vector<Posting>> postings_;  // of each word
