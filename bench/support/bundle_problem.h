@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "alidade/optimize/bundle_adjustment.h"
@@ -16,6 +17,7 @@ enum class BundleScene {
   kRoom,     // cameras on a path along a volume of points
   kWall,     // the same, all points within a millimetre of one plane
   kTurning,  // cameras that only turn, points 10 times as far
+  kRing,     // a closed path, a tenth of it walked twice, looking out at walls all around
 };
 
 struct BundleProblemOptions {
@@ -36,8 +38,17 @@ struct BundleProblemOptions {
   uint64_t seed = 1;
 };
 
-// The camera at place s in [0, 1] of its path: sideways, turning by half a radian.
+// The camera at place s in [0, 1] of its path: sideways, turning by half a radian; or around.
 inline Se3 BundleCameraAt(BundleScene scene, double path_length, double s) {
+  if (scene == BundleScene::kRing) {
+    const double angle = 1.1 * 2 * std::numbers::pi * s;
+    const double radius = path_length / (1.1 * 2 * std::numbers::pi);
+    const Eigen::Matrix3d R = ExpSo3(Eigen::Vector3d(0.1 * std::sin(9 * s), 0, 0)) *
+                              ExpSo3(Eigen::Vector3d(0, -angle, 0));
+    const Eigen::Vector3d centre(radius * std::sin(angle), 0.2 * std::sin(8 * s),
+                                 radius * std::cos(angle));
+    return {R, -(R * centre)};
+  }
   const Eigen::Vector3d turn(0.1 * std::sin(9 * s), 0.5 * (s - 0.5), 0.1 * std::cos(7 * s));
   const Eigen::Vector3d centre =
       scene == BundleScene::kTurning
@@ -47,7 +58,9 @@ inline Se3 BundleCameraAt(BundleScene scene, double path_length, double s) {
   return {R, -(R * centre)};
 }
 
-inline Eigen::Vector3d RandomBundlePoint(BundleScene scene, double path_length, Random& random) {
+// The point at share `s` of all, in the order of the map: of a ring they come as the path does.
+inline Eigen::Vector3d RandomBundlePoint(BundleScene scene, double path_length, double s,
+                                         Random& random) {
   const double x = random.Uniform(-2, path_length + 2), y = random.Uniform(-2, 2),
                z = random.Uniform(2, 7);
   switch (scene) {
@@ -55,6 +68,11 @@ inline Eigen::Vector3d RandomBundlePoint(BundleScene scene, double path_length, 
       return {x, y, 4 + 0.1 * x + 0.0005 * (z - 4)};
     case BundleScene::kTurning:
       return 10 * Eigen::Vector3d(x - 2, y, z);
+    case BundleScene::kRing: {
+      const double angle = 2 * std::numbers::pi * (s + 0.1 * (x + 2) / (path_length + 4));
+      const double radius = path_length / (1.1 * 2 * std::numbers::pi) + z;
+      return {radius * std::sin(angle), y, radius * std::cos(angle)};
+    }
     default:
       return {x, y, z};
   }
@@ -70,13 +88,18 @@ inline BundleProblem MakeBundleProblem(const BundleProblemOptions& options) {
     truth.push_back(BundleCameraAt(options.scene, options.path_length, (i + 0.5) / cameras));
     problem.fixed.push_back(i < options.fixed_cameras);
   }
-  // Fixed cameras are spread over the path, as the old keyframes around a local window are.
+  // Fixed cameras are spread over the path, as the old keyframes around a local window are. A ring
+  // is a whole map, in the order in which it was made.
   std::vector<int> order;
   for (int i = 0; i < cameras; ++i) order.push_back(i);
-  for (int i = cameras - 1; i > 0; --i) std::swap(order[i], order[random.Below(i + 1)]);
+  for (int i = options.scene == BundleScene::kRing ? 0 : cameras - 1; i > 0; --i) {
+    std::swap(order[i], order[random.Below(i + 1)]);
+  }
 
   while (static_cast<int>(problem.points.size()) < options.points) {
-    const Eigen::Vector3d p_world = RandomBundlePoint(options.scene, options.path_length, random);
+    const Eigen::Vector3d p_world =
+        RandomBundlePoint(options.scene, options.path_length,
+                          static_cast<double>(problem.points.size()) / options.points, random);
     std::vector<int> seen;
     for (int i = 0; i < cameras; ++i) {
       const Eigen::Vector3d p = truth[i] * p_world;

@@ -1,6 +1,7 @@
 // Our bundle adjustment and Ceres', on the same problems.
 #include <gtest/gtest.h>
 
+#include "alidade/optimize/bundle_schur.h"
 #include "ceres_bundle.h"
 #include "support/bundle_problem.h"
 
@@ -55,6 +56,21 @@ TEST(BundleAgainstCeres, SameOptimumWithFewPoints) {
 TEST(BundleAgainstCeres, SameOptimumWhenTheCameraOnlyTurnsAndPointsAreFar) {
   ExpectSameOptimum(
       {.scene = BundleScene::kTurning, .points = 120, .stereo = 1, .noise_px = 0.2, .seed = 15});
+}
+
+TEST(BundleAgainstCeres, SameOptimumAfterALoopWithTheReducedSystemSparse) {
+  const BundleProblemOptions options{.scene = BundleScene::kRing,
+                                     .fixed_cameras = 1,
+                                     .free_cameras = 110,
+                                     .points = 1200,
+                                     .path_length = 40,
+                                     .min_track = 3,
+                                     .stereo = 0.5,
+                                     .seed = 16};
+  const BundleLayout layout = LayOut(MakeBundleProblem(options), kToTheEnd);
+  ASSERT_TRUE(SchurSolver(layout, ReducedFactor::kFastest).sparse());
+  ASSERT_GT(static_cast<int>(layout.free_cameras.size()), kToTheEnd.sparse_above);
+  ExpectSameOptimum(options);
 }
 
 TEST(BundleAgainstCeres, NoWorseThanCeresWhenOneEyeOnlyTurns) {

@@ -11,6 +11,7 @@ namespace alidade {
 struct CeresBundleOptions {
   int max_iterations = 200;
   bool tight = true;  // to the last digit; otherwise for timing, a fixed number of iterations
+  ceres::LinearSolverType solver = ceres::DENSE_SCHUR;
 };
 
 // Improves `problem` in place. Every observation must be a number and in front of its camera.
@@ -34,7 +35,7 @@ inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
     ordering->AddElementToGroup(pose, 1);
   }
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
+  options.linear_solver_type = with.solver;
   options.linear_solver_ordering.reset(ordering);
   options.num_threads = 1;
   options.max_num_iterations = with.max_iterations;

@@ -139,8 +139,7 @@ double ChiSquared(const Camera& camera, const Se3& T_camera_world, const Eigen::
   const bool stereo = HasRight(k, o.pixel.z());
   const Reprojection<double> e =
       Reproject<double>(k, p.x(), p.y(), p.z(), o.pixel.x(), o.pixel.y(), stereo ? o.pixel.z() : 0);
-  return o.inv_sigma2 * (e.u * e.u + e.v * e.v) +
-         (stereo ? o.inv_sigma2_right * e.d * e.d : 0);
+  return o.inv_sigma2 * (e.u * e.u + e.v * e.v) + (stereo ? o.inv_sigma2_right * e.d * e.d : 0);
 }
 
 }  // namespace alidade

@@ -2,9 +2,9 @@
 // system solved dense or sparse, points by back-substitution (Triggs et al. 2000, §6.1).
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <vector>
 
+#include "alidade/optimize/block_cholesky.h"
 #include "alidade/optimize/bundle_linearise.h"
 
 namespace alidade {
@@ -16,25 +16,7 @@ struct BundleStep {
   bool valid = false;                   // false: the system could not be factored
 };
 
-// 6x6, two rows at a time.
-struct ReducedBlock {
-  Double2 column[6][3];
-
-  double operator()(int row, int col) const { return column[col][row / 2][row % 2]; }
-  void Add(const ReducedBlock& other) {
-    for (int j = 0; j < 6; ++j) {
-      for (int i = 0; i < 3; ++i) column[j][i] += other.column[j][i];
-    }
-  }
-};
-
 enum class ReducedFactor { kDense, kSparse, kFastest };
-
-// Sparse LDL' of Eigen, and how long it will take.
-struct SparseFactor : Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
-  // Twice its multiplications; known once the pattern is analysed.
-  double Work() const;
-};
 
 // Remembers what does not change from step to step: which blocks of the reduced system are not
 // zero, and in which order to eliminate them.
@@ -45,8 +27,8 @@ class SchurSolver {
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
 
  private:
-  struct Reduced {                     // lower blocks of the reduced system, and its right side
-    std::vector<ReducedBlock> blocks;  // row by row, ascending columns
+  struct Reduced {                       // lower blocks of the reduced system, and its right side
+    std::vector<SquareBlock<6>> blocks;  // row by row, ascending columns
     std::vector<Vector6d> right;
   };
   struct Eliminated {                     // of one point: damped H = L L'
@@ -71,8 +53,7 @@ class SchurSolver {
   std::vector<Reduced> reduced_;  // one per chunk; the first takes the sum
   std::vector<Eliminated> eliminated_;
   Eigen::MatrixXd dense_;
-  Eigen::SparseMatrix<double> matrix_;
-  SparseFactor factor_;
+  BlockCholesky<6> factor_;
 };
 
 }  // namespace alidade

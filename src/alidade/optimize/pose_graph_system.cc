@@ -70,29 +70,9 @@ void PoseGraphSystem<kDof>::FindBlocks() {
     below_.push_back(block_of(edge).first < 0 ? -1 : static_cast<int>(found - blocks.begin()));
   }
   off_.resize(blocks.size());
-  column_begin_.assign(free_nodes_ + 1, 0);
-  for (const auto& [column, row] : blocks) {
-    ++column_begin_[column + 1];
-    row_.push_back(row);
-  }
-  for (int i = 0; i < free_nodes_; ++i) column_begin_[i + 1] += column_begin_[i];
-
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (int column = 0; column < free_nodes_; ++column) {
-    for (int j = 0; j < kDof; ++j) {
-      for (int i = j; i < kDof; ++i) {
-        triplets.emplace_back(kDof * column + i, kDof * column + j, 0.0);
-      }
-      for (int k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
-        for (int i = 0; i < kDof; ++i) {
-          triplets.emplace_back(kDof * row_[k] + i, kDof * column + j, 0.0);
-        }
-      }
-    }
-  }
-  matrix_.resize(kDof * free_nodes_, kDof * free_nodes_);
-  matrix_.setFromTriplets(triplets.begin(), triplets.end());
-  factor_.analyzePattern(matrix_);
+  std::vector<BlockPlace> places;
+  for (const auto& [column, row] : blocks) places.push_back({row, column});
+  factor_.Analyse(free_nodes_, places);
 }
 
 template <int kDof>
@@ -154,26 +134,29 @@ void PoseGraphSystem<kDof>::Linearise(const std::vector<Sim3>& nodes) {
 
 template <int kDof>
 void PoseGraphSystem<kDof>::Fill(double lambda) {
-  double* value = matrix_.valuePtr();
-  for (int column = 0; column < free_nodes_; ++column) {
+  const auto packed = [](const Block& from) {
+    SquareBlock<kDof> to{};
     for (int j = 0; j < kDof; ++j) {
-      *value++ = (1 + lambda) * diagonal_[column](j, j);
-      for (int i = j + 1; i < kDof; ++i) *value++ = diagonal_[column](i, j);
-      for (int k = column_begin_[column]; k < column_begin_[column + 1]; ++k) {
-        for (int i = 0; i < kDof; ++i) *value++ = off_[k](i, j);
-      }
+      for (int i = 0; i < kDof; ++i) to.Set(i, j, from(i, j));
     }
+    return to;
+  };
+  factor_.Clear();
+  for (int i = 0; i < free_nodes_; ++i) {
+    Block damped = diagonal_[i];
+    damped.diagonal() *= 1 + lambda;
+    factor_.SetDiagonal(i, packed(damped));
   }
+  for (size_t i = 0; i < off_.size(); ++i) factor_.SetBelow(i, packed(off_[i]));
 }
 
 template <int kDof>
 bool PoseGraphSystem<kDof>::Solve(double lambda, std::vector<Vector>& step) {
   Fill(lambda);
-  factor_.factorize(matrix_);
-  if (factor_.info() != Eigen::Success) return false;
-  Eigen::VectorXd right(kDof * free_nodes_);
-  for (int i = 0; i < free_nodes_; ++i) right.segment<kDof>(kDof * i) = -gradient_[i];
-  const Eigen::VectorXd x = factor_.solve(right);
+  if (!factor_.Factorise()) return false;
+  Eigen::VectorXd x(kDof * free_nodes_);
+  for (int i = 0; i < free_nodes_; ++i) x.segment<kDof>(kDof * i) = -gradient_[i];
+  factor_.Solve(x);
   if (!x.allFinite()) return false;
   step.resize(free_nodes_);
   for (int i = 0; i < free_nodes_; ++i) step[i] = x.segment<kDof>(kDof * i);

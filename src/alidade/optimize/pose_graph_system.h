@@ -2,10 +2,10 @@
 // is free, which blocks are not zero, the order of elimination) is found once.
 #pragma once
 
-#include <Eigen/SparseCholesky>
 #include <vector>
 
 #include "alidade/geometry/sim3.h"
+#include "alidade/optimize/block_cholesky.h"
 #include "alidade/optimize/pose_graph.h"
 
 namespace alidade {
@@ -52,13 +52,11 @@ class PoseGraphSystem {
   int free_nodes_ = 0;
   Vector unit_;  // what a residual is multiplied with
   double huber_;
-  std::vector<int> column_begin_, row_;  // blocks below the diagonal, by column
-  std::vector<int> below_;               // for each edge its block below the diagonal, or -1
+  std::vector<int> below_;  // for each edge its block below the diagonal, or -1
   std::vector<Term> terms_;
   std::vector<Block> diagonal_, off_;
   std::vector<Vector> gradient_;
-  Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> factor_;
+  BlockCholesky<kDof> factor_;
 };
 
 }  // namespace alidade
