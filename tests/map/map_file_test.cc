@@ -7,47 +7,16 @@
 
 #include "support/check_map.h"
 #include "support/expect_error.h"
-#include "support/synthetic_map.h"
+#include "support/map_bytes.h"
+#include "support/saved_map.h"
 
 namespace alidade {
 namespace {
 
-// A map with everything that can be in one: culled keyframes and landmarks, forwarded ids, depth
-// and clutter.
-SavedMap SomeMap() {
-  const SyntheticWorld world = MakeSyntheticWorld({.points = 200,
-                                                   .cameras = 9,
-                                                   .noise_px = 1,
-                                                   .flipped_bits = 10,
-                                                   .clutter = 20,
-                                                   .depth = true});
-  MapStore store;
-  const SyntheticMap made = FillMap(world, {.pose_sigma = 0.01, .point_sigma = 0.02}, store);
-  SavedMap saved;
-  saved.map = store.Commit([&](MapCommit& commit) {
-    std::vector<LandmarkId> ids;
-    for (uint32_t i = 0; i < commit.next_landmark(); ++i) ids.push_back({i});
-    commit.Remove(ids[7]);
-    commit.Replace(ids[20], ids[21]);
-    commit.Replace(ids[21], ids[22]);  // a chain
-    commit.Replace(ids[30], ids[31]);
-    commit.Remove(ids[31]);  // leads nowhere
-    commit.Remove(made.keyframes[3]);
-    commit.Remove(made.keyframes[4]);
-    for (LandmarkId id : ids) commit.RefreshLandmark(id);
-  });
-  ExpectConsistent(saved.map);
-  saved.camera = world.camera;
-  saved.camera.distortion = {0.1, -0.05, 0.001, 0.002, 0.01};
-  saved.sensor = "rgbd";
-  saved.settings = {{"seed", "1"}, {"tracker.extractor.features", "1000"}};
-  return saved;
-}
-
 bool SamePose(const Se3& a, const Se3& b) { return a.R == b.R && a.t == b.t; }  // to the last bit
 
 TEST(MapFile, ReadsBackWhatWasWritten) {
-  const SavedMap saved = SomeMap();
+  const SavedMap saved = MakeSavedMap();
   const SavedMap read = DecodeMap(EncodeMap(saved));
   EXPECT_EQ(read.sensor, saved.sensor);
   EXPECT_EQ(read.settings, saved.settings);
@@ -57,17 +26,32 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.camera.distortion, saved.camera.distortion);
   EXPECT_EQ(read.camera.depth_factor, saved.camera.depth_factor);
 
+  ASSERT_EQ(read.places.nodes.size(), saved.places.nodes.size());
+  for (size_t i = 0; i < read.places.nodes.size(); ++i) {
+    EXPECT_EQ(read.places.nodes[i].centre, saved.places.nodes[i].centre);
+    EXPECT_EQ(read.places.nodes[i].first_child, saved.places.nodes[i].first_child);
+    EXPECT_EQ(read.places.nodes[i].children, saved.places.nodes[i].children);
+  }
+  EXPECT_EQ(read.places.grown_at, saved.places.grown_at);
+
   ExpectConsistent(read.map);
+  EXPECT_EQ(read.map.Maps(), (std::vector<MapId>{{0}, {1}}));
+  EXPECT_EQ(read.map.state().next_map, 2u);
   EXPECT_EQ(read.map.next_keyframe(), saved.map.next_keyframe());
   EXPECT_EQ(read.map.next_landmark(), saved.map.next_landmark());
   ASSERT_EQ(read.map.KeyFrames(), saved.map.KeyFrames());
   ASSERT_EQ(read.map.Landmarks(), saved.map.Landmarks());
   for (uint32_t i = 0; i < saved.map.next_keyframe(); ++i) {
     EXPECT_TRUE(SamePose(read.map.PoseOf({i}), saved.map.PoseOf({i}))) << i;
+    EXPECT_EQ(read.map.ScaleOf({i}), saved.map.ScaleOf({i})) << i;
+    EXPECT_EQ(read.map.MapOf({i}), saved.map.MapOf({i})) << i;
   }
   for (KeyFrameId id : saved.map.KeyFrames()) {
     const KeyFrame &a = *saved.map.Find(id), &b = *read.map.Find(id);
     EXPECT_EQ(a.parent, b.parent);
+    EXPECT_EQ(a.map, b.map);
+    EXPECT_EQ(a.scale, b.scale);
+    EXPECT_EQ(a.loops, b.loops);
     EXPECT_EQ(a.landmarks, b.landmarks);
     EXPECT_EQ(a.frame->time, b.frame->time);
     EXPECT_EQ(a.frame->number, b.frame->number);
@@ -103,13 +87,13 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
 }
 
 TEST(MapFile, WrittenAgainHasTheSameBytes) {
-  const std::string bytes = EncodeMap(SomeMap());
+  const std::string bytes = EncodeMap(MakeSavedMap());
   EXPECT_TRUE(EncodeMap(DecodeMap(bytes)) == bytes);
   EXPECT_EQ(bytes.substr(4, 4), "ALDM");  // what any FlatBuffers reader looks for
 }
 
 TEST(MapFile, EqualMapsWithDifferentHistoriesHaveTheSameBytes) {
-  const SavedMap saved = SomeMap();
+  const SavedMap saved = MakeSavedMap();
   SavedMap later = saved;
   MapStore store;
   store.Restore(saved.map);
@@ -122,7 +106,7 @@ TEST(MapFile, EqualMapsWithDifferentHistoriesHaveTheSameBytes) {
 }
 
 TEST(MapFile, TheMapGoesOnAfterReading) {
-  const SavedMap read = DecodeMap(EncodeMap(SomeMap()));
+  const SavedMap read = DecodeMap(EncodeMap(MakeSavedMap()));
   MapStore store;
   store.Restore(read.map);
   const KeyFrameId last = read.map.KeyFrames().back();
@@ -148,9 +132,9 @@ TEST(MapFile, AnEmptyMapIsAMap) {
 }
 
 TEST(MapFile, ReadsBytesThatLieAtAnyAddress) {
-  const std::string bytes = EncodeMap(SomeMap());
+  const std::string bytes = EncodeMap(MakeSavedMap());
   std::string shifted = "x" + bytes;
-  EXPECT_EQ(DecodeMap(std::string_view(shifted).substr(1)).map.keyframe_count(), 7);
+  EXPECT_EQ(DecodeMap(std::string_view(shifted).substr(1)).map.keyframe_count(), 7 + 4);
 }
 
 TEST(MapFile, RefusesWhatIsNoMap) {
@@ -160,22 +144,28 @@ TEST(MapFile, RefusesWhatIsNoMap) {
   }
 }
 
-TEST(MapFile, RefusesATruncatedMap) {
-  const std::string bytes = EncodeMap(SomeMap());
-  for (size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 97) {
-    MessageOf(ErrorKind::kInput, [&] { DecodeMap(std::string_view(bytes).substr(0, size)); });
-  }
+// Truncated and damaged ones: map_fuzz_test.cc.
+
+TEST(MapFile, RefusesAMapFromANewerProgram) {
+  std::string bytes = EncodeMap(MakeSavedMap());
+  SetMapVersion(bytes, 3);
+  ASSERT_TRUE(RepairChecksum(bytes));
+  const std::string message = MessageOf(ErrorKind::kInput, [&] { DecodeMap(bytes); });
+  EXPECT_THAT(message, testing::HasSubstr("version 3"));
+  EXPECT_THAT(message, testing::HasSubstr("newer"));
 }
 
-TEST(MapFile, NoticesAnyDamagedByte) {
-  const std::string bytes = EncodeMap(SomeMap());
-  Random random(11);
-  for (int i = 0; i < 300; ++i) {
-    std::string damaged = bytes;
-    damaged[random.Below(static_cast<uint32_t>(bytes.size()))] ^=
-        static_cast<char>(1 << random.Below(8));
-    MessageOf(ErrorKind::kInput, [&] { DecodeMap(damaged); });
-  }
+// Version 1 knew one map, and neither loops, scales nor places: what it has no field for.
+TEST(MapFile, ReadsVersionOne) {
+  SavedMap saved = MakeSavedMap({.second_map = false, .loops = false, .places = false});
+  std::string bytes = EncodeMap(saved);
+  SetMapVersion(bytes, 1);
+  ASSERT_TRUE(RepairChecksum(bytes));
+  const SavedMap read = DecodeMap(bytes);
+  EXPECT_EQ(read.version, 1u);
+  EXPECT_EQ(read.map.KeyFrames(), saved.map.KeyFrames());
+  EXPECT_EQ(read.map.Maps(), (std::vector<MapId>{{0}}));
+  EXPECT_TRUE(EncodeMap(read) == EncodeMap(saved));  // as version 2
 }
 
 // Maps that contradict themselves, with a checksum that fits: only made on purpose.
@@ -186,7 +176,22 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
   };
   const Case cases[] = {
       {"no rigid motion", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.R *= 1.1; }},
-      {"no rigid motion", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = NAN; }},
+      {"not a number", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = NAN; }},
+      {"farther away", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = 1e13; }},
+      {"another map", [](MapCommit& c) { c.Edit(KeyFrameId{1})->map = {1}; }},
+      {"never was", [](MapCommit& c) { c.Edit(KeyFrameId{1})->map = {2}; }},
+      {"two first", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {}; }},
+      {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = 0; }},
+      {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = NAN; }},
+      {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{1}}; }},
+      {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{77}}; }},
+      {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {}; }},  // the other names it
+      {"order",
+       [](MapCommit& c) {
+         c.Edit(KeyFrameId{0})->loops = {{8}, {8}};
+       }},
+      {"from nowhere", [](MapCommit& c) { c.Edit(LandmarkId{0})->min_distance = -1; }},
+      {"no direction", [](MapCommit& c) { c.Edit(LandmarkId{0})->normal.x() = NAN; }},
       {"parent", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {2}; }},
       {"parent", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {1}; }},
       {"neighbour", [](MapCommit& c) { c.Edit(KeyFrameId{1})->covisible[0].id = {77}; }},
@@ -210,18 +215,30 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
        }},
   };
   for (const Case& spoiled : cases) {
-    SavedMap saved = SomeMap();
+    SavedMap saved = MakeSavedMap();
     MapStore store;
     store.Restore(saved.map);
     saved.map = store.Commit(spoiled.spoil);
     EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
                 testing::HasSubstr(spoiled.message));
   }
-  SavedMap saved = SomeMap();
+  SavedMap saved = MakeSavedMap();
   saved.sensor = "sonar";
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
               testing::HasSubstr("sensor"));
-  saved = SomeMap();
+  saved = MakeSavedMap();
+  saved.places.nodes.back().first_child = 1;
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
+              testing::HasSubstr("vocabulary"));
+  saved = MakeSavedMap();
+  saved.places.grown_at = 0;
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
+              testing::HasSubstr("vocabulary"));
+  saved = MakeSavedMap();
+  saved.camera.width = 1 << 20;
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
+              testing::HasSubstr("image"));
+  saved = MakeSavedMap();
   saved.camera.fx = -1;
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { DecodeMap(EncodeMap(saved)); }),
               testing::HasSubstr("fx"));

@@ -6,7 +6,9 @@
 
 namespace alidade {
 
-inline constexpr uint32_t kMapVersion = 1;
+// 1: one map, no loops, no places; still read.
+// 2: several maps, their scales and loops, the vocabulary of places.
+inline constexpr uint32_t kMapVersion = 2;
 
 // FNV-1a, 64 bit, of `size` bytes, those in [skip, skip + 8) taken as zero: the checksum's own
 // place.

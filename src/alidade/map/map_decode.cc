@@ -1,143 +1,63 @@
 #include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/map/map_checksum.h"
+#include "alidade/map/map_decode_parts.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_generated.h"
+#include "alidade/map/map_table_filler.h"
 
 namespace alidade {
 namespace {
 
-// Ids are places in tables: more than this many come from no recording, but would take all memory.
-constexpr uint32_t kMaxIds = 1u << 26;
+// Ids are places in tables: more than this many come from no recording.
+constexpr uint32_t kMaxKeyFrameIds = 1u << 22, kMaxLandmarkIds = 1u << 26;
 
-// What is read has passed the verifier: every offset points inside. Whether it makes sense is
-// looked at here.
-void Require(bool holds, const char* what) {
-  if (!holds) ThrowInput(std::string("the map contradicts itself: ") + what);
-}
-
-template <typename Vector>
-size_t SizeOf(const Vector* vector) {
-  return vector ? vector->size() : 0;
-}
-
-bool Finite(const Eigen::Vector3d& v) { return v.allFinite(); }
-
-Eigen::Vector3d Decode(const fb::Vec3& v) { return {v.x(), v.y(), v.z()}; }
-
-Descriptor Decode(const fb::Descriptor& d) {
-  return {{d.word0(), d.word1(), d.word2(), d.word3()}};
-}
-
-Se3 DecodePose(const fb::Pose* pose) {
-  Require(pose, "a keyframe has no pose");
-  Se3 T;
-  T.R.row(0) = Decode(pose->row0()).transpose();
-  T.R.row(1) = Decode(pose->row1()).transpose();
-  T.R.row(2) = Decode(pose->row2()).transpose();
-  T.t = Decode(pose->t());
-  const Eigen::Matrix3d error = T.R * T.R.transpose() - Eigen::Matrix3d::Identity();
-  Require(
-      T.R.allFinite() && error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0 && Finite(T.t),
-      "a pose is no rigid motion");
-  return T;
-}
-
-Camera DecodeCamera(const fb::Camera& from) {
-  Camera camera;
-  camera.width = from.width();
-  camera.height = from.height();
-  camera.fx = from.fx();
-  camera.fy = from.fy();
-  camera.cx = from.cx();
-  camera.cy = from.cy();
-  Require(SizeOf(from.distortion()) == camera.distortion.size(),
-          "the camera's distortion has not 5 numbers");
-  for (size_t i = 0; i < camera.distortion.size(); ++i) {
-    camera.distortion[i] = from.distortion()->Get(static_cast<uint32_t>(i));
-  }
-  camera.fps = from.fps();
-  camera.depth_factor = from.depth_factor();
-  camera.baseline = from.baseline();
-  camera.Check();
-  return camera;
-}
-
-std::shared_ptr<const Frame> DecodeFrame(const fb::KeyFrame& from, const Camera& camera) {
-  auto frame = std::make_shared<Frame>();
-  frame->number = from.frame();
-  frame->time = from.time();
-  Require(std::isfinite(frame->time), "a keyframe's time is not a number");
-  Require(SizeOf(from.keypoints()) == SizeOf(from.descriptors()),
-          "keypoints and descriptors differ in number");
-  frame->keypoints.reserve(SizeOf(from.keypoints()));
-  frame->descriptors.reserve(SizeOf(from.keypoints()));
-  for (uint32_t i = 0; i < SizeOf(from.keypoints()); ++i) {
-    const fb::Keypoint& k = *from.keypoints()->Get(i);
-    const Keypoint keypoint{k.x(),        k.y(),       k.raw_x(), k.raw_y(), k.angle(),
-                            k.response(), k.right_x(), k.depth(), k.level()};
-    for (float v :
-         {k.x(), k.y(), k.raw_x(), k.raw_y(), k.angle(), k.response(), k.right_x(), k.depth()}) {
-      Require(std::isfinite(v), "a keypoint has something that is not a number");
-    }
-    Require(keypoint.level >= 0 && keypoint.level < kPyramidLevels,
-            "a keypoint is on no pyramid level");
-    frame->keypoints.push_back(keypoint);
-    frame->descriptors.push_back(Decode(*from.descriptors()->Get(i)));
-  }
-  frame->grid = KeypointGrid(frame->keypoints, camera.width, camera.height);
-  return frame;
-}
-
-// Builds the tables of a MapState by id.
 template <typename Object>
-class TableFiller {
- public:
-  TableFiller(uint32_t next, const char* what) : objects_(next), what_(what) {}
-
-  Object& Add(uint32_t id) {
-    Require(id < objects_.size() && !objects_[id], what_);
-    objects_[id] = std::make_shared<Object>();
-    objects_[id]->id = {id};
-    return *objects_[id];
-  }
-  Object* Find(uint32_t id) { return id < objects_.size() ? objects_[id].get() : nullptr; }
-
-  MapTable<Object> Finish(int alive) const {
-    MapTable<Object> table;
-    table.next = static_cast<uint32_t>(objects_.size());
-    table.alive = alive;
-    for (uint32_t begin = 0; begin < table.next; begin += MapPage<Object>::kSize) {
-      auto page = std::make_shared<MapPage<Object>>();
-      const uint32_t end = std::min(table.next, begin + MapPage<Object>::kSize);
-      for (uint32_t i = begin; i < end; ++i) page->slots[i - begin] = objects_[i];
-      table.pages.push_back(std::move(page));
-    }
-    return table;
-  }
-
- private:
-  std::vector<std::shared_ptr<Object>> objects_;
-  const char* what_;
-};
+Object& AddTo(MapTableFiller<Object>& table, uint32_t id, const char* complaint) {
+  Object* object = table.Add(id);
+  Require(object, complaint);
+  return *object;
+}
 
 class Decoder {
  public:
-  explicit Decoder(const fb::Map& file)
+  Decoder(const fb::Map& file, size_t file_size)
       : file_(file),
+        budget_(file_size),
         camera_(DecodeCamera(*file.camera())),
-        keyframes_(file.next_keyframe(), "two keyframes have one id"),
-        landmarks_(file.next_landmark(), "two landmarks have one id") {}
+        keyframes_(file.next_keyframe()),
+        landmarks_(file.next_landmark()) {
+    // Each keyframe gets a grid over the image and the margin around it, of some bytes for each
+    // cell.
+    constexpr size_t kSlack = 1 << 24, kCellsPerByte = 16, kMargins = 512;  // pixels
+    const size_t area = (static_cast<size_t>(camera_.width) + kMargins) *
+                        (static_cast<size_t>(camera_.height) + kMargins);
+    const size_t cells = area / (KeypointGrid::kCell * KeypointGrid::kCell) + 1;
+    Require(SizeOf(file.keyframes()) <= (kCellsPerByte * file_size + kSlack) / cells,
+            "its image is too large for so many keyframes");
+  }
 
-  SavedMap Run(size_t file_size) {
-    ReadKeyFrames(file_size);
+  SavedMap Run() {
+    for (uint32_t i = 0; i < SizeOf(file_.keyframes()); ++i) {
+      ReadKeyFrame(*file_.keyframes()->Get(i));
+    }
+    for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) ReadCulled(*file_.culled()->Get(i));
     CheckTree();
-    for (uint32_t i = 0; i < SizeOf(file_.landmarks()); ++i)
+    CheckCulled();
+    for (uint32_t i = 0; i < SizeOf(file_.keyframes()); ++i) {
+      CheckTies(*keyframes_.Find(file_.keyframes()->Get(i)->id()));
+    }
+    for (uint32_t i = 0; i < SizeOf(file_.landmarks()); ++i) {
       ReadLandmark(*file_.landmarks()->Get(i));
+    }
     for (uint32_t i = 0; i < SizeOf(file_.forwards()); ++i) ReadForward(*file_.forwards()->Get(i));
 
     SavedMap saved;
@@ -148,77 +68,126 @@ class Decoder {
             "its sensor is unknown");
     for (uint32_t i = 0; i < SizeOf(file_.settings()); ++i) {
       const fb::Setting& setting = *file_.settings()->Get(i);
+      budget_.Take(setting.name()->size() + setting.value()->size(), 1);
       saved.settings.push_back({setting.name()->str(), setting.value()->str()});
     }
+    saved.places = DecodePlaces(file_.places(), budget_);
+    Require(saved.places.grown_at <= file_.next_keyframe(),
+            "its vocabulary was grown from keyframes that never were");
     auto state = std::make_shared<MapState>();
     state->keyframes = keyframes_.Finish(static_cast<int>(SizeOf(file_.keyframes())));
     state->landmarks = landmarks_.Finish(static_cast<int>(SizeOf(file_.landmarks())));
-    state->next_map = state->keyframes.next > 0;
+    state->next_map = NextMap();
     saved.map = MapSnapshot(std::move(state));
     return saved;
   }
 
  private:
-  void ReadKeyFrames(size_t file_size) {
-    size_t keypoint_bytes = 0;  // several keyframes could point at one list, and fill all memory
-    for (uint32_t i = 0; i < SizeOf(file_.keyframes()); ++i) {
-      const fb::KeyFrame& from = *file_.keyframes()->Get(i);
-      keypoint_bytes += SizeOf(from.keypoints()) * sizeof(fb::Keypoint);
-      keypoint_bytes += SizeOf(from.covisible()) * sizeof(fb::Neighbour);
-      Require(keypoint_bytes <= file_size, "keyframes share their keypoints");
-      KeyFrame& keyframe = keyframes_.Add(from.id());
-      keyframe.frame = DecodeFrame(from, camera_);
-      keyframe.T_camera_world = DecodePose(from.t_camera_world());
-      keyframe.parent = {from.parent()};
-      keyframe.map = {0};
-      keyframe.landmarks.resize(keyframe.frame->keypoints.size());
-      for (uint32_t n = 0; n < SizeOf(from.covisible()); ++n) {
-        const fb::Neighbour& neighbour = *from.covisible()->Get(n);
-        keyframe.covisible.push_back(
-            {{neighbour.keyframe()}, static_cast<int>(neighbour.shared())});
-      }
+  // Files of version 1 hold one map.
+  uint32_t NextMap() const {
+    return file_.version() == 1 ? (file_.next_keyframe() > 0) : file_.next_map();
+  }
+
+  void ReadKeyFrame(const fb::KeyFrame& from) {
+    KeyFrame& keyframe = AddTo(keyframes_, from.id(), "two keyframes have one id");
+    keyframe.frame = DecodeFrame(from, camera_, budget_);
+    keyframe.T_camera_world = DecodePose(from.t_camera_world());
+    keyframe.map = {from.map()};
+    Require(from.map() < NextMap(), "a keyframe is in a map that never was");
+    keyframe.parent = {from.parent()};
+    keyframe.scale = DecodeScale(from.scale());
+    keyframe.landmarks.resize(keyframe.frame->keypoints.size());
+    budget_.Take(SizeOf(from.covisible()), sizeof(fb::Neighbour));
+    for (uint32_t n = 0; n < SizeOf(from.covisible()); ++n) {
+      const fb::Neighbour& neighbour = *from.covisible()->Get(n);
+      keyframe.covisible.push_back({{neighbour.keyframe()}, static_cast<int>(neighbour.shared())});
     }
-    for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) {
-      const fb::CulledKeyFrame& from = *file_.culled()->Get(i);
-      KeyFrame& keyframe = keyframes_.Add(from.id());
-      keyframe.parent = {from.parent()};
-      keyframe.T_camera_parent = DecodePose(from.t_camera_parent());
-      Require(keyframe.parent.valid(), "a culled keyframe has no parent");
+    budget_.Take(SizeOf(from.loops()), sizeof(uint32_t));
+    for (uint32_t n = 0; n < SizeOf(from.loops()); ++n) {
+      const KeyFrameId other{from.loops()->Get(n)};
+      Require(keyframe.loops.empty() || keyframe.loops.back() < other, "loops are out of order");
+      keyframe.loops.push_back(other);
     }
   }
 
-  // Parents come first, so that there are no rings, and the living do not hang on the culled.
+  void ReadCulled(const fb::CulledKeyFrame& from) {
+    KeyFrame& keyframe = AddTo(keyframes_, from.id(), "two keyframes have one id");
+    keyframe.parent = {from.parent()};
+    keyframe.T_camera_parent = DecodePose(from.t_camera_parent());
+    keyframe.scale = DecodeScale(from.scale());
+    Require(keyframe.parent.valid(), "a culled keyframe has no parent");
+  }
+
+  // Parents come first, so that there are no rings; the living do not hang on the culled, and each
+  // map is one tree.
   void CheckTree() {
+    std::set<MapId> rooted;
     for (uint32_t id = 0; id < file_.next_keyframe(); ++id) {
-      const KeyFrame* keyframe = keyframes_.Find(id);
+      KeyFrame* keyframe = keyframes_.Find(id);
       if (!keyframe) continue;
-      if (keyframe->parent.valid()) {
-        const KeyFrame* parent =
-            keyframe->parent.value < id ? keyframes_.Find(keyframe->parent.value) : nullptr;
-        Require(parent && (keyframe->culled() || !parent->culled()),
-                "a keyframe's parent is not there");
+      if (!keyframe->parent.valid()) {
+        Require(rooted.insert(keyframe->map).second, "a map has two first keyframes");
+        continue;
       }
-      for (const Neighbour& n : keyframe->covisible) {
-        const KeyFrame* other = keyframes_.Find(n.id.value);
-        Require(other && !other->culled() && other != keyframe && n.shared > 0,
-                "a keyframe's neighbour is not there");
+      const KeyFrame* parent =
+          keyframe->parent.value < id ? keyframes_.Find(keyframe->parent.value) : nullptr;
+      Require(parent, "a keyframe's parent is not there");
+      if (keyframe->culled()) {
+        keyframe->map = parent->map;
+      } else {
+        Require(!parent->culled(), "a keyframe's parent is not there");
+        Require(parent->map == keyframe->map, "a keyframe's parent is in another map");
       }
+    }
+  }
+
+  // Their places are products along the way to the next living ancestor: those must stay numbers.
+  void CheckCulled() {
+    std::map<uint32_t, std::pair<double, double>> reach;  // scale, and distance from that ancestor
+    for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) {
+      const uint32_t id = file_.culled()->Get(i)->id();
+      Require(i == 0 || file_.culled()->Get(i - 1)->id() < id, "culled keyframes are out of order");
+      const KeyFrame& keyframe = *keyframes_.Find(id);
+      const auto parent = reach.find(keyframe.parent.value);
+      const double parent_scale = parent != reach.end()
+                                      ? parent->second.first
+                                      : keyframes_.Find(keyframe.parent.value)->scale;
+      const double scale = DecodeScale(parent_scale * keyframe.scale);
+      const double distance = (parent != reach.end() ? parent->second.second : 0) +
+                              parent_scale * keyframe.T_camera_parent.t.norm();
+      Require(distance <= kFarthest, "a culled keyframe is farther away than can be");
+      reach[id] = {scale, distance};
+    }
+  }
+
+  void CheckTies(const KeyFrame& keyframe) {
+    for (const Neighbour& neighbour : keyframe.covisible) {
+      const KeyFrame* other = keyframes_.Find(neighbour.id.value);
+      Require(other && !other->culled() && other != &keyframe && neighbour.shared > 0,
+              "a keyframe's neighbour is not there");
+    }
+    for (KeyFrameId id : keyframe.loops) {
+      const KeyFrame* other = keyframes_.Find(id.value);
+      Require(other && !other->culled() && other != &keyframe && other->map == keyframe.map &&
+                  std::binary_search(other->loops.begin(), other->loops.end(), keyframe.id),
+              "a loop leads to what is not there");
     }
   }
 
   void ReadLandmark(const fb::Landmark& from) {
-    Landmark& landmark = landmarks_.Add(from.id());
+    Landmark& landmark = AddTo(landmarks_, from.id(), "two landmarks have one id");
     Require(from.p_world() && from.descriptor() && from.normal(), "a landmark is incomplete");
-    landmark.p_world = Decode(*from.p_world());
-    landmark.descriptor = Decode(*from.descriptor());
+    landmark.p_world = DecodePoint(*from.p_world());
+    landmark.descriptor = DecodeDescriptor(*from.descriptor());
     landmark.normal = {from.normal()->x(), from.normal()->y(), from.normal()->z()};
     landmark.min_distance = from.min_distance();
     landmark.max_distance = from.max_distance();
     landmark.born = {from.born()};
     landmark.reference = {from.reference()};
-    Require(Finite(landmark.p_world) && landmark.normal.allFinite() &&
-                std::isfinite(landmark.min_distance) && std::isfinite(landmark.max_distance),
-            "a landmark has something that is not a number");
+    Require(landmark.normal.norm() <= 1.001f, "a landmark's normal is no direction");
+    Require(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
+                landmark.max_distance <= kFarthest,
+            "a landmark can be seen from nowhere");
     Require(landmark.born.value < file_.next_keyframe(),
             "a landmark was born in a keyframe that never was");
     bool reference_sees_it = false;
@@ -241,13 +210,14 @@ class Decoder {
   void ReadForward(const fb::Forward& from) {
     const Landmark* by = landmarks_.Find(from.by());
     Require(by && !by->replaced_by.valid(), "a landmark was fused into one that is not there");
-    landmarks_.Add(from.old()).replaced_by = by->id;
+    AddTo(landmarks_, from.old(), "two landmarks have one id").replaced_by = by->id;
   }
 
   const fb::Map& file_;
+  ByteBudget budget_;
   Camera camera_;
-  TableFiller<KeyFrame> keyframes_;
-  TableFiller<Landmark> landmarks_;
+  MapTableFiller<KeyFrame> keyframes_;
+  MapTableFiller<Landmark> landmarks_;
 };
 
 }  // namespace
@@ -274,14 +244,16 @@ SavedMap DecodeMap(std::string_view bytes) {
     ThrowInput("the map has format version " + std::to_string(file.version()) +
                ", this program reads up to " + std::to_string(kMapVersion) + "; use a newer one");
   }
+  Require(file.version() > 0, "it has no version");
   Require(file.checksum(), "it has no checksum");
   const auto place = static_cast<size_t>(reinterpret_cast<const uint8_t*>(file.checksum()) - data);
   if (MapChecksum(data, bytes.size(), place) != file.checksum()->fnv1a()) {
     ThrowInput("the map is damaged: its checksum does not match");
   }
-  Require(file.next_keyframe() <= kMaxIds && file.next_landmark() <= kMaxIds,
+  Require(file.next_keyframe() <= kMaxKeyFrameIds && file.next_landmark() <= kMaxLandmarkIds &&
+              file.next_map() <= file.next_keyframe(),
           "it has too many ids");
-  return Decoder(file).Run(bytes.size());
+  return Decoder(file, bytes.size()).Run();
 }
 
 }  // namespace alidade

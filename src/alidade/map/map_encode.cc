@@ -29,6 +29,10 @@ fb::Observation Encode(const Observation& o) {
   return {o.keyframe.value, static_cast<uint32_t>(o.keypoint)};
 }
 
+fb::PlaceNode Encode(const Vocabulary::Node& node) {
+  return {Encode(node.centre), node.first_child, node.children};
+}
+
 // A list of things as a vector of structs.
 template <typename Struct, typename Thing>
 Offset<flatbuffers::Vector<const Struct*>> EncodeList(FlatBufferBuilder& builder,
@@ -43,15 +47,19 @@ Offset<fb::KeyFrame> EncodeKeyFrame(FlatBufferBuilder& builder, const KeyFrame& 
   const auto keypoints = EncodeList<fb::Keypoint>(builder, keyframe.frame->keypoints);
   const auto descriptors = EncodeList<fb::Descriptor>(builder, keyframe.frame->descriptors);
   const auto covisible = EncodeList<fb::Neighbour>(builder, keyframe.covisible);
+  std::vector<uint32_t> loop_ids;
+  for (KeyFrameId id : keyframe.loops) loop_ids.push_back(id.value);
+  const auto loops = builder.CreateVector(loop_ids);
   const fb::Pose pose = Encode(keyframe.T_camera_world);
   return fb::CreateKeyFrame(builder, keyframe.id.value, keyframe.parent.value,
                             keyframe.frame->number, keyframe.frame->time, &pose, keypoints,
-                            descriptors, covisible);
+                            descriptors, covisible, keyframe.map.value, keyframe.scale, loops);
 }
 
 Offset<fb::CulledKeyFrame> EncodeCulled(FlatBufferBuilder& builder, const KeyFrame& keyframe) {
   const fb::Pose pose = Encode(keyframe.T_camera_parent);
-  return fb::CreateCulledKeyFrame(builder, keyframe.id.value, keyframe.parent.value, &pose);
+  return fb::CreateCulledKeyFrame(builder, keyframe.id.value, keyframe.parent.value, &pose,
+                                  keyframe.scale);
 }
 
 Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& landmark) {
@@ -98,11 +106,13 @@ std::string EncodeMap(const SavedMap& saved) {
   for (const auto& [name, value] : saved.settings) {
     settings.push_back(fb::CreateSettingDirect(builder, name.c_str(), value.c_str()));
   }
+  const auto nodes = EncodeList<fb::PlaceNode>(builder, saved.places.nodes);
+  const auto places = fb::CreatePlaces(builder, nodes, saved.places.grown_at);
   const fb::Checksum unknown(0);
-  const auto root =
-      fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
-                          EncodeCamera(builder, saved.camera), &settings, state.keyframes.next,
-                          state.landmarks.next, &keyframes, &culled, &landmarks, &forwards);
+  const auto root = fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
+                                        EncodeCamera(builder, saved.camera), &settings,
+                                        state.keyframes.next, state.landmarks.next, &keyframes,
+                                        &culled, &landmarks, &forwards, state.next_map, places);
   fb::FinishMapBuffer(builder, root);
 
   uint8_t* bytes = builder.GetBufferPointer();

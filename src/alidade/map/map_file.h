@@ -9,6 +9,7 @@
 
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
+#include "alidade/place/place_index.h"
 
 namespace alidade {
 
@@ -18,7 +19,8 @@ struct SavedMap {
   Camera camera;       // that of the keypoints: after rectifying and scaling
   std::string sensor;  // "mono", "stereo" or "rgbd"
   std::vector<std::pair<std::string, std::string>> settings;  // name and value
-  uint32_t version = 0;  // of the format it was read from; it is always written in the newest
+  SavedPlaces places = {};  // for PlaceIndex::Restore(), with the keyframes of all maps
+  uint32_t version = 0;     // of the format it was read from; it is always written in the newest
 };
 
 std::string EncodeMap(const SavedMap& saved);
@@ -26,5 +28,11 @@ std::string EncodeMap(const SavedMap& saved);
 // Throws Error (input) that says what is wrong when these are not the bytes of a map, when they are
 // damaged, or when they come from a newer program.
 SavedMap DecodeMap(std::string_view bytes);
+
+// Throws Error (input) naming what differs when `now` cannot go on in a map made by `saved`:
+// another image size, a point seen half a pixel elsewhere or more by focal lengths, principal point
+// and distortion together, or depth (baseline, depth_factor where both have one) off by 0.5 % or
+// more. Files of the same calibration differ by rounding, calibrations of one camera often by more.
+void CheckSameCamera(const Camera& saved, const Camera& now);
 
 }  // namespace alidade

@@ -1,0 +1,128 @@
+#include "alidade/map/map_decode_parts.h"
+
+#include <cmath>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/map/map_generated.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kMaxImageSide = 1 << 15;      // pixels
+constexpr int64_t kMaxImageArea = 1 << 27;  // 134 megapixels
+constexpr float kMaxPixel = 1e9f;           // undistorted ones may lie far outside the image
+constexpr float kMaxAngle = 3.2f;           // pi, and a little for rounding
+
+Keypoint DecodeKeypoint(const fb::Keypoint& from) {
+  const Keypoint keypoint{from.x(),        from.y(),       from.raw_x(), from.raw_y(), from.angle(),
+                          from.response(), from.right_x(), from.depth(), from.level()};
+  const auto near = [](float v, float most) { return v >= -most && v <= most; };  // NaN is not
+  Require(near(keypoint.x, kMaxPixel) && near(keypoint.y, kMaxPixel) &&
+              near(keypoint.raw_x, kMaxPixel) && near(keypoint.raw_y, kMaxPixel) &&
+              near(keypoint.right_x, kMaxPixel) && near(keypoint.angle, kMaxAngle) &&
+              std::isfinite(keypoint.response) && std::isfinite(keypoint.depth),
+          "a keypoint has something that cannot be");
+  Require(keypoint.level >= 0 && keypoint.level < kPyramidLevels,
+          "a keypoint is on no pyramid level");
+  return keypoint;
+}
+
+}  // namespace
+
+void Require(bool holds, const char* what) {
+  if (!holds) ThrowInput(std::string("the map contradicts itself: ") + what);
+}
+
+Eigen::Vector3d DecodePoint(const fb::Vec3& from) {
+  const Eigen::Vector3d p(from.x(), from.y(), from.z());
+  // Written so that NaN falls through.
+  Require(p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest,
+          "a point is not a number, or farther away than can be");
+  return p;
+}
+
+Se3 DecodePose(const fb::Pose* from) {
+  Require(from, "a keyframe has no pose");
+  Se3 T;
+  T.R.row(0) = DecodePoint(from->row0()).transpose();
+  T.R.row(1) = DecodePoint(from->row1()).transpose();
+  T.R.row(2) = DecodePoint(from->row2()).transpose();
+  T.t = DecodePoint(from->t());
+  const Eigen::Matrix3d error = T.R * T.R.transpose() - Eigen::Matrix3d::Identity();
+  Require(error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0, "a pose is no rigid motion");
+  return T;
+}
+
+double DecodeScale(double from) {
+  constexpr double kMost = 1e6;  // what a loop could correct, by far
+  Require(from >= 1 / kMost && from <= kMost, "a keyframe's scale cannot be");
+  return from;
+}
+
+Descriptor DecodeDescriptor(const fb::Descriptor& from) {
+  return {{from.word0(), from.word1(), from.word2(), from.word3()}};
+}
+
+Camera DecodeCamera(const fb::Camera& from) {
+  Camera camera;
+  camera.width = from.width();
+  camera.height = from.height();
+  camera.fx = from.fx();
+  camera.fy = from.fy();
+  camera.cx = from.cx();
+  camera.cy = from.cy();
+  Require(SizeOf(from.distortion()) == camera.distortion.size(),
+          "the camera's distortion has not 5 numbers");
+  for (size_t i = 0; i < camera.distortion.size(); ++i) {
+    camera.distortion[i] = from.distortion()->Get(static_cast<uint32_t>(i));
+  }
+  camera.fps = from.fps();
+  camera.depth_factor = from.depth_factor();
+  camera.baseline = from.baseline();
+  camera.Check();
+  Require(camera.width <= kMaxImageSide && camera.height <= kMaxImageSide &&
+              int64_t{camera.width} * camera.height <= kMaxImageArea,
+          "the camera's image is larger than can be");
+  return camera;
+}
+
+std::shared_ptr<const Frame> DecodeFrame(const fb::KeyFrame& from, const Camera& camera,
+                                         ByteBudget& budget) {
+  const size_t count = SizeOf(from.keypoints());
+  Require(SizeOf(from.descriptors()) == count, "keypoints and descriptors differ in number");
+  budget.Take(count, sizeof(fb::Keypoint) + sizeof(fb::Descriptor));
+  auto frame = std::make_shared<Frame>();
+  frame->number = from.frame();
+  frame->time = from.time();
+  Require(frame->number >= 0, "a keyframe's number is negative");
+  Require(std::isfinite(frame->time), "a keyframe's time is not a number");
+  frame->keypoints.reserve(count);
+  frame->descriptors.reserve(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    frame->keypoints.push_back(DecodeKeypoint(*from.keypoints()->Get(i)));
+    frame->descriptors.push_back(DecodeDescriptor(*from.descriptors()->Get(i)));
+  }
+  if (count > 0) frame->grid = KeypointGrid(frame->keypoints, camera.width, camera.height);
+  return frame;
+}
+
+SavedPlaces DecodePlaces(const fb::Places* from, ByteBudget& budget) {
+  SavedPlaces places;
+  if (!from) return places;
+  const size_t count = SizeOf(from->nodes());
+  Require(count <= Vocabulary::kMaxNodes, "its vocabulary is larger than can be");
+  budget.Take(count, sizeof(fb::PlaceNode));
+  places.nodes.reserve(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    const fb::PlaceNode& node = *from->nodes()->Get(i);
+    places.nodes.push_back({DecodeDescriptor(node.centre()), node.first_child(), node.children()});
+  }
+  places.grown_at = from->grown_at();
+  Require(places.nodes.empty() == (places.grown_at == 0),
+          "its vocabulary was never grown, or grown to nothing");
+  Vocabulary checked(places.nodes);  // throws when they are no tree
+  return places;
+}
+
+}  // namespace alidade

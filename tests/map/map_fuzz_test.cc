@@ -1,0 +1,144 @@
+// Maps that were damaged: refused with one clear error, or, where the damage was given a checksum
+// that fits and makes sense, as good as any other. A few on each run, many with scripts/test
+// --long; under the sanitizers they show that nothing is read past its end.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/random.h"
+#include "support/expect_error.h"
+#include "support/map_bytes.h"
+#include "support/saved_map.h"
+
+namespace alidade {
+namespace {
+
+bool Long() { return std::getenv("ALIDADE_LONG_TESTS") != nullptr; }
+
+SavedMap Tiny() { return MakeSavedMap({.points = 40, .cameras = 5, .clutter = 2}); }
+
+// All a program does with a map it has read.
+void Use(const SavedMap& saved) {
+  const std::string bytes = EncodeMap(saved);
+  EXPECT_TRUE(EncodeMap(DecodeMap(bytes)) == bytes);  // what was read can be kept
+  for (uint32_t i = 0; i < saved.map.next_keyframe() && i < 1000; ++i) {
+    EXPECT_TRUE(saved.map.PoseOf({i}).t.allFinite());
+    EXPECT_TRUE(std::isfinite(saved.map.ScaleOf({i})));
+  }
+  PlaceIndex places;
+  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> frames;
+  for (KeyFrameId id : saved.map.KeyFrames()) frames.push_back({id, saved.map.Find(id)->frame});
+  places.Restore(saved.places, frames);
+  if (!frames.empty()) places.Query(*frames.back().second, {}, 3);
+  MapStore store;
+  store.Restore(saved.map);
+  store.Commit([&](MapCommit& commit) {
+    for (LandmarkId id : saved.map.Landmarks()) commit.RefreshLandmark(id);
+    for (size_t i = 0; i < frames.size(); ++i) {
+      commit.RefreshCovisibility(frames[i].first);
+      if (i % 3 == 2) commit.Remove(frames[i].first);
+    }
+  });
+  CheckSameCamera(saved.camera, saved.camera);
+}
+
+// Refuses it as an input error that says something, or reads it; whatever else happens fails.
+bool Refused(std::string_view bytes) {
+  SavedMap saved;
+  try {
+    saved = DecodeMap(bytes);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::kInput);
+    EXPECT_GT(std::string(error.what()).size(), 10u);
+    return true;
+  }
+  Use(saved);
+  return false;
+}
+
+TEST(MapFuzz, EveryTruncationOfATinyMapIsRefused) {
+  const std::string bytes = EncodeMap(Tiny());
+  for (size_t size = 0; size < bytes.size(); ++size) {
+    // A copy of its own, so that the sanitizer knows where it ends.
+    const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    ASSERT_TRUE(Refused({cut.data(), cut.size()})) << size << " of " << bytes.size();
+    std::string repaired(cut.begin(), cut.end());
+    if (size % 16 == 0 && RepairChecksum(repaired)) Refused(repaired);
+  }
+}
+
+TEST(MapFuzz, TruncationsOfALargerMapAreRefused) {
+  const std::string bytes = EncodeMap(MakeSavedMap());
+  const size_t places = Long() ? 5000 : 100;
+  for (size_t i = 0; i < places; ++i) {
+    ASSERT_TRUE(Refused(std::string_view(bytes).substr(0, bytes.size() * i / places)));
+  }
+}
+
+TEST(MapFuzz, AnyFlippedBitIsNoticed) {
+  const std::string bytes = EncodeMap(MakeSavedMap());
+  Random random(11);
+  for (int i = 0; i < (Long() ? 10000 : 300); ++i) {
+    std::string damaged = bytes;
+    const uint32_t at = random.Below(static_cast<uint32_t>(bytes.size()));
+    damaged[at] ^= static_cast<char>(1 << random.Below(8));
+    ASSERT_TRUE(Refused(damaged)) << at;
+  }
+}
+
+// Damage by someone who knows how: up to four bits, and the checksum that fits.
+void FlipWithRepairedChecksum(const SavedMap& saved, int times, uint64_t seed) {
+  const std::string bytes = EncodeMap(saved);
+  Random random(seed);
+  int read = 0;
+  for (int i = 0; i < times; ++i) {
+    std::string damaged = bytes;
+    for (uint32_t flips = 1 + random.Below(4); flips > 0; --flips) {
+      damaged[random.Below(static_cast<uint32_t>(bytes.size()))] ^=
+          static_cast<char>(1 << random.Below(8));
+    }
+    if (RepairChecksum(damaged)) read += !Refused(damaged);
+  }
+  EXPECT_GT(read, times / 10);  // a descriptor's bit, say, may be this or that
+}
+
+TEST(MapFuzz, FlippedBitsWithAChecksumThatFitsDoNoHarm) {
+  FlipWithRepairedChecksum(MakeSavedMap(), Long() ? 10000 : 150, 12);
+}
+
+// Few keypoints: more of the flips hit tables, offsets and counts.
+TEST(MapFuzz, FlippedBitsOfATinyMapWithAChecksumThatFitsDoNoHarm) {
+  FlipWithRepairedChecksum(Tiny(), Long() ? 10000 : 300, 13);
+}
+
+// Where counts and offsets are dense: every bit of the end (tables are written last to first) and
+// of the root.
+TEST(MapFuzz, EveryBitOfTheFirstKilobyteDoesNoHarm) {
+  const std::string bytes = EncodeMap(Tiny());
+  for (size_t bit = 0; bit < 8 * 1024; bit += Long() ? 1 : 7) {
+    std::string damaged = bytes;
+    damaged[bit / 8] ^= static_cast<char>(1 << (bit % 8));
+    if (RepairChecksum(damaged)) Refused(damaged);
+  }
+}
+
+// Whole words replaced by the numbers that break things.
+TEST(MapFuzz, ExtremeNumbersDoNoHarm) {
+  const std::string bytes = EncodeMap(Tiny());
+  const uint32_t extremes[] = {0,          1,          0x7fffffff, 0x80000000, 0xffffffff,
+                               0x00400000, 0x04000000, 0x7f800000, 0x7fc00000};  // inf, NaN
+  Random random(14);
+  for (int i = 0; i < (Long() ? 10000 : 300); ++i) {
+    std::string damaged = bytes;
+    const size_t at = 4 * random.Below(static_cast<uint32_t>(bytes.size() / 4));
+    std::memcpy(damaged.data() + at, &extremes[random.Below(9)], 4);
+    if (RepairChecksum(damaged)) Refused(damaged);
+  }
+}
+
+}  // namespace
+}  // namespace alidade
