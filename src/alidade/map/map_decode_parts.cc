@@ -1,5 +1,6 @@
 #include "alidade/map/map_decode_parts.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -81,6 +82,11 @@ Camera DecodeCamera(const fb::Camera& from) {
   camera.depth_factor = from.depth_factor();
   camera.baseline = from.baseline();
   camera.Check();
+  constexpr double kMost = 1e9;  // no camera comes near; squares and powers stay numbers
+  bool within = std::max({camera.fx, camera.fy, 1 / camera.fx, 1 / camera.fy, std::abs(camera.cx),
+                          std::abs(camera.cy), camera.depth_factor, camera.baseline}) <= kMost;
+  for (double k : camera.distortion) within = within && std::abs(k) <= kMost;
+  Require(within, "the camera has a number that cannot be");
   Require(camera.width <= kMaxImageSide && camera.height <= kMaxImageSide &&
               int64_t{camera.width} * camera.height <= kMaxImageArea,
           "the camera's image is larger than can be");

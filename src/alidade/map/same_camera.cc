@@ -14,6 +14,11 @@ constexpr int kSteps = 8;  // of the grid of pixels that are compared, in each d
 
 // The largest distance between where the two see the same direction, pixels.
 double LargestShift(const Camera& saved, const Camera& now) {
+  const Camera &a = saved, &b = now;
+  if (a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
+      a.distortion == b.distortion) {
+    return 0;  // whatever the numbers are
+  }
   double largest = 0;
   for (int row = 0; row <= kSteps; ++row) {
     for (int column = 0; column <= kSteps; ++column) {
