@@ -50,10 +50,13 @@ json PartInfo(const SavedMap& saved, const MapPart& part) {
       length += (trajectory[i].T_world_camera.t - trajectory[i - 1].T_world_camera.t).norm();
   }
   const Eigen::Vector3d size = box.sizes();
+  size_t loop_ends = 0;
+  for (KeyFrameId id : part.keyframes) loop_ends += saved.map.Find(id)->loops.size();
   return {{"keyframes", part.keyframes.size()},
           {"landmarks", part.landmarks.size()},
           {"observations", ObservationsOf(saved.map, part.landmarks)},
           {"time", {trajectory.front().time, trajectory.back().time}},
+          {"loops", loop_ends / 2},
           {"path_length", length},
           {"extent", {size.x(), size.y(), size.z()}}};
 }
@@ -81,6 +84,7 @@ json InfoOf(const SavedMap& saved, const std::string& path) {
           {"keyframes", saved.map.keyframe_count()},
           {"landmarks", saved.map.landmark_count()},
           {"maps", maps},
+          {"places", {{"nodes", saved.places.nodes.size()}, {"grown_at", saved.places.grown_at}}},
           {"settings", settings}};
 }
 
@@ -90,6 +94,7 @@ void PrintPart(const json& part, const char* unit) {
   std::printf("  path          %.2f %s within %.2f x %.2f x %.2f %s\n",
               part["path_length"].get<double>(), unit, part["extent"][0].get<double>(),
               part["extent"][1].get<double>(), part["extent"][2].get<double>(), unit);
+  if (part["loops"] > 0) std::printf("  loops         %d\n", part["loops"].get<int>());
   const json& seen = part["observations"];
   if (seen["total"] == 0) {
     std::printf("  landmarks     none\n");
@@ -148,7 +153,7 @@ void AddInfoCommand(CLI::App& app, Action& action) {
       "\nExamples:\n"
       "  alidade info alidade-out/kitchen\n"
       "  alidade info map.alidade --json\n"
-      "\nJSON: version, bytes, sensor, camera, keyframes, landmarks, maps, settings.");
+      "\nJSON: version, bytes, sensor, camera, keyframes, landmarks, maps, places,\nsettings.");
   command->callback([options, &action] { action = [options] { return InfoCommand(*options); }; });
 }
 

@@ -10,6 +10,7 @@
 
 #include "alidade/io/files/file.h"
 #include "support/rendered.h"
+#include "support/saved_map.h"
 
 namespace alidade {
 namespace {
@@ -80,6 +81,7 @@ TEST_F(SavedMapCommand, InfoSaysWhatTheRunSaid) {
   EXPECT_GE(map["observations"]["mean"], 1);
   EXPECT_GE(map["time"][1], 0.5);
   EXPECT_GE(map["path_length"], map["extent"][0]);
+  EXPECT_EQ(map["loops"], 0);
   EXPECT_EQ(RunAlidade({"info", result + "/map.alidade", "--json"}).out,
             RunAlidade({"info", result, "--json"}).out);  // the folder or the file
 
@@ -87,6 +89,51 @@ TEST_F(SavedMapCommand, InfoSaysWhatTheRunSaid) {
   EXPECT_EQ(table.status, 0);
   EXPECT_THAT(table.out, HasSubstr("640x480"));
   EXPECT_THAT(table.out, HasSubstr(std::to_string(info["landmarks"].get<int>()) + ", each seen"));
+}
+
+TEST_F(SavedMapCommand, AMapReadAndWrittenAgainIsTheSame) {
+  for (const char* sensor : {"rgbd", "mono"}) {
+    const std::string bytes = ReadText(Result(sensor) + "/map.alidade");
+    const SavedMap read = DecodeMap(bytes);
+    EXPECT_TRUE(EncodeMap(read) == bytes) << sensor;
+    MapStore store;  // also by way of a program that goes on with it
+    store.Restore(read.map);
+    SavedMap again = read;
+    again.map = store.Snapshot();
+    EXPECT_TRUE(EncodeMap(again) == bytes) << sensor;
+  }
+}
+
+// Two maps in one file: the larger one is exported, or the one that is named.
+TEST_F(SavedMapCommand, ExportsOneOfSeveralMaps) {
+  const SavedMap saved = MakeSavedMap();  // 7 keyframes, and 4 in the second map
+  const std::string map = folder_.Write("two.alidade", EncodeMap(saved));
+  const json info = Info(map);
+  ASSERT_EQ(info["maps"].size(), 2u);
+  EXPECT_EQ(info["maps"][0]["keyframes"], 7);
+  EXPECT_EQ(info["maps"][1]["keyframes"], 4);
+  EXPECT_EQ(info["maps"][0]["loops"], 1);
+  EXPECT_EQ(info["maps"][0]["landmarks"].get<int>() + info["maps"][1]["landmarks"].get<int>(),
+            info["landmarks"]);
+  EXPECT_GT(info["places"]["nodes"], 0);
+  Export(map, "tum", folder_ / "a.txt");
+  EXPECT_EQ(DataLines(folder_ / "a.txt").size(), 7u);
+  Export(map, "tum", folder_ / "b.txt", {"--part", "1"});
+  EXPECT_EQ(DataLines(folder_ / "b.txt").size(), 4u);
+  Export(map, "colmap", folder_ / "model", {"--part", "1"});
+  EXPECT_EQ(DataLines(folder_ / "model/points3D.txt").size(), info["maps"][1]["landmarks"]);
+}
+
+TEST_F(SavedMapCommand, AnEmptyMapHasNothingToExport) {
+  SavedMap saved;
+  saved.camera = Camera::FromFieldOfView(640, 480, 66);
+  saved.sensor = "mono";
+  const std::string map = folder_.Write("empty.alidade", EncodeMap(saved));
+  EXPECT_EQ(Info(map)["maps"].size(), 0u);
+  EXPECT_EQ(RunAlidade({"info", map}).status, 0);
+  Export(map, "pcd", folder_ / "a.pcd");
+  EXPECT_THAT(ReadText(folder_ / "a.pcd"), HasSubstr("POINTS 0"));
+  Export(map, "colmap", folder_ / "model");
 }
 
 TEST_F(SavedMapCommand, TumIsTheTrajectoryOfTheKeyframes) {
