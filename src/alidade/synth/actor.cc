@@ -190,8 +190,10 @@ std::vector<Actor> CastActors(const std::vector<ActorLooks>& looks, const std::v
     double most_room = -1;
     for (int attempt = 0; attempt < 30; ++attempt) {
       const Walk& walk = walks[i % walks.size()];
-      const double speed = random.Uniform(0.45, 0.9) * (random.Uniform() < 0.5 ? -1 : 1);
-      const Actor actor(looks[i], walk, random.Uniform(0, 30), speed, random.Uniform(0, 2 * kPi));
+      const double pace = random.Uniform(0.45, 0.9);
+      const double speed = random.Uniform() < 0.5 ? -pace : pace;
+      const double phase = random.Uniform(0, 2 * kPi), start = random.Uniform(0, 30);
+      const Actor actor(looks[i], walk, start, speed, phase);
       double room = 10;
       for (double time = 0; time < seconds; time += 0.25) {
         const Vector2d p = actor.Position(time);

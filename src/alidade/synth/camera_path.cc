@@ -26,7 +26,8 @@ CameraPath::CameraPath(std::vector<PathKnot> knots, double period, int turns,
       // Evenly spread in log frequency; slow sway is wide, quick tremble small.
       const double octave =
           (static_cast<double>(i) + random.Uniform()) / static_cast<double>(waves_[axis].size());
-      const double hertz = (1 / shake.seconds) * std::pow(8.0, octave - 1);
+      // Eight times as quick in all. Not pow(8, …), which some compilers make this of, some not.
+      const double hertz = (1 / shake.seconds) * std::exp2(3 * (octave - 1));
       waves_[axis][i] = {scale * std::sqrt(2.0 / static_cast<double>(waves_[axis].size())),
                          2 * std::numbers::pi * hertz, random.Uniform(0, 2 * std::numbers::pi)};
     }

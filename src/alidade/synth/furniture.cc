@@ -151,8 +151,9 @@ void Furnisher::Cartons(const Place& place, int count) {
   for (int i = 0; i < count; ++i) {
     const double w = random().Uniform(0.35, 0.5), d = random().Uniform(0.3, 0.4),
                  h = random().Uniform(0.22, 0.36);
-    const Place here = place.At(random().Uniform(-0.04, 0.04), random().Uniform(-0.04, 0.04), z,
-                                random().Uniform(-0.2, 0.2));
+    const double turn = random().Uniform(-0.2, 0.2);
+    const double y = random().Uniform(-0.04, 0.04), x = random().Uniform(-0.04, 0.04);
+    const Place here = place.At(x, y, z, turn);
     BoxFaces faces{Picture(PaintCarton, w, h), Picture(PaintCarton, w, h),
                    Picture(PaintCarton, d, h), Picture(PaintCarton, d, h),
                    Picture(PaintCarton, w, d), -1};
@@ -194,8 +195,9 @@ void Furnisher::BookPile(const Place& place, int count) {
 
 void Furnisher::Pages(const Place& place, int count) {
   for (int i = 0; i < count; ++i) {
-    const Place here = place.At(random().Uniform(-0.2, 0.2), random().Uniform(-0.15, 0.15),
-                                0.0015 * i, random().Uniform(-1.2, 1.2));
+    const double turn = random().Uniform(-1.2, 1.2);
+    const double y = random().Uniform(-0.15, 0.15), x = random().Uniform(-0.2, 0.2);
+    const Place here = place.At(x, y, 0.0015 * i, turn);
     Box(here, {-0.105, -0.148, 0}, {0.21, 0.297, 0.001},
         {-1, -1, -1, -1, Picture(PaintPage, 0.21, 0.297), -1});
   }

@@ -11,6 +11,12 @@ cv::Mat1f Plain(cv::Size size, double tone) { return cv::Mat1f(size, static_cast
 
 cv::Rect Clip(const cv::Rect& rect, cv::Size size) { return rect & cv::Rect({0, 0}, size); }
 
+// Row before column: a call's arguments would be drawn in the compiler's order.
+cv::Point PickTexel(Random& random, cv::Size size) {
+  const int y = static_cast<int>(random.Below(size.height));
+  return {static_cast<int>(random.Below(size.width)), y};
+}
+
 // Soft dark or light blots, a few per square metre.
 void AddStains(Random& random, cv::Mat1f& picture, double density, double per_square_metre,
                double strength) {
@@ -18,8 +24,7 @@ void AddStains(Random& random, cv::Mat1f& picture, double density, double per_sq
   const int count = static_cast<int>(area * per_square_metre);
   for (int i = 0; i < count; ++i) {
     const double radius = density * random.Uniform(0.01, 0.05);
-    const cv::Point centre(static_cast<int>(random.Below(picture.cols)),
-                           static_cast<int>(random.Below(picture.rows)));
+    const cv::Point centre = PickTexel(random, picture.size());
     const int reach = static_cast<int>(radius * 2.5) + 2;
     const cv::Rect box =
         Clip({centre.x - reach, centre.y - reach, 2 * reach, 2 * reach}, picture.size());
@@ -60,8 +65,9 @@ cv::Mat ToGrey(const cv::Mat1f& picture) {
 }
 
 cv::Mat PaintPlaster(Random& random, cv::Size size, double density, double tone) {
-  cv::Mat1f picture = Plain(size, tone) + 3.0 * FractalNoise(random, size, density, density, 2) +
-                      1.2 * FractalNoise(random, size, 0.02 * density, 0.02 * density, 2);
+  const cv::Mat1f fine = FractalNoise(random, size, 0.02 * density, 0.02 * density, 2);
+  const cv::Mat1f coarse = FractalNoise(random, size, density, density, 2);
+  cv::Mat1f picture = Plain(size, tone) + 3.0 * coarse + 1.2 * fine;
   AddStains(random, picture, density, 0.8, 9);
   return ToGrey(picture);
 }
@@ -102,8 +108,7 @@ cv::Mat PaintPlanks(Random& random, cv::Size size, double density, double tone) 
       plank = Plain(box.size(), own) +
               7.0 * FractalNoise(random, box.size(), 0.35 * density, 0.02 * density, 4, 0.7);
       if (random.Uniform() < 0.45) {  // a knot
-        const cv::Point centre(static_cast<int>(random.Below(box.width)),
-                               static_cast<int>(random.Below(box.height)));
+        const cv::Point centre = PickTexel(random, box.size());
         const double r = density * random.Uniform(0.006, 0.014);
         cv::ellipse(plank, centre, {static_cast<int>(2.2 * r) + 1, static_cast<int>(1.3 * r) + 1},
                     0, 0, 360, own - 14, -1, cv::LINE_AA);
@@ -129,16 +134,16 @@ cv::Mat PaintTiles(Random& random, cv::Size size, double density, double tone) {
                                 size);
       if (box.area() <= 0) continue;
       cv::Mat1f tile = picture(box);
-      tile =
-          Plain(box.size(), tone + 9 * random.Gaussian() + ((row + column) % 2 == 0 ? 12 : -12)) +
-          6.0 * FractalNoise(random, box.size(), 0.2 * density, 0.1 * density, 4, 0.7);
+      const cv::Mat1f veins =
+          FractalNoise(random, box.size(), 0.2 * density, 0.1 * density, 4, 0.7);
+      const double own = tone + 9 * random.Gaussian() + ((row + column) % 2 == 0 ? 12 : -12);
+      tile = Plain(box.size(), own) + 6.0 * veins;
       for (int speck = 0; speck < 14; ++speck) {  // terrazzo
-        const cv::Point centre(static_cast<int>(random.Below(box.width)),
-                               static_cast<int>(random.Below(box.height)));
+        const cv::Point centre = PickTexel(random, box.size());
         const double r = density * random.Uniform(0.003, 0.012);
-        cv::ellipse(tile, centre, {static_cast<int>(r) + 1, static_cast<int>(r * 0.6) + 1},
-                    random.Uniform(0, 180), 0, 360, tone + random.Uniform(-60, 50), -1,
-                    cv::LINE_AA);
+        const double own_tone = tone + random.Uniform(-60, 50), turn = random.Uniform(0, 180);
+        cv::ellipse(tile, centre, {static_cast<int>(r) + 1, static_cast<int>(r * 0.6) + 1}, turn, 0,
+                    360, own_tone, -1, cv::LINE_AA);
       }
     }
   }
@@ -147,33 +152,33 @@ cv::Mat PaintTiles(Random& random, cv::Size size, double density, double tone) {
 }
 
 cv::Mat PaintCarpet(Random& random, cv::Size size, double density, double tone) {
-  cv::Mat1f picture = Plain(size, tone) +
-                      6.0 * FractalNoise(random, size, 0.7 * density, 0.7 * density, 3) +
-                      9.0 * FractalNoise(random, size, 0.025 * density, 0.025 * density, 3, 0.8);
+  const cv::Mat1f pile = FractalNoise(random, size, 0.025 * density, 0.025 * density, 3, 0.8);
+  const cv::Mat1f wear = FractalNoise(random, size, 0.7 * density, 0.7 * density, 3);
+  cv::Mat1f picture = Plain(size, tone) + 6.0 * wear + 9.0 * pile;
   const int flecks = static_cast<int>(size.area() / (density * density) * 60);
   for (int i = 0; i < flecks; ++i) {
-    const cv::Point centre(static_cast<int>(random.Below(size.width)),
-                           static_cast<int>(random.Below(size.height)));
+    const cv::Point centre = PickTexel(random, size);
     const double r = density * random.Uniform(0.004, 0.014);
-    cv::ellipse(picture, centre, {static_cast<int>(r) + 1, static_cast<int>(r * 0.5) + 1},
-                random.Uniform(0, 180), 0, 360, tone + random.Uniform(-50, 45), -1, cv::LINE_AA);
+    const double own = tone + random.Uniform(-50, 45), turn = random.Uniform(0, 180);
+    cv::ellipse(picture, centre, {static_cast<int>(r) + 1, static_cast<int>(r * 0.5) + 1}, turn, 0,
+                360, own, -1, cv::LINE_AA);
   }
   AddStains(random, picture, density, 3, 14);
   return ToGrey(picture);
 }
 
 cv::Mat PaintWood(Random& random, cv::Size size, double density, double tone) {
-  cv::Mat1f picture = Plain(size, tone) +
-                      9.0 * FractalNoise(random, size, 0.5 * density, 0.03 * density, 5, 0.65) +
-                      5.0 * FractalNoise(random, size, 0.4 * density, 0.3 * density, 2);
+  const cv::Mat1f shade = FractalNoise(random, size, 0.4 * density, 0.3 * density, 2);
+  const cv::Mat1f grain = FractalNoise(random, size, 0.5 * density, 0.03 * density, 5, 0.65);
+  cv::Mat1f picture = Plain(size, tone) + 9.0 * grain + 5.0 * shade;
   AddStains(random, picture, density, 2.5, 22);
   return ToGrey(picture);
 }
 
 cv::Mat PaintFabric(Random& random, cv::Size size, double density, double tone) {
-  cv::Mat1f picture = Plain(size, tone) +
-                      7.0 * FractalNoise(random, size, 0.3 * density, 0.3 * density, 3) +
-                      4.0 * FractalNoise(random, size, 4, 4, 2);
+  const cv::Mat1f weave = FractalNoise(random, size, 4, 4, 2);
+  const cv::Mat1f folds = FractalNoise(random, size, 0.3 * density, 0.3 * density, 3);
+  cv::Mat1f picture = Plain(size, tone) + 7.0 * folds + 4.0 * weave;
   const uint32_t kind = random.Below(3);
   const double pitch = density * random.Uniform(0.06, 0.14);
   for (int y = 0; y < size.height && kind > 0; ++y) {

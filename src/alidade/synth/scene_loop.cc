@@ -29,16 +29,19 @@ void FillSlot(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double a
     case 1: {
       const double w = std::min(1.2, width - 0.2), h = random.Uniform(0.7, 1.1);
       const Place here = AtWall(a, b, along, 0.24);
-      furnish.Cabinet(here, w, 0.45, h, 2 + static_cast<int>(random.Below(3)),
-                      1 + static_cast<int>(random.Below(2)));
+      const int columns = 1 + static_cast<int>(random.Below(2)),
+                rows = 2 + static_cast<int>(random.Below(3));
+      furnish.Cabinet(here, w, 0.45, h, rows, columns);
       furnish.Clutter(here.At(0, 0, h), w - 0.1, 0.4, 3);
-      furnish.Poster(wall, 0.1, 1.75, random.Uniform(0.5, 0.9), random.Uniform(0.5, 0.8));
+      const double high = random.Uniform(0.5, 0.8), wide = random.Uniform(0.5, 0.9);
+      furnish.Poster(wall, 0.1, 1.75, wide, high);
       break;
     }
     case 2:
       if (width > 1.7) {
         furnish.Sofa(AtWall(a, b, along, 0.48), std::min(1.9, width - 0.1));
-        furnish.Poster(wall, -0.3, 1.65, random.Uniform(0.7, 1.0), random.Uniform(0.5, 0.7));
+        const double high = random.Uniform(0.5, 0.7), wide = random.Uniform(0.7, 1.0);
+        furnish.Poster(wall, -0.3, 1.65, wide, high);
         break;
       }
       [[fallthrough]];
