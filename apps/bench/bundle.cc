@@ -1,4 +1,5 @@
-// Pose optimisation and local bundle adjustment, on the map the recording gives.
+// Pose optimisation and local bundle adjustment, on the map the recording gives; what closing a
+// loop solves, on generated problems.
 #include <cmath>
 
 #include "alidade/base/error.h"
@@ -6,8 +7,12 @@
 #include "alidade/base/timing.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/optimize/pose_only.h"
+#include "alidade/optimize/sim3_refine.h"
 #include "alidade/slam.h"
 #include "bench/bench.h"
+#include "support/bundle_problem.h"
+#include "support/pose_graph_problem.h"
+#include "support/sim3_problem.h"
 
 namespace alidade::bench {
 namespace {
@@ -60,6 +65,44 @@ MapSnapshot Shaken(const MapSnapshot& map) {
   });
 }
 
+// A loop of 300 keyframes: the match that closes it, the pose graph, and the adjustment of all.
+Section BenchLoop(const Recording& recording) {
+  const Sim3Problem match = MakeSim3Problem({.matches = 100, .outliers = 0.5});
+  const PoseGraphProblem drifted = MakePoseGraphProblem({.nodes = 1000, .neighbours = 4});
+  const BundleProblem map = MakeBundleProblem({.scene = BundleScene::kRing,
+                                               .fixed_cameras = 1,
+                                               .free_cameras = 300,
+                                               .points = 20000,
+                                               .path_length = 44,
+                                               .min_track = 3,
+                                               .max_track = 12,
+                                               .stereo = 0.7,
+                                               .outliers = 0.02});
+  const auto verify = [&](int turn) {
+    const Sim3RansacResult found =
+        SolveSim3Ransac(match.camera, match.matches, {.seed = static_cast<uint64_t>(turn)});
+    RefineSim3(match.camera, found.T_a_b, match.matches, true);
+  };
+  const auto graph = [&](int) {
+    PoseGraph copy = drifted.graph;
+    OptimizePoseGraph(copy);
+  };
+  const auto adjust = [&](int) {
+    BundleProblem copy = map;
+    AdjustBundle(copy, {.max_iterations = 5, .min_relative_decrease = 0});
+  };
+  const std::string nodes = std::to_string(drifted.graph.T_camera_world.size()) + " nodes, " +
+                            std::to_string(drifted.graph.edges.size()) + " edges";
+  const std::string size = "300 keyframes, 20000 points, " +
+                           std::to_string(map.observations.size()) + " sightings, 5 iterations";
+  return TakeTurns("loop", recording,
+                   {{"similarity: RANSAC and refinement", verify, 1, "100 matches, half wrong"},
+                    {"pose graph with scale, 1 thread", graph, 1, nodes},
+                    {"adjustment of a whole map, 1 thread", adjust, 1, size},
+                    {"adjustment of a whole map, all threads", adjust, 0, size}},
+                   10);
+}
+
 }  // namespace
 
 Section BenchBundle(const Recording& recording) {
@@ -109,6 +152,8 @@ Section BenchBundle(const Recording& recording) {
                               60);
   section.rows.push_back(
       {"all of mapping, inline", slam.Times().map, "per keyframe, in the run itself"});
+  const Section loop = BenchLoop(recording);
+  section.rows.insert(section.rows.end(), loop.rows.begin(), loop.rows.end());
   return section;
 }
 
