@@ -26,6 +26,7 @@ int Complain(std::string message, int status) {
 void AddCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] alidade::Action& action) {
 #ifdef ALIDADE_COMMAND_RUN
   alidade::AddRunCommand(app, action);
+  alidade::AddLocalizeCommand(app, action);
 #endif
 #ifdef ALIDADE_COMMAND_EVALUATE
   alidade::AddEvaluateCommand(app, action);

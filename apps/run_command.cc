@@ -18,6 +18,7 @@
 #include "run_options.h"
 #include "run_outputs.h"
 #include "run_record.h"
+#include "saved_map.h"
 #include "terminal.h"
 
 namespace alidade {
@@ -30,6 +31,10 @@ void Say(const RunSummary& summary, const RunRecord& record, const std::string& 
               summary.tracked, summary.frames, summary.keyframes, summary.landmarks,
               summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",
               record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+}
+
+Sensor SensorNamed(const std::string& name) {
+  return name == "mono" ? Sensor::kMono : name == "stereo" ? Sensor::kStereo : Sensor::kRgbd;
 }
 
 int Run(const RunOptions& options) {
@@ -47,12 +52,20 @@ int Run(const RunOptions& options) {
   record.threads = ThreadCount();
   Terminal terminal(options.quiet);
 
+  std::optional<SavedMap> saved;
+  if (options.load) saved = ReadSavedMap(*options.load);
+  SourceOptions wanted = SourceOptionsFrom(options);
+  if (saved && !wanted.sensor) wanted.sensor = SensorNamed(saved->sensor);
   std::unique_ptr<FrameSource> source =
-      Repeat(OpenAnySource(options.source, SourceOptionsFrom(options)), options.repeat);
+      Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();
   record.settings.sensor = record.source.sensor;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
+  record.settings.localise = options.localise;
+  if (saved && saved->camera.width < record.source.camera.width)
+    record.settings.image_width = saved->camera.width;  // it was made from images scaled down
   Slam slam(record.source.camera, record.settings);
+  if (saved) slam.Load(*saved);
   OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name));
 
   ReadAhead frames(std::move(source));
@@ -62,7 +75,7 @@ int Run(const RunOptions& options) {
     folder.Remove();
     std::rethrow_exception(record.failure);
   }
-  const RunSummary summary = WriteOutputs(folder, slam, record);
+  const RunSummary summary = WriteOutputs(folder, slam, record, !options.localise);
   if (!options.quiet) Say(summary, record, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
   if (record.interrupted) return kInterruptedStatus;
@@ -79,6 +92,14 @@ void AddRunCommand(CLI::App& app, Action& action) {
       app.add_subcommand("run", "Track a recording, video or camera and map what it sees");
   auto options = std::make_shared<RunOptions>();
   AddRunOptions(*command, *options);
+  command->callback([options, &action] { action = [options] { return Run(*options); }; });
+}
+
+void AddLocalizeCommand(CLI::App& app, Action& action) {
+  CLI::App* command =
+      app.add_subcommand("localize", "Find the poses of a recording in a saved map");
+  auto options = std::make_shared<RunOptions>();
+  AddLocalizeOptions(*command, *options);
   command->callback([options, &action] { action = [options] { return Run(*options); }; });
 }
 

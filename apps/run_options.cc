@@ -16,6 +16,7 @@ constexpr char kExamples[] =
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
+    "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
     "--out.";
@@ -26,7 +27,9 @@ void Refuse(bool asked, const std::string& flag) {
 
 }  // namespace
 
-void AddRunOptions(CLI::App& command, RunOptions& options) {
+namespace {
+
+void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option("SOURCE", options.source,
                   "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, camera:0 or "
@@ -57,11 +60,30 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--first", options.first, "First frame, counted from 0");
   command.add_option("--last", options.last, "Last frame, included");
   command.add_flag("--quiet", options.quiet, "Say nothing but errors");
+}
+
+}  // namespace
+
+void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
+  options.localise = true;
+  AddSharedOptions(command, options);
+  command.add_option("--map", options.load, "Map to find poses in (map.alidade); stays as it is")
+      ->required();
+  command.footer(
+      "\nExamples:\n"
+      "  alidade run monday --out monday_map\n"
+      "  alidade localize tuesday --map monday_map/map.alidade --out tuesday\n"
+      "\nLeaves the files of `alidade run` in --out, but no map. Poses are in the map's frame.");
+}
+
+void AddRunOptions(CLI::App& command, RunOptions& options) {
+  AddSharedOptions(command, options);
+  command.add_option("--load", options.load,
+                     "Go on in a saved map (map.alidade) and add to it what is new");
   const std::string later = "Not in this version";
   command.add_option("--dynamics", options.dynamics, "off (later versions: geometry, full)");
   for (auto& [name, target] :
        {std::pair<const char*, std::optional<std::string>&>{"--detector", options.detector},
-        {"--load", options.load},
         {"--host", options.host}}) {
     command.add_option(name, target, later)->group("");
   }
@@ -82,7 +104,6 @@ void CheckRunOptions(const RunOptions& options) {
   Refuse(options.detector.has_value(), "--detector");
   Refuse(dynamics != Dynamics::kOff, "--dynamics " + options.dynamics);
   Refuse(options.semidense, "--semidense");
-  Refuse(options.load.has_value(), "--load");
   Refuse(options.viewer.has_value(), "--viewer");
   Refuse(options.host.has_value(), "--host");
   Refuse(options.write_masks, "--write-masks");

@@ -17,7 +17,7 @@ namespace alidade {
 
 struct RunOptions {
   std::string source;
-  std::optional<std::string> sensor, camera_file, config, schedule, rate, out;
+  std::optional<std::string> sensor, camera_file, config, schedule, rate, out, load;
   std::string profile = "desktop";
   std::optional<double> fov_degrees;
   std::vector<std::string> settings;  // "name=value"
@@ -25,14 +25,17 @@ struct RunOptions {
   int threads = 0;  // 0: all cores
   int first = 0, last = -1, repeat = 0;
   bool quiet = false;
+  bool localise = false;  // only find poses in the loaded map
   // Known words whose work is not in this version.
   std::string dynamics = "off";
-  std::optional<std::string> detector, load, viewer, host;
+  std::optional<std::string> detector, viewer, host;
   bool semidense = false, write_masks = false;
 };
 
 // Adds the flags; parsing fills `options`, which must outlive `command`.
 void AddRunOptions(CLI::App& command, RunOptions& options);
+// The same for `alidade localize`.
+void AddLocalizeOptions(CLI::App& command, RunOptions& options);
 
 // Throws Error (usage) for what this version cannot do yet, and for flags that do not go together.
 void CheckRunOptions(const RunOptions& options);

@@ -21,12 +21,20 @@ constexpr std::array<const char*, 8> kOurFiles = {
     "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt",
     "map.alidade",    "landmarks.ply",       "report.html",   "stats.json"};
 
+// trajectory.1.txt and the like, of further maps.
+bool IsNumbered(const std::string& name, const std::string& what) {
+  if (name.rfind(what + ".", 0) != 0) return false;
+  const std::string rest = name.substr(what.size() + 1);
+  const size_t digits = rest.find_first_not_of("0123456789");
+  return digits != 0 && digits != std::string::npos && rest.rfind(".txt", digits) == digits;
+}
+
 // One of ours, or a temporary of one, left by a run that was killed while it wrote.
 bool IsOurs(const std::string& name) {
   for (const std::string ours : kOurFiles) {
     if (name == ours || name.rfind(ours + ".tmp", 0) == 0) return true;
   }
-  return false;
+  return IsNumbered(name, "trajectory") || IsNumbered(name, "keyframes");
 }
 
 bool HoldsOurStats(const fs::path& folder) {
@@ -53,7 +61,8 @@ void RemoveOurFiles(const fs::path& folder) {
 
 std::string LandmarksPly(const RunResults& results) {
   Cloud cloud;
-  for (LandmarkId id : results.map.Landmarks()) {
+  for (LandmarkId id : results.map.Landmarks()) {  // others lie in worlds of their own
+    if (results.map.MapOf(results.map.Find(id)->reference) != results.maps.front().id) continue;
     cloud.points.push_back(
         (results.R_camera_rectified * results.map.Find(id)->p_world).cast<float>());
   }
@@ -101,27 +110,36 @@ void OutputFolder::Remove() {
   if (made_) fs::remove(path_, ignored);  // only when it is empty
 }
 
-RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record) {
+RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
+                        bool with_map) {
   const RunResults results = ResultsOf(slam, record);
   bool useful = false;
   try {
-    folder.Write("trajectory.txt", FormatTumTrajectory(results.trajectory));
-    folder.Write("trajectory_live.txt", FormatTumTrajectory(results.live));
-    folder.Write("keyframes.txt", FormatTumTrajectory(results.keyframes));
+    for (size_t i = 0; i < results.maps.size(); ++i) {
+      const MapResults& map = results.maps[i];
+      if (i > 0 && map.trajectory.empty()) break;  // of a loaded map nothing was seen of
+      folder.Write(NumberedFile("trajectory", i), FormatTumTrajectory(map.trajectory));
+      folder.Write(NumberedFile("keyframes", i), FormatTumTrajectory(map.keyframes));
+    }
+    folder.Write("trajectory_live.txt", FormatTumTrajectory(results.maps.front().live));
     if (!record.truth.empty()) {
       folder.Write("groundtruth.txt", FormatTumTrajectory(record.truth));
     }
     folder.Write("stats.json", StatsJson(record, results));
     useful = true;
-    folder.Write("map.alidade", slam.SaveMap());
+    if (with_map) folder.Write("map.alidade", slam.SaveMap());
     folder.Write("landmarks.ply", LandmarksPly(results));
     folder.Write("report.html", ReportHtml(record, results));
   } catch (const Error&) {
     if (!useful) folder.Remove();
     throw;
   }
-  return {record.frames, static_cast<int>(results.trajectory.size()), results.map.keyframe_count(),
-          results.map.landmark_count(), PathLength(results.trajectory)};
+  return {record.frames,
+          results.tracked,
+          results.map.keyframe_count(),
+          results.map.landmark_count(),
+          static_cast<int>(results.map.Maps().size()),
+          PathLength(results.maps.front().trajectory)};
 }
 
 }  // namespace alidade

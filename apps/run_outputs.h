@@ -27,12 +27,13 @@ class OutputFolder {
 
 struct RunSummary {
   int frames = 0, tracked = 0;
-  int keyframes = 0, landmarks = 0;
+  int keyframes = 0, landmarks = 0, maps = 0;
   double path_length = 0;  // metres (mono: map units)
 };
 
 // Writes everything. Throws Error (input) when a file cannot be written; what stays then is whole,
 // and is nothing at all unless stats.json is among it.
-RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record);
+RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
+                        bool with_map = true);
 
 }  // namespace alidade

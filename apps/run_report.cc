@@ -16,19 +16,23 @@ std::string Format(const char* format, double value) {
 PlaceDrawing PlaceOf(const RunResults& results, const std::string& unit) {
   PlaceDrawing place;
   place.unit = unit;
+  // The largest map: others lie in worlds of their own.
+  const MapResults& map = results.maps.front();
   bool going_on = false;
   size_t next = 0;  // of the trajectory
   for (const FramePose& frame : results.frames) {
-    if (frame.tracked) {
+    const bool here = frame.tracked && frame.map == map.id;
+    if (here) {
       if (!going_on) place.path.emplace_back();
-      place.path.back().push_back(results.trajectory[next++].T_world_camera);
+      place.path.back().push_back(map.trajectory[next++].T_world_camera);
     }
-    going_on = frame.tracked;
+    going_on = here;
   }
-  for (const StampedPose& pose : results.keyframes) {
+  for (const StampedPose& pose : map.keyframes) {
     place.keyframes.push_back(pose.T_world_camera.t);
   }
   for (LandmarkId id : results.map.Landmarks()) {
+    if (results.map.MapOf(results.map.Find(id)->reference) != map.id) continue;
     place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
   }
   return place;
@@ -49,8 +53,8 @@ std::vector<FrameFate> FatesOf(const std::vector<FramePose>& frames) {
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
                                                          const RunResults& results,
                                                          const std::string& unit) {
-  const size_t tracked = results.trajectory.size();
-  const double share = record.frames > 0 ? 100.0 * static_cast<double>(tracked) / record.frames : 0;
+  const int tracked = results.tracked;
+  const double share = record.frames > 0 ? 100.0 * tracked / record.frames : 0;
   std::vector<std::pair<std::string, std::string>> facts = {
       {"source", record.source_path},
       {"sensor", NameOf(record.settings.sensor)},
@@ -60,11 +64,20 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
        results.initialised_at ? std::to_string(*results.initialised_at) : "none"},
       {"keyframes", std::to_string(results.map.keyframe_count())},
       {"landmarks", std::to_string(results.map.landmark_count())},
-      {"path", Format("%.2f ", PathLength(results.trajectory)) + unit},
+      {"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
       {"wall time", Format("%.2f s", record.wall_s)},
       {"CPU time", Format("%.2f s", record.cpu_s)},
       {"peak memory", Format("%.0f MB", PeakMegabytes())}};
-  if (results.trajectory.empty()) facts.push_back({"nothing mapped", WhyNothing(record)});
+  const SlamCounts& counts = results.counts;
+  facts.push_back({"loops closed", std::to_string(counts.loops)});
+  if (counts.relocalisations > 0)
+    facts.push_back({"relocalisations", std::to_string(counts.relocalisations)});
+  if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
+  if (results.maps.size() > 1) {
+    facts.push_back({"separate maps", std::to_string(results.maps.size()) +
+                                          " (drawn: the one with the most frames)"});
+  }
+  if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(record)});
   if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
   if (record.interrupted) facts.push_back({"interrupted", "results as far as it got"});
   return facts;
@@ -82,7 +95,8 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results) {
   report.milliseconds = {{"frame", results.times.frame},
                          {"extract", results.times.extract},
                          {"track", results.times.track},
-                         {"map", results.times.map}};
+                         {"map", results.times.map},
+                         {"loop", results.times.loop}};
   for (const auto& [from, to] : results.lost_spans) {
     report.lost_spans.push_back(Format("%.3f s", from) + Format(" to %.3f s", to));
   }

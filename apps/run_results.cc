@@ -1,5 +1,7 @@
 #include "run_results.h"
 
+#include <algorithm>
+
 namespace alidade {
 namespace {
 
@@ -33,23 +35,37 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   results.frames = slam.Trajectory();
   results.map = slam.Snapshot();
   results.times = slam.Times();
-  results.relocalisations = slam.relocalisations();
+  results.counts = slam.Counts();
   results.lost_spans = LostSpans(results.frames);
   const Eigen::Matrix3d& turn = results.R_camera_rectified = record.source.R_camera_rectified;
+  for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}});
+  if (results.maps.empty()) results.maps.push_back({});
+  const auto in = [&](MapId id) -> MapResults& {
+    return *std::find_if(results.maps.begin(), results.maps.end(),
+                         [&](const MapResults& map) { return map.id == id; });
+  };
   for (const FramePose& frame : results.frames) {
     if (!frame.tracked) continue;
+    ++results.tracked;
     const auto index = static_cast<size_t>(frame.index);
     if (!results.initialised_at) results.initialised_at = record.numbers[index];
     const std::string& stamp = record.stamps[index];
-    results.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
-    results.live.push_back({frame.time, Mounted(frame.T_world_camera_live, turn), stamp});
+    MapResults& map = in(frame.map);
+    map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
+    map.live.push_back({frame.time, Mounted(frame.T_world_camera_live, turn), stamp});
   }
   for (KeyFrameId id : results.map.KeyFrames()) {
     const KeyFrame* keyframe = results.map.Find(id);
-    results.keyframes.push_back({keyframe->frame->time,
-                                 Mounted(keyframe->T_camera_world.Inverse(), turn),
-                                 record.stamps[static_cast<size_t>(keyframe->frame->number)]});
+    const int index = keyframe->frame->number - slam.first_number();
+    in(keyframe->map)
+        .keyframes.push_back(
+            {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
+             index < 0 ? std::string() : record.stamps[static_cast<size_t>(index)]});
   }
+  std::stable_sort(results.maps.begin(), results.maps.end(),
+                   [](const MapResults& a, const MapResults& b) {
+                     return a.trajectory.size() > b.trajectory.size();
+                   });
   return results;
 }
 

@@ -10,17 +10,24 @@
 
 namespace alidade {
 
+// One map and the frames placed in it. Poses are T_world_camera of the (left) camera as mounted,
+// `world` the map's first keyframe's.
+struct MapResults {
+  MapId id;
+  Trajectory trajectory, live, keyframes;
+};
+
 struct RunResults {
   std::vector<FramePose> frames;  // every one that Track() took
   MapSnapshot map;
   StageTimes times;
-  int relocalisations = 0;
+  SlamCounts counts;
+  int tracked = 0;  // frames, in all maps
 
   std::optional<int> initialised_at;              // number of the first tracked frame
   std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
-  // Poses are T_world_camera of the (left) camera as mounted, `world` the first keyframe's.
-  Trajectory trajectory, live, keyframes;
-  Eigen::Matrix3d R_camera_rectified;  // turns the map's points into that world
+  std::vector<MapResults> maps;                   // most frames first; at least one, perhaps empty
+  Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world
 };
 
 RunResults ResultsOf(const Slam& slam, const RunRecord& record);

@@ -29,7 +29,26 @@ ordered_json SettingsJson(const RunRecord& record) {
   return settings;
 }
 
+// Which frames are in which map, and where its poses are.
+ordered_json MapFiles(const RunResults& results) {
+  ordered_json files = ordered_json::array();
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const MapResults& map = results.maps[i];
+    if (map.trajectory.empty()) continue;
+    files.push_back({{"trajectory", NumberedFile("trajectory", i)},
+                     {"keyframes", NumberedFile("keyframes", i)},
+                     {"frames", map.trajectory.size()},
+                     {"keyframe_count", map.keyframes.size()},
+                     {"span", {map.trajectory.front().time, map.trajectory.back().time}}});
+  }
+  return files;
+}
+
 }  // namespace
+
+std::string NumberedFile(const std::string& name, size_t number) {
+  return number == 0 ? name + ".txt" : name + "." + std::to_string(number) + ".txt";
+}
 
 const char* NameOf(Sensor sensor) {
   switch (sensor) {
@@ -44,7 +63,7 @@ const char* NameOf(Sensor sensor) {
 }
 
 std::string StatsJson(const RunRecord& record, const RunResults& results) {
-  const auto tracked = results.trajectory.size();
+  const int tracked = results.tracked;
   const auto optional = [](const std::optional<int>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
   };
@@ -60,9 +79,11 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"lost_spans", results.lost_spans},
       {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
                                  : ordered_json(nullptr)},
-      {"relocalisations", results.relocalisations},
-      {"loops", 0},
-      {"maps", results.map.keyframe_count() > 0 ? 1 : 0},
+      {"relocalisations", results.counts.relocalisations},
+      {"loops", results.counts.loops},
+      {"merges", results.counts.merges},
+      {"maps", results.map.Maps().size()},
+      {"map_files", MapFiles(results)},
       {"keyframes", results.map.keyframe_count()},
       {"landmarks", results.map.landmark_count()},
       {"ms",
@@ -70,7 +91,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
         {"extract", ToJson(results.times.extract)},
         {"track", ToJson(results.times.track)},
         {"map", ToJson(results.times.map)},
-        {"loop", nullptr},
+        {"loop", ToJson(results.times.loop)},
         {"detect", nullptr},
         {"dynamics", nullptr},
         {"semidense", nullptr}}},

@@ -44,6 +44,10 @@ TEST_F(RunOptions, UnknownSettingNamesTheNearest) {
   ExpectError(2, {"--set", "tracker.min_tracked=many"}, "'many' is not a whole number");
 }
 
+TEST_F(RunOptions, AMapThatCannotBeReadIsSaid) {
+  ExpectError(3, {"--load", results_ / "none.alidade"}, "none.alidade");
+}
+
 TEST_F(RunOptions, UnknownOptionAndWordNameTheNearest) {
   ExpectError(2, {"--shedule", "inline"}, "did you mean '--schedule'");
   ExpectError(2, {"--schedule", "inlin"}, "did you mean 'inline'");
@@ -60,7 +64,6 @@ TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
                                              {"--semidense"},
                                              {"--viewer"},
                                              {"--viewer", "8080"},
-                                             {"--load", "room.alidade"},
                                              {"--write-masks"}}) {
     ExpectError(2, flags, flags[0]);
     ExpectError(2, flags, "not in this version yet");

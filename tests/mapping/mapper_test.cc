@@ -86,7 +86,7 @@ TEST(Mapper, GivesTheSameMapWithAnyNumberOfThreads) {
     SetThreadCount(threads);
     MapStore store;
     MapWithDepth(world, store);
-    maps.push_back(EncodeMap({store.Snapshot(), world.camera, "rgbd", {}}));
+    maps.push_back(EncodeMap({store.Snapshot(), world.camera, "rgbd", {}, {}, 0}));
   }
   SetThreadCount(0);
   EXPECT_TRUE(maps[0] == maps[1]);

@@ -134,12 +134,13 @@ TEST_P(TrackerTest, FindsItsWayAfterASuddenJump) {
   ExpectAtTruth(estimate, 9);
 }
 
-TEST_P(TrackerTest, RecoversWithoutALastFrame) {
+TEST_P(TrackerTest, RelocalisesWithoutALastFrame) {
   const MapSnapshot map = store_.Snapshot();
   Tracker tracker(world_.camera, {});
   tracker.Remember(Placed(4), made_.keyframes[4], map);
   tracker.Forget();
-  const TrackEstimate estimate = tracker.Estimate(tracker.Recover(world_.views[9].frame, map), map);
+  const TrackEstimate estimate =
+      tracker.Relocalise(world_.views[9].frame, map, {{made_.keyframes[4]}});
   ExpectAtTruth(estimate, 9);
 }
 
@@ -154,7 +155,7 @@ TEST_P(TrackerTest, IsLostInAnotherWorld) {
   const TrackEstimate predicted = tracker.Estimate(tracker.Predict(other.views[0].frame, map), map);
   EXPECT_FALSE(predicted.tracked);
   EXPECT_FALSE(predicted.wants_keyframe);
-  EXPECT_FALSE(tracker.Estimate(tracker.Recover(other.views[0].frame, map), map).tracked);
+  EXPECT_FALSE(tracker.Relocalise(other.views[0].frame, map, made_.keyframes).tracked);
 }
 
 TEST_P(TrackerTest, TellsWhichLandmarksWereFoundOfThoseExpected) {

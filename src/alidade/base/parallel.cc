@@ -1,5 +1,11 @@
 #include "alidade/base/parallel.h"
 
+#ifdef __linux__
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+#endif
+
 #include <algorithm>
 #include <atomic>
 #include <condition_variable>
@@ -152,6 +158,12 @@ void ParallelFor(int count, const std::function<void(int)>& body) {
   }
   if (!ran) loop.Work();
   if (loop.failure) std::rethrow_exception(loop.failure);
+}
+
+void LowerThreadPriority() {
+#ifdef __linux__
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+#endif
 }
 
 }  // namespace alidade

@@ -21,4 +21,7 @@ void ParallelFor(int count, const std::function<void(int)>& body);
 // thread beside the work, whose CPU time is to be told apart.
 void KeepLoopsOnThisThread();
 
+// The calling thread gives way to the others of the program where the system can do that (Linux).
+void LowerThreadPriority();
+
 }  // namespace alidade

@@ -27,6 +27,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.min_predicted", t.min_predicted);
   visit("tracker.min_after_prediction", t.min_after_prediction);
   visit("tracker.min_tracked", t.min_tracked);
+  visit("tracker.min_found_share", t.min_found_share);
   visit("tracker.min_agreement", t.min_agreement);
   visit("tracker.good_agreement", t.good_agreement);
   visit("tracker.bad_frame_sigma", t.bad_frame_sigma);
@@ -37,6 +38,9 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.local_radius", t.local_radius);
   visit("tracker.local_radius_depth", t.local_radius_depth);
   visit("tracker.local_keyframes", t.local_keyframes);
+  visit("tracker.relocalise_radius", t.relocalise_radius);
+  visit("tracker.min_relocalised", t.min_relocalised);
+  visit("tracker.min_relocalised_share", t.min_relocalised_share);
   visit("tracker.sigma_px", t.noise.sigma_px);
   visit("tracker.sigma_right_px", t.noise.sigma_right_px);
   visit("tracker.keyframe_share_mono", t.keyframe_share_mono);
@@ -64,6 +68,39 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("mapper.window_fixed", m.window_fixed);
   visit("mapper.bundle.max_iterations", m.bundle.max_iterations);
   visit("mapper.bundle.min_relative_decrease", m.bundle.min_relative_decrease);
+  visit("new_map_seconds", s.new_map_seconds);
+  visit("new_map_frames", s.new_map_frames);
+  visit("min_map_keyframes", s.min_map_keyframes);
+  auto& l = s.loop;
+  visit("loop.enabled", l.enabled);
+  visit("loop.sigma_px", l.noise.sigma_px);
+  visit("loop.sigma_right_px", l.noise.sigma_right_px);
+  visit("loop.match_scale", l.match_scale);
+  visit("loop.candidates", l.candidates);
+  visit("loop.group", l.group);
+  visit("loop.score_share", l.score_share);
+  visit("loop.min_matches", l.min_matches);
+  visit("loop.min_aligned", l.min_aligned);
+  visit("loop.min_found", l.min_found);
+  visit("loop.min_found_share", l.min_found_share);
+  visit("loop.search_radius", l.search_radius);
+  visit("loop.max_distance", l.max_distance);
+  visit("loop.confirm_keyframes", l.confirm_keyframes);
+  visit("loop.confirm_needed", l.confirm_needed);
+  visit("loop.confirm_found", l.confirm_found);
+  visit("loop.max_drift", l.max_drift);
+  visit("loop.max_drift_floor", l.max_drift_floor);
+  visit("loop.max_turn", l.max_turn);
+  visit("loop.max_scale", l.max_scale);
+  visit("loop.graph_shared", l.graph_shared);
+  visit("loop.graph.max_iterations", l.graph.max_iterations);
+  visit("loop.graph.length_scale", l.graph.length_scale);
+  visit("loop.bundle.max_iterations", l.bundle.max_iterations);
+  visit("loop.bundle.min_relative_decrease", l.bundle.min_relative_decrease);
+  auto& p = s.places;
+  visit("places.sample", p.sample);
+  visit("places.branching", p.vocabulary.branching);
+  visit("places.levels", p.vocabulary.levels);
   auto& i = s.start;
   visit("start.min_matches", i.min_matches);
   visit("start.match_scale", i.match_scale);
@@ -133,7 +170,7 @@ void SlamSettings::ApplyProfile(const std::string& profile) {
   if (profile != "phone") ThrowUsage("unknown profile '" + profile + "'; known: desktop, phone");
   image_width = 400;
   tracker.extractor.features = 500;
-  tracker.match_scale = mapper.match_scale = start.match_scale = 0.8;
+  tracker.match_scale = mapper.match_scale = start.match_scale = loop.match_scale = 0.8;
 }
 
 void SlamSettings::Check() const {
@@ -141,6 +178,11 @@ void SlamSettings::Check() const {
     ThrowUsage("image_width must be 0 or at least 100 pixels");
   tracker.Check();
   mapper.Check();
+  loop.Check();
+  places.Check();
+  if (!(new_map_seconds >= 0) || new_map_frames < 1)
+    ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
+  if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");
   start.Check();
 }
 

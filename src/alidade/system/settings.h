@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "alidade/io/frame_source.h"
+#include "alidade/looping/settings.h"
 #include "alidade/mapping/settings.h"
+#include "alidade/place/settings.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 
@@ -21,6 +23,14 @@ struct SlamSettings {
   TrackerSettings tracker;
   MapperSettings mapper;
   MonoStartSettings start;
+  PlaceSettings places;
+  LoopSettings loop;
+  bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
+  // When lost, a new map is started only after so long and so many frames that showed something:
+  // with depth it could start at once, and would always be quicker than recognising a place.
+  double new_map_seconds = 1.0;
+  int new_map_frames = 15;
+  int min_map_keyframes = 5;  // a map left with fewer is forgotten
 
   // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts ×
   // 0.8. Throws Error (usage) for another name.

@@ -1,36 +1,35 @@
 #include "alidade/system/slam.h"
 
 #include <algorithm>
-#include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
-#include "alidade/system/mapping_stage.h"
+#include "alidade/system/prepare.h"
+#include "alidade/system/workers.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {
 namespace {
 
-Camera CameraInUse(Camera camera, const SlamSettings& settings) {
-  camera.Check();
-  if (settings.sensor != Sensor::kRgbd) camera.depth_factor = 0;
-  if (settings.sensor != Sensor::kStereo) camera.baseline = 0;
-  if (settings.sensor == Sensor::kRgbd && camera.depth_factor <= 0) {
-    ThrowInput("camera: an RGB-D run needs depth_factor (depth image value per metre)");
-  }
-  if (settings.sensor == Sensor::kStereo && camera.baseline <= 0) {
-    ThrowInput("camera: a stereo run needs the baseline between the cameras");
-  }
-  const bool shrink = settings.image_width > 0 && settings.image_width < camera.width;
-  return shrink ? camera.ScaledToWidth(settings.image_width) : camera;
-}
+constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
 
 // One seed for every random choice.
 SlamSettings Seeded(SlamSettings settings) {
-  settings.tracker.seed = settings.start.two_view.seed = settings.seed;
+  settings.tracker.seed = settings.start.two_view.seed = settings.loop.seed = settings.seed;
   return settings;
+}
+
+const char* NameOfSensor(Sensor sensor) {
+  switch (sensor) {
+    case Sensor::kStereo:
+      return "stereo";
+    case Sensor::kRgbd:
+      return "rgbd";
+    default:
+      return "mono";
+  }
 }
 
 // Where a frame is, by the keyframe it was placed against.
@@ -47,90 +46,65 @@ class Slam::Impl {
  public:
   Impl(const Camera& given, const SlamSettings& settings);
   TrackResult Track(const FrameInput& input);
+  void Load(const SavedMap& saved);
 
   Camera given_;
   SlamSettings settings_;
   Camera camera_;
-  MapStore map_;
+  Workers workers_;
   Tracker tracker_;
   MonoStart start_;
-  Mapper mapper_;
-  MappingStage mapping_;
   TrackState state_ = TrackState::kInitialising;
   std::vector<FrameRecord> records_;
   StageTimes times_;
   int relocalisations_ = 0;
+  int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
 
  private:
-  FrameInput Prepare(const FrameInput& input) const;
   TrackResult Start(const std::shared_ptr<Frame>& frame);
+  bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
+  bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
+  TrackResult FindBack(const std::shared_ptr<Frame>& frame);
+  TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void GiveUpStart();
+  void Lose();
+  void LeaveMap();
 
-  int trial_left_ = 0;      // frames that have yet to confirm a young monocular map
-  int trial_points_ = 0;    // landmarks it started with
-  MapId map_id_;            // of that map
-  size_t trial_begin_ = 0;  // first record placed in it
+  // A young monocular map, until it is believed.
+  int trial_left_ = 0;    // frames that have yet to confirm it
+  int trial_points_ = 0;  // landmarks it started with
+  MapId trial_map_;
+  KeyFrameId trial_keyframes_[2];
+
+  double lost_since_ = 0;  // time of the first frame without a pose, seconds
+  int lost_sighted_ = 0;   // frames since that showed something
 };
 
 Slam::Impl::Impl(const Camera& given, const SlamSettings& settings)
     : given_(given),
       settings_(Seeded(settings)),
       camera_(CameraInUse(given, settings)),
+      workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
-      start_(camera_, settings_.start),
-      mapper_(map_, camera_, settings_.mapper),
-      mapping_(mapper_, settings_.threaded) {
+      start_(camera_, settings_.start) {
   settings_.Check();
-}
-
-FrameInput Slam::Impl::Prepare(const FrameInput& input) const {
-  const auto check = [&](const cv::Mat& image, const char* what) {
-    if (image.cols == given_.width && image.rows == given_.height) return;
-    ThrowInput(std::string(what) + " of " + std::to_string(image.cols) + "x" +
-               std::to_string(image.rows) + " pixels, but the camera has " +
-               std::to_string(given_.width) + "x" + std::to_string(given_.height));
-  };
-  if (!std::isfinite(input.time)) ThrowInput("the frame's time is not a number");
-  if (!records_.empty() && input.time <= records_.back().time)
-    ThrowInput("the frame's time does not grow");
-  check(input.image, "image");
-  FrameInput prepared = input;
-  if (settings_.sensor != Sensor::kStereo) prepared.right.release();
-  if (settings_.sensor != Sensor::kRgbd) prepared.depth.release();
-  if (!prepared.right.empty()) check(prepared.right, "right image");
-  if (!prepared.depth.empty()) {
-    check(prepared.depth, "depth image");
-    if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
-      ThrowInput("depth must be 16 bit or float");
-  }
-  for (cv::Mat* image : {&prepared.image, &prepared.right}) {
-    if (image->empty()) continue;
-    if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");
-    if (image->channels() == 3) cv::cvtColor(*image, *image, cv::COLOR_BGR2GRAY);
-    if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2GRAY);
-    if (camera_.width != given_.width)
-      cv::resize(*image, *image, {camera_.width, camera_.height}, 0, 0, cv::INTER_AREA);
-  }
-  if (!prepared.depth.empty() && camera_.width != given_.width) {
-    cv::resize(prepared.depth, prepared.depth, {camera_.width, camera_.height}, 0, 0,
-               cv::INTER_NEAREST);
-  }
-  return prepared;
 }
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
   const Stopwatch whole;
-  const FrameInput prepared = Prepare(input);
+  if (!records_.empty() && input.time <= records_.back().time)
+    ThrowInput("the frame's time does not grow");
+  const FrameInput prepared = Prepare(input, given_, camera_, settings_);
   const Stopwatch extracting;
   const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
-                                      static_cast<int>(records_.size()));
+                                      first_number_ + static_cast<int>(records_.size()));
   times_.extract.push_back(extracting.Milliseconds());
   records_.push_back({});
   records_.back().time = input.time;
-  const TrackResult result = state_ == TrackState::kInitialising ? Start(frame) : Continue(frame);
+  const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   times_.frame.push_back(whole.Milliseconds());
   return result;
 }
@@ -145,61 +119,77 @@ void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const Ma
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
-  const KeyFrameId id = mapper_.Insert(placed.frame, anchor, placed.matches);
-  const MapSnapshot map = map_.Snapshot();
+  const KeyFrameId id = workers_.mapper().Insert(placed.frame, anchor, placed.matches);
+  const MapSnapshot map = workers_.map().Snapshot();
   const KeyFrame& keyframe = *map.Find(id);
   placed.T_camera_world = keyframe.T_camera_world;
   placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(placed, id, map);
-  mapping_.Add(id);
+  workers_.Add(id);
+}
+
+// No pose: known places first; a new map only where none is known, or none was recognised for long.
+TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
+  const MapSnapshot map = workers_.map().Snapshot();
+  if (map.keyframe_count() > 0) {
+    const Stopwatch watch;
+    std::vector<KeyFrameId> candidates;
+    if (state_ == TrackState::kLost && map.Find(tracker_.reference()))
+      candidates.push_back(tracker_.reference());
+    const auto may_be = [&](KeyFrameId id) {
+      return map.Find(id) && (candidates.empty() || id != candidates[0]);
+    };
+    for (const PlaceMatch& match : workers_.places().Query(*frame, may_be, kRelocaliseCandidates)) {
+      candidates.push_back(match.id);
+    }
+    TrackEstimate estimate = tracker_.Relocalise(frame, map, candidates);
+    times_.track.push_back(watch.Milliseconds());
+    if (estimate.tracked) {
+      ++relocalisations_;
+      start_.Reset();
+      return Accept(std::move(estimate), map);
+    }
+  }
+  if (state_ == TrackState::kLost) {
+    const auto sighted = 100 * settings_.tracker.match_scale;  // corners
+    lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
+    const bool long_lost = frame->time - lost_since_ >= settings_.new_map_seconds &&
+                           lost_sighted_ >= settings_.new_map_frames;
+    if (!long_lost || settings_.localise) {
+      TrackResult result;
+      result.state = state_;
+      result.reason = "the place was not recognised";
+      return result;
+    }
+    LeaveMap();
+  }
+  return Start(frame);
+}
+
+void Slam::Impl::Lose() {
+  tracker_.Forget();
+  state_ = TrackState::kLost;
+  lost_since_ = records_.back().time;
+  lost_sighted_ = 0;
+}
+
+// A map of a few keyframes is worth less than the confusion it makes.
+void Slam::Impl::LeaveMap() {
+  state_ = TrackState::kInitialising;
+  start_.Reset();
+  const MapSnapshot map = workers_.map().Snapshot();
+  const MapId left = map.MapOf(tracker_.reference());
+  if (!left.valid()) return;
+  if (static_cast<int>(map.KeyFramesOf(left).size()) < settings_.min_map_keyframes)
+    workers_.Drop(left);
 }
 
 TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   TrackResult result;
-  if (settings_.sensor != Sensor::kMono) {
-    int with_depth = 0;
-    for (const Keypoint& keypoint : frame->keypoints) with_depth += keypoint.has_depth();
-    const double wanted = 200 * settings_.tracker.match_scale;
-    if (with_depth < wanted) {
-      result.reason = "too few corners with depth";
-      return result;
-    }
-    PlacedFrame placed;
-    placed.frame = frame;
-    placed.inliers = with_depth;
-    AddKeyFrame(placed, Anchor{});
-    result.matches = with_depth;
-  } else {
-    const auto views = start_.Add(frame);
-    if (!views) {
-      result.reason = start_.reason();
-      return result;
-    }
-    Mapper::TwoViewMap two;
-    two.a = views->a;
-    two.b = views->b;
-    two.T_b_a = views->T_b_a;
-    for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
-    const KeyFrameId id = mapper_.InsertTwoViews(two);
-    const MapSnapshot map = map_.Snapshot();
-    const KeyFrame* keyframe = map.Find(id);
-    map_id_ = keyframe->map;
-    trial_points_ =
-        static_cast<int>(std::count_if(keyframe->landmarks.begin(), keyframe->landmarks.end(),
-                                       [](LandmarkId landmark) { return landmark.valid(); }));
-    trial_begin_ = records_.size() - 1;
-    if (trial_points_ < settings_.start.two_view.min_triangulated) {
-      GiveUpStart();
-      result.reason = "the first points did not hold";
-      return result;
-    }
-    trial_left_ = settings_.start.trial_frames;
-    PlacedFrame placed{frame, keyframe->T_camera_world, keyframe->landmarks, trial_points_};
-    tracker_.KeyFrameInserted(frame->number);
-    Place(placed, id, map);
-    result.matches = trial_points_;
-  }
+  const bool started = settings_.sensor == Sensor::kMono ? StartWithMotion(frame, result)
+                                                         : StartWithDepth(frame, result);
+  if (!started) return result;
   state_ = TrackState::kTracking;
   result.state = state_;
   result.keyframe = true;
@@ -207,83 +197,152 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   return result;
 }
 
+bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result) {
+  for (const Keypoint& keypoint : frame->keypoints) result.matches += keypoint.has_depth();
+  if (result.matches < 200 * settings_.tracker.match_scale) {
+    result.reason = "too few corners with depth";
+    return false;
+  }
+  PlacedFrame placed;
+  placed.frame = frame;
+  placed.inliers = result.matches;
+  tracker_.Forget();
+  AddKeyFrame(placed, Anchor{});
+  return true;
+}
+
+bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
+  const auto views = start_.Add(frame);
+  if (!views) {
+    result.reason = start_.reason();
+    return false;
+  }
+  Mapper::TwoViewMap two;
+  two.a = views->a;
+  two.b = views->b;
+  two.T_b_a = views->T_b_a;
+  for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
+  const KeyFrameId id = workers_.mapper().InsertTwoViews(two);
+  const MapSnapshot map = workers_.map().Snapshot();
+  const KeyFrame& keyframe = *map.Find(id);
+  trial_map_ = keyframe.map;
+  trial_keyframes_[0] = keyframe.parent;
+  trial_keyframes_[1] = id;
+  trial_points_ =
+      static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                     [](LandmarkId landmark) { return landmark.valid(); }));
+  if (trial_points_ < settings_.start.two_view.min_triangulated) {
+    GiveUpStart();
+    result.reason = "the first points did not hold";
+    return false;
+  }
+  trial_left_ = settings_.start.trial_frames;
+  tracker_.KeyFrameInserted(frame->number);
+  Place({frame, keyframe.T_camera_world, keyframe.landmarks, trial_points_}, id, map);
+  result.matches = trial_points_;
+  return true;
+}
+
+// The frames placed in it lose their pose with it.
 void Slam::Impl::GiveUpStart() {
-  map_.Commit([&](MapCommit& commit) { commit.Remove(map_id_); });
+  workers_.Drop(trial_map_);
   tracker_.Forget();
   start_.Reset();
   trial_left_ = 0;
   state_ = TrackState::kInitialising;
-  for (size_t i = trial_begin_; i < records_.size(); ++i) records_[i].tracked = false;
 }
 
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
-  const MapSnapshot map = map_.Snapshot();
-  const bool was_lost = state_ == TrackState::kLost;
-  PlacedFrame guess = was_lost ? tracker_.Recover(frame, map) : tracker_.Predict(frame, map);
-  TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
-  std::vector<std::pair<LandmarkId, bool>> sightings;
-  for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
-  if (estimate.tracked) mapper_.Count(sightings);
-
+  const MapSnapshot map = workers_.map().Snapshot();
+  TrackEstimate estimate = tracker_.Estimate(tracker_.Predict(frame, map), map);
+  times_.track.push_back(watch.Milliseconds());
   TrackResult result;
   if (trial_left_ > 0) {
     if (!estimate.tracked ||
         estimate.placed.inliers < settings_.start.trial_share * trial_points_) {
       GiveUpStart();
       result.reason = "the first points did not hold";
-      times_.track.push_back(watch.Milliseconds());
       return result;
     }
-    --trial_left_;
+    if (--trial_left_ == 0) {
+      for (KeyFrameId id : trial_keyframes_) workers_.AddMapped(id);
+    }
   }
-  if (!estimate.tracked) {
-    tracker_.Forget();
-    state_ = TrackState::kLost;
-    result.state = state_;
-    result.reason = "too few landmarks found";
-    times_.track.push_back(watch.Milliseconds());
-    return result;
-  }
-  relocalisations_ += was_lost;
+  if (estimate.tracked) return Accept(std::move(estimate), map);
+  Lose();
+  result.state = state_;
+  result.reason = "too few landmarks found";
+  return result;
+}
+
+TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   state_ = TrackState::kTracking;
+  TrackResult result;
+  result.state = state_;
   // A busy mapper is not given more than it can chew; with depth the tracker lives on new
   // keyframes, so it may queue some.
-  const bool may_insert = mapping_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
-  result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert;
-  times_.track.push_back(watch.Milliseconds());
+  const bool may_insert = workers_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
+  result.keyframe =
+      estimate.wants_keyframe && trial_left_ == 0 && may_insert && !settings_.localise;
+  if (!settings_.localise) {
+    std::vector<std::pair<LandmarkId, bool>> sightings;
+    for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
+    workers_.mapper().Count(sightings);
+  }
   if (result.keyframe) {
     AddKeyFrame(estimate.placed,
                 AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));
   } else {
     Place(estimate.placed, estimate.reference, map);
   }
-  result.state = state_;
   result.matches = estimate.placed.inliers;
   result.T_world_camera = records_.back().T_world_camera_live;
   return result;
+}
+
+void Slam::Impl::Load(const SavedMap& saved) {
+  if (!records_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
+  CheckSameCamera(saved.camera, camera_);
+  if (saved.sensor != NameOfSensor(settings_.sensor)) {
+    ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
+               NameOfSensor(settings_.sensor));
+  }
+  workers_.map().Restore(saved.map);
+  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
+  for (KeyFrameId id : saved.map.KeyFrames()) {
+    keyframes.push_back({id, saved.map.Find(id)->frame});
+    first_number_ = std::max(first_number_, keyframes.back().second->number + 1);
+  }
+  workers_.places().Restore(saved.places, keyframes);
+  if (keyframes.empty()) return;
+  state_ = TrackState::kLost;
+  lost_since_ = -1e300;  // nothing was lost: where no place is known, a map starts at once
 }
 
 Slam::Slam(const Camera& camera, const SlamSettings& settings)
     : impl_(std::make_unique<Impl>(camera, settings)) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
-void Slam::Finish() { impl_->mapping_.Drain(); }
-MapSnapshot Slam::Snapshot() const { return impl_->map_.Snapshot(); }
+void Slam::Finish() { impl_->workers_.Drain(); }
+void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
+MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
 const Camera& Slam::camera() const { return impl_->camera_; }
-int Slam::relocalisations() const { return impl_->relocalisations_; }
+int Slam::first_number() const { return impl_->first_number_; }
+
+SlamCounts Slam::Counts() const {
+  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges()};
+}
 
 std::string Slam::SaveMap() const {
-  const Sensor sensor = impl_->settings_.sensor;
-  const char* name = sensor == Sensor::kMono     ? "mono"
-                     : sensor == Sensor::kStereo ? "stereo"
-                                                 : "rgbd";
-  return EncodeMap({Snapshot(), impl_->camera_, name, impl_->settings_.All()});
+  return EncodeMap({Snapshot(), impl_->camera_, NameOfSensor(impl_->settings_.sensor),
+                    impl_->settings_.All(), impl_->workers_.places().Save()});
 }
 
 StageTimes Slam::Times() const {
   StageTimes times = impl_->times_;
-  times.map = impl_->mapping_.Milliseconds();
+  times.map = impl_->workers_.MapMilliseconds();
+  times.loop = impl_->workers_.LoopMilliseconds();
   return times;
 }
 
@@ -295,8 +354,9 @@ std::vector<FramePose> Slam::Trajectory() const {
     FramePose pose;
     pose.index = static_cast<int>(i);
     pose.time = record.time;
-    pose.tracked = record.tracked;
-    if (record.tracked) {
+    if (record.tracked) pose.map = map.MapOf(record.anchor.keyframe);
+    pose.tracked = pose.map.valid();  // not when its map was given up
+    if (pose.tracked) {
       pose.T_world_camera = PoseOf(map.state(), record.anchor).Inverse();
       pose.T_world_camera_live = record.T_world_camera_live;
     }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/base/timing.h"
+#include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
 
@@ -34,13 +35,18 @@ struct FramePose {
   int index = 0;    // call of Track() it came from, from 0
   double time = 0;  // seconds
   bool tracked = false;
+  MapId map;                // whose world the pose is in: none when not tracked
   Se3 T_world_camera;       // corrected by all that was learnt since
   Se3 T_world_camera_live;  // as it was when the frame was done
 };
 
-// Milliseconds, one sample per frame (map: per keyframe).
+// Milliseconds, one sample per frame (map, loop: per keyframe).
 struct StageTimes {
-  std::vector<double> frame, extract, track, map;
+  std::vector<double> frame, extract, track, map, loop;
+};
+
+struct SlamCounts {
+  int relocalisations = 0, loops = 0, merges = 0;
 };
 
 class Slam {
@@ -52,6 +58,10 @@ class Slam {
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
 
+  // Goes on in a saved map (DecodeMap() of what SaveMap() gave). Before the first frame. Throws
+  // Error (input) when it was made with another camera or sensor.
+  void Load(const SavedMap& saved);
+
   // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a
   // time that does not grow; the system stays as it was then.
   TrackResult Track(const FrameInput& input);
@@ -62,7 +72,9 @@ class Slam {
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   const Camera& camera() const;  // as used: scaled by the profile
-  int relocalisations() const;
+  SlamCounts Counts() const;
+  // Frame::number of the first call of Track(): keyframes of a loaded map have smaller ones.
+  int first_number() const;
 
  private:
   class Impl;

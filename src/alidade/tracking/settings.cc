@@ -15,6 +15,7 @@ void TrackerSettings::Check() const {
   require(min_predicted > 0, "min_predicted must be positive");
   require(min_after_prediction >= 4, "min_after_prediction must be at least 4");
   require(min_tracked >= 6, "min_tracked must be at least 6");
+  require(min_found_share >= 0 && min_found_share < 1, "min_found_share must lie in [0, 1)");
   require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
   require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");
   require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");
@@ -23,6 +24,10 @@ void TrackerSettings::Check() const {
   require(last_frame_radius > 0 && last_frame_radius_depth > 0 && local_radius > 0 &&
               local_radius_depth > 0,
           "radii must be positive");
+  require(relocalise_radius > 0, "relocalise_radius must be positive");
+  require(min_relocalised >= 10, "min_relocalised must be at least 10");
+  require(min_relocalised_share >= 0 && min_relocalised_share <= 1,
+          "min_relocalised_share must lie in [0, 1]");
   require(local_keyframes > 0, "local_keyframes must be positive");
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
   require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap,

@@ -11,8 +11,10 @@ struct TrackerSettings {
   double match_scale =
       1.0;                 // multiplies the counts of matches below; phone 0.8 (half the features)
   int min_predicted = 20;  // matches with the last frame, below which the search is widened
-  int min_after_prediction = 10;  // inliers, below which the reference keyframe is tried instead
-  int min_tracked = 20;           // inliers with the local map, below which the frame is lost
+  int min_after_prediction = 10;   // inliers, below which the reference keyframe is tried instead
+  int min_tracked = 20;            // inliers with the local map, below which the frame is lost
+  double min_found_share = 0.085;  // inliers, of the landmarks that should be in sight; below, the
+                                   // frame is lost: right poses show twice as many at the least
   double min_agreement =
       0.4;                 // share of a frame's matches that must fit one pose for it to be trusted
   int max_distance = 100;  // bits of 256; with a pose to guide the search
@@ -21,8 +23,11 @@ struct TrackerSettings {
   float last_frame_radius_depth = 10;  // the same with depth: the prediction is better
   float local_radius = 4;  // pixels on level 0, seen from the side; 0.625 of it head-on (ORB-SLAM)
   float local_radius_depth =
-      12;                    // the same with depth, whose landmarks are placed from a single view
-  int local_keyframes = 40;  // at most, in the local map
+      12;  // the same with depth, whose landmarks are placed from a single view
+  float relocalise_radius = 10;  // pixels on level 0, around a place found by descriptors alone
+  int min_relocalised = 40;      // inliers for a place to be believed when lost …
+  double min_relocalised_share = 0.15;  // … and their share of the landmarks that should be seen
+  int local_keyframes = 40;             // at most, in the local map
   MeasurementNoise noise{.sigma_px = 1.0};  // of keypoints
   double good_agreement =
       0.7;  // share of matches that fit one pose, below which a frame is taken as bent …

@@ -9,6 +9,11 @@
 #include "alidade/tracking/local_search.h"
 
 namespace alidade {
+namespace {
+
+constexpr int kRelocaliseKeyFrames = 10;  // whose landmarks are looked for before all around are
+
+}  // namespace
 
 Tracker::Tracker(const Camera& camera, TrackerSettings settings)
     : camera_(camera),
@@ -142,24 +147,33 @@ void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrame
   Optimise(guess, map);
 }
 
-PlacedFrame Tracker::Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
-  std::vector<KeyFrameId> candidates;
-  if (const KeyFrame* reference = map.Find(this->reference())) {
-    candidates.push_back(reference->id);
-    for (size_t i = 0; i < reference->covisible.size() && i < 4; ++i) {
-      candidates.push_back(reference->covisible[i].id);
-    }
-  }
-  PlacedFrame best;
+TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                                  std::span<const KeyFrameId> candidates) {
+  TrackerSettings wide = settings_;
+  wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
+  TrackEstimate best;
+  best.placed.frame = frame;
   for (KeyFrameId id : candidates) {
     PlacedFrame guess;
     guess.frame = frame;
     MatchKeyFrame(guess, map, id);
-    if (guess.inliers > best.inliers || !best.frame) best = std::move(guess);
-    if (best.inliers >= 50) break;
+    if (guess.inliers < Scaled(settings_.min_after_prediction)) continue;
+    const LocalMap local =
+        gatherer_.Gather(map, guess.matches, guess.T_camera_world, kRelocaliseKeyFrames);
+    guess.matches = MatchLocalMap(guess, map, local, camera_, wide).matches;
+    Optimise(guess, map);
+    TrackEstimate estimate = Estimate(std::move(guess), map);
+    estimate.tracked = estimate.tracked && IsCertain(estimate);
+    if (estimate.tracked) return estimate;
   }
-  if (!best.frame) best.frame = std::move(frame);
   return best;
+}
+
+// A place only like the one in view shows some of the same, and leaves much of the rest unseen.
+bool Tracker::IsCertain(const TrackEstimate& estimate) const {
+  const auto expected = static_cast<double>(estimate.sightings.size());
+  return estimate.placed.inliers >= Scaled(settings_.min_relocalised) &&
+         estimate.placed.inliers >= settings_.min_relocalised_share * expected;
 }
 
 double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
@@ -214,7 +228,10 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     if (!counted[id.value]) estimate.sightings.push_back({id, false});
   }
   estimate.reference = local.reference;
-  estimate.tracked = guess.inliers >= Scaled(settings_.min_tracked);
+  // What agrees with a wrong pose is little of what that pose should see.
+  estimate.tracked =
+      guess.inliers >= Scaled(settings_.min_tracked) &&
+      guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
   estimate.placed = std::move(guess);
   if (estimate.tracked) {
     most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);

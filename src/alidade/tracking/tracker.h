@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -41,8 +42,10 @@ class Tracker {
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // Pose from the local map, starting at the guess.
   TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
-  // A guess with no last frame to lean on: descriptors against the keyframes last in use, RANSAC.
-  PlacedFrame Recover(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
+  // Pose with no last frame to lean on (ORB-SLAM §V-C): descriptors against each of the keyframes
+  // that may show the place, RANSAC, then the landmarks around. Tracked only when certain.
+  TrackEstimate Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                           std::span<const KeyFrameId> candidates);
 
   // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
   // or a loss.
@@ -64,6 +67,7 @@ class Tracker {
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
   // Returns the share of the matches that agree with the pose found; the others are dropped.
   double Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
+  bool IsCertain(const TrackEstimate& estimate) const;
   bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
 

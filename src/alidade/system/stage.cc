@@ -1,14 +1,19 @@
-#include "alidade/system/mapping_stage.h"
+#include "alidade/system/stage.h"
 
+#include <utility>
+
+#include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
 
 namespace alidade {
 
-MappingStage::MappingStage(Mapper& mapper, bool threaded) : mapper_(mapper) {
-  if (threaded) thread_ = std::thread([this] { Run(); });
+Stage::Stage(Work work, Schedule schedule) : work_(std::move(work)), schedule_(schedule) {
+  if (schedule != Schedule::kInline) thread_ = std::thread([this] { Run(); });
 }
 
-MappingStage::~MappingStage() {
+Stage::~Stage() { Stop(); }
+
+void Stage::Stop() {
   {
     std::lock_guard<std::mutex> lock(mutex_);
     stopping_ = true;
@@ -19,15 +24,15 @@ MappingStage::~MappingStage() {
   if (thread_.joinable()) thread_.join();
 }
 
-void MappingStage::Process(KeyFrameId id) {
+void Stage::Process(KeyFrameId id) {
   const Stopwatch watch;
-  mapper_.Process(id, thread_.joinable() ? &hurry_ : nullptr);
+  work_(id, schedule_ == Schedule::kInline ? nullptr : &hurry_);
   std::lock_guard<std::mutex> lock(mutex_);
   milliseconds_.push_back(watch.Milliseconds());
 }
 
-void MappingStage::Add(KeyFrameId id) {
-  if (!thread_.joinable()) return Process(id);
+void Stage::Add(KeyFrameId id) {
+  if (schedule_ == Schedule::kInline) return Process(id);
   {
     std::lock_guard<std::mutex> lock(mutex_);
     queue_.push_back(id);
@@ -36,28 +41,54 @@ void MappingStage::Add(KeyFrameId id) {
   changed_.notify_all();
 }
 
-int MappingStage::backlog() const {
+int Stage::backlog() const {
   std::lock_guard<std::mutex> lock(mutex_);
   return static_cast<int>(queue_.size()) + working_;
 }
 
-void MappingStage::Drain() {
+void Stage::Drain() {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [&] { return failure_ || (queue_.empty() && !working_); });
   if (failure_) std::rethrow_exception(failure_);
 }
 
-std::vector<double> MappingStage::Milliseconds() const {
+std::vector<double> Stage::Milliseconds() const {
   std::lock_guard<std::mutex> lock(mutex_);
   return milliseconds_;
 }
 
-void MappingStage::Run() {
+void Stage::WhileResting(const std::function<void()>& action) {
+  if (schedule_ == Schedule::kInline) return action();
+  {
+    std::unique_lock<std::mutex> lock(mutex_);
+    ++rests_;
+    hurry_ = true;
+    changed_.wait(lock, [&] { return !working_; });
+  }
+  std::exception_ptr failure;
+  try {
+    action();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    --rests_;
+  }
+  changed_.notify_all();
+  if (failure) std::rethrow_exception(failure);
+}
+
+void Stage::Run() {
+  if (schedule_ == Schedule::kBackground) {
+    KeepLoopsOnThisThread();
+    LowerThreadPriority();
+  }
   while (true) {
     KeyFrameId id;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait(lock, [&] { return stopping_ || !queue_.empty(); });
+      changed_.wait(lock, [&] { return stopping_ || (!queue_.empty() && rests_ == 0); });
       if (stopping_) return;
       id = queue_.front();
       queue_.pop_front();

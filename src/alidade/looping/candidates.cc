@@ -1,0 +1,55 @@
+#include "alidade/looping/candidates.h"
+
+#include <algorithm>
+
+namespace alidade {
+namespace {
+
+bool AreCovisible(const KeyFrame& keyframe, KeyFrameId other) {
+  return std::any_of(keyframe.covisible.begin(), keyframe.covisible.end(),
+                     [&](const Neighbour& n) { return n.id == other; });
+}
+
+// What mapping ties together anyway.
+std::vector<uint8_t> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe) {
+  std::vector<uint8_t> near(map.next_keyframe(), 0);
+  near[keyframe.id.value] = 1;
+  for (const Neighbour& n : keyframe.covisible) {
+    near[n.id.value] = 1;
+    for (const Neighbour& second : map.Find(n.id)->covisible) near[second.id.value] = 1;
+  }
+  return near;
+}
+
+}  // namespace
+
+std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIndex& places,
+                                           KeyFrameId id, const LoopSettings& settings) {
+  const KeyFrame& keyframe = *map.Find(id);
+  const std::vector<uint8_t> near = Surroundings(map, keyframe);
+  double likest = 0;
+  for (const Neighbour& n : keyframe.covisible) {
+    likest = std::max(likest, places.Score(*keyframe.frame, n.id));
+  }
+  std::vector<KeyFrameId> chosen;
+  int in_this_map = 0, in_others = 0;
+  const auto may_be = [&](KeyFrameId other) {
+    return other.value < near.size() && !near[other.value] && map.Find(other);
+  };
+  for (const PlaceMatch& match :
+       places.Query(*keyframe.frame, may_be, static_cast<size_t>(settings.group))) {
+    if (match.score < settings.score_share * likest) break;
+    const KeyFrame& other = *map.Find(match.id);
+    int& count = other.map == keyframe.map ? in_this_map : in_others;
+    if (count >= settings.candidates) continue;
+    const bool grouped = std::any_of(chosen.begin(), chosen.end(), [&](KeyFrameId better) {
+      return AreCovisible(other, better);
+    });
+    if (grouped) continue;
+    chosen.push_back(match.id);
+    ++count;
+  }
+  return chosen;
+}
+
+}  // namespace alidade

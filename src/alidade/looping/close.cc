@@ -1,0 +1,166 @@
+#include "alidade/looping/close.h"
+
+#include <algorithm>
+
+#include "alidade/looping/surroundings.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kMinVotes = 15;  // landmarks of the place two keyframes must share to be tied
+
+// A keyframe of the window where the match puts it.
+struct Placed {
+  KeyFrameId id;
+  Se3 T_camera_world;
+};
+
+std::vector<Placed> PlaceWindow(const MapSnapshot& map, const LoopMatch& match) {
+  const KeyFrame& keyframe = *map.Find(match.keyframe);
+  std::vector<Placed> window{{keyframe.id, match.T_camera_world}};
+  for (const Neighbour& n : keyframe.covisible) {
+    const KeyFrame& other = *map.Find(n.id);
+    Se3 T_other_keyframe = other.T_camera_world * keyframe.T_camera_world.Inverse();
+    T_other_keyframe.t *= match.growth;
+    window.push_back({n.id, T_other_keyframe * match.T_camera_world});
+  }
+  std::sort(window.begin(), window.end(),
+            [](const Placed& a, const Placed& b) { return a.id < b.id; });
+  return window;
+}
+
+Sim3 NodeOf(const Se3& T_camera_world, double growth = 1) {
+  return {1 / growth, T_camera_world.R, T_camera_world.t / growth};
+}
+
+class EssentialGraph {
+ public:
+  EssentialGraph(const MapSnapshot& map, const LoopCorrection& loop,
+                 const std::vector<Placed>& window, const Camera& camera,
+                 const LoopSettings& settings)
+      : map_(map), settings_(settings), node_(map.next_keyframe(), -1) {
+    graph_.with_scale = camera.StereoBaseline() <= 0;
+    const MapId within = map.Find(loop.match.keyframe)->map;
+    for (KeyFrameId id : map.KeyFramesOf(within)) {
+      const KeyFrame& keyframe = *map.Find(id);
+      node_[id.value] = static_cast<int>(ids_.size());
+      ids_.push_back(id);
+      before_.push_back(NodeOf(keyframe.T_camera_world));
+      graph_.fixed.push_back(!keyframe.parent.valid());  // holds the world's frame
+    }
+    graph_.T_camera_world = before_;
+    in_window_.assign(map.next_keyframe(), 0);
+    for (const Placed& placed : window) {
+      graph_.T_camera_world[node_[placed.id.value]] =
+          NodeOf(placed.T_camera_world, loop.match.growth);
+      in_window_[placed.id.value] = 1;
+    }
+    for (KeyFrameId id : ids_) TieAsBefore(*map.Find(id));
+    for (const Placed& placed : window) TieToThePlace(placed.id, loop.fused);
+    TieByLoop(loop.match.keyframe, loop.match.place);
+  }
+
+  std::vector<KeyFrameCorrection> Optimise() {
+    OptimizePoseGraph(graph_, settings_.graph);
+    std::vector<KeyFrameCorrection> corrections;
+    for (size_t i = 0; i < ids_.size(); ++i) {
+      const Sim3& T = graph_.T_camera_world[i];
+      corrections.push_back({ids_[i], {T.R, T.t / T.s}, 1 / T.s});
+    }
+    return corrections;
+  }
+
+ private:
+  void Tie(KeyFrameId a, KeyFrameId b, const std::vector<Sim3>& poses) {
+    const int i = node_[a.value], j = node_[b.value];
+    if (i < 0 || j < 0 || i == j) return;
+    graph_.edges.push_back({i, j, poses[i] * poses[j].Inverse(), 1.0});
+  }
+
+  // What keyframes knew of each other goes on to hold. Each pair once, by its younger one.
+  void TieAsBefore(const KeyFrame& keyframe) {
+    if (keyframe.parent.valid()) Tie(keyframe.id, keyframe.parent, before_);
+    for (KeyFrameId other : keyframe.loops) {
+      if (other < keyframe.id && other != keyframe.parent) Tie(keyframe.id, other, before_);
+    }
+    for (const Neighbour& n : keyframe.covisible) {
+      if (n.shared < settings_.graph_shared) break;
+      const bool tied = n.id == keyframe.parent ||
+                        std::binary_search(keyframe.loops.begin(), keyframe.loops.end(), n.id);
+      if (n.id < keyframe.id && !tied) Tie(keyframe.id, n.id, before_);
+    }
+  }
+
+  // To the keyframes that see what was found in it, from where it is now.
+  void TieToThePlace(KeyFrameId id, const std::vector<FusedSighting>& fused) {
+    std::vector<int> votes(map_.next_keyframe(), 0);
+    for (const FusedSighting& s : fused) {
+      if (s.keyframe != id) continue;
+      for (const Observation& o : map_.Find(s.landmark)->observations) ++votes[o.keyframe.value];
+    }
+    for (uint32_t i = 0; i < votes.size(); ++i) {
+      if (votes[i] >= kMinVotes && !in_window_[i]) Tie(id, {i}, graph_.T_camera_world);
+    }
+  }
+
+  void TieByLoop(KeyFrameId keyframe, KeyFrameId place) {
+    Tie(keyframe, place, graph_.T_camera_world);
+  }
+
+  const MapSnapshot& map_;
+  const LoopSettings& settings_;
+  std::vector<int> node_;  // by keyframe id; -1: of another map
+  std::vector<KeyFrameId> ids_;
+  std::vector<Sim3> before_;
+  std::vector<uint8_t> in_window_;  // by keyframe id
+  PoseGraph graph_;
+};
+
+}  // namespace
+
+LoopCorrection CorrectLoop(const MapSnapshot& map, const LoopMatch& match, const Camera& camera,
+                           const LoopSettings& settings) {
+  LoopCorrection loop;
+  loop.match = match;
+  const KeyFrame &keyframe = *map.Find(match.keyframe), &place = *map.Find(match.place);
+  const std::vector<Placed> window = PlaceWindow(map, match);
+  const std::vector<LandmarkId> around = LandmarksAround(map, place);
+  const LandmarkSearch search{settings.search_radius / 2, settings.max_distance, {}};
+  for (const Placed& placed : window) {
+    loop.window.push_back(placed.id);
+    const std::vector<FusedSighting> found =
+        FindLandmarks(map, around, *map.Find(placed.id), placed.T_camera_world, camera, search);
+    loop.fused.insert(loop.fused.end(), found.begin(), found.end());
+  }
+  if (keyframe.map == place.map) {
+    loop.corrections = EssentialGraph(map, loop, window, camera, settings).Optimise();
+    return loop;
+  }
+  const auto similarity = [](const Se3& T) { return Sim3{1, T.R, T.t}; };
+  const Sim3 T_place_here = similarity(match.T_camera_world.Inverse()) *
+                            Sim3{match.growth, Eigen::Matrix3d::Identity(), {0, 0, 0}} *
+                            similarity(keyframe.T_camera_world);
+  const bool here_is_older = keyframe.map < place.map;
+  loop.older = std::min(keyframe.map, place.map);
+  loop.younger = std::max(keyframe.map, place.map);
+  loop.T_older_younger = here_is_older ? T_place_here.Inverse() : T_place_here;
+  return loop;
+}
+
+bool CommitLoop(MapCommit& commit, const LoopCorrection& loop) {
+  const KeyFrame* keyframe = commit.Find(loop.match.keyframe);
+  const KeyFrame* place = commit.Find(loop.match.place);
+  if (!keyframe || !place) return false;
+  if (loop.merges()) {
+    const KeyFrameId anchor = keyframe->map == loop.older ? keyframe->id : place->id;
+    CommitMerge(commit, loop.younger, loop.older, loop.T_older_younger, anchor);
+  } else {
+    CommitCorrections(commit, loop.corrections);
+  }
+  for (LandmarkId landmark : CommitFusion(commit, loop.fused)) commit.RefreshLandmark(landmark);
+  commit.AddLoop(loop.match.keyframe, loop.match.place);
+  for (KeyFrameId id : loop.window) commit.RefreshCovisibility(id);
+  return true;
+}
+
+}  // namespace alidade

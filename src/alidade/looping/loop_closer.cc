@@ -1,0 +1,69 @@
+#include "alidade/looping/loop_closer.h"
+
+#include <algorithm>
+
+#include "alidade/looping/candidates.h"
+
+namespace alidade {
+
+LoopCloser::LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera,
+                       LoopSettings settings)
+    : map_(map), places_(places), camera_(camera), settings_(settings) {
+  settings_.Check();
+  settings_.noise.right_from_sensor = camera.baseline <= 0;
+}
+
+std::optional<LoopMatch> LoopCloser::Add(KeyFrameId id) {
+  const MapSnapshot map = map_.Snapshot();
+  std::erase_if(entered_, [&](KeyFrameId old) {
+    if (map.Find(old)) return false;
+    places_.Remove(old);
+    return true;
+  });
+  const KeyFrame* keyframe = map.Find(id);
+  if (!keyframe) return {};
+  std::optional<LoopMatch> match;
+  if (settings_.enabled) {
+    for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_)) {
+      match = VerifyLoop(map, id, place, camera_, settings_);
+      if (match) break;
+    }
+  }
+  places_.Add(id, keyframe->frame);
+  entered_.push_back(id);
+  return match;
+}
+
+bool LoopCloser::Close(const LoopMatch& match) {
+  const MapSnapshot map = map_.Snapshot();
+  if (!map.Find(match.keyframe) || !map.Find(match.place)) return false;
+  const LoopCorrection correction = CorrectLoop(map, match, camera_, settings_);
+  bool done = false;
+  map_.CommitAside([&](MapCommit& commit) { done = CommitLoop(commit, correction); });
+  if (done) ++(correction.merges() ? merges_ : loops_);
+  return done;
+}
+
+void LoopCloser::AdjustAll(
+    KeyFrameId id, const std::atomic<bool>* stop,
+    const std::function<void(const std::function<void()>&)>& while_mapper_rests) {
+  const MapSnapshot map = map_.Snapshot();
+  const KeyFrame* keyframe = map.Find(id);
+  if (!keyframe) return;
+  std::vector<KeyFrameId> free, fixed;
+  for (KeyFrameId other : map.KeyFramesOf(keyframe->map)) {
+    (map.Find(other)->parent.valid() ? free : fixed).push_back(other);
+  }
+  Adjustment adjusted =
+      AdjustKeyFrames(map, free, fixed, camera_, {settings_.noise, settings_.bundle}, stop);
+  adjusted.outliers.clear();  // the mapper will find those that stay
+  while_mapper_rests([&] {
+    map_.CommitAside([&](MapCommit& commit) {
+      if (commit.state().corrections != map.corrections()) return;  // another loop came
+      CommitAdjustment(commit, map, adjusted);
+      commit.CountCorrection();
+    });
+  });
+}
+
+}  // namespace alidade

@@ -1,0 +1,44 @@
+// Settings of the loop closer. Counts of matches are for 1000 features; match_scale adapts them.
+#pragma once
+
+#include "alidade/map/adjust.h"
+#include "alidade/optimize/pose_graph.h"
+
+namespace alidade {
+
+struct LoopSettings {
+  bool enabled = true;       // false: places are recognised only to relocalise
+  MeasurementNoise noise{};  // of keypoints
+  double match_scale = 1.0;  // multiplies the counts of matches below; phone 0.8
+
+  // Candidates.
+  int candidates = 3;        // places looked at for each keyframe, at most, in each map
+  int group = 10;            // likest keyframes they are chosen from
+  double score_share = 0.6;  // of the best covisible keyframe's score: what is less alike is no
+                             // candidate (ORB-SLAM §VII-A)
+
+  // Verification.
+  int min_matches = 20;          // of descriptors alone
+  int min_aligned = 15;          // of those, that agree on one alignment (Horn 1987)
+  int min_found = 45;            // landmarks of the old place found where the alignment puts them
+  double min_found_share = 0.1;  // of those that should be in sight: places only alike show less
+  double search_radius = 8;      // pixels on level 0; the second time half of it
+  int max_distance = 60;         // bits of 256
+  int confirm_keyframes = 5;     // covisible keyframes that are asked, too …
+  int confirm_needed = 2;        // … and how many must agree
+  int confirm_found = 25;        // landmarks found in each of them
+  // What tracking cannot have drifted by is no loop, however alike (doors of a corridor).
+  double max_drift = 0.12;       // of the way since the old place was seen
+  double max_drift_floor = 0.5;  // of the median depth, whatever the way
+  double max_turn = 0.6;         // radians
+  double max_scale = 1.7;        // monocular: between old and new place
+
+  // Correction.
+  int graph_shared = 100;  // landmarks two keyframes share to be tied in the pose graph
+  PoseGraphSettings graph;
+  BundleSettings bundle{.max_iterations = 10, .min_relative_decrease = 1e-4};  // of the whole map
+  uint64_t seed = 1;   // of the random samples
+  void Check() const;  // throws Error (usage) naming the field that cannot be
+};
+
+}  // namespace alidade

@@ -1,0 +1,29 @@
+// What makes up a place: all that is seen from around a keyframe.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "alidade/map/map_store.h"
+
+namespace alidade {
+
+// Landmarks the keyframe and its ten best covisible ones see, each once, by id.
+inline std::vector<LandmarkId> LandmarksAround(const MapSnapshot& map, const KeyFrame& place) {
+  constexpr size_t kKeyFrames = 10;
+  std::vector<LandmarkId> landmarks;
+  const auto add = [&](const KeyFrame& keyframe) {
+    for (LandmarkId id : keyframe.landmarks) {
+      if (id.valid()) landmarks.push_back(id);
+    }
+  };
+  add(place);
+  for (size_t i = 0; i < place.covisible.size() && i < kKeyFrames; ++i) {
+    add(*map.Find(place.covisible[i].id));
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  return landmarks;
+}
+
+}  // namespace alidade

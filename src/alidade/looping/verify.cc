@@ -1,0 +1,195 @@
+#include "alidade/looping/verify.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/features/matching.h"
+#include "alidade/looping/surroundings.h"
+#include "alidade/optimize/sim3_refine.h"
+
+namespace alidade {
+namespace {
+
+std::vector<int> Known(const KeyFrame& keyframe) {
+  std::vector<int> known;
+  for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+    if (keyframe.landmarks[i].valid()) known.push_back(static_cast<int>(i));
+  }
+  return known;
+}
+
+Sim3Match MatchOf(const MapSnapshot& map, const KeyFrame& a, int in_a, const KeyFrame& b, int in_b,
+                  const LoopSettings& settings) {
+  const Keypoint& keypoint_a = a.frame->keypoints[in_a];
+  const Keypoint& keypoint_b = b.frame->keypoints[in_b];
+  return {a.T_camera_world * map.Find(a.landmarks[in_a])->p_world,
+          b.T_camera_world * map.Find(b.landmarks[in_b])->p_world,
+          keypoint_a.pixel(),
+          keypoint_b.pixel(),
+          settings.noise.sigma_px * ScaleOfLevel(keypoint_a.level),
+          settings.noise.sigma_px * ScaleOfLevel(keypoint_b.level)};
+}
+
+// The pose of camera a, among the landmarks b sees, and how its own surroundings must grow.
+struct Alignment {
+  Se3 T_camera_world;
+  double growth = 1;
+};
+
+Alignment AlignmentOf(const Sim3& T_a_b, const KeyFrame& b) {
+  const Sim3 T_a_world = T_a_b * Sim3{1, b.T_camera_world.R, b.T_camera_world.t};
+  return {{T_a_world.R, T_a_world.t / T_a_world.s}, 1 / T_a_world.s};
+}
+
+int DifferentKeypoints(const std::vector<FusedSighting>& found) {
+  std::vector<int> keypoints;
+  for (const FusedSighting& s : found) keypoints.push_back(s.keypoint);
+  std::sort(keypoints.begin(), keypoints.end());
+  return static_cast<int>(std::unique(keypoints.begin(), keypoints.end()) - keypoints.begin());
+}
+
+class Verifier {
+ public:
+  Verifier(const MapSnapshot& map, const KeyFrame& keyframe, const KeyFrame& place,
+           const Camera& camera, const LoopSettings& settings)
+      : map_(map), a_(keyframe), b_(place), camera_(camera), settings_(settings) {
+    with_scale_ = camera.StereoBaseline() <= 0;
+  }
+
+  std::optional<LoopMatch> Run() {
+    if (!Align()) return {};
+    around_ = LandmarksAround(map_, b_);
+    Search(settings_.search_radius);
+    Refine();
+    Search(settings_.search_radius / 2);
+    const int found = DifferentKeypoints(match_.found);
+    if (found < Scaled(settings_.min_found) || found < settings_.min_found_share * match_.visible)
+      return {};
+    if (a_.map == b_.map && !CanHaveDrifted()) return {};
+    if (!Confirmed()) return {};
+    match_.keyframe = a_.id;
+    match_.place = b_.id;
+    match_.T_camera_world = alignment_.T_camera_world;
+    match_.growth = alignment_.growth;
+    return std::move(match_);
+  }
+
+ private:
+  int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
+
+  bool Align() {
+    MatchSettings matching;
+    matching.ratio = 0.8;
+    const std::vector<int> of_a = Known(a_), of_b = Known(b_);
+    for (const IndexMatch& m : MatchSubsets(*a_.frame, of_a, *b_.frame, of_b, matching)) {
+      matches_.push_back(MatchOf(map_, a_, m.a, b_, m.b, settings_));
+    }
+    if (static_cast<int>(matches_.size()) < Scaled(settings_.min_matches)) return false;
+    Sim3RansacSettings ransac;
+    ransac.min_inliers = Scaled(settings_.min_aligned);
+    ransac.with_scale = with_scale_;
+    ransac.seed = settings_.seed + a_.id.value;
+    const Sim3RansacResult aligned = SolveSim3Ransac(camera_, matches_, ransac);
+    if (!aligned.success) return false;
+    T_a_b_ = aligned.T_a_b;
+    alignment_ = AlignmentOf(T_a_b_, b_);
+    return true;
+  }
+
+  void Search(double radius) {
+    const LandmarkSearch search{radius, settings_.max_distance, {}};
+    match_.found = FindLandmarks(map_, around_, a_, alignment_.T_camera_world, camera_, search,
+                                 &match_.visible);
+  }
+
+  // Landmarks found that both cameras see, in both maps.
+  void Refine() {
+    std::vector<Sim3Match> matches;
+    for (const FusedSighting& s : match_.found) {
+      const Landmark& landmark = *map_.Find(s.landmark);
+      const auto in_b = std::find_if(landmark.observations.begin(), landmark.observations.end(),
+                                     [&](const Observation& o) { return o.keyframe == b_.id; });
+      if (in_b == landmark.observations.end() || !a_.landmarks[s.keypoint].valid()) continue;
+      matches.push_back(MatchOf(map_, a_, s.keypoint, b_, in_b->keypoint, settings_));
+    }
+    if (matches.size() < matches_.size() / 2)
+      matches.insert(matches.end(), matches_.begin(), matches_.end());
+    const Sim3RefineResult refined = RefineSim3(camera_, T_a_b_, matches, with_scale_);
+    if (refined.inliers < Scaled(settings_.min_aligned)) return;
+    T_a_b_ = refined.T_a_b;
+    alignment_ = AlignmentOf(T_a_b_, b_);
+  }
+
+  bool CanHaveDrifted() const {
+    const double growth = alignment_.growth;
+    if (growth > settings_.max_scale || growth < 1 / settings_.max_scale) return false;
+    if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
+      return false;
+    double way = 0;
+    const KeyFrame* before = nullptr;
+    const KeyFrameId first = std::min(a_.id, b_.id), last = std::max(a_.id, b_.id);
+    for (uint32_t i = first.value; i <= last.value; ++i) {
+      const KeyFrame* here = map_.Find(KeyFrameId{i});
+      if (!here || here->map != a_.map) continue;
+      if (before) way += (here->Centre() - before->Centre()).norm();
+      before = here;
+    }
+    const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
+    return shift < settings_.max_drift * way + settings_.max_drift_floor * MedianDepth();
+  }
+
+  double MedianDepth() const {
+    std::vector<double> depths;
+    for (LandmarkId id : a_.landmarks) {
+      if (const Landmark* landmark = id.valid() ? map_.Find(id) : nullptr)
+        depths.push_back((a_.T_camera_world * landmark->p_world).z());
+    }
+    if (depths.empty()) return 0;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    return *middle;
+  }
+
+  // Whether the keyframes around see the place, too. All of them where there are fewer than asked.
+  bool Confirmed() const {
+    const LandmarkSearch search{settings_.search_radius, settings_.max_distance, {}};
+    int asked = 0, agreed = 0;
+    for (const Neighbour& n : a_.covisible) {
+      if (asked >= settings_.confirm_keyframes) break;
+      const KeyFrame& other = *map_.Find(n.id);
+      Se3 T_other_a = other.T_camera_world * a_.T_camera_world.Inverse();
+      T_other_a.t *= alignment_.growth;
+      int visible = 0;
+      const auto found = FindLandmarks(map_, around_, other, T_other_a * alignment_.T_camera_world,
+                                       camera_, search, &visible);
+      const int keypoints = DifferentKeypoints(found);
+      ++asked;
+      agreed += keypoints >= Scaled(settings_.confirm_found) &&
+                keypoints >= settings_.min_found_share * visible;
+    }
+    return agreed >= std::min(settings_.confirm_needed, asked);
+  }
+
+  const MapSnapshot& map_;
+  const KeyFrame& a_;
+  const KeyFrame& b_;
+  const Camera& camera_;
+  const LoopSettings& settings_;
+  bool with_scale_ = true;
+  std::vector<Sim3Match> matches_;  // by descriptors alone
+  std::vector<LandmarkId> around_;  // landmarks of the place
+  Sim3 T_a_b_;
+  Alignment alignment_;
+  LoopMatch match_;
+};
+
+}  // namespace
+
+std::optional<LoopMatch> VerifyLoop(const MapSnapshot& map, KeyFrameId keyframe, KeyFrameId place,
+                                    const Camera& camera, const LoopSettings& settings) {
+  const KeyFrame *a = map.Find(keyframe), *b = map.Find(place);
+  if (!a || !b) return {};
+  return Verifier(map, *a, *b, camera, settings).Run();
+}
+
+}  // namespace alidade

@@ -1,0 +1,58 @@
+#include "alidade/system/prepare.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+
+#include "alidade/base/error.h"
+
+namespace alidade {
+
+Camera CameraInUse(Camera camera, const SlamSettings& settings) {
+  camera.Check();
+  if (settings.sensor != Sensor::kRgbd) camera.depth_factor = 0;
+  if (settings.sensor != Sensor::kStereo) camera.baseline = 0;
+  if (settings.sensor == Sensor::kRgbd && camera.depth_factor <= 0) {
+    ThrowInput("camera: an RGB-D run needs depth_factor (depth image value per metre)");
+  }
+  if (settings.sensor == Sensor::kStereo && camera.baseline <= 0) {
+    ThrowInput("camera: a stereo run needs the baseline between the cameras");
+  }
+  const bool shrink = settings.image_width > 0 && settings.image_width < camera.width;
+  return shrink ? camera.ScaledToWidth(settings.image_width) : camera;
+}
+
+FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& used,
+                   const SlamSettings& settings) {
+  const auto check = [&](const cv::Mat& image, const char* what) {
+    if (image.cols == given.width && image.rows == given.height) return;
+    ThrowInput(std::string(what) + " of " + std::to_string(image.cols) + "x" +
+               std::to_string(image.rows) + " pixels, but the camera has " +
+               std::to_string(given.width) + "x" + std::to_string(given.height));
+  };
+  if (!std::isfinite(input.time)) ThrowInput("the frame's time is not a number");
+  check(input.image, "image");
+  FrameInput prepared = input;
+  if (settings.sensor != Sensor::kStereo) prepared.right.release();
+  if (settings.sensor != Sensor::kRgbd) prepared.depth.release();
+  if (!prepared.right.empty()) check(prepared.right, "right image");
+  if (!prepared.depth.empty()) {
+    check(prepared.depth, "depth image");
+    if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
+      ThrowInput("depth must be 16 bit or float");
+  }
+  for (cv::Mat* image : {&prepared.image, &prepared.right}) {
+    if (image->empty()) continue;
+    if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");
+    if (image->channels() == 3) cv::cvtColor(*image, *image, cv::COLOR_BGR2GRAY);
+    if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2GRAY);
+    if (used.width != given.width)
+      cv::resize(*image, *image, {used.width, used.height}, 0, 0, cv::INTER_AREA);
+  }
+  if (!prepared.depth.empty() && used.width != given.width) {
+    cv::resize(prepared.depth, prepared.depth, {used.width, used.height}, 0, 0, cv::INTER_NEAREST);
+  }
+  return prepared;
+}
+
+}  // namespace alidade

@@ -1,0 +1,64 @@
+#include "alidade/system/workers.h"
+
+namespace alidade {
+namespace {
+
+Schedule Behind(const SlamSettings& settings) {
+  return settings.threaded ? Schedule::kBackground : Schedule::kInline;
+}
+
+}  // namespace
+
+Workers::Workers(const Camera& camera, const SlamSettings& settings)
+    : places_(settings.places, settings.seed),
+      mapper_(map_, camera, settings.mapper),
+      loop_closer_(map_, places_, camera, settings.loop),
+      adjusting_([this](KeyFrameId id, const std::atomic<bool>* stop) { AdjustAll(id, stop); },
+                 Behind(settings)),
+      looping_([this](KeyFrameId id, const std::atomic<bool>*) { Loop(id); }, Behind(settings)),
+      mapping_([this](KeyFrameId id, const std::atomic<bool>* stop) { Map(id, stop); },
+               settings.threaded ? Schedule::kThread : Schedule::kInline) {}
+
+Workers::~Workers() {  // who hands on stops before who is handed to
+  mapping_.Stop();
+  looping_.Stop();
+  adjusting_.Stop();
+}
+
+void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
+  mapper_.Process(id, stop);
+  looping_.Add(id);
+}
+
+void Workers::Loop(KeyFrameId id) {
+  const std::optional<LoopMatch> match = loop_closer_.Add(id);
+  if (!match) return;
+  bool closed = false;
+  mapping_.WhileResting([&] { closed = loop_closer_.Close(*match); });
+  if (closed) adjusting_.Add(id);
+}
+
+void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
+  loop_closer_.AdjustAll(
+      id, stop, [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
+}
+
+void Workers::Drain() {
+  mapping_.Drain();
+  looping_.Drain();
+  adjusting_.Drain();
+}
+
+void Workers::WhileResting(const std::function<void()>& change) {
+  // The loop closer waits for the mapper, and so must come to rest first.
+  looping_.WhileResting([&] { mapping_.WhileResting(change); });
+}
+
+void Workers::Drop(MapId id) {
+  WhileResting([&] {
+    for (KeyFrameId keyframe : map_.Snapshot().KeyFramesOf(id)) places_.Remove(keyframe);
+    map_.Commit([&](MapCommit& commit) { commit.Remove(id); });
+  });
+}
+
+}  // namespace alidade

@@ -1,0 +1,52 @@
+// The map and all that works on it behind the tracker: mapper, loop closer, full adjustment, each
+// as a stage. Keyframes pass through them in this order.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "alidade/looping/loop_closer.h"
+#include "alidade/map/map_store.h"
+#include "alidade/mapping/mapper.h"
+#include "alidade/place/place_index.h"
+#include "alidade/system/settings.h"
+#include "alidade/system/stage.h"
+
+namespace alidade {
+
+class Workers {
+ public:
+  Workers(const Camera& camera, const SlamSettings& settings);
+  ~Workers();
+
+  MapStore& map() { return map_; }
+  const MapStore& map() const { return map_; }
+  PlaceIndex& places() { return places_; }
+  const PlaceIndex& places() const { return places_; }
+  Mapper& mapper() { return mapper_; }
+
+  void Add(KeyFrameId id) { mapping_.Add(id); }        // to be mapped, then looked for elsewhere
+  void AddMapped(KeyFrameId id) { looping_.Add(id); }  // needs no mapping
+  int backlog() const { return mapping_.backlog(); }   // keyframes that wait for the mapper
+  void Drain();                                        // until nothing is left to do
+  void WhileResting(const std::function<void()>& change);  // while no worker is at the map
+  void Drop(MapId id);                                     // a map and its places, without a trace
+
+  int loops() const { return loop_closer_.loops(); }
+  int merges() const { return loop_closer_.merges(); }
+  std::vector<double> MapMilliseconds() const { return mapping_.Milliseconds(); }
+  std::vector<double> LoopMilliseconds() const { return looping_.Milliseconds(); }
+
+ private:
+  void Map(KeyFrameId id, const std::atomic<bool>* stop);
+  void Loop(KeyFrameId id);
+  void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop);
+
+  MapStore map_;
+  PlaceIndex places_;
+  Mapper mapper_;
+  LoopCloser loop_closer_;
+  Stage adjusting_, looping_, mapping_;
+};
+
+}  // namespace alidade
