@@ -43,6 +43,15 @@ double LargestPointError(const BundleProblem& a, const BundleProblem& b) {
   return worst;
 }
 
+double LargestCameraError(const BundleProblem& a, const BundleProblem& b) {
+  double worst = 0;
+  for (size_t i = 0; i < a.T_camera_world.size(); ++i) {
+    const Se3 &T = a.T_camera_world[i], &U = b.T_camera_world[i];
+    worst = std::max(worst, (T.Inverse().t - U.Inverse().t).norm());
+  }
+  return worst;
+}
+
 TEST(AdjustBundle, ReturnsToTruthWithoutNoise) {
   BundleProblemOptions options{.stereo = 1, .noise_px = 0, .seed = 21};
   BundleProblem problem = MakeBundleProblem(options);
@@ -116,6 +125,38 @@ TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
     SetThreadCount(0);
     EXPECT_FALSE(SameBits(one, start));
   }
+}
+
+// As a closed loop leaves it: little is wrong anywhere, but all along.
+TEST(AdjustBundle, AMapBentAllAlongIsStraightenedWithLittleDamping) {
+  BundleProblem bent = MakeBundleProblem({.scene = BundleScene::kRing,
+                                          .fixed_cameras = 2,
+                                          .free_cameras = 150,
+                                          .points = 4000,
+                                          .path_length = 40,
+                                          .min_track = 3,
+                                          .stereo = 0,
+                                          .point_error = 0,
+                                          .camera_error = 0,
+                                          .rotation_error = 0,
+                                          .seed = 31});
+  const auto bend = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    const double turn = std::atan2(p.x(), p.z());  // once around; the first cameras are at 0
+    return (1 + 0.03 * (1 - std::cos(turn))) * p + Eigen::Vector3d(0, 0.15 * std::sin(2 * turn), 0);
+  };
+  for (Eigen::Vector3d& p : bent.points) p = bend(p);
+  for (size_t i = 2; i < bent.T_camera_world.size(); ++i) {
+    Se3& T = bent.T_camera_world[i];
+    T.t = -(T.R * bend(T.Inverse().t));
+  }
+  BundleProblem best = bent, quick = bent;
+  AdjustBundle(best,
+               {.max_iterations = 100, .min_relative_decrease = 1e-10, .initial_lambda = 1e-6});
+  AdjustBundle(quick,
+               {.max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6});
+  const double bent_by = LargestCameraError(bent, best);
+  EXPECT_GT(bent_by, 0.3);
+  EXPECT_LT(LargestCameraError(quick, best), 0.05 * bent_by);
 }
 
 TEST(AdjustBundle, SparseAndDenseReducedSystemsGiveTheSameSteps) {

@@ -36,7 +36,9 @@ struct LoopSettings {
   // Correction.
   int graph_shared = 100;  // landmarks two keyframes share to be tied in the pose graph
   PoseGraphSettings graph;
-  BundleSettings bundle{.max_iterations = 10, .min_relative_decrease = 1e-4};  // of the whole map
+  // Of the whole map. What a loop leaves bends all of it a little, which damping would hold on to.
+  BundleSettings bundle{
+      .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
   uint64_t seed = 1;   // of the random samples
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
