@@ -19,8 +19,8 @@ using nlohmann::ordered_json;
 
 struct BenchArguments {
   std::vector<std::string> names;
-  std::string source = "synth:room", out;
-  int frames = 150;
+  std::string source, out;
+  int frames = 0;  // 0: see FillIn()
 };
 
 using Bench = bench::Section (*)(const bench::Recording&);
@@ -30,7 +30,18 @@ Bench BenchNamed(const std::string& name) {
                        {{"features", bench::BenchFeatures},
                         {"ransac", bench::BenchRansac},
                         {"ba", bench::BenchBundle},
-                        {"frame", bench::BenchFrame}});
+                        {"frame", bench::BenchFrame},
+                        {"place", bench::BenchPlace}});
+}
+
+// What is measured when nothing else is said. Places need a way that comes back: one and a half
+// times round the loop, two frames a second.
+void FillIn(BenchArguments& arguments) {
+  const bool place = arguments.names == std::vector<std::string>{"place"};
+  if (arguments.frames == 0) arguments.frames = place && arguments.source.empty() ? 192 : 150;
+  if (arguments.source.empty()) {
+    arguments.source = place ? "synth:loop?fps=2&frames=192" : "synth:room";
+  }
 }
 
 void Print(const bench::Section& section) {
@@ -41,6 +52,15 @@ void Print(const bench::Section& section) {
     const Summary s = Summarise(row.milliseconds);
     std::printf("  %-44s %10.3f %8.3f %10.3f %7d  %s\n", row.name.c_str(), s.median,
                 s.median / u.median, s.p95, s.count, row.note.c_str());
+  }
+  for (const bench::Table& table : section.tables) {
+    std::printf("\n  %s\n", table.name.c_str());
+    for (const std::string& column : table.columns) std::printf("  %16s", column.c_str());
+    for (const std::vector<double>& row : table.rows) {
+      std::printf("\n");
+      for (double value : row) std::printf("  %16.3f", value);
+    }
+    std::printf("\n  %s\n", table.note.c_str());
   }
 }
 
@@ -56,10 +76,19 @@ ordered_json ToJson(const bench::Section& section) {
                     {"count", s.count},
                     {"note", row.note}});
   }
-  return {{"name", section.name}, {"u_ms", u.median}, {"u_count", u.count}, {"rows", rows}};
+  ordered_json json = {
+      {"name", section.name}, {"u_ms", u.median}, {"u_count", u.count}, {"rows", rows}};
+  for (const bench::Table& table : section.tables) {
+    json["tables"].push_back({{"name", table.name},
+                              {"columns", table.columns},
+                              {"rows", table.rows},
+                              {"note", table.note}});
+  }
+  return json;
 }
 
-int Run(const BenchArguments& arguments) {
+int Run(BenchArguments arguments) {
+  FillIn(arguments);
   std::vector<Bench> benches;
   for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
   cv::setNumThreads(1);
@@ -94,9 +123,10 @@ void AddBenchCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("bench", "Time the parts, beside OpenCV's ORB on the same frames");
   auto arguments = std::make_shared<BenchArguments>();
-  command->add_option("NAME", arguments->names, "features, ransac, ba, frame: one or more")
+  command->add_option("NAME", arguments->names, "features, ransac, ba, frame, place: one or more")
       ->required();
-  command->add_option("--source", arguments->source, "Recording to take frames from (synth:room)");
+  command->add_option("--source", arguments->source,
+                      "Recording to take frames from (synth:room; place: synth:loop)");
   command->add_option("--frames", arguments->frames, "Frames of it, at most (150)")
       ->check(CLI::Range(2, 100000));
   command->add_option("--out", arguments->out, "JSON file to write the numbers to");

@@ -27,10 +27,19 @@ struct Row {
   std::string note;  // of what size the work was
 };
 
+// What is no time: figures with a heading each.
+struct Table {
+  std::string name;
+  std::vector<std::string> columns;
+  std::vector<std::vector<double>> rows;  // one for each column
+  std::string note;
+};
+
 struct Section {
   std::string name;
   std::vector<double> u_milliseconds;  // of the reference, taken in turns with the rows
   std::vector<Row> rows;
+  std::vector<Table> tables = {};
 };
 
 // The reference: cv::ORB, 1000 features, on one thread, on the frame scaled to 640 pixels in width.
@@ -60,5 +69,6 @@ Section BenchFeatures(const Recording& recording);
 Section BenchRansac(const Recording& recording);
 Section BenchBundle(const Recording& recording);
 Section BenchFrame(const Recording& recording);
+Section BenchPlace(const Recording& recording);
 
 }  // namespace alidade::bench
