@@ -23,7 +23,7 @@ double DepthAt(const cv::Mat& depth, const Camera& camera, const Eigen::Vector2d
 }
 
 // Of the landmarks of `a` (keypoints with depth), the share in view of `b`.
-double ShareInView(const PosedKeyFrame& a, const PosedKeyFrame& b, const Camera& camera) {
+double ShareInView(const PosedFrame& a, const PosedFrame& b, const Camera& camera) {
   constexpr double kNear = 0.1;                         // metres: not seen so close
   constexpr double kHiddenRatio = 0.1, kHidden = 0.02;  // of the distance, and metres: depth's and
                                                         // poses' errors stay below
@@ -47,7 +47,7 @@ double ShareInView(const PosedKeyFrame& a, const PosedKeyFrame& b, const Camera&
   return landmarks < kFew ? 0 : static_cast<double>(seen) / landmarks;
 }
 
-double Shared(const PosedKeyFrame& a, const PosedKeyFrame& b, const Camera& camera) {
+double Shared(const PosedFrame& a, const PosedFrame& b, const Camera& camera) {
   return std::min(ShareInView(a, b, camera), ShareInView(b, a, camera));
 }
 
@@ -92,16 +92,19 @@ std::vector<std::optional<Se3>> PosesOf(const Recording& recording) {
   }
 }
 
-std::vector<PosedKeyFrame> TakeKeyFrames(const Recording& recording) {
-  constexpr double kKeep = 0.8;  // of the last keyframe's view
+std::vector<PosedFrame> TakeFrames(const Recording& recording) {
+  constexpr size_t kMost = 200;
+  constexpr double kKeep = 0.9;  // of the last keyframe's view
   const Camera& camera = recording.info.camera;
   if (recording.info.sensor == Sensor::kMono) {
     ThrowUsage("bench place: needs a recording with depth or two cameras, to know what is in view");
   }
   const std::vector<std::optional<Se3>> poses = PosesOf(recording);
   Extractor extractor, right_extractor;
-  std::vector<PosedKeyFrame> keyframes;
-  for (size_t i = 0; i < poses.size(); ++i) {
+  std::vector<PosedFrame> frames;
+  int keyframe = -1;
+  const size_t step = (poses.size() + kMost - 1) / kMost;
+  for (size_t i = 0; i < poses.size(); i += step) {
     if (!poses[i]) continue;
     const SourceFrame& from = recording.frames[i];
     Frame frame = extractor.Extract(from.image, camera, from.time, from.number);
@@ -112,19 +115,20 @@ std::vector<PosedKeyFrame> TakeKeyFrames(const Recording& recording) {
                   frame);
     }
     frame.pyramid.clear();
-    PosedKeyFrame taken{std::make_shared<Frame>(std::move(frame)), *poses[i], from.depth};
-    if (keyframes.empty() || Shared(keyframes.back(), taken, camera) < kKeep) {
-      keyframes.push_back(std::move(taken));
+    frames.push_back({std::make_shared<Frame>(std::move(frame)), *poses[i], from.depth});
+    if (keyframe < 0 || Shared(frames[keyframe], frames.back(), camera) < kKeep) {
+      keyframe = static_cast<int>(frames.size()) - 1;
+      frames.back().keyframe = true;
     }
   }
-  return keyframes;
+  return frames;
 }
 
-SharedViews::SharedViews(const std::vector<PosedKeyFrame>& keyframes, const Camera& camera)
-    : size_(static_cast<int>(keyframes.size())), shared_(keyframes.size() * keyframes.size(), 1) {
+SharedViews::SharedViews(const std::vector<PosedFrame>& frames, const Camera& camera)
+    : size_(static_cast<int>(frames.size())), shared_(frames.size() * frames.size(), 1) {
   ParallelFor(size_, [&](int a) {
     for (int b = 0; b < size_; ++b) {
-      if (a != b) shared_[a * size_ + b] = Shared(keyframes[a], keyframes[b], camera);
+      if (a != b) shared_[a * size_ + b] = Shared(frames[a], frames[b], camera);
     }
   });
 }

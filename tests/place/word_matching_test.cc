@@ -27,8 +27,9 @@ Pair MakePair(uint64_t seed) {
 
 int Matches(const Frame& a, const Frame& b, const Vocabulary& vocabulary,
             const WordMatchSettings& settings) {
-  return CountMatches(a, WordsOf(a, vocabulary), b, WordsOf(b, vocabulary),
-                      vocabulary.GroupsAt(settings.level), settings);
+  const std::vector<uint32_t> groups = vocabulary.GroupsAt(settings.level);
+  return CountMatches(a, GroupsOf(WordsOf(a, vocabulary), groups), b,
+                      GroupsOf(WordsOf(b, vocabulary), groups), settings);
 }
 
 TEST(WordsOf, ListsEachKeypointOnceInOrderOfWords) {

@@ -16,11 +16,11 @@ PlaceIndex::PlaceIndex(PlaceSettings settings, uint64_t seed)
 
 void PlaceIndex::Add(KeyFrameId id, std::shared_ptr<const Frame> frame) {
   const std::lock_guard<std::mutex> writing(writer_);
-  std::vector<KeypointWord> words = WordsOf(*frame, index_->vocabulary());
+  const std::vector<KeypointWord> words = WordsOf(*frame, index_->vocabulary());
   {
     const std::unique_lock<std::shared_mutex> lock(content_);
     index_->Erase(id);
-    index_->Insert(id, std::move(frame), std::move(words));
+    index_->Insert(id, std::move(frame), words);
   }
   GrowWhenDoubled();
 }

@@ -34,7 +34,7 @@ WordIndex::WordIndex(Vocabulary vocabulary, const PlaceSettings& settings)
       postings_(vocabulary_.word_count()) {}
 
 void WordIndex::Insert(KeyFrameId id, std::shared_ptr<const Frame> frame,
-                       std::vector<KeypointWord> words) {
+                       const std::vector<KeypointWord>& words) {
   auto slot = static_cast<uint32_t>(entries_.size());
   if (free_.empty()) {
     entries_.emplace_back();
@@ -43,9 +43,12 @@ void WordIndex::Insert(KeyFrameId id, std::shared_ptr<const Frame> frame,
     free_.pop_back();
   }
   VisitWords(words, [&](uint32_t word, uint32_t count) {
-    postings_[word].push_back({slot, count});
+    Posting posting;
+    posting.slot = slot & 0xffffff;
+    posting.count = static_cast<uint8_t>(std::min<uint32_t>(count, 255));
+    postings_[word].push_back(posting);
   });
-  entries_[slot] = {id, std::move(frame), std::move(words)};
+  entries_[slot] = {id, std::move(frame), GroupsOf(words, groups_)};
   slots_[id] = slot;
 }
 
@@ -53,7 +56,7 @@ void WordIndex::Erase(KeyFrameId id) {
   const auto found = slots_.find(id);
   if (found == slots_.end()) return;
   const uint32_t slot = found->second;
-  VisitWords(entries_[slot].words, [&](uint32_t word, uint32_t) {
+  VisitWords(WordsOf(*entries_[slot].frame, vocabulary_), [&](uint32_t word, uint32_t) {
     std::vector<Posting>& list = postings_[word];
     const auto of_slot = [&](const Posting& posting) { return posting.slot == slot; };
     list.erase(std::find_if(list.begin(), list.end(), of_slot));
@@ -81,7 +84,7 @@ std::vector<PlaceMatch> WordIndex::Shortlist(const std::vector<KeypointWord>& wo
     const double weight =
         std::log((static_cast<double>(size()) + 1) / static_cast<double>(list.size()));
     for (const Posting& posting : list) {
-      common[posting.slot] += weight * std::min(count, posting.count);
+      common[posting.slot] += weight * std::min<uint32_t>(count, posting.count);
     }
   });
   std::vector<PlaceMatch> matches;
@@ -92,13 +95,12 @@ std::vector<PlaceMatch> WordIndex::Shortlist(const std::vector<KeypointWord>& wo
   return matches;
 }
 
-double WordIndex::Score(const Frame& frame, const std::vector<KeypointWord>& words,
+double WordIndex::Score(const Frame& frame, const std::vector<KeypointWord>& groups,
                         const Entry& entry) const {
-  const int matches =
-      CountMatches(frame, words, *entry.frame, entry.words, groups_, settings_.matching);
+  const int matches = CountMatches(frame, groups, *entry.frame, entry.groups, settings_.matching);
   if (matches == 0) return 0;
   return matches /
-         std::sqrt(static_cast<double>(words.size()) * static_cast<double>(entry.words.size()));
+         std::sqrt(static_cast<double>(groups.size()) * static_cast<double>(entry.groups.size()));
 }
 
 std::vector<PlaceMatch> WordIndex::Query(const Frame& frame,
@@ -106,9 +108,11 @@ std::vector<PlaceMatch> WordIndex::Query(const Frame& frame,
                                          size_t most) const {
   const std::vector<KeypointWord> words = WordsOf(frame, vocabulary_);
   const size_t listed = std::max(most, static_cast<size_t>(settings_.shortlist));
+  const std::vector<PlaceMatch> likeliest = Shortlist(words, may_be, listed);
+  const std::vector<KeypointWord> groups = GroupsOf(words, groups_);
   std::vector<PlaceMatch> matches;
-  for (const PlaceMatch& likely : Shortlist(words, may_be, listed)) {
-    const double score = Score(frame, words, entries_[slots_.at(likely.id)]);
+  for (const PlaceMatch& likely : likeliest) {
+    const double score = Score(frame, groups, entries_[slots_.at(likely.id)]);
     if (score > 0) matches.push_back({likely.id, score});
   }
   SortBestFirst(matches, most);
@@ -118,7 +122,7 @@ std::vector<PlaceMatch> WordIndex::Query(const Frame& frame,
 double WordIndex::Score(const Frame& frame, KeyFrameId id) const {
   const auto found = slots_.find(id);
   if (found == slots_.end()) return 0;
-  return Score(frame, WordsOf(frame, vocabulary_), entries_[found->second]);
+  return Score(frame, GroupsOf(WordsOf(frame, vocabulary_), groups_), entries_[found->second]);
 }
 
 size_t WordIndex::MemoryBytes() const {
@@ -127,7 +131,7 @@ size_t WordIndex::MemoryBytes() const {
                  groups_.size() * sizeof(groups_[0]) + entries_.capacity() * sizeof(Entry) +
                  postings_.capacity() * sizeof(postings_[0]) + slots_.size() * kMapNode;
   for (const auto& list : postings_) bytes += list.capacity() * sizeof(Posting);
-  for (const Entry& entry : entries_) bytes += entry.words.capacity() * sizeof(KeypointWord);
+  for (const Entry& entry : entries_) bytes += entry.groups.capacity() * sizeof(KeypointWord);
   return bytes;
 }
 

@@ -29,7 +29,8 @@ class WordIndex {
   WordIndex(Vocabulary vocabulary, const PlaceSettings& settings);
 
   // `words` are WordsOf(*frame, vocabulary()); the id must not be in yet.
-  void Insert(KeyFrameId id, std::shared_ptr<const Frame> frame, std::vector<KeypointWord> words);
+  void Insert(KeyFrameId id, std::shared_ptr<const Frame> frame,
+              const std::vector<KeypointWord>& words);
   void Erase(KeyFrameId id);
   bool Has(KeyFrameId id) const { return slots_.count(id) > 0; }
   int size() const { return static_cast<int>(slots_.size()); }
@@ -47,16 +48,16 @@ class WordIndex {
   struct Entry {
     KeyFrameId id;
     std::shared_ptr<const Frame> frame;
-    std::vector<KeypointWord> words;
+    std::vector<KeypointWord> groups;  // of words: what matching needs
   };
-  struct Posting {
-    uint32_t slot = 0;
-    uint32_t count = 0;  // keypoints of the word
+  struct Posting {  // small: a query reads 200 of them for each keyframe there is
+    uint32_t slot : 24;
+    uint32_t count : 8;  // keypoints of the word, at most 255
   };
   std::vector<PlaceMatch> Shortlist(const std::vector<KeypointWord>& words,
                                     const std::function<bool(KeyFrameId)>& may_be,
                                     size_t most) const;
-  double Score(const Frame& frame, const std::vector<KeypointWord>& words,
+  double Score(const Frame& frame, const std::vector<KeypointWord>& groups,
                const Entry& entry) const;
 
   Vocabulary vocabulary_;

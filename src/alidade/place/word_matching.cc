@@ -11,15 +11,6 @@ namespace {
 
 constexpr int kNone = std::numeric_limits<int>::max();
 
-// The end of the run of words that lie below the same node as the one at `begin`.
-size_t EndOfGroup(std::span<const KeypointWord> words, size_t begin,
-                  std::span<const uint32_t> groups) {
-  const uint32_t group = groups[words[begin].word];
-  size_t end = begin + 1;
-  while (end < words.size() && groups[words[end].word] == group) ++end;
-  return end;
-}
-
 }  // namespace
 
 void WordMatchSettings::Check() const {
@@ -41,45 +32,45 @@ std::vector<KeypointWord> WordsOf(const Frame& frame, const Vocabulary& vocabula
   return words;
 }
 
-int CountMatches(const Frame& a, std::span<const KeypointWord> words_a, const Frame& b,
-                 std::span<const KeypointWord> words_b, std::span<const uint32_t> groups,
-                 const WordMatchSettings& settings) {
+std::vector<KeypointWord> GroupsOf(std::vector<KeypointWord> words,
+                                   std::span<const uint32_t> groups) {
+  for (KeypointWord& word : words) word.word = groups[word.word];
+  return words;
+}
+
+int CountMatches(const Frame& a, std::span<const KeypointWord> groups_a, const Frame& b,
+                 std::span<const KeypointWord> groups_b, const WordMatchSettings& settings) {
   struct Partner {
     uint32_t keypoint = 0;
     int distance = kNone;
   };
   std::vector<Partner> of_b(b.descriptors.size());
-  size_t i = 0, j = 0;
-  while (i < words_a.size() && j < words_b.size()) {
-    const uint32_t group_a = groups[words_a[i].word], group_b = groups[words_b[j].word];
-    if (group_a < group_b) {
-      ++i;
-      continue;
+  const std::vector<Descriptor> descriptors_b = b.descriptors;
+  size_t begin_b = 0, end_b = 0;
+  for (size_t i = 0; i < groups_a.size(); ++i) {
+    const uint32_t group = groups_a[i].word;
+    if (end_b == begin_b || groups_b[begin_b].word != group) {
+      begin_b = end_b;
+      while (begin_b < groups_b.size() && groups_b[begin_b].word < group) ++begin_b;
+      end_b = begin_b;
+      while (end_b < groups_b.size() && groups_b[end_b].word == group) ++end_b;
     }
-    if (group_b < group_a) {
-      ++j;
-      continue;
-    }
-    const size_t end_a = EndOfGroup(words_a, i, groups), end_b = EndOfGroup(words_b, j, groups);
-    for (; i < end_a; ++i) {
-      const Descriptor descriptor = a.descriptors[words_a[i].keypoint];
-      int best = kNone, second = kNone;
-      uint32_t partner = 0;
-      for (size_t k = j; k < end_b; ++k) {
-        const int distance = HammingDistance(descriptor, b.descriptors[words_b[k].keypoint]);
-        if (distance < best) {
-          second = best;
-          best = distance;
-          partner = words_b[k].keypoint;
-        } else if (distance < second) {
-          second = distance;
-        }
+    const Descriptor descriptor = a.descriptors[groups_a[i].keypoint];
+    int best = kNone, second = kNone;
+    uint32_t partner = 0;
+    for (size_t k = begin_b; k < end_b; ++k) {
+      const int distance = HammingDistance(descriptor, descriptors_b[groups_b[k].keypoint]);
+      if (distance < best) {
+        second = best;
+        best = distance;
+        partner = groups_b[k].keypoint;
+      } else if (distance < second) {
+        second = distance;
       }
-      if (best > settings.max_distance) continue;
-      if (second != kNone && settings.ratio < 1 && best >= settings.ratio * second) continue;
-      if (best < of_b[partner].distance) of_b[partner] = {words_a[i].keypoint, best};
     }
-    j = end_b;
+    if (best > settings.max_distance) continue;
+    if (second != kNone && settings.ratio < 1 && best >= settings.ratio * second) continue;
+    if (best < of_b[partner].distance) of_b[partner] = {groups_a[i].keypoint, best};
   }
   std::vector<float> turns;
   for (size_t k = 0; k < of_b.size(); ++k) {
