@@ -202,6 +202,11 @@ Section BenchPlace(const Recording& recording) {
                  {"matching all against all, one pair",
                   [&](int turn) { MatchBruteForce(frame(turn), frame(turn + 1)); }, 1}},
                 40);
+  const double cpu_start = ProcessCpuSeconds();
+  for (int turn = 0; turn < 40; ++turn) index.Query(frame(turn), {}, 5);
+  section.rows.push_back({"query " + of + ", CPU time",
+                          {(ProcessCpuSeconds() - cpu_start) * 1e3 / 40},
+                          "mean of 40, one after the other"});
   section.rows.push_back({"growing vocabulary and index " + of, growth,
                           std::to_string(index.Save().nodes.size()) + " nodes"});
   section.tables.push_back(PrecisionTable(frames, SharedViews(frames, recording.info.camera)));
