@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "alidade/io/files/file.h"
+#include "support/map_bytes.h"
 #include "support/rendered.h"
 #include "support/saved_map.h"
 
@@ -102,6 +103,40 @@ TEST_F(SavedMapCommand, AMapReadAndWrittenAgainIsTheSame) {
     again.map = store.Snapshot();
     EXPECT_TRUE(EncodeMap(again) == bytes) << sensor;
   }
+}
+
+// Another place added to a saved map: two maps, and nothing of either is lost in a file.
+TEST_F(SavedMapCommand, AMapThatWentOnElsewhereIsTheSameWhenWrittenAgain) {
+  const std::string desk = Rendered({"desk", "--frames", "20", "--distortion"});
+  const std::string first = Result("rgbd"), out = folder_ / "both";
+  const ProgramResult run = RunAlidade(
+      {"run", desk, "--sensor", "rgbd", "--load", first + "/map.alidade", "--out", out, "--quiet"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const json before = Info(first), info = Info(out);
+  EXPECT_EQ(info["maps"].size(), 2u);
+  EXPECT_GT(info["keyframes"], before["keyframes"]);
+  EXPECT_EQ(info["camera"], before["camera"]);
+  const std::string bytes = ReadText(out + "/map.alidade");
+  EXPECT_TRUE(EncodeMap(DecodeMap(bytes)) == bytes);
+}
+
+TEST_F(SavedMapCommand, AMapOfAnotherCameraIsRefused) {
+  const std::string room = Rendered({"room", "--frames", "20", "--seed", "5"});  // no distortion
+  ExpectRefused(
+      {"run", room, "--sensor", "rgbd", "--load", Result("rgbd"), "--out", folder_ / "out"}, 3,
+      "made with another camera: k1 -0.22 there, 0 here");
+  EXPECT_FALSE(fs::exists(folder_ / "out/trajectory.txt"));
+}
+
+TEST_F(SavedMapCommand, AMapFromANewerProgramIsRefused) {
+  std::string bytes = ReadText(Result("rgbd") + "/map.alidade");
+  SetMapVersion(bytes, 99);
+  ASSERT_TRUE(RepairChecksum(bytes));
+  const std::string map = folder_.Write("new.alidade", bytes);
+  ExpectRefused({"info", map}, 3, "new.alidade: the map has format version 99");
+  ExpectRefused({"run", Rendered({"room", "--frames", "40", "--distortion"}), "--sensor", "rgbd",
+                 "--load", map, "--out", folder_ / "out"},
+                3, "version 99");
 }
 
 // Two maps in one file: the larger one is exported, or the one that is named.
