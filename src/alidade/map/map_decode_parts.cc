@@ -13,7 +13,9 @@ namespace {
 constexpr int kMaxImageSide = 1 << 15;      // pixels
 constexpr int64_t kMaxImageArea = 1 << 27;  // 134 megapixels
 constexpr float kMaxPixel = 1e9f;           // undistorted ones may lie far outside the image
-constexpr float kMaxAngle = 3.2f;           // pi, and a little for rounding
+constexpr int kMaxFrameNumber =
+    1 << 30;  // a year at 30 frames a second; counting on from there stays in an int
+constexpr float kMaxAngle = 3.2f;  // pi, and a little for rounding
 
 Keypoint DecodeKeypoint(const fb::Keypoint& from) {
   const Keypoint keypoint{from.x(),        from.y(),       from.raw_x(), from.raw_y(), from.angle(),
@@ -101,7 +103,8 @@ std::shared_ptr<const Frame> DecodeFrame(const fb::KeyFrame& from, const Camera&
   auto frame = std::make_shared<Frame>();
   frame->number = from.frame();
   frame->time = from.time();
-  Require(frame->number >= 0, "a keyframe's number is negative");
+  Require(frame->number >= 0 && frame->number <= kMaxFrameNumber,
+          "a keyframe's frame has a number that cannot be");
   Require(std::isfinite(frame->time), "a keyframe's time is not a number");
   frame->keypoints.reserve(count);
   frame->descriptors.reserve(count);
