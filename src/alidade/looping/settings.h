@@ -14,7 +14,7 @@ struct LoopSettings {
   // Candidates.
   int candidates = 3;        // places looked at for each keyframe, at most, in each map
   int group = 10;            // likest keyframes they are chosen from
-  double score_share = 0.6;  // of the best covisible keyframe's score: what is less alike is no
+  double score_share = 0.2;  // of the best covisible keyframe's score: what is less alike is no
                              // candidate (ORB-SLAM §VII-A)
 
   // Verification.
@@ -38,7 +38,7 @@ struct LoopSettings {
   PoseGraphSettings graph;
   // Of the whole map. What a loop leaves bends all of it a little, which damping would hold on to.
   BundleSettings bundle{
-      .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
+      .max_iterations = 15, .min_relative_decrease = 1e-5, .initial_lambda = 1e-6};
   uint64_t seed = 1;   // of the random samples
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };

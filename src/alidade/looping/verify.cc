@@ -2,13 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "alidade/features/matching.h"
+#include "alidade/geometry/pnp.h"
 #include "alidade/looping/surroundings.h"
+#include "alidade/optimize/pose_only.h"
 #include "alidade/optimize/sim3_refine.h"
 
 namespace alidade {
 namespace {
+
+constexpr size_t kPoseKeyFrames = 4;  // around the place, whose landmarks tell a pose
+constexpr int kMinRatios = 10;        // landmarks known in both, to tell a scale …
+constexpr double kMaxSpread = 1.3;    // … and how far their quartiles may lie apart
 
 std::vector<int> Known(const KeyFrame& keyframe) {
   std::vector<int> known;
@@ -28,6 +35,12 @@ Sim3Match MatchOf(const MapSnapshot& map, const KeyFrame& a, int in_a, const Key
           keypoint_b.pixel(),
           settings.noise.sigma_px * ScaleOfLevel(keypoint_a.level),
           settings.noise.sigma_px * ScaleOfLevel(keypoint_b.level)};
+}
+
+std::vector<int> All(const KeyFrame& keyframe) {
+  std::vector<int> all(keyframe.landmarks.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 // The pose of camera a, among the landmarks b sees, and how its own surroundings must grow.
@@ -57,10 +70,15 @@ class Verifier {
   }
 
   std::optional<LoopMatch> Run() {
-    if (!Align()) return {};
     around_ = LandmarksAround(map_, b_);
-    Search(settings_.search_radius);
-    Refine();
+    if (Align()) {
+      Search(settings_.search_radius);
+      Refine();
+    } else {
+      if (!AlignByPose()) return {};
+      Search(settings_.search_radius);
+      if (!RefineByPose()) return {};
+    }
     Search(settings_.search_radius / 2);
     const int found = DifferentKeypoints(match_.found);
     if (found < Scaled(settings_.min_found) || found < settings_.min_found_share * match_.visible)
@@ -94,6 +112,68 @@ class Verifier {
     T_a_b_ = aligned.T_a_b;
     alignment_ = AlignmentOf(T_a_b_, b_);
     return true;
+  }
+
+  // A fresh keyframe knows few landmarks of its own: all its keypoints against the landmarks of the
+  // place, and the pose they tell.
+  bool AlignByPose() {
+    MatchSettings matching;
+    matching.ratio = 0.8;
+    const std::vector<int> all = All(a_);
+    std::vector<KeyFrameId> places{b_.id};
+    for (size_t i = 0; i < b_.covisible.size() && i < kPoseKeyFrames; ++i)
+      places.push_back(b_.covisible[i].id);
+    std::vector<std::pair<int, LandmarkId>> best(a_.frame->keypoints.size(), {256, {}});
+    for (KeyFrameId id : places) {
+      const KeyFrame& place = *map_.Find(id);
+      for (const IndexMatch& m :
+           MatchSubsets(*a_.frame, all, *place.frame, Known(place), matching)) {
+        if (m.distance < best[m.a].first) best[m.a] = {m.distance, place.landmarks[m.b]};
+      }
+    }
+    std::vector<Eigen::Vector3d> points;
+    std::vector<Eigen::Vector2d> pixels;
+    std::vector<double> scales;
+    for (size_t i = 0; i < best.size(); ++i) {
+      if (!best[i].second.valid()) continue;
+      points.push_back(map_.Find(best[i].second)->p_world);
+      pixels.push_back(a_.frame->keypoints[i].pixel());
+      scales.push_back(ScaleOfLevel(a_.frame->keypoints[i].level));
+    }
+    if (static_cast<int>(points.size()) < Scaled(settings_.min_matches)) return false;
+    PnpSettings pnp;
+    pnp.min_inliers = Scaled(settings_.min_aligned);
+    pnp.seed = settings_.seed + a_.id.value;
+    const PnpResult pose = SolvePnpRansac(camera_, points, pixels, scales, pnp);
+    alignment_.T_camera_world = pose.T_camera_world;
+    return pose.success;
+  }
+
+  bool RefineByPose() {
+    std::vector<PoseMatch> matches;
+    for (const FusedSighting& s : match_.found) {
+      const Measurement m = Measure(a_.frame->keypoints[s.keypoint], settings_.noise);
+      matches.push_back(
+          {map_.Find(s.landmark)->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
+    }
+    const PoseOnlyResult pose = OptimizePose(camera_, alignment_.T_camera_world, matches);
+    if (pose.inliers < Scaled(settings_.min_aligned)) return false;
+    alignment_.T_camera_world = pose.T_camera_world;
+    if (!with_scale_) return true;
+    // How much deeper the place has what the keyframe knows by itself.
+    std::vector<double> ratios;
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const LandmarkId own = a_.landmarks[match_.found[i].keypoint];
+      if (!pose.inlier[i] || !own.valid()) continue;
+      const double here = (a_.T_camera_world * map_.Find(own)->p_world).z();
+      const double there = (alignment_.T_camera_world * matches[i].p_world).z();
+      if (here > 0 && there > 0) ratios.push_back(there / here);
+    }
+    if (static_cast<int>(ratios.size()) < Scaled(kMinRatios)) return false;
+    std::sort(ratios.begin(), ratios.end());
+    alignment_.growth = ratios[ratios.size() / 2];
+    const double spread = ratios[ratios.size() * 3 / 4] / ratios[ratios.size() / 4];
+    return spread < kMaxSpread;
   }
 
   void Search(double radius) {

@@ -9,6 +9,9 @@ constexpr int kNeighboursEach =
     10;  // best covisible keyframes looked at for one that shares landmarks
 constexpr double kMaxTurn = 0.7;  // cosine: optical axes within 45°
 constexpr double kMaxMove = 0.5;  // of the depth of what is seen
+// Of that depth, too: how far the camera may have gone since. What comes back after a longer way is
+// for the loop closer, before landmarks that have drifted apart are taken for one another.
+constexpr double kMaxWay = 10;
 
 double Median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -22,9 +25,13 @@ std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
   const Eigen::Vector3d centre = T_camera_world.Inverse().t,
                         axis = T_camera_world.R.row(2).transpose();
   std::vector<std::pair<double, KeyFrameId>> scored;
-  for (uint32_t i = 0; i < map.next_keyframe(); ++i) {
+  Eigen::Vector3d after = centre;
+  double way = 0;
+  for (uint32_t i = map.next_keyframe(); i-- > 0 && way < kMaxWay * depth;) {
     const KeyFrame* keyframe = map.Find(KeyFrameId{i});
     if (!keyframe || keyframe->map != within) continue;
+    way += (keyframe->Centre() - after).norm();
+    after = keyframe->Centre();
     const double turn = axis.dot(keyframe->T_camera_world.R.row(2).transpose());
     const double move = (keyframe->Centre() - centre).norm() / depth;
     if (turn > kMaxTurn && move < kMaxMove)
