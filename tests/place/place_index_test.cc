@@ -79,6 +79,22 @@ TEST(PlaceIndex, OfNothingFindsNothing) {
   EXPECT_EQ(index.Query(*views[0], {}, 5).size(), 1u);
 }
 
+TEST(PlaceIndex, ScoresThoseNamed) {
+  const std::vector<SharedFrame> room = Views(12, 1), again = Views(12, 2);
+  PlaceIndex index;
+  for (uint32_t i = 0; i < 12; ++i) index.Add({i}, room[i]);
+  const std::vector<KeyFrameId> ids = {{7}, {50}, {6}, {7}, {1}};
+  const std::vector<double> scores = index.Scores(*again[7], ids);
+  ASSERT_EQ(scores.size(), 5u);
+  EXPECT_GT(scores[0], 0.5);
+  EXPECT_EQ(scores[1], 0);
+  EXPECT_GT(scores[2], 0.2);  // half of the view
+  EXPECT_LT(scores[2], scores[0]);
+  EXPECT_EQ(scores[3], scores[0]);
+  EXPECT_LT(scores[4], scores[2]);
+  EXPECT_TRUE(index.Scores(*again[7], {}).empty());
+}
+
 TEST(PlaceIndex, AsksWhichMayBe) {
   const std::vector<SharedFrame> room = Views(19, 1), again = Views(19, 2);
   PlaceIndex index;

@@ -154,8 +154,11 @@ TEST(Vocabulary, RefusesNodesThatMakeNoTree) {
   EXPECT_THAT(refused({node(0, 2), node(0, 0), node(0, 0)}), HasSubstr("where they must be"));
   EXPECT_THAT(refused({node(2, 2), node(0, 0), node(0, 0)}), HasSubstr("where they must be"));
   EXPECT_THAT(refused({node(1, 2), node(1, 2), node(0, 0)}), HasSubstr("where they must be"));
-  EXPECT_THAT(refused({node(1, 3), node(0, 0), node(0, 0)}), HasSubstr("more children"));
-  EXPECT_THAT(refused({node(1, 0xffffffffu), node(0, 0)}), HasSubstr("more children"));
+  EXPECT_THAT(refused({node(1, 3), node(0, 0), node(0, 0)}), HasSubstr("than there are nodes"));
+  EXPECT_THAT(refused({node(1, 0xffffffffu), node(0, 0)}), HasSubstr("than there can be"));
+  Nodes wide(Vocabulary::kMaxChildren + 2);
+  wide[0] = node(1, Vocabulary::kMaxChildren + 1);
+  EXPECT_THAT(refused(wide), HasSubstr("than there can be"));
   EXPECT_THAT(refused({node(1, 2), node(0, 0), node(0, 0), node(0, 0)}), HasSubstr("no other's"));
   EXPECT_THAT(refused({node(0, 0), node(0, 0)}), HasSubstr("no other's"));
   EXPECT_THAT(refused({node(1, 1), node(0, 0)}), HasSubstr("one child"));

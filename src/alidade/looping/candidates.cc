@@ -27,10 +27,10 @@ std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIn
                                            KeyFrameId id, const LoopSettings& settings) {
   const KeyFrame& keyframe = *map.Find(id);
   const std::vector<uint8_t> near = Surroundings(map, keyframe);
+  std::vector<KeyFrameId> neighbours;
+  for (const Neighbour& n : keyframe.covisible) neighbours.push_back(n.id);
   double likest = 0;
-  for (const Neighbour& n : keyframe.covisible) {
-    likest = std::max(likest, places.Score(*keyframe.frame, n.id));
-  }
+  for (double score : places.Scores(*keyframe.frame, neighbours)) likest = std::max(likest, score);
   std::vector<KeyFrameId> chosen;
   int in_this_map = 0, in_others = 0;
   const auto may_be = [&](KeyFrameId other) {

@@ -70,9 +70,9 @@ std::vector<PlaceMatch> PlaceIndex::Query(const Frame& frame,
   return index_->Query(frame, may_be, most);
 }
 
-double PlaceIndex::Score(const Frame& frame, KeyFrameId id) const {
+std::vector<double> PlaceIndex::Scores(const Frame& frame, std::span<const KeyFrameId> ids) const {
   const std::shared_lock<std::shared_mutex> lock(content_);
-  return index_->Score(frame, id);
+  return index_->Scores(frame, ids);
 }
 
 int PlaceIndex::size() const {

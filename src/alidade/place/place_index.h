@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <shared_mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -38,8 +39,9 @@ class PlaceIndex {
   // id. `may_be` must not call back into the index.
   std::vector<PlaceMatch> Query(const Frame& frame, const std::function<bool(KeyFrameId)>& may_be,
                                 size_t most) const;
-  // The same score for one keyframe; 0 when it is not in.
-  double Score(const Frame& frame, KeyFrameId id) const;
+  // The same score for the keyframes named; 0 for one that is not in.
+  std::vector<double> Scores(const Frame& frame, std::span<const KeyFrameId> ids) const;
+  double Score(const Frame& frame, KeyFrameId id) const { return Scores(frame, {&id, 1})[0]; }
   int size() const;
 
   SavedPlaces Save() const;

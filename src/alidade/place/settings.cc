@@ -7,8 +7,8 @@ namespace alidade {
 void PlaceSettings::Check() const {
   vocabulary.Check();
   matching.Check();
-  if (sample < 1) ThrowUsage("place.sample must be positive");
-  if (shortlist < 1) ThrowUsage("place.shortlist must be positive");
+  if (sample < 1) ThrowUsage("places.sample must be positive");
+  if (shortlist < 1) ThrowUsage("places.shortlist must be positive");
 }
 
 }  // namespace alidade

@@ -9,9 +9,9 @@ namespace alidade {
 
 void VocabularySettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("place.vocabulary.") + what);
+    if (!holds) ThrowUsage(std::string("places.") + what);
   };
-  require(branching >= 2 && branching <= 64, "branching must lie in [2, 64]");
+  require(branching >= 2 && branching <= Vocabulary::kMaxChildren, "branching must lie in [2, 64]");
   require(levels >= 1 && levels <= Vocabulary::kMaxLevels, "levels must lie in [1, 8]");
   require(min_split >= 2, "min_split must be 2 or more");
   require(rounds >= 1, "rounds must be positive");
@@ -30,6 +30,7 @@ Vocabulary::Vocabulary(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
       continue;
     }
     if (node.children == 1) ThrowInput(name + " has one child only");
+    if (node.children > kMaxChildren) ThrowInput(name + " has more children than there can be");
     if (node.first_child != next) ThrowInput(name + "'s children are not where they must be");
     next += node.children;
     if (next > nodes_.size()) ThrowInput(name + " has more children than there are nodes");

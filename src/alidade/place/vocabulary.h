@@ -29,6 +29,7 @@ class Vocabulary {
     uint32_t children = 0;     // 0: a leaf, which is a word
   };
   static constexpr uint32_t kMaxNodes = 1 << 20;
+  static constexpr int kMaxChildren = 64;  // with kMaxLevels, what finding one word may cost
   static constexpr int kMaxLevels = 8;
 
   Vocabulary() = default;  // one word, which everything is

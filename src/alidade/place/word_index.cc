@@ -119,10 +119,14 @@ std::vector<PlaceMatch> WordIndex::Query(const Frame& frame,
   return matches;
 }
 
-double WordIndex::Score(const Frame& frame, KeyFrameId id) const {
-  const auto found = slots_.find(id);
-  if (found == slots_.end()) return 0;
-  return Score(frame, GroupsOf(WordsOf(frame, vocabulary_), groups_), entries_[found->second]);
+std::vector<double> WordIndex::Scores(const Frame& frame, std::span<const KeyFrameId> ids) const {
+  const std::vector<KeypointWord> groups = GroupsOf(WordsOf(frame, vocabulary_), groups_);
+  std::vector<double> scores(ids.size(), 0);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    const auto found = slots_.find(ids[i]);
+    if (found != slots_.end()) scores[i] = Score(frame, groups, entries_[found->second]);
+  }
+  return scores;
 }
 
 size_t WordIndex::MemoryBytes() const {

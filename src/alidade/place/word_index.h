@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -39,7 +40,7 @@ class WordIndex {
   // See PlaceIndex.
   std::vector<PlaceMatch> Query(const Frame& frame, const std::function<bool(KeyFrameId)>& may_be,
                                 size_t most) const;
-  double Score(const Frame& frame, KeyFrameId id) const;
+  std::vector<double> Scores(const Frame& frame, std::span<const KeyFrameId> ids) const;
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
   size_t MemoryBytes() const;

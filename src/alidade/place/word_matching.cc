@@ -14,11 +14,11 @@ constexpr int kNone = std::numeric_limits<int>::max();
 }  // namespace
 
 void WordMatchSettings::Check() const {
-  if (level < 0) ThrowUsage("place.matching.level cannot be negative");
+  if (level < 0) ThrowUsage("places.match_level cannot be negative");
   if (max_distance < 0 || max_distance > 256) {
-    ThrowUsage("place.matching.max_distance must lie in [0, 256]");
+    ThrowUsage("places.match_max_distance must lie in [0, 256]");
   }
-  if (!(ratio > 0 && ratio <= 1)) ThrowUsage("place.matching.ratio must lie in (0, 1]");
+  if (!(ratio > 0 && ratio <= 1)) ThrowUsage("places.match_ratio must lie in (0, 1]");
 }
 
 std::vector<KeypointWord> WordsOf(const Frame& frame, const Vocabulary& vocabulary) {

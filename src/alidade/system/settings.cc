@@ -101,6 +101,12 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("places.sample", p.sample);
   visit("places.branching", p.vocabulary.branching);
   visit("places.levels", p.vocabulary.levels);
+  visit("places.min_split", p.vocabulary.min_split);
+  visit("places.rounds", p.vocabulary.rounds);
+  visit("places.shortlist", p.shortlist);
+  visit("places.match_level", p.matching.level);
+  visit("places.match_max_distance", p.matching.max_distance);
+  visit("places.match_ratio", p.matching.ratio);
   auto& i = s.start;
   visit("start.min_matches", i.min_matches);
   visit("start.match_scale", i.match_scale);
