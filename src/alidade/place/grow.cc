@@ -67,13 +67,13 @@ std::vector<Descriptor> DrawCentres(std::span<const Descriptor> sample,
     int64_t sum = 0;
     for (size_t i = 0; i < members.size(); ++i) {
       nearest[i] = std::min(nearest[i], HammingDistance(sample[members[i]], centres.back()));
-      sum += nearest[i] * nearest[i];
+      sum += int64_t{nearest[i]} * nearest[i];
     }
     if (sum == 0) return centres;
     auto left = static_cast<int64_t>(random.Uniform() * static_cast<double>(sum));
     next = 0;
     for (size_t i = 0; i < members.size() && left >= 0; ++i) {
-      left -= nearest[i] * nearest[i];
+      left -= int64_t{nearest[i]} * nearest[i];
       next = static_cast<int>(i);
     }
   }

@@ -10,7 +10,7 @@ namespace alidade {
 PlaceIndex::PlaceIndex(PlaceSettings settings, uint64_t seed)
     : settings_(settings),
       seed_(seed),
-      index_(std::make_shared<WordIndex>(Vocabulary(), settings)) {
+      index_(std::make_unique<WordIndex>(Vocabulary(), settings)) {
   settings_.Check();
 }
 
@@ -33,14 +33,15 @@ void PlaceIndex::Remove(KeyFrameId id) {
 
 // Only the writer changes index_, and it holds writer_: it may read without the other lock.
 void PlaceIndex::GrowWhenDoubled() {
-  if (index_->size() == 0 || static_cast<uint32_t>(index_->size()) < 2 * grown_at_) return;
-  std::shared_ptr<WordIndex> grown = Grown();
+  if (index_->size() == 0 || static_cast<uint64_t>(index_->size()) < uint64_t{2} * grown_at_)
+    return;
+  std::unique_ptr<WordIndex> grown = Grown();
   const std::unique_lock<std::shared_mutex> lock(content_);
   index_.swap(grown);
   grown_at_ = static_cast<uint32_t>(index_->size());
 }
 
-std::shared_ptr<WordIndex> PlaceIndex::Grown() const {
+std::unique_ptr<WordIndex> PlaceIndex::Grown() const {
   const auto keyframes = index_->KeyFrames();
   const int share = std::max(1, settings_.sample / static_cast<int>(keyframes.size()));
   Random random(seed_, keyframes.size());
@@ -55,7 +56,7 @@ std::shared_ptr<WordIndex> PlaceIndex::Grown() const {
     }
     sample.insert(sample.end(), descriptors.begin(), descriptors.begin() + static_cast<int>(count));
   }
-  auto grown = std::make_shared<WordIndex>(
+  auto grown = std::make_unique<WordIndex>(
       Vocabulary::Grow(sample, settings_.vocabulary, seed_ + keyframes.size()), settings_);
   for (const auto& keyframe : keyframes) {
     grown->Insert(keyframe.first, keyframe.second, WordsOf(*keyframe.second, grown->vocabulary()));
@@ -89,7 +90,7 @@ void PlaceIndex::Restore(const SavedPlaces& saved, const std::vector<PlaceKeyFra
   if (saved.nodes.empty() != (saved.grown_at == 0)) {
     ThrowInput("places: a vocabulary and the number of keyframes it was grown at contradict");
   }
-  auto restored = std::make_shared<WordIndex>(Vocabulary(saved.nodes), settings_);
+  auto restored = std::make_unique<WordIndex>(Vocabulary(saved.nodes), settings_);
   for (const auto& keyframe : keyframes) {
     if (!keyframe.second || restored->Has(keyframe.first)) {
       ThrowInput("places: keyframe " + std::to_string(keyframe.first.value) +

@@ -53,13 +53,13 @@ class PlaceIndex {
 
  private:
   void GrowWhenDoubled();
-  std::shared_ptr<WordIndex> Grown() const;
+  std::unique_ptr<WordIndex> Grown() const;
 
   PlaceSettings settings_;
   uint64_t seed_ = 1;
-  mutable std::mutex writer_;          // held by whoever changes the index, from start to end
+  std::mutex writer_;                  // held by whoever changes the index, from start to end
   mutable std::shared_mutex content_;  // of what follows: held by the writer while it changes it
-  std::shared_ptr<WordIndex> index_;
+  std::unique_ptr<WordIndex> index_;
   uint32_t grown_at_ = 0;
 };
 

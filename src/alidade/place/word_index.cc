@@ -133,7 +133,7 @@ size_t WordIndex::MemoryBytes() const {
   constexpr size_t kMapNode = 48;  // of std::map: three pointers, a colour, key and value
   size_t bytes = vocabulary_.nodes().size() * (sizeof(Vocabulary::Node) + sizeof(uint32_t)) +
                  groups_.size() * sizeof(groups_[0]) + entries_.capacity() * sizeof(Entry) +
-                 postings_.capacity() * sizeof(postings_[0]) + slots_.size() * kMapNode;
+                 postings_.capacity() * sizeof(std::vector<Posting>) + slots_.size() * kMapNode;
   for (const auto& list : postings_) bytes += list.capacity() * sizeof(Posting);
   for (const Entry& entry : entries_) bytes += entry.groups.capacity() * sizeof(KeypointWord);
   return bytes;
