@@ -23,6 +23,9 @@ struct SyntheticWorldSettings {
   int flipped_bits = 0;  // of 256, in each view of a descriptor
   int clutter = 0;       // keypoints per frame that show no point
   bool depth = false;    // keypoints come with exact depth
+  double ring = 0;  // metres: the path is a circle of this radius, looked out from, with points
+                    // all around; 0: straight ahead, with a wall of points beside it
+  int lap = 30;     // cameras once around it
   uint64_t seed = 1;
 };
 
@@ -73,16 +76,7 @@ class SyntheticWorldMaker {
     camera.cx = 318;
     camera.cy = 243;
     if (settings.depth) camera.depth_factor = 5000;
-    // Spread over all that the path looks at.
-    const double way = settings.step * std::max(0, settings.cameras - 1);
-    for (int i = 0; i < settings.points; ++i) {
-      const double z = random_.Uniform(2.5, 7), x = random_.Uniform(-0.6, 0.6) * z,
-                   y = random_.Uniform(-0.45, 0.45) * z;
-      world_.points.push_back({x + way * random_.Uniform(), y, z});
-      world_.descriptors.push_back(RandomDescriptor(random_));
-      sizes_.push_back(z * std::pow(kPyramidScale, random_.Uniform(0.5, 5.5)));
-      angles_.push_back(random_.Uniform(-std::numbers::pi, std::numbers::pi));
-    }
+    settings.ring > 0 ? Surround() : Line();
   }
 
   // Adds the view from a pose; frames are numbered in order, 30 a second.
@@ -138,6 +132,33 @@ class SyntheticWorldMaker {
  private:
   static constexpr double kBorder = 16;  // pixels without keypoints
 
+  // Spread over all that the path looks at.
+  void Line() {
+    const double way = settings_.step * std::max(0, settings_.cameras - 1);
+    for (int i = 0; i < settings_.points; ++i) {
+      const double z = random_.Uniform(2.5, 7), x = random_.Uniform(-0.6, 0.6) * z,
+                   y = random_.Uniform(-0.45, 0.45) * z;
+      AddPoint({x + way * random_.Uniform(), y, z}, z);
+    }
+  }
+
+  void Surround() {
+    for (int i = 0; i < settings_.points; ++i) {
+      const double z = random_.Uniform(2.5, 7), y = random_.Uniform(-0.45, 0.45) * z,
+                   angle = random_.Uniform(-std::numbers::pi, std::numbers::pi);
+      const double radius = settings_.ring + z;
+      AddPoint({radius * std::sin(angle), y, radius * std::cos(angle) - settings_.ring}, z);
+    }
+  }
+
+  // `distance`: from which it is looked at, metres.
+  void AddPoint(const Eigen::Vector3d& p, double distance) {
+    world_.points.push_back(p);
+    world_.descriptors.push_back(RandomDescriptor(random_));
+    sizes_.push_back(distance * std::pow(kPyramidScale, random_.Uniform(0.5, 5.5)));
+    angles_.push_back(random_.Uniform(-std::numbers::pi, std::numbers::pi));
+  }
+
   static Keypoint At(const Eigen::Vector2d& pixel, int level, double angle) {
     Keypoint keypoint;
     keypoint.x = keypoint.raw_x = static_cast<float>(pixel.x());
@@ -159,13 +180,26 @@ class SyntheticWorldMaker {
   std::vector<double> angles_;  // orientation of the patch, radians
 };
 
-// Pose of camera `i` on the path: to the right in steps, with a little of everything else.
+// Pose of camera `i` on the path: to the right in steps, or around the ring, with a little of
+// everything else.
 inline Se3 PoseOnPath(const SyntheticWorldSettings& settings, double i) {
+  if (settings.ring > 0) {
+    const double angle = 2 * std::numbers::pi * i / settings.lap;
+    const Eigen::Vector3d centre(settings.ring * std::sin(angle), 0.04 * std::sin(angle),
+                                 settings.ring * (std::cos(angle) - 1));
+    return Se3{ExpSo3({0, angle, 0}), centre}.Inverse();
+  }
   const Eigen::Vector3d centre(settings.step * i, 0.04 * std::sin(1.3 * i),
                                0.05 * std::sin(0.7 * i));
   const Eigen::Matrix3d R =
       ExpSo3({0.01 * std::sin(0.9 * i), -settings.turn * i, 0.02 * std::sin(0.5 * i)});
   return Se3{R.transpose(), centre}.Inverse();
+}
+
+// The pose of the same camera when the world is seen from another: p_other = T_other_world * p.
+inline Se3 InOtherWorld(const Se3& T_camera_world, const Sim3& T_other_world) {
+  const Sim3 T = Sim3{1, T_camera_world.R, T_camera_world.t} * T_other_world.Inverse();
+  return {T.R, T.t / T.s};  // in the other's units of length
 }
 
 inline SyntheticWorld MakeSyntheticWorld(const SyntheticWorldSettings& settings = {}) {

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "alidade/map/map_store.h"
 
 namespace alidade {
@@ -22,11 +25,13 @@ inline void ExpectConsistent(const MapSnapshot& map) {
       const KeyFrame* keyframe = map.Find(seen.keyframe);
       ASSERT_NE(keyframe, nullptr);
       EXPECT_EQ(keyframe->landmarks.at(seen.keypoint), id);
+      EXPECT_EQ(keyframe->map, map.Find(landmark.observations[0].keyframe)->map);
       reference_sees_it = reference_sees_it || seen.keyframe == landmark.reference;
       ++observations;
     }
     EXPECT_TRUE(reference_sees_it);
   }
+  std::vector<MapId> with_root;
   for (KeyFrameId id : map.KeyFrames()) {
     const KeyFrame& keyframe = *map.Find(id);
     EXPECT_EQ(keyframe.id, id);
@@ -34,18 +39,31 @@ inline void ExpectConsistent(const MapSnapshot& map) {
     for (LandmarkId landmark : keyframe.landmarks) shown += landmark.valid();
     if (keyframe.parent.valid()) {
       EXPECT_LT(keyframe.parent, id);
-      EXPECT_NE(map.Find(keyframe.parent), nullptr);
+      ASSERT_NE(map.Find(keyframe.parent), nullptr);
+      EXPECT_EQ(map.Find(keyframe.parent)->map, keyframe.map);
+    } else {
+      with_root.push_back(keyframe.map);
+    }
+    EXPECT_TRUE(std::is_sorted(keyframe.loops.begin(), keyframe.loops.end()));
+    for (KeyFrameId loop : keyframe.loops) {
+      const KeyFrame* other = map.Find(loop);
+      ASSERT_NE(other, nullptr);
+      EXPECT_TRUE(std::binary_search(other->loops.begin(), other->loops.end(), id));
+      EXPECT_EQ(other->map, keyframe.map);
     }
     for (const Neighbour& neighbour : keyframe.covisible) {
       const KeyFrame* other = map.Find(neighbour.id);
       ASSERT_NE(other, nullptr);
+      EXPECT_EQ(other->map, keyframe.map);
       bool returned = false;
       for (const Neighbour& back : other->covisible)
         returned = returned || (back.id == id && back.shared == neighbour.shared);
       EXPECT_TRUE(returned);
     }
   }
-  EXPECT_EQ(observations, shown);  // each is known on both sides
+  std::sort(with_root.begin(), with_root.end());
+  EXPECT_EQ(with_root, map.Maps());  // each map hangs together: one tree
+  EXPECT_EQ(observations, shown);    // each is known on both sides
   EXPECT_EQ(map.keyframe_count(), static_cast<int>(map.KeyFrames().size()));
   EXPECT_EQ(map.landmark_count(), static_cast<int>(map.Landmarks().size()));
 }
