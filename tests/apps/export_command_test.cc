@@ -120,6 +120,35 @@ TEST_F(SavedMapCommand, AMapThatWentOnElsewhereIsTheSameWhenWrittenAgain) {
   EXPECT_TRUE(EncodeMap(DecodeMap(bytes)) == bytes);
 }
 
+// A real kitchen, its beginning and then its end, which may be one map by then or two.
+TEST_F(SavedMapCommand, ARealMapIsTheSameWhenWrittenAgain) {
+  if (DataFolder().empty()) GTEST_SKIP() << "needs ALIDADE_DATA";
+  const std::string kitchen = DataFolder() + "/kitchen", out = folder_ / "one";
+  const ProgramResult first =
+      RunAlidade({"run", kitchen, "--sensor", "mono", "--last", "119", "--out", out, "--quiet"});
+  ASSERT_EQ(first.status, 0) << first.err;
+  const std::string both = folder_ / "both";
+  const ProgramResult second = RunAlidade({"run", kitchen, "--sensor", "mono", "--first", "480",
+                                           "--load", out, "--out", both, "--quiet"});
+  ASSERT_EQ(second.status, 0) << second.err;
+  for (const std::string& result : {out, both}) {
+    const std::string bytes = ReadText(result + "/map.alidade");
+    const SavedMap read = DecodeMap(bytes);
+    EXPECT_TRUE(EncodeMap(read) == bytes);
+    int culled = 0, forwards = 0;
+    for (uint32_t i = 0; i < read.map.next_keyframe(); ++i) {
+      const KeyFrame* keyframe = read.map.state().keyframes.At(i);
+      culled += keyframe && keyframe->culled();
+    }
+    for (uint32_t i = 0; i < read.map.next_landmark(); ++i) {
+      const LandmarkId now = read.map.Current({i});
+      forwards += now.valid() && now.value != i;
+    }
+    EXPECT_GT(culled, 0);
+    EXPECT_GT(forwards, 100);
+  }
+}
+
 TEST_F(SavedMapCommand, AMapOfAnotherCameraIsRefused) {
   const std::string room = Rendered({"room", "--frames", "20", "--seed", "5"});  // no distortion
   ExpectRefused(
