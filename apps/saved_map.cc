@@ -33,6 +33,7 @@ std::vector<MapPart> PartsOf(const MapSnapshot& map) {
     by_id[map.MapOf(map.Find(id)->reference)].landmarks.push_back(id);
   }
   std::vector<MapPart> parts;
+  parts.reserve(by_id.size());
   for (auto& [id, part] : by_id) parts.push_back(std::move(part));
   std::stable_sort(parts.begin(), parts.end(), [](const MapPart& a, const MapPart& b) {
     return a.keyframes.size() > b.keyframes.size();

@@ -40,7 +40,7 @@ class Decoder {
     constexpr size_t kSlack = 1 << 24, kCellsPerByte = 16, kMargins = 512;  // pixels
     const size_t area = (static_cast<size_t>(camera_.width) + kMargins) *
                         (static_cast<size_t>(camera_.height) + kMargins);
-    const size_t cells = area / (KeypointGrid::kCell * KeypointGrid::kCell) + 1;
+    const size_t cells = area / (size_t{KeypointGrid::kCell} * KeypointGrid::kCell) + 1;
     Require(SizeOf(file.keyframes()) <= (kCellsPerByte * file_size + kSlack) / cells,
             "its image is too large for so many keyframes");
   }
@@ -147,14 +147,13 @@ class Decoder {
     for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) {
       const uint32_t id = file_.culled()->Get(i)->id();
       Require(i == 0 || file_.culled()->Get(i - 1)->id() < id, "culled keyframes are out of order");
-      const KeyFrame& keyframe = *keyframes_.Find(id);
-      const auto parent = reach.find(keyframe.parent.value);
-      const double parent_scale = parent != reach.end()
-                                      ? parent->second.first
-                                      : keyframes_.Find(keyframe.parent.value)->scale;
-      const double scale = DecodeScale(parent_scale * keyframe.scale);
-      const double distance = (parent != reach.end() ? parent->second.second : 0) +
-                              parent_scale * keyframe.T_camera_parent.t.norm();
+      const KeyFrame* keyframe = keyframes_.Find(id);
+      const KeyFrame* parent = keyframe ? keyframes_.Find(keyframe->parent.value) : nullptr;
+      Require(parent, "a culled keyframe's parent is not there");
+      const auto [parent_scale, parent_distance] =
+          parent->culled() ? reach[parent->id.value] : std::pair(parent->scale, 0.0);
+      const double scale = DecodeScale(parent_scale * keyframe->scale);
+      const double distance = parent_distance + parent_scale * keyframe->T_camera_parent.t.norm();
       Require(distance <= kFarthest, "a culled keyframe is farther away than can be");
       reach[id] = {scale, distance};
     }

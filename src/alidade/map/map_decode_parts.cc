@@ -38,7 +38,7 @@ void Require(bool holds, const char* what) {
 }
 
 Eigen::Vector3d DecodePoint(const fb::Vec3& from) {
-  const Eigen::Vector3d p(from.x(), from.y(), from.z());
+  Eigen::Vector3d p(from.x(), from.y(), from.z());
   // Written so that NaN falls through.
   Require(p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest,
           "a point is not a number, or farther away than can be");
