@@ -19,7 +19,7 @@ struct DriftedMapSettings {
   int drift_last = 1 << 30;           // … the last
   int first = 0, count = 1 << 30;     // the views that are mapped
   int forgotten_after = 8;            // steps out of sight, then a point becomes a new landmark
-  Sim3 T_map_world;                   // the map's world, seen from the true one
+  Sim3 T_map_world = {};              // the map's world, seen from the true one
 };
 
 struct DriftedMap {

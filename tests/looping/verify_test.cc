@@ -1,0 +1,157 @@
+// What is the same place, where the camera is in it; and what only looks like it.
+#include "alidade/looping/verify.h"
+
+#include <gtest/gtest.h>
+
+#include "looping/old_place.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kView = 32, kPlace = 1;  // two steps of the ring lie between what they see
+constexpr double kPosition = 0.02;     // metres: 0.5 px of noise, at 5 m, over some 100 landmarks
+constexpr double kAngle = 0.004;       // radians
+
+// Where the camera truly is: what is around the place did not drift.
+void ExpectTruth(const OldPlace& place, const LoopMatch& match, double position = kPosition) {
+  const Se3& truth = place.world.views[kView].T_camera_world;
+  EXPECT_LT(Apart(match.T_camera_world, truth), position);
+  EXPECT_LT(RotationAngle(match.T_camera_world, truth), kAngle);
+}
+
+// Found landmarks are what their keypoints show.
+double TrueShare(const OldPlace& place, const LoopMatch& match) {
+  std::map<uint32_t, int> point_of;
+  for (const auto& made : place.made.landmarks) point_of[made.first.value] = made.second;
+  double right = 0;
+  for (const FusedSighting& s : match.found)
+    right += point_of[s.landmark.value] == place.world.views[kView].points[s.keypoint];
+  return right / static_cast<double>(match.found.size());
+}
+
+TEST(VerifyLoop, WithDepthFindsTheCameraWhereverItThoughtItWas) {
+  for (double metres : {0.0, 0.3, 1.2}) {
+    SCOPED_TRACE(metres);
+    const auto place =
+        ComeBack({.depth = true, .drifted = DriftInTheMiddle(metres, 0.15 * metres)});
+    const auto match = place->Verify(kView, kPlace);
+    ASSERT_TRUE(match);
+    ExpectTruth(*place, *match);
+    EXPECT_EQ(match->growth, 1);
+    EXPECT_EQ(match->keyframe, place->KeyFrameOf(kView));
+    EXPECT_EQ(match->place, place->KeyFrameOf(kPlace));
+    EXPECT_GE(match->found.size(), 100u);
+    EXPECT_GE(match->visible, static_cast<int>(match->found.size()));
+    EXPECT_GT(TrueShare(*place, *match), 0.97);
+  }
+}
+
+TEST(VerifyLoop, WithOneCameraFindsWhatTheScaleHasBecome) {
+  for (double growth : {1.0, 1.3, 0.75}) {
+    SCOPED_TRACE(growth);
+    const auto place = ComeBack({.drifted = DriftInTheMiddle(0.5, 0.1, growth)});
+    const auto match = place->Verify(kView, kPlace);
+    ASSERT_TRUE(match);
+    ExpectTruth(*place, *match, 0.03);
+    EXPECT_NEAR(match->growth * growth, 1, 0.005);
+    EXPECT_GT(TrueShare(*place, *match), 0.97);
+  }
+}
+
+TEST(VerifyLoop, GivesTheSameTwice) {
+  const auto place = ComeBack({.drifted = DriftInTheMiddle(0.5, 0.1, 1.2)});
+  const auto one = place->Verify(kView, kPlace), two = place->Verify(kView, kPlace);
+  ASSERT_TRUE(one && two);
+  EXPECT_EQ(one->T_camera_world.t, two->T_camera_world.t);
+  EXPECT_EQ(one->growth, two->growth);
+  EXPECT_EQ(one->found.size(), two->found.size());
+}
+
+// Leaves a keyframe only so many landmarks of its own, as one has that was just made.
+void Forget(OldPlace& place, int view, int keep) {
+  place.store.Commit([&](MapCommit& commit) {
+    const KeyFrameId id = place.KeyFrameOf(view);
+    const std::vector<LandmarkId> landmarks = commit.Find(id)->landmarks;
+    for (LandmarkId landmark : landmarks) {
+      if (!landmark.valid() || keep-- > 0) continue;
+      commit.RemoveObservation(landmark, id);
+      commit.RefreshLandmark(landmark);
+    }
+    commit.RefreshCovisibility(id);
+  });
+}
+
+TEST(VerifyLoop, FindsAFreshKeyFrameByThePlacesLandmarksAlone) {
+  for (bool depth : {true, false}) {
+    SCOPED_TRACE(depth);
+    const double growth = depth ? 1 : 1.2;
+    const auto place = ComeBack({.depth = depth, .drifted = DriftInTheMiddle(0.4, 0.1, growth)});
+    Forget(*place, kView, depth ? 5 : 19);  // too few to align
+    const auto match = place->Verify(kView, kPlace);
+    ASSERT_TRUE(match);
+    ExpectTruth(*place, *match, 0.03);
+    EXPECT_NEAR(match->growth * growth, 1, 0.03);  // a median of some ten
+  }
+}
+
+TEST(VerifyLoop, WithoutOwnLandmarksOneCameraHasNoScaleToTell) {
+  const auto place = ComeBack({.drifted = DriftInTheMiddle(0.4, 0.1)});
+  Forget(*place, kView, 3);
+  EXPECT_FALSE(place->Verify(kView, kPlace));
+}
+
+TEST(VerifyLoop, OtherPlacesAreNone) {
+  const auto place = ComeBack({.depth = true, .drifted = DriftInTheMiddle(0.4, 0.1)});
+  for (int other : {8, 12, 16, 20}) EXPECT_FALSE(place->Verify(kView, other)) << other;
+}
+
+TEST(VerifyLoop, APlaceThatLooksTheSameInATwentiethOfItIsNone) {
+  const auto place = ComeBack({.depth = true, .points = 4000, .changed = 95});
+  EXPECT_FALSE(place->Verify(kView, kPlace));
+}
+
+TEST(VerifyLoop, TheSameThingsOtherwiseArrangedAreAnotherPlace) {
+  for (bool depth : {true, false}) {
+    const auto place = ComeBack({.depth = depth, .changed = 50, .moved = true});
+    EXPECT_FALSE(place->Verify(kView, kPlace));
+  }
+}
+
+// All that is seen is alike: only how far tracking can have drifted tells the two apart.
+TEST(VerifyLoop, WhatTrackingCannotHaveDriftedByIsAnotherPlace) {
+  const auto shifted = ComeBack({.depth = true, .drifted = DriftInTheMiddle(7, 0)});
+  EXPECT_FALSE(shifted->Verify(kView, kPlace));
+  const auto turned = ComeBack({.depth = true, .drifted = DriftInTheMiddle(0, 0.8)});
+  EXPECT_FALSE(turned->Verify(kView, kPlace));
+  for (double growth : {1.9, 0.5}) {
+    const auto grown = ComeBack({.drifted = DriftInTheMiddle(0, 0, growth)});
+    EXPECT_FALSE(grown->Verify(kView, kPlace));
+  }
+  auto allowed = ComeBack({.depth = true, .drifted = DriftInTheMiddle(7, 0)});
+  allowed->settings.max_drift = 0.6;  // nothing else was against it
+  EXPECT_TRUE(allowed->Verify(kView, kPlace));
+}
+
+// The keyframe sees the place, those around it something else.
+TEST(VerifyLoop, ThoseAroundMustAgree) {
+  const OldPlaceSettings changed{.depth = true, .changed = 100};
+  auto place = std::make_unique<OldPlace>();
+  place->world = MakeRing({.depth = true});
+  const SyntheticWorld other = MakeRing(changed);
+  for (int v = kLap / 2; v < kViews; ++v) {
+    if (v != kView) place->world.views[v].frame = other.views[v].frame;
+  }
+  place->made = FillDriftedMap(place->world, {}, place->store);
+  EXPECT_FALSE(place->Verify(kView, kPlace));
+  place->settings.confirm_needed = 0;
+  EXPECT_TRUE(place->Verify(kView, kPlace));
+}
+
+TEST(VerifyLoop, WhatIsGoneIsNone) {
+  auto place = ComeBack({.depth = true});
+  place->store.Commit([&](MapCommit& commit) { commit.Remove(place->KeyFrameOf(kPlace)); });
+  EXPECT_FALSE(place->Verify(kView, kPlace));
+}
+
+}  // namespace
+}  // namespace alidade
