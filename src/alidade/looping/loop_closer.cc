@@ -6,11 +6,47 @@
 
 namespace alidade {
 
+namespace {
+
+// Whether two matches put the keyframe in about the same place of one map.
+bool AgreeOnPlace(const MapSnapshot& map, const LoopMatch& a, const LoopMatch& b) {
+  constexpr double kTurn = 0.35;   // radians
+  constexpr double kShift = 0.35;  // of the mean distance of the landmarks found
+  const Eigen::Vector3d centre = a.T_camera_world.Inverse().t;
+  double distance = 0;
+  for (const FusedSighting& s : a.found) {
+    distance +=
+        (map.Find(s.landmark)->p_world - centre).norm() / static_cast<double>(a.found.size());
+  }
+  return RotationAngle(a.T_camera_world, b.T_camera_world) < kTurn &&
+         (centre - b.T_camera_world.Inverse().t).norm() < kShift * distance;
+}
+
+}  // namespace
+
 LoopCloser::LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera,
                        LoopSettings settings)
     : map_(map), places_(places), camera_(camera), settings_(settings) {
   settings_.Check();
   settings_.noise.right_from_sensor = camera.baseline <= 0;
+}
+
+// In its own map a place is held against the way since; in another map only against other places:
+// where several would do, as along a corridor of equal doors, none is taken.
+std::optional<LoopMatch> LoopCloser::Recognise(const MapSnapshot& map, KeyFrameId id) const {
+  std::optional<LoopMatch> elsewhere;
+  bool ambiguous = false;
+  for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_)) {
+    const bool here = map.MapOf(place) == map.MapOf(id);
+    if (!here && ambiguous) continue;
+    std::optional<LoopMatch> match = VerifyLoop(map, id, place, camera_, settings_);
+    if (!match) continue;
+    if (here) return match;
+    const bool same_map = elsewhere && map.MapOf(place) == map.MapOf(elsewhere->place);
+    ambiguous = same_map && !AgreeOnPlace(map, *match, *elsewhere);
+    if (!elsewhere) elsewhere = std::move(match);
+  }
+  return ambiguous ? std::nullopt : elsewhere;
 }
 
 std::optional<LoopMatch> LoopCloser::Add(KeyFrameId id) {
@@ -24,10 +60,7 @@ std::optional<LoopMatch> LoopCloser::Add(KeyFrameId id) {
   if (!keyframe) return {};
   std::optional<LoopMatch> match;
   if (settings_.enabled) {
-    for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_)) {
-      match = VerifyLoop(map, id, place, camera_, settings_);
-      if (match) break;
-    }
+    match = Recognise(map, id);
   }
   places_.Add(id, keyframe->frame);
   entered_.push_back(id);

@@ -34,6 +34,8 @@ class LoopCloser {
   int merges() const { return merges_; }
 
  private:
+  std::optional<LoopMatch> Recognise(const MapSnapshot& map, KeyFrameId id) const;
+
   MapStore& map_;
   PlaceIndex& places_;
   Camera camera_;

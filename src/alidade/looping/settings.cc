@@ -15,6 +15,7 @@ void LoopSettings::Check() const {
   require(min_aligned >= 3, "min_aligned must be at least 3");
   require(min_matches >= min_aligned, "min_matches must be at least loop.min_aligned");
   require(min_found >= 10, "min_found must be at least 10");
+  require(min_merge_found >= min_found, "min_merge_found must be at least loop.min_found");
   require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must be between 0 and 1");
   require(search_radius > 0, "search_radius must be positive");
   require(max_distance > 0 && max_distance <= 256, "max_distance must be between 1 and 256");
@@ -23,6 +24,7 @@ void LoopSettings::Check() const {
   require(max_drift > 0 && max_drift_floor >= 0, "max_drift must be positive");
   require(max_turn > 0, "max_turn must be positive");
   require(max_scale >= 1, "max_scale must be at least 1");
+  require(max_plain_scale >= max_scale, "max_plain_scale must be at least loop.max_scale");
   graph.Check();
   bundle.Check();
 }

@@ -18,9 +18,11 @@ struct LoopSettings {
                              // candidate (ORB-SLAM §VII-A)
 
   // Verification.
-  int min_matches = 20;          // of descriptors alone
-  int min_aligned = 15;          // of those, that agree on one alignment (Horn 1987)
-  int min_found = 45;            // landmarks of the old place found where the alignment puts them
+  int min_matches = 20;      // of descriptors alone
+  int min_aligned = 15;      // of those, that agree on one alignment (Horn 1987)
+  int min_found = 45;        // landmarks of the old place found where the alignment puts them
+  int min_merge_found = 90;  // the same between two maps, where no way since speaks for or against
+                             // it, and their whole relation hangs on it
   double min_found_share = 0.1;  // of those that should be in sight: places only alike show less
   double search_radius = 8;      // pixels on level 0; the second time half of it
   int max_distance = 60;         // bits of 256
@@ -31,6 +33,7 @@ struct LoopSettings {
   double max_drift = 0.12;       // of the way since the old place was seen
   double max_drift_floor = 0.5;  // of the median depth, whatever the way
   double max_turn = 0.6;         // radians
+  double max_plain_scale = 20;   // the same where the place is beyond doubt
   double max_scale = 1.7;        // monocular: between old and new place
 
   // Correction.

@@ -13,6 +13,9 @@
 namespace alidade {
 namespace {
 
+constexpr int kPlainFound = 3;        // times the landmarks asked for, and …
+constexpr double kPlainShare = 0.35;  // … of those in sight: a place beyond doubt
+constexpr double kPlainDrift = 0.6;   // of the way, when scale broke down
 constexpr size_t kPoseKeyFrames = 4;  // around the place, whose landmarks tell a pose
 constexpr int kMinRatios = 10;        // landmarks known in both, to tell a scale …
 constexpr double kMaxSpread = 1.3;    // … and how far their quartiles may lie apart
@@ -81,9 +84,17 @@ class Verifier {
     }
     Search(settings_.search_radius / 2);
     const int found = DifferentKeypoints(match_.found);
-    if (found < Scaled(settings_.min_found) || found < settings_.min_found_share * match_.visible)
+    fprintf(stderr,
+            "V %u-%u matches %zu found %d visible %d drift_ok %d growth %.3f shift %.2f turn "
+            "%.2f confirmed %d\n",
+            a_.id.value, b_.id.value, matches_.size(), found, match_.visible, CanHaveDrifted(),
+            alignment_.growth, (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm(),
+            RotationAngle(alignment_.T_camera_world, a_.T_camera_world), Confirmed());
+    const bool merges = a_.map != b_.map;
+    if (found < Scaled(merges ? settings_.min_merge_found : settings_.min_found) ||
+        found < settings_.min_found_share * match_.visible)
       return {};
-    if (a_.map == b_.map && !CanHaveDrifted()) return {};
+    if (!merges && !CanHaveDrifted()) return {};
     if (!Confirmed()) return {};
     match_.keyframe = a_.id;
     match_.place = b_.id;
@@ -200,9 +211,18 @@ class Verifier {
     alignment_ = AlignmentOf(T_a_b_, b_);
   }
 
+  // Most of the place is there: then even a monocular scale that broke down on the way is no
+  // objection.
+  bool IsPlain() const {
+    const int found = DifferentKeypoints(match_.found);
+    return found >= kPlainFound * Scaled(settings_.min_found) &&
+           found >= kPlainShare * match_.visible;
+  }
+
   bool CanHaveDrifted() const {
-    const double growth = alignment_.growth;
-    if (growth > settings_.max_scale || growth < 1 / settings_.max_scale) return false;
+    const double growth = std::max(alignment_.growth, 1 / alignment_.growth);
+    const bool plain = with_scale_ && IsPlain();
+    if (growth > (plain ? settings_.max_plain_scale : settings_.max_scale)) return false;
     if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
       return false;
     double way = 0;
@@ -215,7 +235,8 @@ class Verifier {
       before = here;
     }
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
-    return shift < settings_.max_drift * way + settings_.max_drift_floor * MedianDepth();
+    return shift < (plain ? kPlainDrift : settings_.max_drift) * way +
+                       settings_.max_drift_floor * MedianDepth();
   }
 
   double MedianDepth() const {

@@ -34,9 +34,12 @@ struct MapperSettings {
       0.9;  // of a keyframe's landmarks seen in 3 others at the same or a finer scale
 
   // Local bundle adjustment (ORB-SLAM §VI-D).
-  int window_keyframes = 15;  // adjusted: the newest and its best covisible ones
-  int window_fixed = 20;      // held: those that see most of the same landmarks
-  BundleSettings bundle{.max_iterations = 10, .min_relative_decrease = 1e-4};
+  // Adjusted: the newest and its best covisible ones. With fewer, a monocular scale breaks where
+  // the camera turns round on the spot.
+  int window_keyframes = 20;
+  int window_fixed = 20;  // held: those that see most of the same landmarks
+  BundleSettings bundle{
+      .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
 
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };

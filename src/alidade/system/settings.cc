@@ -82,6 +82,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("loop.min_matches", l.min_matches);
   visit("loop.min_aligned", l.min_aligned);
   visit("loop.min_found", l.min_found);
+  visit("loop.min_merge_found", l.min_merge_found);
   visit("loop.min_found_share", l.min_found_share);
   visit("loop.search_radius", l.search_radius);
   visit("loop.max_distance", l.max_distance);
@@ -92,6 +93,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("loop.max_drift_floor", l.max_drift_floor);
   visit("loop.max_turn", l.max_turn);
   visit("loop.max_scale", l.max_scale);
+  visit("loop.max_plain_scale", l.max_plain_scale);
   visit("loop.graph_shared", l.graph_shared);
   visit("loop.graph.max_iterations", l.graph.max_iterations);
   visit("loop.graph.length_scale", l.graph.length_scale);
