@@ -28,6 +28,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.min_after_prediction", t.min_after_prediction);
   visit("tracker.min_tracked", t.min_tracked);
   visit("tracker.min_found_share", t.min_found_share);
+  visit("tracker.torn_share", t.torn_share);
   visit("tracker.min_agreement", t.min_agreement);
   visit("tracker.good_agreement", t.good_agreement);
   visit("tracker.bad_frame_sigma", t.bad_frame_sigma);

@@ -15,6 +15,8 @@ struct TrackerSettings {
   int min_tracked = 20;            // inliers with the local map, below which the frame is lost
   double min_found_share = 0.085;  // inliers, of the landmarks that should be in sight; below, the
                                    // frame is lost: right poses show twice as many at the least
+  double torn_share = 0.33;  // inliers, of the last frame's; below, the pose is only believed as
+                             // one found when lost is: the recording may have been cut
   double min_agreement =
       0.4;                 // share of a frame's matches that must fit one pose for it to be trusted
   int max_distance = 100;  // bits of 256; with a pose to guide the search

@@ -232,7 +232,11 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   estimate.tracked =
       guess.inliers >= Scaled(settings_.min_tracked) &&
       guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
+  // Where the view is suddenly another, chance finds as much as the hardest frame shows: then the
+  // pose must prove itself like one that was found anew.
+  const bool torn = guess.inliers < settings_.torn_share * last_.inliers;
   estimate.placed = std::move(guess);
+  if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
   if (estimate.tracked) {
     most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
     estimate.wants_keyframe = WantsKeyFrame(estimate.placed, share);
