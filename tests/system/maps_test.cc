@@ -143,7 +143,7 @@ TEST(Maps, WhatNeverOverlapsIsAMapOfItsOwnUntilTheyMeet) {
   // All frames in one world, those of the time before they met, too.
   const auto worst = player.WorstOf(MapId{0}, 0);
   EXPECT_GT(worst.second, 55);
-  EXPECT_LT(worst.first, 0.2);  // metres; the room is 8 m long
+  EXPECT_LT(worst.first, 0.2);  // metres; a wrong tie costs whole ones
 }
 
 TEST(Maps, StayApartWhereNothingTiesThem) {

@@ -234,7 +234,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
   // Where the view is suddenly another, chance finds as much as the hardest frame shows: then the
   // pose must prove itself like one that was found anew.
-  const bool torn = guess.inliers < settings_.torn_share * last_.inliers;
+  const bool torn = has_velocity_ && guess.inliers < settings_.torn_share * last_.inliers;
   estimate.placed = std::move(guess);
   if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
   if (estimate.tracked) {
