@@ -124,8 +124,12 @@ TEST(VerifyLoop, WhatTrackingCannotHaveDriftedByIsAnotherPlace) {
   const auto turned = ComeBack({.depth = true, .drifted = DriftInTheMiddle(0, 0.8)});
   EXPECT_FALSE(turned->Verify(kView, kPlace));
   for (double growth : {1.9, 0.5}) {
-    const auto grown = ComeBack({.drifted = DriftInTheMiddle(0, 0, growth)});
-    EXPECT_FALSE(grown->Verify(kView, kPlace));
+    const DriftedMapSettings grown = DriftInTheMiddle(0, 0, growth);
+    EXPECT_FALSE(ComeBack({.drifted = grown, .changed = 50})->Verify(kView, kPlace));
+    // A camera whose scale broke down: believed where the place is beyond doubt.
+    const auto plain = ComeBack({.drifted = grown})->Verify(kView, kPlace);
+    ASSERT_TRUE(plain);
+    EXPECT_NEAR(plain->growth * growth, 1, 0.005);
   }
   auto allowed = ComeBack({.depth = true, .drifted = DriftInTheMiddle(7, 0)});
   allowed->settings.max_drift = 0.6;  // nothing else was against it

@@ -84,12 +84,6 @@ class Verifier {
     }
     Search(settings_.search_radius / 2);
     const int found = DifferentKeypoints(match_.found);
-    fprintf(stderr,
-            "V %u-%u matches %zu found %d visible %d drift_ok %d growth %.3f shift %.2f turn "
-            "%.2f confirmed %d\n",
-            a_.id.value, b_.id.value, matches_.size(), found, match_.visible, CanHaveDrifted(),
-            alignment_.growth, (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm(),
-            RotationAngle(alignment_.T_camera_world, a_.T_camera_world), Confirmed());
     const bool merges = a_.map != b_.map;
     if (found < Scaled(merges ? settings_.min_merge_found : settings_.min_found) ||
         found < settings_.min_found_share * match_.visible)
