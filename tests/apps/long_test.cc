@@ -57,6 +57,22 @@ TEST_F(LongRecording, RoomWithOneCamera) {
   EXPECT_LE(RunAndMeasure(room, "mono"), 0.005 * PathLength(ReadTrajectory(room)));
 }
 
+TEST_F(LongRecording, LoopsTakeTheDriftOut) {
+  const std::string loop = Rendered({"loop", "--frames", "2000"});
+  const double path = PathLength(ReadTrajectory(loop));
+  EXPECT_GE(path, 40);
+  EXPECT_LE(RunAndMeasure(loop, "mono"), 0.004 * path);
+  EXPECT_GE(json::parse(ReadText(folder_ / "mono/stats.json"))["loops"], 1);
+  EXPECT_LE(RunAndMeasure(loop, "rgbd"), 0.001 * path);
+}
+
+TEST_F(LongRecording, PlacesThatLookAlikeAreNotTakenForOneAnother) {
+  for (const char* seed : {"1", "2", "3", "4", "5"}) {
+    const std::string corridor = Rendered({"corridor", "--frames", "1000", "--seed", seed});
+    EXPECT_LE(RunAndMeasure(corridor, "rgbd"), 0.005 * PathLength(ReadTrajectory(corridor)));
+  }
+}
+
 class LongStart : public LongRecording,
                   public testing::WithParamInterface<std::tuple<const char*, const char*>> {};
 
