@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPlainFound = 3;        // times the landmarks asked for, and …
 constexpr double kPlainShare = 0.35;  // … of those in sight: a place beyond doubt
-constexpr double kPlainDrift = 0.6;   // of the way, when scale broke down
+constexpr double kBrokenDrift = 0.6;  // of the way, when scale broke down
 constexpr size_t kPoseKeyFrames = 4;  // around the place, whose landmarks tell a pose
 constexpr int kMinRatios = 10;        // landmarks known in both, to tell a scale …
 constexpr double kMaxSpread = 1.3;    // … and how far their quartiles may lie apart
@@ -215,8 +215,8 @@ class Verifier {
 
   bool CanHaveDrifted() const {
     const double growth = std::max(alignment_.growth, 1 / alignment_.growth);
-    const bool plain = with_scale_ && IsPlain();
-    if (growth > (plain ? settings_.max_plain_scale : settings_.max_scale)) return false;
+    const bool broken = growth > settings_.max_scale;
+    if (broken && (growth > settings_.max_plain_scale || !IsPlain())) return false;
     if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
       return false;
     double way = 0;
@@ -229,7 +229,7 @@ class Verifier {
       before = here;
     }
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
-    return shift < (plain ? kPlainDrift : settings_.max_drift) * way +
+    return shift < (broken ? kBrokenDrift : settings_.max_drift) * way +
                        settings_.max_drift_floor * MedianDepth();
   }
 
