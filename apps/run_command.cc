@@ -66,7 +66,8 @@ int Run(const RunOptions& options) {
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down
   Slam slam(record.source.camera, record.settings);
   if (saved) slam.Load(*saved);
-  OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name));
+  OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name),
+                      options.load ? SavedMapPath(*options.load) : std::string());
 
   ReadAhead frames(std::move(source));
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, terminal, record);

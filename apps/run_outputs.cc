@@ -46,10 +46,12 @@ bool HoldsOurStats(const fs::path& folder) {
          stats.contains("coverage");
 }
 
-void RemoveOurFiles(const fs::path& folder) {
+void RemoveOurFiles(const fs::path& folder, const fs::path& kept = {}) {
   std::vector<fs::path> ours;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
+    std::error_code none;
+    if (!kept.empty() && fs::equivalent(entry.path(), kept, none)) continue;
     if (IsOurs(entry.path().filename().string())) ours.push_back(entry.path());
   }
   for (const fs::path& path : ours) {
@@ -71,7 +73,8 @@ std::string LandmarksPly(const RunResults& results) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const std::string& path) : path_(path) {
+OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
+    : path_(path), kept_(kept) {
   const std::string what = "--out " + path + ": ";
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) {
@@ -83,7 +86,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
           what +
           "the folder exists and holds no earlier run (no stats.json of ours); name another");
     }
-    RemoveOurFiles(path);
+    RemoveOurFiles(path, kept_);
   } else {
     fs::create_directories(path, error);
     if (error) ThrowInput(what + "cannot be made: " + error.message());
@@ -93,7 +96,7 @@ OutputFolder::OutputFolder(const std::string& path) : path_(path) {
   const std::string probe(64 * 1024, '\0');
   try {
     Write("stats.json", probe);
-    RemoveOurFiles(path_);
+    RemoveOurFiles(path_, kept_);
   } catch (const Error&) {
     Remove();
     throw;
@@ -105,7 +108,7 @@ void OutputFolder::Write(const std::string& name, const std::string& bytes) {
 }
 
 void OutputFolder::Remove() {
-  RemoveOurFiles(path_);
+  RemoveOurFiles(path_, kept_);
   std::error_code ignored;
   if (made_) fs::remove(path_, ignored);  // only when it is empty
 }

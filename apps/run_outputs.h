@@ -12,7 +12,8 @@ namespace alidade {
 // and when nothing can be written into it: better now than after the work.
 class OutputFolder {
  public:
-  explicit OutputFolder(const std::string& path);
+  // `kept`: a file of ours that stays until it is written anew (the map that was loaded).
+  explicit OutputFolder(const std::string& path, const std::string& kept = {});
   const std::string& path() const { return path_; }
 
   // Writes a file whole or not at all.
@@ -21,7 +22,7 @@ class OutputFolder {
   void Remove();
 
  private:
-  std::string path_;
+  std::string path_, kept_;
   bool made_ = false;
 };
 

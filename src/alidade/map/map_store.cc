@@ -54,15 +54,22 @@ MapId MapState::MapOf(KeyFrameId id) const {
 }
 
 Se3 MapState::PoseOf(KeyFrameId id) const {
+  std::vector<const KeyFrame*> culled;  // from `id` up to the first that lives
   const KeyFrame* keyframe = keyframes.At(id.value);
-  Se3 T_here_ancestor;
   while (keyframe && keyframe->culled()) {
-    Se3 T_camera_parent = keyframe->T_camera_parent;
-    T_camera_parent.t *= ScaleOf(keyframe->parent);
-    T_here_ancestor = T_here_ancestor * T_camera_parent;
+    culled.push_back(keyframe);
     keyframe = keyframes.At(keyframe->parent.value);
   }
-  return keyframe ? T_here_ancestor * keyframe->T_camera_world : Se3{};
+  if (!keyframe) return {};
+  Se3 T_camera_world = keyframe->T_camera_world;
+  double scale = keyframe->scale;
+  for (auto it = culled.rbegin(); it != culled.rend(); ++it) {
+    Se3 T_camera_parent = (*it)->T_camera_parent;
+    T_camera_parent.t *= scale;
+    T_camera_world = T_camera_parent * T_camera_world;
+    scale *= (*it)->scale;
+  }
+  return T_camera_world;
 }
 
 std::vector<MapId> MapSnapshot::Maps() const {
