@@ -144,6 +144,26 @@ TEST_P(TrackerTest, RelocalisesWithoutALastFrame) {
   ExpectAtTruth(estimate, 9);
 }
 
+// However well it is seen: the pose it tells is too vague to go on from.
+TEST_P(TrackerTest, DoesNotRelocaliseByOnePosterAlone) {
+  const SyntheticView& view = world_.views[9];
+  const MapSnapshot map = store_.Commit([&](MapCommit& commit) {
+    for (size_t k = 0; k < view.points.size(); ++k) {
+      if (view.points[k] < 0) continue;
+      const Eigen::Vector2d from_poster =
+          view.frame->keypoints[k].pixel() - Eigen::Vector2d(250, 200);
+      if (from_poster.norm() > 100) commit.Remove(made_.landmarks[view.points[k]]);
+    }
+  });
+  TrackerSettings settings;
+  settings.min_relocalised = 20;  // there is enough on it
+  EXPECT_FALSE(
+      Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
+  settings.min_relocalised_spread = 0;
+  EXPECT_TRUE(
+      Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
+}
+
 TEST_P(TrackerTest, IsLostInAnotherWorld) {
   SyntheticWorldSettings elsewhere = settings_;
   elsewhere.seed = 99;

@@ -42,6 +42,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.relocalise_radius", t.relocalise_radius);
   visit("tracker.min_relocalised", t.min_relocalised);
   visit("tracker.min_relocalised_share", t.min_relocalised_share);
+  visit("tracker.min_relocalised_spread", t.min_relocalised_spread);
   visit("tracker.sigma_px", t.noise.sigma_px);
   visit("tracker.sigma_right_px", t.noise.sigma_right_px);
   visit("tracker.keyframe_share_mono", t.keyframe_share_mono);

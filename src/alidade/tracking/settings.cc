@@ -16,6 +16,8 @@ void TrackerSettings::Check() const {
   require(min_after_prediction >= 4, "min_after_prediction must be at least 4");
   require(min_tracked >= 6, "min_tracked must be at least 6");
   require(min_found_share >= 0 && min_found_share < 1, "min_found_share must lie in [0, 1)");
+  require(min_relocalised_spread >= 0 && min_relocalised_spread < 0.5,
+          "min_relocalised_spread must lie in [0, 0.5)");
   require(torn_share >= 0 && torn_share < 1, "torn_share must lie in [0, 1)");
   require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
   require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");

@@ -29,6 +29,8 @@ struct TrackerSettings {
   float relocalise_radius = 10;  // pixels on level 0, around a place found by descriptors alone
   int min_relocalised = 40;      // inliers for a place to be believed when lost …
   double min_relocalised_share = 0.15;  // … and their share of the landmarks that should be seen
+  double min_relocalised_spread = 0.1;  // … and how far apart they are in the picture: root mean
+                                        // square distance from their middle, of its diagonal
   int local_keyframes = 40;             // at most, in the local map
   MeasurementNoise noise{.sigma_px = 1.0};  // of keypoints
   double good_agreement =

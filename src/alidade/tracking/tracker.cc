@@ -169,11 +169,28 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
   return best;
 }
 
-// A place only like the one in view shows some of the same, and leaves much of the rest unseen.
+// A place only like the one in view shows some of the same, and leaves much of the rest unseen. And
+// one poster, however well seen, leaves open whether the camera is moved or turned.
 bool Tracker::IsCertain(const TrackEstimate& estimate) const {
   const auto expected = static_cast<double>(estimate.sightings.size());
   return estimate.placed.inliers >= Scaled(settings_.min_relocalised) &&
-         estimate.placed.inliers >= settings_.min_relocalised_share * expected;
+         estimate.placed.inliers >= settings_.min_relocalised_share * expected &&
+         Spread(estimate.placed) >= settings_.min_relocalised_spread;
+}
+
+// Root mean square distance of what was found from its middle, in diagonals of the picture.
+double Tracker::Spread(const PlacedFrame& placed) const {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  double squares = 0, count = 0;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    if (!placed.matches[i].valid()) continue;
+    sum += placed.frame->keypoints[i].pixel();
+    squares += placed.frame->keypoints[i].pixel().squaredNorm();
+    ++count;
+  }
+  if (count == 0) return 0;
+  const double variance = squares / count - (sum / count).squaredNorm();
+  return std::sqrt(std::max(0.0, variance)) / std::hypot(camera_.width, camera_.height);
 }
 
 double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {

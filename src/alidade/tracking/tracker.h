@@ -68,6 +68,7 @@ class Tracker {
   // Returns the share of the matches that agree with the pose found; the others are dropped.
   double Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
   bool IsCertain(const TrackEstimate& estimate) const;
+  double Spread(const PlacedFrame& placed) const;
   bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
 
