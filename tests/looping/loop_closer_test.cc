@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "alidade/looping/candidates.h"
 #include "looping/old_place.h"
 #include "support/check_map.h"
@@ -108,6 +110,37 @@ TEST(LoopCloser, FindsTheLoopAtTheKeyFrameThatComesBackAndClosesIt) {
           Apart(place->map().PoseOf(place->KeyFrameOf(v)), place->world.views[v].T_camera_world),
           0.1);
     }
+  }
+}
+
+// A ring whose second half looks exactly like the first: a map that comes to it could be in either.
+TEST(LoopCloser, TakesNoneOfTwoPlacesOfAnotherMapThatWouldDoAsWell) {
+  for (bool symmetric : {false, true}) {
+    SCOPED_TRACE(symmetric);
+    OldPlace place;
+    place.world = MakeRing({.depth = true});
+    const int points = static_cast<int>(place.world.points.size()), half = kLap / 2;
+    const Se3 turn{ExpSo3({0, std::numbers::pi, 0}), {0, 0, -6}};  // about the ring's centre
+    for (int i = 0; i < points; ++i) {
+      const Eigen::Vector3d p = turn * place.world.points[i];
+      place.world.points.push_back(p);
+    }
+    for (int v = half; v < kLap && symmetric; ++v) {
+      SyntheticView view = place.world.views[v - half];
+      view.T_camera_world = view.T_camera_world * turn.Inverse();
+      for (int& point : view.points) {
+        if (point >= 0) point += points;
+      }
+      place.world.views[v] = view;
+    }
+    const Sim3 T_map_world{1, ExpSo3({0.4, -1.1, 0.2}), {4, -2, 3}};
+    place.made = FillDriftedMap(place.world, {.count = kLap}, place.store);
+    const DriftedMap second =
+        FillDriftedMap(place.world, {.first = kLap, .T_map_world = T_map_world}, place.store);
+    PlaceIndex places;
+    LoopCloser closer(place.store, places, place.world.camera, place.settings);
+    for (KeyFrameId id : place.made.keyframes) places.Add(id, place.map().Find(id)->frame);
+    EXPECT_EQ(closer.Add(second.keyframes[3]).has_value(), !symmetric);
   }
 }
 
