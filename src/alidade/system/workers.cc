@@ -35,7 +35,9 @@ void Workers::Loop(KeyFrameId id) {
   if (!match) return;
   bool closed = false;
   mapping_.WhileResting([&] { closed = loop_closer_.Close(*match); });
-  if (closed) adjusting_.Add(id);
+  if (!closed) return;
+  last_closed_ = id;
+  adjusting_.Add(id);
 }
 
 void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
@@ -46,6 +48,12 @@ void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
 void Workers::Drain() {
   mapping_.Drain();
   looping_.Drain();
+  adjusting_.Drain();
+  // What was mapped since a loop was closed ties the ends of it better than the loop itself did.
+  const MapSnapshot map = map_.Snapshot();
+  if (!last_closed_.valid() || map.next_keyframe() == adjusted_up_to_) return;
+  adjusted_up_to_ = map.next_keyframe();
+  adjusting_.Add(last_closed_);
   adjusting_.Drain();
 }
 

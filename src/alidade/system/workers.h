@@ -28,7 +28,7 @@ class Workers {
   void Add(KeyFrameId id) { mapping_.Add(id); }        // to be mapped, then looked for elsewhere
   void AddMapped(KeyFrameId id) { looping_.Add(id); }  // needs no mapping
   int backlog() const { return mapping_.backlog(); }   // keyframes that wait for the mapper
-  void Drain();                                        // until nothing is left to do
+  void Drain();  // until nothing is left to do; a map with loops is adjusted as a whole once more
   void WhileResting(const std::function<void()>& change);  // while no worker is at the map
   void Drop(MapId id);                                     // a map and its places, without a trace
 
@@ -46,6 +46,8 @@ class Workers {
   PlaceIndex places_;
   Mapper mapper_;
   LoopCloser loop_closer_;
+  KeyFrameId last_closed_;       // that closed a loop or merged maps; read when the stages rest
+  uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
   Stage adjusting_, looping_, mapping_;
 };
 
