@@ -162,7 +162,7 @@ void ParallelFor(int count, const std::function<void(int)>& body) {
 
 void LowerThreadPriority() {
 #ifdef __linux__
-  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 10);
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
 #endif
 }
 

@@ -59,9 +59,7 @@ std::optional<LoopMatch> LoopCloser::Add(KeyFrameId id) {
   const KeyFrame* keyframe = map.Find(id);
   if (!keyframe) return {};
   std::optional<LoopMatch> match;
-  if (settings_.enabled) {
-    match = Recognise(map, id);
-  }
+  if (settings_.enabled) match = Recognise(map, id);
   places_.Add(id, keyframe->frame);
   entered_.push_back(id);
   return match;

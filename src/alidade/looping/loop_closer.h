@@ -4,6 +4,7 @@
 #include <atomic>
 #include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "alidade/geometry/camera.h"
@@ -21,6 +22,7 @@ class LoopCloser {
 
   // Enters a mapped keyframe into the index; a match when it sees an old place again.
   std::optional<LoopMatch> Add(KeyFrameId id);
+  void SetEntered(std::vector<KeyFrameId> ids) { entered_ = std::move(ids); }  // of a loaded map
   // Closes the loop, or merges the two maps. The mapper must rest meanwhile, the tracker need not.
   // False when keyframe or place are gone.
   bool Close(const LoopMatch& match);

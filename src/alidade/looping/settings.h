@@ -18,11 +18,11 @@ struct LoopSettings {
                              // candidate (ORB-SLAM §VII-A)
 
   // Verification.
-  int min_matches = 20;      // of descriptors alone
-  int min_aligned = 15;      // of those, that agree on one alignment (Horn 1987)
-  int min_found = 45;        // landmarks of the old place found where the alignment puts them
+  int min_matches = 20;       // of descriptors alone
+  int min_aligned = 15;       // of those, that agree on one alignment (Horn 1987)
+  int min_found = 45;         // landmarks of the old place found where the alignment puts them
   int min_merge_found = 120;  // the same between two maps, where no way since speaks for or against
-                             // it, and their whole relation hangs on it
+                              // it, and their whole relation hangs on it
   double min_found_share = 0.1;  // of those that should be in sight: places only alike show less
   double search_radius = 8;      // pixels on level 0; the second time half of it
   int max_distance = 60;         // bits of 256

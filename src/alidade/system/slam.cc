@@ -148,6 +148,9 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     if (estimate.tracked) {
       ++relocalisations_;
       start_.Reset();
+      // A place just found again is confirmed by the frames after it before the map grows on it.
+      tracker_.KeyFrameInserted(frame->number);
+      estimate.wants_keyframe = false;
       return Accept(std::move(estimate), map);
     }
   }
@@ -308,13 +311,11 @@ void Slam::Impl::Load(const SavedMap& saved) {
     ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
                NameOfSensor(settings_.sensor));
   }
-  workers_.map().Restore(saved.map);
-  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
-  for (KeyFrameId id : saved.map.KeyFrames()) {
-    keyframes.push_back({id, saved.map.Find(id)->frame});
-    first_number_ = std::max(first_number_, keyframes.back().second->number + 1);
+  workers_.Restore(saved);
+  const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
+  for (KeyFrameId id : keyframes) {
+    first_number_ = std::max(first_number_, saved.map.Find(id)->frame->number + 1);
   }
-  workers_.places().Restore(saved.places, keyframes);
   if (keyframes.empty()) return;
   state_ = TrackState::kLost;
   lost_since_ = -1e300;  // nothing was lost: where no place is known, a map starts at once

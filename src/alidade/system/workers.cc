@@ -62,6 +62,15 @@ void Workers::WhileResting(const std::function<void()>& change) {
   looping_.WhileResting([&] { mapping_.WhileResting(change); });
 }
 
+void Workers::Restore(const SavedMap& saved) {
+  map_.Restore(saved.map);
+  const std::vector<KeyFrameId> ids = saved.map.KeyFrames();
+  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
+  for (KeyFrameId id : ids) keyframes.push_back({id, saved.map.Find(id)->frame});
+  places_.Restore(saved.places, keyframes);
+  loop_closer_.SetEntered(ids);
+}
+
 void Workers::Drop(MapId id) {
   WhileResting([&] {
     for (KeyFrameId keyframe : map_.Snapshot().KeyFramesOf(id)) places_.Remove(keyframe);

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "alidade/looping/loop_closer.h"
+#include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
 #include "alidade/mapping/mapper.h"
 #include "alidade/place/place_index.h"
@@ -30,6 +31,7 @@ class Workers {
   int backlog() const { return mapping_.backlog(); }   // keyframes that wait for the mapper
   void Drain();  // until nothing is left to do; a map with loops is adjusted as a whole once more
   void WhileResting(const std::function<void()>& change);  // while no worker is at the map
+  void Restore(const SavedMap& saved);                     // before the first keyframe
   void Drop(MapId id);                                     // a map and its places, without a trace
 
   int loops() const { return loop_closer_.loops(); }
