@@ -38,7 +38,10 @@ class EssentialGraph {
   EssentialGraph(const MapSnapshot& map, const LoopCorrection& loop,
                  const std::vector<Placed>& window, const Camera& camera,
                  const LoopSettings& settings)
-      : map_(map), settings_(settings), node_(map.next_keyframe(), -1) {
+      : map_(map),
+        settings_(settings),
+        depth_(std::max(loop.match.depth, 0.0)),
+        node_(map.next_keyframe(), -1) {
     graph_.with_scale = camera.StereoBaseline() <= 0;
     const MapId within = map.Find(loop.match.keyframe)->map;
     for (KeyFrameId id : map.KeyFramesOf(within)) {
@@ -61,7 +64,9 @@ class EssentialGraph {
   }
 
   std::vector<KeyFrameCorrection> Optimise() {
-    OptimizePoseGraph(graph_, settings_.graph);
+    PoseGraphSettings settings = settings_.graph;
+    if (settings.length_scale == 0) settings.length_scale = depth_;
+    OptimizePoseGraph(graph_, settings);
     std::vector<KeyFrameCorrection> corrections;
     for (size_t i = 0; i < ids_.size(); ++i) {
       const Sim3& T = graph_.T_camera_world[i];
@@ -109,6 +114,7 @@ class EssentialGraph {
 
   const MapSnapshot& map_;
   const LoopSettings& settings_;
+  double depth_;  // of what the cameras look at: errors of a turn and of a shift weigh alike there
   std::vector<int> node_;  // by keyframe id; -1: of another map
   std::vector<KeyFrameId> ids_;
   std::vector<Sim3> before_;

@@ -94,6 +94,7 @@ class Verifier {
     match_.place = b_.id;
     match_.T_camera_world = alignment_.T_camera_world;
     match_.growth = alignment_.growth;
+    match_.depth = alignment_.growth * MedianDepth();
     return std::move(match_);
   }
 

@@ -15,6 +15,7 @@ namespace alidade {
 struct LoopMatch {
   KeyFrameId keyframe, place;
   Se3 T_camera_world;  // of `keyframe` by the place's landmarks, in the place's world and scale
+  double depth = 1;    // median, of what `keyframe` sees, in the place's scale
   double growth = 1;   // lengths around `keyframe` must be multiplied by this (monocular)
   std::vector<FusedSighting> found;  // landmarks of the place, in `keyframe`
   int visible = 0;                   // of them that should have been found
