@@ -33,10 +33,6 @@ void Say(const RunSummary& summary, const RunRecord& record, const std::string& 
               record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
 }
 
-Sensor SensorNamed(const std::string& name) {
-  return name == "mono" ? Sensor::kMono : name == "stereo" ? Sensor::kStereo : Sensor::kRgbd;
-}
-
 int Run(const RunOptions& options) {
   CheckRunOptions(options);
   RunRecord record;
@@ -55,7 +51,7 @@ int Run(const RunOptions& options) {
   std::optional<SavedMap> saved;
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
-  if (saved && !wanted.sensor) wanted.sensor = SensorNamed(saved->sensor);
+  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();

@@ -112,12 +112,17 @@ void CheckRunOptions(const RunOptions& options) {
   if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
 }
 
+Sensor SensorNamed(const std::string& option, const std::string& word) {
+  std::vector<std::pair<std::string, Sensor>> sensors;
+  for (Sensor sensor : {Sensor::kMono, Sensor::kStereo, Sensor::kRgbd})
+    sensors.push_back({NameOf(sensor), sensor});
+  return Choice<Sensor>(option, word, sensors);
+}
+
 SourceOptions SourceOptionsFrom(const RunOptions& options) {
   SourceOptions source;
   if (options.sensor) {
-    source.sensor = Choice<Sensor>(
-        "--sensor", *options.sensor,
-        {{"mono", Sensor::kMono}, {"stereo", Sensor::kStereo}, {"rgbd", Sensor::kRgbd}});
+    source.sensor = SensorNamed("--sensor", *options.sensor);
   }
   source.camera_file = options.camera_file;
   source.fov_degrees = options.fov_degrees;

@@ -40,6 +40,9 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options);
 // Throws Error (usage) for what this version cannot do yet, and for flags that do not go together.
 void CheckRunOptions(const RunOptions& options);
 
+// Throws Error (usage) for a word that names none; `option` is whose word it is.
+Sensor SensorNamed(const std::string& option, const std::string& word);
+
 SourceOptions SourceOptionsFrom(const RunOptions& options);
 
 // Profile, then the file of --config, then each --set, then --seed: the later one holds. The sensor

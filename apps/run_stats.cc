@@ -50,18 +50,6 @@ std::string NumberedFile(const std::string& name, size_t number) {
   return number == 0 ? name + ".txt" : name + "." + std::to_string(number) + ".txt";
 }
 
-const char* NameOf(Sensor sensor) {
-  switch (sensor) {
-    case Sensor::kMono:
-      return "mono";
-    case Sensor::kStereo:
-      return "stereo";
-    case Sensor::kRgbd:
-      return "rgbd";
-  }
-  return "";
-}
-
 std::string StatsJson(const RunRecord& record, const RunResults& results) {
   const int tracked = results.tracked;
   const auto optional = [](const std::optional<int>& value) {

@@ -8,8 +8,6 @@
 
 namespace alidade {
 
-const char* NameOf(Sensor sensor);  // as after --sensor
-
 // Of the map with the most frames "trajectory.txt", of the next "trajectory.1.txt", and so on.
 std::string NumberedFile(const std::string& name, size_t number);
 

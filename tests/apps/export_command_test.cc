@@ -1,4 +1,4 @@
-// `alidade export` and `alidade info` as a user meets them, and as COLMAP does.
+// `alidade export` and `alidade info` as a user meets them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,62 +10,11 @@
 
 #include "alidade/io/files/file.h"
 #include "support/map_bytes.h"
-#include "support/rendered.h"
 #include "support/saved_map.h"
+#include "support/saved_map_command.h"
 
 namespace alidade {
 namespace {
-
-namespace fs = std::filesystem;
-using nlohmann::json;
-using testing::HasSubstr;
-
-class SavedMapCommand : public testing::Test {
- protected:
-  // The folder of a short run with a camera that distorts.
-  static std::string Result(const std::string& sensor) {
-    const std::string recording = Rendered({"room", "--frames", "40", "--distortion"});
-    const std::string out = recording + "." + sensor;
-    if (fs::exists(out)) return out;
-    const std::string draft = out + "." + std::to_string(getpid());
-    const ProgramResult run =
-        RunAlidade({"run", recording, "--sensor", sensor, "--out", draft, "--quiet"});
-    EXPECT_EQ(run.status, 0) << run.err;
-    std::error_code taken;  // by another test process: its map is the same
-    fs::rename(draft, out, taken);
-    if (taken) fs::remove_all(draft);
-    return out;
-  }
-  static json Info(const std::string& map) {
-    const ProgramResult info = RunAlidade({"info", map, "--json"});
-    EXPECT_EQ(info.status, 0) << info.err;
-    return json::parse(info.out, nullptr, false);
-  }
-  void Export(const std::string& map, const std::string& to, const std::string& out,
-              const std::vector<std::string>& options = {}) {
-    std::vector<std::string> arguments = {"export", map, "--to", to, out};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    const ProgramResult result = RunAlidade(arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(LineCount(result.out), 1);
-  }
-  void ExpectRefused(const std::vector<std::string>& arguments, int status,
-                     const std::string& words) {
-    const ProgramResult result = RunAlidade(arguments);
-    EXPECT_EQ(result.status, status) << result.err;
-    EXPECT_THAT(result.err, HasSubstr(words));
-    EXPECT_EQ(LineCount(result.err), 1) << result.err;
-    EXPECT_EQ(result.out, "");
-  }
-  std::vector<std::string> NamesIn(const std::string& folder) const {
-    std::vector<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      names.push_back(entry.path().filename().string());
-    }
-    return names;
-  }
-  TempFolder folder_;
-};
 
 TEST_F(SavedMapCommand, InfoSaysWhatTheRunSaid) {
   const std::string result = Result("rgbd");
@@ -233,153 +182,6 @@ TEST_F(SavedMapCommand, CloudsHoldTheLandmarks) {
   EXPECT_EQ(pcd.size(), pcd.find("DATA binary\n") + 12 + 12 * static_cast<size_t>(landmarks));
   Export(result, "pcd", folder_ / "c.pcd", {"--min-observations", "3"});
   EXPECT_LT(fs::file_size(folder_ / "c.pcd"), pcd.size());
-}
-
-// The text model, read as COLMAP's documentation says and projected by OpenCV.
-TEST_F(SavedMapCommand, ColmapModelProjectsToItsKeypoints) {
-  const std::string out = folder_ / "model";
-  Export(Result("mono"), "colmap", out);
-  std::istringstream camera(DataLines(out + "/cameras.txt").at(0));
-  std::string skipped, model;
-  double fx, fy, cx, cy, k1, k2, p1, p2;
-  camera >> skipped >> model >> skipped >> skipped >> fx >> fy >> cx >> cy >> k1 >> k2 >> p1 >> p2;
-  ASSERT_EQ(model, "OPENCV");
-  const cv::Matx33d K(fx, 0, cx, 0, fy, cy, 0, 0, 1);
-  const cv::Vec4d distortion(k1, k2, p1, p2);
-
-  struct Image {
-    cv::Vec3d r, t;
-    std::vector<cv::Point2d> keypoints;
-    std::vector<int> points;
-  };
-  std::map<int, Image> images;
-  const auto lines = ReadLines(out + "/images.txt");
-  for (size_t i = 0; i < lines.size(); ++i) {
-    if (lines[i][0] == '#') continue;
-    std::istringstream head(lines[i]), keypoints(lines[i + 1]);
-    int id = 0;
-    double w, x, y, z, tx, ty, tz;
-    head >> id >> w >> x >> y >> z >> tx >> ty >> tz;
-    Image& image = images[id];
-    const double angle = 2 * std::acos(std::min(1.0, w)), sine = std::sqrt(x * x + y * y + z * z);
-    if (sine > 0) image.r = cv::Vec3d(x, y, z) * (angle / sine);
-    image.t = {tx, ty, tz};
-    int point = 0;
-    for (cv::Point2d pixel; keypoints >> pixel.x >> pixel.y >> point;) {
-      image.keypoints.push_back(pixel);
-      image.points.push_back(point);
-    }
-    ++i;
-  }
-  double sum = 0;
-  int count = 0;
-  for (const std::string& line : DataLines(out + "/points3D.txt")) {
-    std::istringstream in(line);
-    int id = 0, image = 0, keypoint = 0;
-    double error = 0, mean = 0;
-    cv::Point3d p;
-    in >> id >> p.x >> p.y >> p.z >> skipped >> skipped >> skipped >> error;
-    EXPECT_THAT(line, HasSubstr(" 128 128 128 "));
-    int seen = 0;
-    for (; in >> image >> keypoint; ++seen) {
-      const Image& in_image = images.at(image);
-      EXPECT_EQ(in_image.points.at(keypoint), id);
-      std::vector<cv::Point2d> projected;
-      cv::projectPoints(std::vector<cv::Point3d>{p}, in_image.r, in_image.t, K, distortion,
-                        projected);
-      mean += cv::norm(projected[0] - in_image.keypoints[keypoint]);
-    }
-    mean /= seen;
-    EXPECT_NEAR(mean, error, 1e-3) << line;
-    sum += mean;
-    ++count;
-  }
-  EXPECT_GT(count, 100);
-  EXPECT_LT(sum / count, 1.5);
-}
-
-// Runs the real program; its words and its exit status.
-ProgramResult Colmap(const std::string& arguments) {
-  const std::string command = "QT_QPA_PLATFORM=offscreen colmap " + arguments + " 2>&1";
-  ProgramResult result;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return result;
-  char buffer[4096];
-  for (size_t got; (got = fread(buffer, 1, sizeof(buffer), pipe)) > 0;) {
-    result.out.append(buffer, got);
-  }
-  result.status = pclose(pipe);
-  return result;
-}
-
-// The number after `words`.
-double NumberAfter(const std::string& text, const std::string& words) {
-  const size_t at = text.find(words);
-  if (at == std::string::npos) {
-    ADD_FAILURE() << "no '" << words << "' in: " << text;
-    return NAN;
-  }
-  return std::strtod(text.c_str() + at + words.size(), nullptr);
-}
-
-class RealColmap : public SavedMapCommand {
- protected:
-  void SetUp() override {
-    if (Colmap("help").status != 0) {
-      GTEST_SKIP() << "needs COLMAP (scripts/setup --tests installs Debian's)";
-    }
-  }
-};
-
-TEST_F(RealColmap, ReadsTextAndBinary) {
-  for (const char* sensor : {"rgbd", "mono"}) {
-    const std::string result = Result(sensor);
-    const json info = Info(result);
-    for (const char* format : {"text", "binary", "both"}) {
-      const std::string out = folder_ / (std::string(sensor) + format);
-      Export(result, "colmap", out, {"--format", format});
-      const ProgramResult analysis = Colmap("model_analyzer --path " + out);
-      EXPECT_EQ(analysis.status, 0) << analysis.out;
-      EXPECT_EQ(NumberAfter(analysis.out, "\nRegistered images:"), info["keyframes"]);
-      EXPECT_EQ(NumberAfter(analysis.out, "\nPoints:"), info["landmarks"]);
-      EXPECT_EQ(NumberAfter(analysis.out, "\nObservations:"),
-                info["maps"][0]["observations"]["total"]);
-      EXPECT_LT(NumberAfter(analysis.out, "\nMean reprojection error:"), 1.5);
-    }
-  }
-}
-
-TEST_F(RealColmap, ConvertsEachIntoTheOther) {
-  const std::string text = folder_ / "text", binary = folder_ / "binary";
-  Export(Result("rgbd"), "colmap", text, {"--format", "text"});
-  Export(Result("rgbd"), "colmap", binary, {"--format", "binary"});
-  const std::string out = folder_.Folder("converted");
-  const ProgramResult converted =
-      Colmap("model_converter --output_type TXT --input_path " + binary + " --output_path " + out);
-  EXPECT_EQ(converted.status, 0) << converted.out;
-  for (const char* name : {"cameras.txt", "images.txt", "points3D.txt"}) {
-    auto ours = DataLines(text + "/" + name), theirs = DataLines(out + "/" + name);
-    for (std::string& line : theirs) line.erase(line.find_last_not_of(' ') + 1);
-    std::sort(ours.begin(), ours.end());  // COLMAP's own order is that of a hash table
-    std::sort(theirs.begin(), theirs.end());
-    EXPECT_TRUE(ours == theirs) << name;
-  }
-}
-
-// COLMAP's own projection agrees too: its bundle adjustment starts at our error, and hardly lowers
-// it.
-TEST_F(RealColmap, AdjustsTheModel) {
-  const std::string model = folder_ / "model", out = folder_.Folder("adjusted");
-  Export(Result("mono"), "colmap", model, {"--min-observations", "2"});
-  const double before = NumberAfter(Colmap("model_analyzer --path " + model).out, "error:");
-  const ProgramResult adjusted =
-      Colmap("bundle_adjuster --input_path " + model + " --output_path " + out);
-  EXPECT_EQ(adjusted.status, 0) << adjusted.out;
-  const double start = NumberAfter(adjusted.out, "Initial cost :"),
-               end = NumberAfter(adjusted.out, "Final cost :");
-  EXPECT_LT(start, 1.5);
-  EXPECT_LT(std::abs(start - before), 0.5 * before);  // a root mean square beside a mean
-  EXPECT_GT(end, 0.5 * start);
 }
 
 TEST_F(SavedMapCommand, ColmapFolderIsReplacedOnlyWhenItIsOurs) {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "alidade/base/error.h"
+#include "support/expect_error.h"
 #include "support/sim3_problem.h"
 
 namespace alidade {
@@ -108,14 +109,7 @@ TEST(SolveSim3Ransac, SameSeedSameAnswer) {
 }
 
 TEST(SolveSim3Ransac, SettingsThatCannotBeAreNamed) {
-  const auto complaint = [](Sim3RansacSettings settings) -> std::string {
-    try {
-      settings.Check();
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto complaint = ComplaintAbout<Sim3RansacSettings>;
   EXPECT_EQ(complaint({}), "");
   EXPECT_NE(complaint({.max_iterations = 0}).find("max_iterations"), std::string::npos);
   EXPECT_NE(complaint({.max_error = -1}).find("max_error"), std::string::npos);

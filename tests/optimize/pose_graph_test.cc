@@ -8,6 +8,7 @@
 #include "alidade/base/parallel.h"
 #include "alidade/optimize/pose_graph_system.h"
 #include "ceres_sim3.h"
+#include "support/expect_error.h"
 #include "support/pose_graph_problem.h"
 
 namespace alidade {
@@ -276,14 +277,7 @@ TEST(OptimizePoseGraph, WhatCannotBeIsAnError) {
 }
 
 TEST(OptimizePoseGraph, SettingsThatCannotBeAreNamed) {
-  const auto complaint = [](PoseGraphSettings settings) -> std::string {
-    try {
-      settings.Check();
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto complaint = ComplaintAbout<PoseGraphSettings>;
   EXPECT_EQ(complaint({}), "");
   EXPECT_NE(complaint({.max_iterations = -1}).find("max_iterations"), std::string::npos);
   EXPECT_NE(complaint({.min_relative_decrease = 1}).find("min_relative"), std::string::npos);

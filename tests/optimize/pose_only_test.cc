@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "ceres_reprojection.h"
+#include "support/expect_error.h"
 #include "support/pose_problem.h"
 
 namespace alidade {
@@ -176,14 +177,7 @@ TEST(OptimizePose, DegenerateMatchesGiveAFinitePose) {
 }
 
 TEST(OptimizePose, SettingsThatCannotBeAreNamed) {
-  const auto complaint = [](PoseOnlySettings settings) -> std::string {
-    try {
-      settings.Check();
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto complaint = ComplaintAbout<PoseOnlySettings>;
   EXPECT_EQ(complaint({}), "");
   EXPECT_NE(complaint({.max_iterations = 0}).find("max_iterations"), std::string::npos);
   EXPECT_NE(complaint({.rounds = 0}).find("rounds"), std::string::npos);

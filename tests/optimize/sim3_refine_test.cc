@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "ceres_sim3.h"
+#include "support/expect_error.h"
 #include "support/sim3_problem.h"
 
 namespace alidade {
@@ -167,14 +168,7 @@ TEST(RefineSim3, DegenerateMatchesGiveAFiniteAnswer) {
 }
 
 TEST(RefineSim3, SettingsThatCannotBeAreNamed) {
-  const auto complaint = [](Sim3RefineSettings settings) -> std::string {
-    try {
-      settings.Check();
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
-  };
+  const auto complaint = ComplaintAbout<Sim3RefineSettings>;
   EXPECT_EQ(complaint({}), "");
   EXPECT_NE(complaint({.max_iterations = 0}).find("max_iterations"), std::string::npos);
   EXPECT_NE(complaint({.rounds = 0}).find("rounds"), std::string::npos);

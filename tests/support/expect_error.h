@@ -24,6 +24,17 @@ std::string MessageOf(ErrorKind kind, const Code& code) {
   return "";
 }
 
+// What Check() says of settings: "" when they can be.
+template <typename Settings>
+std::string ComplaintAbout(const Settings& settings) {
+  try {
+    settings.Check();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
 // Collects warnings while it lives, instead of printing them.
 class WarningCatcher {
  public:

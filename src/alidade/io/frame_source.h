@@ -12,6 +12,11 @@ namespace alidade {
 
 enum class Sensor { kMono, kStereo, kRgbd };
 
+// As on the command line, in stats.json and in saved maps.
+inline const char* NameOf(Sensor sensor) {
+  return sensor == Sensor::kMono ? "mono" : sensor == Sensor::kStereo ? "stereo" : "rgbd";
+}
+
 struct SourceFrame {
   double time = 0;    // seconds
   std::string stamp;  // as written in the recording, for files that must keep it verbatim

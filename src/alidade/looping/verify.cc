@@ -7,6 +7,7 @@
 #include "alidade/features/matching.h"
 #include "alidade/geometry/pnp.h"
 #include "alidade/looping/surroundings.h"
+#include "alidade/map/view.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/optimize/sim3_refine.h"
 
@@ -73,14 +74,14 @@ class Verifier {
   }
 
   std::optional<LoopMatch> Run() {
+    const bool both_known = Align();
+    if (!both_known && !AlignByPose()) return {};
     around_ = LandmarksAround(map_, b_);
-    if (Align()) {
-      Search(settings_.search_radius);
+    Search(settings_.search_radius);
+    if (both_known) {
       Refine();
-    } else {
-      if (!AlignByPose()) return {};
-      Search(settings_.search_radius);
-      if (!RefineByPose()) return {};
+    } else if (!RefineByPose()) {
+      return {};
     }
     Search(settings_.search_radius / 2);
     const int found = DifferentKeypoints(match_.found);
@@ -94,7 +95,7 @@ class Verifier {
     match_.place = b_.id;
     match_.T_camera_world = alignment_.T_camera_world;
     match_.growth = alignment_.growth;
-    match_.depth = alignment_.growth * MedianDepth();
+    match_.depth = alignment_.growth * MedianDepth(map_, a_).value_or(0);
     return std::move(match_);
   }
 
@@ -231,19 +232,7 @@ class Verifier {
     }
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
     return shift < (broken ? kBrokenDrift : settings_.max_drift) * way +
-                       settings_.max_drift_floor * MedianDepth();
-  }
-
-  double MedianDepth() const {
-    std::vector<double> depths;
-    for (LandmarkId id : a_.landmarks) {
-      if (const Landmark* landmark = id.valid() ? map_.Find(id) : nullptr)
-        depths.push_back((a_.T_camera_world * landmark->p_world).z());
-    }
-    if (depths.empty()) return 0;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    return *middle;
+                       settings_.max_drift_floor * MedianDepth(map_, a_).value_or(0);
   }
 
   // Whether the keyframes around see the place, too. All of them where there are fewer than asked.

@@ -1,5 +1,8 @@
 #include "alidade/map/view.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "alidade/features/guided_search.h"
 
 namespace alidade {
@@ -23,6 +26,18 @@ std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera&
   if (const double bf = camera.bf(); bf > 0) view.right_x = view.pixel.x() - bf / p.z();
   view.level = PredictLevel(landmark.max_distance, view.distance);
   return view;
+}
+
+std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe) {
+  std::vector<double> depths;
+  for (LandmarkId id : keyframe.landmarks) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (landmark) depths.push_back((keyframe.T_camera_world * landmark->p_world).z());
+  }
+  if (depths.empty()) return {};
+  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+  std::nth_element(depths.begin(), middle, depths.end());
+  return *middle;
 }
 
 }  // namespace alidade

@@ -5,6 +5,7 @@
 
 #include "alidade/geometry/camera.h"
 #include "alidade/map/landmark.h"
+#include "alidade/map/map_store.h"
 
 namespace alidade {
 
@@ -21,5 +22,8 @@ struct LandmarkView {
 // (ORB-SLAM §V-D).
 std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera& camera,
                                          const Se3& T_camera_world, double margin = 0);
+
+// Of the landmarks a keyframe shows, along its optical axis; nullopt when it shows none.
+std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe);
 
 }  // namespace alidade

@@ -7,6 +7,7 @@
 #include "alidade/base/parallel.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/two_view.h"
+#include "alidade/map/view.h"
 
 namespace alidade {
 namespace {
@@ -33,18 +34,6 @@ std::vector<int> WithoutLandmark(const KeyFrame& keyframe) {
     if (!keyframe.landmarks[i].valid()) free.push_back(static_cast<int>(i));
   }
   return free;
-}
-
-double MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe) {
-  std::vector<double> depths;
-  for (LandmarkId id : keyframe.landmarks) {
-    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (landmark) depths.push_back((keyframe.T_camera_world * landmark->p_world).z());
-  }
-  if (depths.empty()) return 1;
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
 }
 
 // Best descriptor partner along the epipolar line, clearly better than the second.
@@ -127,7 +116,7 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
   const bool has_depth = camera.StereoBaseline() > 0;
   const auto count = static_cast<size_t>(has_depth ? settings.triangulate_keyframes_depth
                                                    : settings.triangulate_keyframes_mono);
-  const double median_depth = MedianDepth(map, a);
+  const double median_depth = MedianDepth(map, a).value_or(1);
   const Eigen::Vector3d centre_a = a.Centre();
   const std::vector<int> free_a = WithoutLandmark(a);
 

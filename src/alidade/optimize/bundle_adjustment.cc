@@ -6,6 +6,7 @@
 #include "alidade/base/error.h"
 #include "alidade/optimize/bundle_linearise.h"
 #include "alidade/optimize/bundle_schur.h"
+#include "alidade/optimize/damping.h"
 
 namespace alidade {
 namespace {
@@ -47,23 +48,6 @@ void Store(const BundleLayout& layout, const BundleState& state, BundleProblem& 
   }
 }
 
-// The damping follows how well the quadratic model foretold the cost (Nielsen 1999).
-struct Damping {
-  double lambda;
-  double growth = 2;
-
-  void Accepted(double actual, double predicted) {
-    const double surprise = 2 * actual / predicted - 1;
-    lambda *= std::max(1.0 / 3, 1 - surprise * surprise * surprise);
-    lambda = std::max(lambda, kMinLambda);
-    growth = 2;
-  }
-  void Rejected() {
-    lambda *= growth;
-    growth *= 2;
-  }
-};
-
 }  // namespace
 
 void BundleSettings::Check() const {
@@ -99,7 +83,7 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
   const bool many = static_cast<int>(layout.free_cameras.size()) > settings.sparse_above;
   SchurSolver solver(layout, many ? ReducedFactor::kFastest : ReducedFactor::kDense);
   BundleStep step;
-  Damping damping{settings.initial_lambda};
+  Damping damping{settings.initial_lambda, kMinLambda};
   bool moved = false;
   while (report.iterations < settings.max_iterations && damping.lambda < kMaxLambda) {
     if (stop && *stop) break;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/optimize/damping.h"
 #include "alidade/optimize/pose_graph_system.h"
 
 namespace alidade {
@@ -79,23 +80,6 @@ double LengthScale(const PoseGraph& graph, const std::vector<int>& edges) {
   return 10 * *middle;
 }
 
-// The damping follows how well the quadratic model foretold the cost (Nielsen 1999).
-struct Damping {
-  double lambda;
-  double growth = 2;
-
-  void Accepted(double actual, double predicted) {
-    const double surprise = 2 * actual / predicted - 1;
-    lambda *= std::max(1.0 / 3, 1 - surprise * surprise * surprise);
-    lambda = std::max(lambda, kMinLambda);
-    growth = 2;
-  }
-  void Rejected() {
-    lambda *= growth;
-    growth *= 2;
-  }
-};
-
 template <int kDof>
 PoseGraphReport Minimise(PoseGraph& graph, const std::vector<int>& slot,
                          const std::vector<int>& edges, const PoseGraphSettings& settings,
@@ -115,7 +99,7 @@ PoseGraphReport Minimise(PoseGraph& graph, const std::vector<int>& slot,
   const double nothing = 1e-26 * total_weight;
   report.converged = cost <= nothing;
   bool linearised = false;
-  Damping damping{settings.initial_lambda};
+  Damping damping{settings.initial_lambda, kMinLambda};
   while (!report.converged && report.iterations < settings.max_iterations) {
     if (stop && *stop) break;
     ++report.iterations;

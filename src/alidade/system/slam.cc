@@ -21,17 +21,6 @@ SlamSettings Seeded(SlamSettings settings) {
   return settings;
 }
 
-const char* NameOfSensor(Sensor sensor) {
-  switch (sensor) {
-    case Sensor::kStereo:
-      return "stereo";
-    case Sensor::kRgbd:
-      return "rgbd";
-    default:
-      return "mono";
-  }
-}
-
 // Where a frame is, by the keyframe it was placed against.
 struct FrameRecord {
   double time = 0;
@@ -177,14 +166,16 @@ void Slam::Impl::Lose() {
   lost_sighted_ = 0;
 }
 
-// A map of a few keyframes is worth less than the confusion it makes.
+// A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
 void Slam::Impl::LeaveMap() {
   state_ = TrackState::kInitialising;
   start_.Reset();
   const MapSnapshot map = workers_.map().Snapshot();
   const MapId left = map.MapOf(tracker_.reference());
   if (!left.valid()) return;
-  if (static_cast<int>(map.KeyFramesOf(left).size()) < settings_.min_map_keyframes)
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
+  const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
+  if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
     workers_.Drop(left);
 }
 
@@ -307,9 +298,9 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
 void Slam::Impl::Load(const SavedMap& saved) {
   if (!records_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
   CheckSameCamera(saved.camera, camera_);
-  if (saved.sensor != NameOfSensor(settings_.sensor)) {
+  if (saved.sensor != NameOf(settings_.sensor)) {
     ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
-               NameOfSensor(settings_.sensor));
+               NameOf(settings_.sensor));
   }
   workers_.Restore(saved);
   const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
@@ -318,7 +309,7 @@ void Slam::Impl::Load(const SavedMap& saved) {
   }
   if (keyframes.empty()) return;
   state_ = TrackState::kLost;
-  lost_since_ = -1e300;  // nothing was lost: where no place is known, a map starts at once
+  lost_since_ = -1e300;  // nothing was lost: only frames that show something must fail first
 }
 
 Slam::Slam(const Camera& camera, const SlamSettings& settings)
@@ -336,7 +327,7 @@ SlamCounts Slam::Counts() const {
 }
 
 std::string Slam::SaveMap() const {
-  return EncodeMap({Snapshot(), impl_->camera_, NameOfSensor(impl_->settings_.sensor),
+  return EncodeMap({Snapshot(), impl_->camera_, NameOf(impl_->settings_.sensor),
                     impl_->settings_.All(), impl_->workers_.places().Save()});
 }
 

@@ -30,9 +30,8 @@ class Workers {
   void AddMapped(KeyFrameId id) { looping_.Add(id); }  // needs no mapping
   int backlog() const { return mapping_.backlog(); }   // keyframes that wait for the mapper
   void Drain();  // until nothing is left to do; a map with loops is adjusted as a whole once more
-  void WhileResting(const std::function<void()>& change);  // while no worker is at the map
-  void Restore(const SavedMap& saved);                     // before the first keyframe
-  void Drop(MapId id);                                     // a map and its places, without a trace
+  void Restore(const SavedMap& saved);  // before the first keyframe
+  void Drop(MapId id);                  // a map and its places, without a trace
 
   int loops() const { return loop_closer_.loops(); }
   int merges() const { return loop_closer_.merges(); }
@@ -40,6 +39,7 @@ class Workers {
   std::vector<double> LoopMilliseconds() const { return looping_.Milliseconds(); }
 
  private:
+  void WhileResting(const std::function<void()>& change);  // while no worker is at the map
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop);

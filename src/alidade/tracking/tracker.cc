@@ -151,8 +151,8 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
                                   std::span<const KeyFrameId> candidates) {
   TrackerSettings wide = settings_;
   wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
-  TrackEstimate best;
-  best.placed.frame = frame;
+  TrackEstimate lost;
+  lost.placed.frame = frame;
   for (KeyFrameId id : candidates) {
     PlacedFrame guess;
     guess.frame = frame;
@@ -166,7 +166,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     estimate.tracked = estimate.tracked && IsCertain(estimate);
     if (estimate.tracked) return estimate;
   }
-  return best;
+  return lost;
 }
 
 // A place only like the one in view shows some of the same, and leaves much of the rest unseen. And
