@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "alidade/features/descriptor.h"
+#include "alidade/features/picture.h"
 #include "alidade/geometry/camera.h"
 
 namespace alidade {
@@ -61,6 +62,7 @@ struct Frame {
   KeypointGrid grid;
   cv::Mat image;                 // 8 bit grey, level 0, as given (not undistorted)
   std::vector<cv::Mat> pyramid;  // all levels; empty once the frame is a keyframe (memory)
+  std::shared_ptr<const Picture> picture;  // for dense work, until it is handed over; else null
 };
 
 template <typename Visit>

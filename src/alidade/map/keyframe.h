@@ -7,6 +7,7 @@
 #include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/map/depth_map.h"
 
 namespace alidade {
 
@@ -27,9 +28,10 @@ struct KeyFrame {
   double scale = 1;
   Se3 T_camera_parent;            // once culled: its place relative to the parent, had that scale 1
   std::vector<KeyFrameId> loops;  // keyframes a closed loop ties it to, sorted
-  std::vector<LandmarkId> landmarks;  // one for each keypoint; none where nothing is known
-  std::vector<Neighbour> covisible;   // most shared landmarks first, then by id
-  uint64_t version = 0;               // commit that wrote it
+  std::vector<LandmarkId> landmarks;      // one for each keypoint; none where nothing is known
+  std::vector<Neighbour> covisible;       // most shared landmarks first, then by id
+  std::shared_ptr<const DepthMap> depth;  // semi-dense; null: not (yet) known
+  uint64_t version = 0;                   // commit that wrote it
 
   bool culled() const { return frame == nullptr; }
   Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }  // in the world

@@ -259,6 +259,7 @@ void MapCommit::Remove(KeyFrameId id) {
   }
   keyframe->loops.clear();
   keyframe->frame = nullptr;
+  keyframe->depth = nullptr;
   keyframe->landmarks.clear();
   keyframe->landmarks.shrink_to_fit();
   keyframe->covisible.clear();

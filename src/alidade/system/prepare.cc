@@ -41,6 +41,20 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
     if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
       ThrowInput("depth must be 16 bit or float");
   }
+  if (!settings.semidense.enabled) {
+    prepared.color.release();
+  } else if (prepared.color.empty() && prepared.image.channels() >= 3) {
+    prepared.color = prepared.image;
+  }
+  if (!prepared.color.empty()) {
+    check(prepared.color, "colour image");
+    if (prepared.color.depth() != CV_8U || prepared.color.channels() < 3)
+      ThrowInput("colour images must have three or four channels of 8 bits");
+    if (prepared.color.channels() == 4)
+      cv::cvtColor(prepared.color, prepared.color, cv::COLOR_BGRA2BGR);
+    if (used.width != given.width)
+      cv::resize(prepared.color, prepared.color, {used.width, used.height}, 0, 0, cv::INTER_AREA);
+  }
   for (cv::Mat* image : {&prepared.image, &prepared.right}) {
     if (image->empty()) continue;
     if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");

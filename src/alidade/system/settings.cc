@@ -111,6 +111,24 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("places.match_level", p.matching.level);
   visit("places.match_max_distance", p.matching.max_distance);
   visit("places.match_ratio", p.matching.ratio);
+  auto& d = s.semidense;
+  visit("semidense.enabled", d.enabled);
+  visit("semidense.from_sensor", d.from_sensor);
+  visit("semidense.keyframes", d.keyframes);
+  visit("semidense.min_gradient", d.min_gradient);
+  visit("semidense.max_edge_angle", d.max_edge_angle);
+  visit("semidense.max_turn", d.max_turn);
+  visit("semidense.gradient_weight", d.gradient_weight);
+  visit("semidense.intensity_sigma", d.intensity_sigma);
+  visit("semidense.chi2_pair", d.chi2_pair);
+  visit("semidense.chi2_check", d.chi2_check);
+  visit("semidense.min_compatible", d.min_compatible);
+  visit("semidense.fuse", d.fuse);
+  visit("semidense.smooth", d.smooth);
+  visit("semidense.cross_check", d.cross_check);
+  visit("semidense.delay", d.delay);
+  visit("semidense.redo_baseline", d.redo_baseline);
+  visit("semidense.voxel", d.voxel);
   auto& i = s.start;
   visit("start.min_matches", i.min_matches);
   visit("start.match_scale", i.match_scale);
@@ -190,6 +208,7 @@ void SlamSettings::Check() const {
   mapper.Check();
   loop.Check();
   places.Check();
+  semidense.Check();
   if (!(new_map_seconds >= 0) || new_map_frames < 1)
     ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");

@@ -10,6 +10,7 @@
 #include "alidade/looping/settings.h"
 #include "alidade/mapping/settings.h"
 #include "alidade/place/settings.h"
+#include "alidade/semidense/settings.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 
@@ -25,6 +26,7 @@ struct SlamSettings {
   MonoStartSettings start;
   PlaceSettings places;
   LoopSettings loop;
+  SemiDenseSettings semidense;
   bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
   // When lost, a new map is started only after so long and so many frames that showed something:
   // with depth it could start at once, and would always be quicker than recognising a place.

@@ -29,6 +29,16 @@ struct FrameRecord {
   Se3 T_world_camera_live;
 };
 
+// Refers to the images of `input`, which are the caller's.
+std::shared_ptr<const Picture> PictureOf(const FrameInput& input) {
+  return std::make_shared<Picture>(Picture{input.image, input.color, input.depth});
+}
+
+std::shared_ptr<const Picture> Copied(const Picture& picture) {
+  return std::make_shared<Picture>(Picture{picture.gray.clone(), picture.color.clone(),
+                                           picture.depth.clone(), picture.mask.clone()});
+}
+
 }  // namespace
 
 class Slam::Impl {
@@ -40,6 +50,7 @@ class Slam::Impl {
   Camera given_;
   SlamSettings settings_;
   Camera camera_;
+  bool dense_;  // semi-dense mapping is asked for
   Workers workers_;
   Tracker tracker_;
   MonoStart start_;
@@ -58,6 +69,7 @@ class Slam::Impl {
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
+  void KeepPicture(KeyFrameId id, const Frame& frame);
   void GiveUpStart();
   void Lose();
   void LeaveMap();
@@ -76,6 +88,7 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings)
     : given_(given),
       settings_(Seeded(settings)),
       camera_(CameraInUse(given, settings)),
+      dense_(settings.semidense.enabled && !settings.localise),
       workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
       start_(camera_, settings_.start) {
@@ -93,7 +106,11 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   times_.extract.push_back(extracting.Milliseconds());
   records_.push_back({});
   records_.back().time = input.time;
+  if (dense_) frame->picture = PictureOf(prepared);
   const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  // Only while a map is to be started may a frame yet become a keyframe.
+  const bool may_start = dense_ && state_ == TrackState::kInitialising;
+  frame->picture = may_start ? Copied(*frame->picture) : nullptr;
   times_.frame.push_back(whole.Milliseconds());
   return result;
 }
@@ -115,7 +132,12 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
   placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(placed, id, map);
+  KeepPicture(id, *placed.frame);
   workers_.Add(id);
+}
+
+void Slam::Impl::KeepPicture(KeyFrameId id, const Frame& frame) {
+  if (dense_) workers_.Keep(id, Copied(*frame.picture));
 }
 
 // No pose: known places first; a new map only where none is known, or none was recognised for long.
@@ -222,6 +244,8 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   trial_map_ = keyframe.map;
   trial_keyframes_[0] = keyframe.parent;
   trial_keyframes_[1] = id;
+  KeepPicture(keyframe.parent, *two.a);
+  KeepPicture(id, *two.b);
   trial_points_ =
       static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
                                      [](LandmarkId landmark) { return landmark.valid(); }));
@@ -335,6 +359,7 @@ StageTimes Slam::Times() const {
   StageTimes times = impl_->times_;
   times.map = impl_->workers_.MapMilliseconds();
   times.loop = impl_->workers_.LoopMilliseconds();
+  times.semidense = impl_->workers_.SemiDenseMilliseconds();
   return times;
 }
 

@@ -20,6 +20,7 @@ struct FrameInput {
   cv::Mat right;    // stereo: the rectified right image
   cv::Mat depth;  // RGB-D: registered depth, CV_16U in camera.depth_factor units or CV_32F metres;
                   // empty = none
+  cv::Mat color = {};  // `image` in colour (BGR) when it is grey, for clouds; empty = none
 };
 
 struct TrackResult {
@@ -42,7 +43,7 @@ struct FramePose {
 
 // Milliseconds, one sample per frame (map, loop: per keyframe).
 struct StageTimes {
-  std::vector<double> frame, extract, track, map, loop;
+  std::vector<double> frame, extract, track, map, loop, semidense;
 };
 
 struct SlamCounts {

@@ -13,21 +13,32 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
     : places_(settings.places, settings.seed),
       mapper_(map_, camera, settings.mapper),
       loop_closer_(map_, places_, camera, settings.loop),
+      semidense_mapper_(map_, camera, settings.semidense),
+      dense_(settings.semidense.enabled && !settings.localise),
       adjusting_([this](KeyFrameId id, const std::atomic<bool>* stop) { AdjustAll(id, stop); },
                  Behind(settings)),
       looping_([this](KeyFrameId id, const std::atomic<bool>*) { Loop(id); }, Behind(settings)),
+      semidense_([this](KeyFrameId id,
+                        const std::atomic<bool>* stop) { semidense_mapper_.Process(id, stop); },
+                 Behind(settings)),
       mapping_([this](KeyFrameId id, const std::atomic<bool>* stop) { Map(id, stop); },
                settings.threaded ? Schedule::kThread : Schedule::kInline) {}
 
 Workers::~Workers() {  // who hands on stops before who is handed to
   mapping_.Stop();
+  semidense_.Stop();
   looping_.Stop();
   adjusting_.Stop();
 }
 
 void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
   mapper_.Process(id, stop);
+  AddMapped(id);
+}
+
+void Workers::AddMapped(KeyFrameId id) {
   looping_.Add(id);
+  if (dense_) semidense_.Add(id);
 }
 
 void Workers::Loop(KeyFrameId id) {
@@ -51,10 +62,13 @@ void Workers::Drain() {
   adjusting_.Drain();
   // What was mapped since a loop was closed ties the ends of it better than the loop itself did.
   const MapSnapshot map = map_.Snapshot();
-  if (!last_closed_.valid() || map.next_keyframe() == adjusted_up_to_) return;
-  adjusted_up_to_ = map.next_keyframe();
-  adjusting_.Add(last_closed_);
-  adjusting_.Drain();
+  if (last_closed_.valid() && map.next_keyframe() != adjusted_up_to_) {
+    adjusted_up_to_ = map.next_keyframe();
+    adjusting_.Add(last_closed_);
+    adjusting_.Drain();
+  }
+  semidense_.Drain();
+  if (dense_) semidense_mapper_.Finish();
 }
 
 void Workers::WhileResting(const std::function<void()>& change) {

@@ -10,6 +10,7 @@
 #include "alidade/map/map_store.h"
 #include "alidade/mapping/mapper.h"
 #include "alidade/place/place_index.h"
+#include "alidade/semidense/semidense_mapper.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/stage.h"
 
@@ -26,9 +27,13 @@ class Workers {
   const PlaceIndex& places() const { return places_; }
   Mapper& mapper() { return mapper_; }
 
-  void Add(KeyFrameId id) { mapping_.Add(id); }        // to be mapped, then looked for elsewhere
-  void AddMapped(KeyFrameId id) { looping_.Add(id); }  // needs no mapping
-  int backlog() const { return mapping_.backlog(); }   // keyframes that wait for the mapper
+  void Add(KeyFrameId id) { mapping_.Add(id); }  // to be mapped, then looked for elsewhere
+  void AddMapped(KeyFrameId id);                 // needs no mapping
+  // The keyframe's picture, before it is added: semi-dense mapping wants it.
+  void Keep(KeyFrameId id, std::shared_ptr<const Picture> picture) {
+    semidense_mapper_.Keep(id, std::move(picture));
+  }
+  int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
   void Drain();  // until nothing is left to do; a map with loops is adjusted as a whole once more
   void Restore(const SavedMap& saved);  // before the first keyframe
   void Drop(MapId id);                  // a map and its places, without a trace
@@ -37,6 +42,7 @@ class Workers {
   int merges() const { return loop_closer_.merges(); }
   std::vector<double> MapMilliseconds() const { return mapping_.Milliseconds(); }
   std::vector<double> LoopMilliseconds() const { return looping_.Milliseconds(); }
+  std::vector<double> SemiDenseMilliseconds() const { return semidense_.Milliseconds(); }
 
  private:
   void WhileResting(const std::function<void()>& change);  // while no worker is at the map
@@ -48,9 +54,11 @@ class Workers {
   PlaceIndex places_;
   Mapper mapper_;
   LoopCloser loop_closer_;
+  SemiDenseMapper semidense_mapper_;
+  bool dense_;                   // semi-dense mapping is asked for
   KeyFrameId last_closed_;       // that closed a loop or merged maps; read when the stages rest
   uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
-  Stage adjusting_, looping_, mapping_;
+  Stage adjusting_, looping_, semidense_, mapping_;
 };
 
 }  // namespace alidade
