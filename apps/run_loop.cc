@@ -137,6 +137,8 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
   } catch (const Error&) {
     record.failure = std::current_exception();
   }
+  if (terminal.shows_progress() && record.settings.semidense.enabled)
+    terminal.SetProgress("semi-dense depth of the last keyframes");
   slam.Finish();
   if (cpu) record.cpu_s = cpu->Seconds();
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;

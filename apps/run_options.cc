@@ -16,6 +16,7 @@ constexpr char kExamples[] =
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
+    "  alidade run my_recording --semidense         the shape of the place as well\n"
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
@@ -69,6 +70,10 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
   AddSharedOptions(command, options);
   command.add_option("--map", options.load, "Map to find poses in (map.alidade); stays as it is")
       ->required();
+  command
+      .add_flag("--semidense", options.semidense,
+                "Of `run` only: nothing is mapped here that could have shape")
+      ->group("");
   command.footer(
       "\nExamples:\n"
       "  alidade run monday --out monday_map\n"
@@ -80,6 +85,9 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
   AddSharedOptions(command, options);
   command.add_option("--load", options.load,
                      "Go on in a saved map (map.alidade) and add to it what is new");
+  command.add_flag(
+      "--semidense", options.semidense,
+      "Map shape too: depth at every pixel with structure, as semidense.ply and depth/");
   const std::string later = "Not in this version";
   command.add_option("--dynamics", options.dynamics, "off (later versions: geometry, full)");
   for (auto& [name, target] :
@@ -88,7 +96,6 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
     command.add_option(name, target, later)->group("");
   }
   command.add_option("--viewer", options.viewer, later)->expected(0, 1)->group("");
-  command.add_flag("--semidense", options.semidense, later)->group("");
   command.add_flag("--write-masks", options.write_masks, later)->group("");
   command.footer(kExamples);
 }
@@ -103,7 +110,9 @@ void CheckRunOptions(const RunOptions& options) {
   }
   Refuse(options.detector.has_value(), "--detector");
   Refuse(dynamics != Dynamics::kOff, "--dynamics " + options.dynamics);
-  Refuse(options.semidense, "--semidense");
+  if (options.semidense && options.localise) {
+    ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
+  }
   Refuse(options.viewer.has_value(), "--viewer");
   Refuse(options.host.has_value(), "--host");
   Refuse(options.write_masks, "--write-masks");
@@ -141,6 +150,7 @@ SlamSettings SettingsFrom(const RunOptions& options) {
     settings.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
   }
   if (options.seed) settings.seed = *options.seed;
+  if (options.semidense) settings.semidense.enabled = true;
   settings.Check();
   return settings;
 }

@@ -26,10 +26,11 @@ struct RunOptions {
   int first = 0, last = -1, repeat = 0;
   bool quiet = false;
   bool localise = false;  // only find poses in the loaded map
+  bool semidense = false;
   // Known words whose work is not in this version.
   std::string dynamics = "off";
   std::optional<std::string> detector, viewer, host;
-  bool semidense = false, write_masks = false;
+  bool write_masks = false;
 };
 
 // Adds the flags; parsing fills `options`, which must outlive `command`.
@@ -45,7 +46,8 @@ Sensor SensorNamed(const std::string& option, const std::string& word);
 
 SourceOptions SourceOptionsFrom(const RunOptions& options);
 
-// Profile, then the file of --config, then each --set, then --seed: the later one holds. The sensor
+// Profile, then the file of --config, then each --set, then the flags (--seed, --semidense): the
+// later one holds. The sensor
 // and the schedule are the source's to say. Throws Error (usage, or input for the file).
 SlamSettings SettingsFrom(const RunOptions& options);
 

@@ -92,11 +92,9 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results) {
   report.facts = FactsOf(record, results, unit);
   report.place = PlaceOf(results, unit);
   report.frames = FatesOf(results.frames);
-  report.milliseconds = {{"frame", results.times.frame},
-                         {"extract", results.times.extract},
-                         {"track", results.times.track},
-                         {"map", results.times.map},
-                         {"loop", results.times.loop}};
+  report.milliseconds = {{"frame", results.times.frame}, {"extract", results.times.extract},
+                         {"track", results.times.track}, {"map", results.times.map},
+                         {"loop", results.times.loop},   {"semidense", results.times.semidense}};
   for (const auto& [from, to] : results.lost_spans) {
     report.lost_spans.push_back(Format("%.3f s", from) + Format(" to %.3f s", to));
   }

@@ -82,7 +82,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
         {"loop", ToJson(results.times.loop)},
         {"detect", nullptr},
         {"dynamics", nullptr},
-        {"semidense", nullptr}}},
+        {"semidense", ToJson(results.times.semidense)}}},
       {"cpu_s", record.cpu_s},
       {"wall_s", record.wall_s},
       {"peak_mb", PeakMegabytes()},

@@ -61,7 +61,6 @@ TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
   for (const std::vector<std::string>& flags :
        std::vector<std::vector<std::string>>{{"--dynamics", "geometry"},
                                              {"--detector", "model.onnx"},
-                                             {"--semidense"},
                                              {"--viewer"},
                                              {"--viewer", "8080"},
                                              {"--write-masks"}}) {
@@ -69,6 +68,23 @@ TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
     ExpectError(2, flags, "not in this version yet");
   }
   ExpectError(2, {"--dynamics", "full"}, "needs --detector");
+}
+
+TEST_F(RunOptions, SemiDenseMappingIsAFlagAndASetting) {
+  ASSERT_EQ(Run({"--last", "3", "--semidense"}).status, 0);
+  EXPECT_EQ(Settings()["semidense.enabled"], 1);
+  ASSERT_EQ(Run({"--last", "3", "--set", "semidense.enabled=1"}).status, 0);
+  EXPECT_EQ(Settings()["semidense.enabled"], 1);
+  ASSERT_EQ(Run({"--last", "3"}).status, 0);
+  EXPECT_EQ(Settings()["semidense.enabled"], 0);
+}
+
+TEST_F(RunOptions, LocalizeMapsNoShape) {
+  const ProgramResult result = RunAlidade({"localize", recording_.path(), "--map", "any.alidade",
+                                           "--semidense", "--out", results_ / "out"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_THAT(result.err, HasSubstr("--semidense"));
+  EXPECT_EQ(LineCount(result.err), 1) << result.err;
 }
 
 TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
