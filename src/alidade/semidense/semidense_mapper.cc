@@ -1,10 +1,39 @@
 #include "alidade/semidense/semidense_mapper.h"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "alidade/map/view.h"
+#include "alidade/semidense/cross_check.h"
+#include "alidade/semidense/keyframe_depth.h"
+#include "alidade/semidense/partners.h"
+#include "alidade/semidense/sensor_depth.h"
+
 namespace alidade {
+
+// A keyframe as this mapper remembers it.
+struct SemiDenseMapper::Entry {
+  KeyFrameId id;
+  GradientImage image;
+  std::vector<Hypothesis> sensor;  // depth as measured, one for each edge; empty: none wanted
+  bool estimated = false;
+  std::vector<Hypothesis> depth;  // before the check between keyframes; one for each edge
+  double scale = 1;               // KeyFrame::scale then
+  struct Partner {
+    KeyFrameId id;
+    Se3 T_partner_keyframe;  // then
+  };
+  std::vector<Partner> partners;  // it was found from
+};
 
 SemiDenseMapper::SemiDenseMapper(MapStore& map, const Camera& camera,
                                  const SemiDenseSettings& settings)
-    : map_(map), camera_(camera), settings_(settings) {
+    : map_(map),
+      camera_(camera),
+      settings_(settings),
+      maker_(camera, settings.min_gradient, settings.gradient_weight) {
   settings_.Check();
 }
 
@@ -15,8 +44,170 @@ void SemiDenseMapper::Keep(KeyFrameId id, std::shared_ptr<const Picture> picture
   inbox_.push_back({id, std::move(picture)});
 }
 
-void SemiDenseMapper::Process(KeyFrameId, const std::atomic<bool>*) { (void)map_; }
+MapSnapshot SemiDenseMapper::TakeIn() {
+  std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> arrived;
+  {
+    std::lock_guard<std::mutex> lock(inbox_mutex_);
+    arrived.swap(inbox_);
+  }
+  const MapSnapshot map = map_.Snapshot();
+  std::erase_if(entries_, [&](const auto& entry) { return !map.Find(entry->id); });
+  for (const auto& [id, picture] : arrived) {
+    if (!map.Find(id)) continue;
+    auto entry = std::make_unique<Entry>();
+    entry->id = id;
+    entry->image = maker_.Make(*picture);
+    if (settings_.from_sensor) {
+      entry->sensor = DepthFromSensor(picture->depth, entry->image.edges, camera_);
+    }
+    entries_.push_back(std::move(entry));
+  }
+  std::sort(entries_.begin(), entries_.end(),
+            [](const auto& a, const auto& b) { return a->id < b->id; });
+  return map;
+}
 
-void SemiDenseMapper::Finish() {}
+SemiDenseMapper::Entry* SemiDenseMapper::Find(KeyFrameId id) {
+  const auto it = std::lower_bound(entries_.begin(), entries_.end(), id,
+                                   [](const auto& entry, KeyFrameId i) { return entry->id < i; });
+  return it != entries_.end() && (*it)->id == id ? it->get() : nullptr;
+}
+
+// The newest that `delay` others followed.
+SemiDenseMapper::Entry* SemiDenseMapper::NextDue(const MapSnapshot& map) {
+  Entry* next = nullptr;
+  int waiting = 0;
+  for (size_t i = entries_.size(); i-- > 0;) {
+    if (entries_[i]->estimated) continue;
+    const MapId in = map.MapOf(entries_[i]->id);
+    int followers = 0;
+    for (size_t k = i + 1; k < entries_.size() && followers < settings_.delay; ++k) {
+      followers += map.MapOf(entries_[k]->id) == in;
+    }
+    if (followers < settings_.delay) continue;
+    if (!next) next = entries_[i].get();
+    ++waiting;
+  }
+  report_.most_behind = std::max(report_.most_behind, waiting);
+  return next;
+}
+
+// The newest whose partners lie elsewhere than when its depth was found, by too much a share of the
+// parallax.
+SemiDenseMapper::Entry* SemiDenseMapper::NextMoved(const MapSnapshot& map) {
+  for (size_t i = entries_.size(); i-- > 0;) {
+    Entry& entry = *entries_[i];
+    if (!entry.estimated) continue;
+    const KeyFrame* keyframe = map.Find(entry.id);
+    const std::optional<double> depth = MedianDepth(map, *keyframe);
+    if (!depth) continue;
+    for (const Entry::Partner& partner : entry.partners) {
+      if (!map.Find(partner.id)) continue;
+      const Se3 now = map.PoseOf(partner.id) * keyframe->T_camera_world.Inverse();
+      const Eigen::Vector3d then = partner.T_partner_keyframe.t * (keyframe->scale / entry.scale);
+      const double allowed = settings_.redo_baseline * then.norm();
+      const double turn = RotationAngle(now, partner.T_partner_keyframe);
+      if ((now.t - then).norm() > allowed || turn * *depth > allowed) return &entry;
+    }
+  }
+  return nullptr;
+}
+
+void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
+  const KeyFrame& keyframe = *map.Find(entry.id);
+  entry.estimated = true;
+  entry.scale = keyframe.scale;
+  entry.depth.assign(entry.image.edges.size(), {});
+  entry.partners.clear();
+  ++report_.keyframes;
+  report_.pixels += static_cast<int64_t>(entry.image.edges.size());
+  if (settings_.from_sensor) {
+    entry.depth = entry.sensor;
+    return;
+  }
+  const DepthRange range(map, keyframe, camera_);
+  if (!range.known()) return;
+  std::vector<EpipolarPair> pairs;
+  for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes,
+                                      [&](KeyFrameId other) { return Find(other) != nullptr; })) {
+    const KeyFrame& other = *map.Find(id);
+    const Entry& partner = *Find(id);
+    EpipolarPair pair;
+    pair.reference = &entry.image;
+    pair.other = &partner.image;
+    pair.T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
+    const Exposure exposure = CompareExposures(keyframe, entry.image, other, partner.image);
+    pair.gain = exposure.gain;
+    pair.offset = exposure.offset;
+    pairs.push_back(pair);
+    entry.partners.push_back({id, pair.T_other_reference});
+  }
+  if (!pairs.empty()) {
+    entry.depth = DepthFromMotion(pairs, camera_, range, settings_, &report_.search);
+  }
+}
+
+std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
+                                                         const Entry& entry) {
+  const KeyFrame& keyframe = *map.Find(entry.id);
+  // In the units of today.
+  const auto growth = static_cast<float>(entry.scale / keyframe.scale);
+  std::vector<Hypothesis> depth = entry.depth;
+  for (Hypothesis& h : depth) {
+    h.inverse_depth *= growth;
+    h.sigma *= growth;
+  }
+  if (settings_.cross_check) {
+    std::vector<DepthView> views;
+    const auto usable = [&](KeyFrameId id) { return Find(id) && Find(id)->estimated; };
+    for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes, usable)) {
+      const Entry& other = *Find(id);
+      const KeyFrame& there = *map.Find(id);
+      views.push_back({other.image.edges, other.depth,
+                       there.T_camera_world * keyframe.T_camera_world.Inverse(),
+                       static_cast<float>(other.scale / there.scale)});
+    }
+    depth = CrossCheck(entry.image.edges, depth, views, camera_,
+                       {static_cast<float>(settings_.chi2_check), settings_.min_compatible});
+  }
+  auto result = std::make_shared<DepthMap>();
+  result->width = camera_.width;
+  result->height = camera_.height;
+  result->scale = keyframe.scale;
+  for (size_t i = 0; i < depth.size(); ++i) {
+    if (!depth[i].known()) continue;
+    const EdgePixel& edge = entry.image.edges[i];
+    result->pixels.push_back({edge.x, edge.y, depth[i].inverse_depth, depth[i].sigma, edge.rgb});
+  }
+  result->pixels.shrink_to_fit();
+  return result;
+}
+
+void SemiDenseMapper::Process() {
+  const MapSnapshot map = TakeIn();
+  Entry* entry = NextDue(map);
+  if (!entry) entry = NextMoved(map);
+  if (!entry) return;
+  Estimate(map, *entry);
+  const std::shared_ptr<const DepthMap> depth = Checked(map, *entry);
+  map_.Commit([&](MapCommit& commit) {
+    if (KeyFrame* keyframe = commit.Edit(entry->id)) keyframe->depth = depth;
+  });
+}
+
+void SemiDenseMapper::Finish() {
+  const MapSnapshot map = TakeIn();
+  for (const auto& entry : entries_) {
+    if (!entry->estimated) Estimate(map, *entry);
+  }
+  while (Entry* moved = NextMoved(map)) Estimate(map, *moved);
+  std::vector<std::shared_ptr<const DepthMap>> checked;
+  for (const auto& entry : entries_) checked.push_back(Checked(map, *entry));
+  map_.Commit([&](MapCommit& commit) {
+    for (size_t i = 0; i < entries_.size(); ++i) {
+      if (KeyFrame* keyframe = commit.Edit(entries_[i]->id)) keyframe->depth = checked[i];
+    }
+  });
+}
 
 }  // namespace alidade

@@ -2,7 +2,7 @@
 // keyframes behind the mapper. One instance, one thread at a time, but for Keep().
 #pragma once
 
-#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <utility>
@@ -10,9 +10,19 @@
 
 #include "alidade/features/picture.h"
 #include "alidade/map/map_store.h"
+#include "alidade/semidense/epipolar_search.h"
+#include "alidade/semidense/gradient_image.h"
 #include "alidade/semidense/settings.h"
 
 namespace alidade {
+
+// What was done so far.
+struct SemiDenseReport {
+  int keyframes = 0;   // worked on, each time counted
+  int64_t pixels = 0;  // with enough gradient, in those
+  SearchCount search;
+  int most_behind = 0;  // keyframes that waited at once, whose turn had come
+};
 
 class SemiDenseMapper {
  public:
@@ -22,19 +32,33 @@ class SemiDenseMapper {
   // The picture of a keyframe just inserted. Thread-safe, and quick.
   void Keep(KeyFrameId id, std::shared_ptr<const Picture> picture);
 
-  // Keyframe `id` was mapped: works on the one whose turn it is now, and commits its depth. `stop`
-  // (may be null): something else waits.
-  void Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
+  // A keyframe was mapped: works on the one whose turn it is now, the newest first, and commits its
+  // depth; where none waits, on one whose neighbours have moved since.
+  void Process();
 
-  // Nothing will follow: all that is left to do.
+  // Nothing will follow: works on all that wait or were moved, and checks every keyframe's depth
+  // against its neighbours', of which only the older ones were known before.
   void Finish();
 
+  const SemiDenseReport& report() const { return report_; }
+
  private:
+  struct Entry;
+  MapSnapshot TakeIn();  // what was kept, and out what is not in the map (returned) any more
+  Entry* Find(KeyFrameId id);
+  Entry* NextDue(const MapSnapshot& map);
+  Entry* NextMoved(const MapSnapshot& map);
+  void Estimate(const MapSnapshot& map, Entry& entry);
+  std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);
+
   MapStore& map_;
   Camera camera_;
   SemiDenseSettings settings_;
+  GradientImageMaker maker_;
   std::mutex inbox_mutex_;
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> inbox_;
+  std::vector<std::unique_ptr<Entry>> entries_;  // by id
+  SemiDenseReport report_;
 };
 
 }  // namespace alidade

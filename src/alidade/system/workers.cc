@@ -18,8 +18,7 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
       adjusting_([this](KeyFrameId id, const std::atomic<bool>* stop) { AdjustAll(id, stop); },
                  Behind(settings)),
       looping_([this](KeyFrameId id, const std::atomic<bool>*) { Loop(id); }, Behind(settings)),
-      semidense_([this](KeyFrameId id,
-                        const std::atomic<bool>* stop) { semidense_mapper_.Process(id, stop); },
+      semidense_([this](KeyFrameId, const std::atomic<bool>*) { semidense_mapper_.Process(); },
                  Behind(settings)),
       mapping_([this](KeyFrameId id, const std::atomic<bool>* stop) { Map(id, stop); },
                settings.threaded ? Schedule::kThread : Schedule::kInline) {}

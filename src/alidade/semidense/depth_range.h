@@ -1,0 +1,31 @@
+// How far away things may be, by the landmarks a keyframe shows: the part of an epipolar line that
+// is worth a search.
+#pragma once
+
+#include <vector>
+
+#include "alidade/geometry/camera.h"
+#include "alidade/map/map_store.h"
+
+namespace alidade {
+
+class DepthRange {
+ public:
+  struct Interval {
+    float min = 0, max = 0;  // inverse depth; empty when max <= min
+  };
+
+  DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const Camera& camera);
+  bool known() const { return all_.max > all_.min; }
+  Interval all() const { return all_; }
+  // That of the landmarks nearby, where there are some, else of all.
+  Interval At(int x, int y) const { return cells_[(y / kCell) * columns_ + x / kCell]; }
+
+ private:
+  static constexpr int kCell = 32;  // pixels
+  int columns_ = 0;
+  Interval all_;
+  std::vector<Interval> cells_;
+};
+
+}  // namespace alidade
