@@ -5,6 +5,8 @@
 #include <cstring>
 #include <sstream>
 
+#include "alidade/base/error.h"
+
 namespace alidade {
 namespace {
 
@@ -76,6 +78,43 @@ TEST(Pcd, BinaryHoldsTheBytesOfTheFields) {
   const auto [header, body] = SplitPcd(EncodePcd(kCloud, CloudFormat::kBinary));
   ASSERT_EQ(body.size(), 32u);
   EXPECT_EQ(body.substr(12, 4), std::string("\7\0\377\0", 4));  // blue green red, as in memory
+}
+
+// A point's normal and sigma come behind its colour, in both formats.
+TEST(Ply, NormalsAndSigmasFollowTheColour) {
+  Cloud cloud = kCloud;
+  cloud.normals = {{0, 0, -1}, {0.6f, 0.8f, 0}};
+  cloud.sigmas = {0.25f, 1e-3f};
+  const std::string bytes = EncodePly(cloud, CloudFormat::kBinary);
+  EXPECT_NE(bytes.find("property uchar blue\nproperty float nx\nproperty float ny\n"
+                       "property float nz\nproperty float sigma\nend_header\n"),
+            std::string::npos);
+  const size_t body = bytes.find("end_header\n") + 11;
+  ASSERT_EQ(bytes.size(), body + 2 * (12 + 3 + 12 + 4));
+  float floats[4];
+  std::memcpy(floats, bytes.data() + bytes.size() - 16, 16);
+  EXPECT_EQ(floats[0], 0.6f);
+  EXPECT_EQ(floats[1], 0.8f);
+  EXPECT_EQ(floats[3], 1e-3f);
+  const std::string text = EncodePly(cloud, CloudFormat::kAscii);
+  EXPECT_NE(text.find("255 0 7 0 0 -1 0.25\n"), std::string::npos);
+}
+
+TEST(Pcd, NormalsAndSigmasHaveFieldsOfTheirOwn) {
+  Cloud cloud = kCloud;
+  cloud.normals = {{0, 0, -1}, {0.6f, 0.8f, 0}};
+  cloud.sigmas = {0.25f, 1e-3f};
+  const auto [header, body] = SplitPcd(EncodePcd(cloud, CloudFormat::kBinary));
+  EXPECT_NE(header.find("FIELDS x y z rgb normal_x normal_y normal_z sigma\n"
+                        "SIZE 4 4 4 4 4 4 4 4\nTYPE F F F U F F F F\nCOUNT 1 1 1 1 1 1 1 1\n"),
+            std::string::npos);
+  EXPECT_EQ(body.size(), 2u * 8 * 4);
+}
+
+TEST(Ply, ListsOfDifferentLengthsAreRefused) {
+  Cloud cloud = kCloud;
+  cloud.sigmas = {0.25f};
+  EXPECT_THROW(EncodePly(cloud, CloudFormat::kBinary), Error);
 }
 
 }  // namespace

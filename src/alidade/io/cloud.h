@@ -9,15 +9,17 @@
 
 namespace alidade {
 
+// What is empty is not known; else there is one for each point.
 struct Cloud {
-  std::vector<Eigen::Vector3f> points;  // metres
-  std::vector<std::array<uint8_t, 3>> colors =
-      {};  // red green blue; empty: none, else one for each point
+  std::vector<Eigen::Vector3f> points;              // metres
+  std::vector<std::array<uint8_t, 3>> colors = {};  // red green blue
+  std::vector<Eigen::Vector3f> normals = {};        // unit length, or 0: not known for this point
+  std::vector<float> sigmas = {};                   // metres, along the ray it was seen by
 };
 
 enum class CloudFormat { kAscii, kBinary };  // binary is little endian, on any machine
 
-// The file's bytes.
+// The file's bytes. Throw Error (usage) on a cloud whose lists differ in length.
 std::string EncodePly(const Cloud& cloud, CloudFormat format);
 std::string EncodePcd(const Cloud& cloud, CloudFormat format);  // colours as the field `rgb`
 
