@@ -1,0 +1,126 @@
+#include "alidade/map/depth_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <unordered_map>
+
+namespace alidade {
+namespace {
+
+// One point of the world, as a keyframe knows it.
+struct Sample {
+  Eigen::Vector3d p_world;  // metres
+  double sigma = 0;         // metres, along the ray
+  std::array<uint8_t, 3> rgb{};
+};
+
+template <typename Take>
+void ForEachSample(const std::vector<PlacedDepth>& keyframes, const Camera& camera,
+                   const Take& take) {
+  for (const PlacedDepth& keyframe : keyframes) {
+    for (const DepthPixel& pixel : keyframe.depth->pixels) {
+      const double inverse = pixel.inverse_depth;
+      if (!(inverse > 0)) continue;
+      const Eigen::Vector3d ray = camera.Unproject({pixel.x, pixel.y});  // z = 1
+      const Eigen::Vector3d p = keyframe.T_world_camera * (ray * (keyframe.scale / inverse));
+      if (!p.allFinite()) continue;
+      // d(1/ρ) = dρ / ρ², along the ray.
+      const double sigma = keyframe.scale * ray.norm() * pixel.sigma / (inverse * inverse);
+      take(Sample{p, sigma, pixel.rgb});
+    }
+  }
+}
+
+using Voxel = std::array<int64_t, 3>;
+
+struct VoxelHash {
+  size_t operator()(const Voxel& voxel) const {
+    uint64_t hash = 0;
+    for (const int64_t i : voxel) {
+      hash = (hash ^ static_cast<uint64_t>(i)) * 0x9e3779b97f4a7c15ull;
+      hash ^= hash >> 29;
+    }
+    return static_cast<size_t>(hash);
+  }
+};
+
+// Weighted sums over the samples of one voxel.
+struct Sums {
+  Eigen::Vector3d p = Eigen::Vector3d::Zero(), rgb = Eigen::Vector3d::Zero();
+  double weight = 0;
+};
+
+void Append(Cloud& cloud, const Sample& sample) {
+  cloud.points.push_back(sample.p_world.cast<float>());
+  cloud.colors.push_back(sample.rgb);
+  cloud.sigmas.push_back(static_cast<float>(sample.sigma));
+}
+
+Sample MeanOf(const Sums& sums) {
+  Sample mean;
+  mean.p_world = sums.p / sums.weight;
+  mean.sigma = 1 / std::sqrt(sums.weight);
+  for (int channel = 0; channel < 3; ++channel) {
+    mean.rgb[static_cast<size_t>(channel)] =
+        static_cast<uint8_t>(std::lround(sums.rgb[channel] / sums.weight));
+  }
+  return mean;
+}
+
+}  // namespace
+
+PlacedDepth PlaceDepth(const KeyFrame& keyframe) {
+  return {keyframe.depth.get(), keyframe.T_camera_world.Inverse(),
+          keyframe.scale / keyframe.depth->scale};
+}
+
+Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& camera,
+                     double voxel) {
+  Cloud cloud;
+  if (!(voxel > 0)) {
+    ForEachSample(keyframes, camera, [&](const Sample& sample) { Append(cloud, sample); });
+    return cloud;
+  }
+  std::unordered_map<Voxel, size_t, VoxelHash> places;  // of each voxel in `sums`
+  std::vector<Sums> sums;
+  ForEachSample(keyframes, camera, [&](const Sample& sample) {
+    constexpr double kFarthest = 1e15;  // voxels: beyond, there is no telling them apart
+    const Eigen::Vector3d index = sample.p_world / voxel;
+    if (!(index.cwiseAbs().maxCoeff() < kFarthest)) return;
+    Voxel key{};
+    for (int axis = 0; axis < 3; ++axis)
+      key[static_cast<size_t>(axis)] = static_cast<int64_t>(std::floor(index[axis]));
+    const size_t place = places.try_emplace(key, sums.size()).first->second;
+    if (place == sums.size()) sums.emplace_back();
+    // Nothing is known better than a millionth of a voxel: a sigma of 0 must not be infinite
+    // weight.
+    const double sigma = std::max(sample.sigma, 1e-6 * voxel);
+    const double weight = 1 / (sigma * sigma);
+    Sums& sum = sums[place];
+    sum.p += weight * sample.p_world;
+    for (int channel = 0; channel < 3; ++channel)
+      sum.rgb[channel] += weight * sample.rgb[static_cast<size_t>(channel)];
+    sum.weight += weight;
+  });
+  for (const Sums& sum : sums) Append(cloud, MeanOf(sum));
+  return cloud;
+}
+
+cv::Mat DrawDepth(const DepthMap& depth, double scale, const Camera& camera) {
+  cv::Mat1w picture(camera.height, camera.width, uint16_t{0});
+  for (const DepthPixel& pixel : depth.pixels) {
+    if (!(pixel.inverse_depth > 0)) continue;
+    const double value = std::round(kDepthPictureFactor * scale / pixel.inverse_depth);
+    if (!(value >= 1 && value <= 65535)) continue;
+    const Eigen::Vector2d taken = camera.Distort({pixel.x, pixel.y});
+    const double x = std::round(taken.x()), y = std::round(taken.y());
+    if (!(x >= 0 && y >= 0 && x < camera.width && y < camera.height)) continue;
+    uint16_t& old = picture(static_cast<int>(y), static_cast<int>(x));
+    if (old == 0 || value < old) old = static_cast<uint16_t>(value);
+  }
+  return picture;
+}
+
+}  // namespace alidade
