@@ -27,8 +27,11 @@ namespace {
 constexpr int kInterruptedStatus = 130;
 
 void Say(const RunSummary& summary, const RunRecord& record, const std::string& folder) {
-  std::printf("%d of %d frames tracked, %d keyframes, %d landmarks, path %.2f %s\n%s in %s\n",
-              summary.tracked, summary.frames, summary.keyframes, summary.landmarks,
+  const std::string shape = summary.shape_points > 0
+                                ? ", " + std::to_string(summary.shape_points) + " points of shape"
+                                : "";
+  std::printf("%d of %d frames tracked, %d keyframes, %d landmarks%s, path %.2f %s\n%s in %s\n",
+              summary.tracked, summary.frames, summary.keyframes, summary.landmarks, shape.c_str(),
               summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",
               record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
 }

@@ -38,7 +38,7 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   results.counts = slam.Counts();
   results.lost_spans = LostSpans(results.frames);
   const Eigen::Matrix3d& turn = results.R_camera_rectified = record.source.R_camera_rectified;
-  for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}});
+  for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}, {}});
   if (results.maps.empty()) results.maps.push_back({});
   const auto in = [&](MapId id) -> MapResults& {
     return *std::find_if(results.maps.begin(), results.maps.end(),
@@ -57,10 +57,11 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   for (KeyFrameId id : results.map.KeyFrames()) {
     const KeyFrame* keyframe = results.map.Find(id);
     const int index = keyframe->frame->number - slam.first_number();
-    in(keyframe->map)
-        .keyframes.push_back(
-            {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
-             index < 0 ? std::string() : record.stamps[static_cast<size_t>(index)]});
+    MapResults& map = in(keyframe->map);
+    map.keyframe_ids.push_back(id);
+    map.keyframes.push_back(
+        {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
+         index < 0 ? std::string() : record.stamps[static_cast<size_t>(index)]});
   }
   std::stable_sort(results.maps.begin(), results.maps.end(),
                    [](const MapResults& a, const MapResults& b) {

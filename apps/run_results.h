@@ -15,6 +15,7 @@ namespace alidade {
 struct MapResults {
   MapId id;
   Trajectory trajectory, live, keyframes;
+  std::vector<KeyFrameId> keyframe_ids;  // one for each of `keyframes`
 };
 
 struct RunResults {

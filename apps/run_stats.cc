@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/timing.h"
+#include "output_folder.h"
 
 namespace alidade {
 namespace {
@@ -45,10 +46,6 @@ ordered_json MapFiles(const RunResults& results) {
 }
 
 }  // namespace
-
-std::string NumberedFile(const std::string& name, size_t number) {
-  return number == 0 ? name + ".txt" : name + "." + std::to_string(number) + ".txt";
-}
 
 std::string StatsJson(const RunRecord& record, const RunResults& results) {
   const int tracked = results.tracked;
