@@ -1,4 +1,4 @@
-// `alidade evaluate`: how good a trajectory is against the truth.
+// `alidade evaluate`: how good a trajectory is against the truth (for depth: evaluate_depth.h).
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -14,6 +14,7 @@
 #include "alidade/io/files/trajectory_file.h"
 #include "arguments.h"
 #include "commands.h"
+#include "evaluate_depth.h"
 
 namespace alidade {
 namespace {
@@ -185,7 +186,8 @@ void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
 }  // namespace
 
 void AddEvaluateCommand(CLI::App& app, Action& action) {
-  CLI::App* evaluate = app.add_subcommand("evaluate", "How good a trajectory is against the truth");
+  CLI::App* evaluate =
+      app.add_subcommand("evaluate", "How good a trajectory, or depth, is against the truth");
   evaluate->require_subcommand(1);
   const auto options = std::make_shared<EvaluateOptions>();
 
@@ -221,6 +223,8 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       "\nJSON: trans (metres) and rot (degrees), each as `evaluate ate` prints it.");
   rpe->callback(
       [options, &action] { action = [options] { return EvaluateRpeCommand(*options); }; });
+
+  AddEvaluateDepth(*evaluate, action);
 }
 
 }  // namespace alidade

@@ -146,6 +146,7 @@ class SynthSource : public FrameSource {
     frame.T_world_camera = recording_.Pose(next_);
     frame.number = next_++;
     frame.image = preparation_.Left(rendered.image);
+    frame.true_depth = preparation_.Depth(rendered.depth_exact);
     if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);
     if (info_.sensor == Sensor::kRgbd) frame.depth = preparation_.Depth(rendered.depth);
     return frame;

@@ -117,7 +117,7 @@ class EurocWriter : public FolderWriter {
   }
 
   void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
-    const std::string stamp = std::to_string(1'000'000'000'000'000'000LL +
+    const std::string stamp = std::to_string(kSynthEurocStart * 1'000'000'000LL +
                                              std::llround(frame.time * 1e9)),
                       file = "/data/" + stamp + ".png";
     WriteImages({{"mav0/cam0" + file, frame.image},

@@ -31,4 +31,7 @@ void PrepareSynthFolder(const std::string& folder);
 // The file that says a folder is ours.
 inline constexpr char kSynthMarker[] = "synth.json";
 
+// EuRoC recordings count from 1970: when ours begin, seconds.
+inline constexpr int kSynthEurocStart = 1'000'000'000;
+
 }  // namespace alidade

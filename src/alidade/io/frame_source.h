@@ -30,6 +30,8 @@ struct SourceFrame {
   std::string problem;
   // Where the camera truly was, in some world: rendered recordings know.
   std::optional<Se3> T_world_camera = {};
+  // And the exact depth of each pixel of `image`: CV_32F, metres along z, 0 = nothing there.
+  cv::Mat true_depth = {};
 };
 
 struct SourceInfo {

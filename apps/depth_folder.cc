@@ -1,0 +1,85 @@
+#include "depth_folder.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/files/image_file.h"
+#include "alidade/io/files/stamped_list.h"
+#include "alidade/io/text.h"
+#include "output_folder.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kDepthPerUnit = 5000;
+
+using nlohmann::json;
+
+// stats.json as far as it can be read; null else.
+json ReadStats(const std::string& path) {
+  if (!std::filesystem::is_regular_file(path)) return nullptr;
+  return json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
+}
+
+std::optional<Sensor> SensorOf(const json& stats) {
+  for (const Sensor sensor : {Sensor::kMono, Sensor::kStereo, Sensor::kRgbd}) {
+    if (stats.is_object() && stats.value("sensor", json()) == NameOf(sensor)) return sensor;
+  }
+  return std::nullopt;
+}
+
+bool WasAskedForDepth(const json& stats) {
+  const json settings = stats.is_object() ? stats.value("settings", json()) : json();
+  return settings.is_object() && settings.value("semidense.enabled", json()) == true;
+}
+
+// Numbers of the maps that have a list; any may have no depth, the first too.
+std::vector<int> ListedMaps(const std::string& folder) {
+  std::vector<int> maps;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    int map = 0;
+    if (name != "depth.txt" && std::sscanf(name.c_str(), "depth.%d.txt", &map) != 1) continue;
+    if (map >= 0 && name == NumberedFile("depth", static_cast<size_t>(map))) maps.push_back(map);
+  }
+  std::sort(maps.begin(), maps.end());
+  return maps;
+}
+
+}  // namespace
+
+DepthFolder ReadDepthFolder(const std::string& folder) {
+  const std::vector<int> maps = ListedMaps(folder);
+  const json stats = ReadStats(folder + "/stats.json");
+  if (maps.empty() && !WasAskedForDepth(stats))
+    ThrowInput(folder + " holds no depth.txt: it is not what `alidade run --semidense` leaves");
+  DepthFolder result;
+  result.sensor = SensorOf(stats);
+  for (const int map : maps) {
+    const std::string list = folder + "/" + NumberedFile("depth", static_cast<size_t>(map));
+    if (ContentLines(ReadFile(list)).empty()) continue;
+    for (StampedName& line : ReadStampedList(list, StampUnit::kSeconds, true)) {
+      if (!line.problem.empty()) ThrowInput(line.problem);
+      result.files.push_back({line.time, std::move(line.stamp), folder + "/" + line.name, map});
+    }
+  }
+  std::stable_sort(result.files.begin(), result.files.end(),
+                   [](const DepthFile& a, const DepthFile& b) { return a.time < b.time; });
+  return result;
+}
+
+cv::Mat ReadKeyframeDepth(const std::string& path) {
+  const cv::Mat stored = ReadDepth(path);
+  if (stored.type() != CV_16UC1) ThrowInput(path + " is no depth image of 16 bit");
+  cv::Mat depth;
+  stored.convertTo(depth, CV_32F, 1 / kDepthPerUnit);
+  return depth;
+}
+
+}  // namespace alidade
