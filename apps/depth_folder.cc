@@ -17,6 +17,7 @@ namespace alidade {
 namespace {
 
 constexpr double kDepthPerUnit = 5000;
+constexpr int kMostMaps = 100000;  // no run leaves more: a file of a higher number is not ours
 
 using nlohmann::json;
 
@@ -46,7 +47,8 @@ std::vector<int> ListedMaps(const std::string& folder) {
     const std::string name = entry.path().filename().string();
     int map = 0;
     if (name != "depth.txt" && std::sscanf(name.c_str(), "depth.%d.txt", &map) != 1) continue;
-    if (map >= 0 && name == NumberedFile("depth", static_cast<size_t>(map))) maps.push_back(map);
+    if (map >= 0 && map <= kMostMaps && name == NumberedFile("depth", static_cast<size_t>(map)))
+      maps.push_back(map);
   }
   std::sort(maps.begin(), maps.end());
   return maps;

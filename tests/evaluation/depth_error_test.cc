@@ -8,8 +8,10 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 #include <vector>
 
+#include "alidade/base/random.h"
 #include "alidade/evaluation/image_edges.h"
 #include "support/expect_error.h"
 
@@ -136,6 +138,56 @@ TEST(DepthError, UnknownTruthIsNotScoredAndDisturbsNoNeighbour) {
   EXPECT_EQ(scores.continuous.n, scores.all.n);
   EXPECT_EQ(scores.all.median_rel, 0);
   EXPECT_EQ(scores.all.density, 1);
+}
+
+// Everything once more, as slowly as it can be written down.
+TEST(DepthError, AgreesWithPlainLoopsOnRandomDepth) {
+  Random random(11);
+  cv::Mat1f truth = Leaning(), estimate = Depth(0);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (random.Uniform() < 0.1) truth(y, x) = 0;
+      if (random.Uniform() < 0.003) truth(y, x) *= 1.2f;
+      if (random.Uniform() < 0.4)
+        estimate(y, x) = static_cast<float>((2 + 0.01 * x) * (1 + 0.05 * random.Gaussian()) / 3);
+    }
+  }
+  std::vector<double> ratios, all, continuous;
+  for (const bool errors : {false, true}) {  // the scale first
+    std::sort(ratios.begin(), ratios.end());
+    const size_t half = ratios.size() / 2;
+    const double scale = !errors                  ? 0
+                         : ratios.size() % 2 == 1 ? ratios[half]
+                                                  : (ratios[half - 1] + ratios[half]) / 2;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const float z = truth(y, x);
+        if (z == 0 || estimate(y, x) == 0) continue;
+        bool close = true;
+        for (int v = std::max(y - 7, 0); v <= std::min(y + 7, kHeight - 1); ++v) {
+          for (int u = std::max(x - 7, 0); u <= std::min(x + 7, kWidth - 1); ++u)
+            close &= truth(v, u) == 0 || std::abs(truth(v, u) - z) <= 0.05 * z;
+        }
+        if (!errors) ratios.push_back(z / estimate(y, x));
+        if (!errors) continue;
+        all.push_back(std::abs(scale * estimate(y, x) - z) / z);
+        if (close) continuous.push_back(all.back());
+      }
+    }
+  }
+  const std::vector<DepthFrame> frames = {{estimate, truth, Grey(0)}};
+  const DepthScores scores = ScoreDepth(frames, {.fit_scale = true}).overall;
+  for (auto [score, errors] : {std::pair{scores.all, all}, {scores.continuous, continuous}}) {
+    ASSERT_EQ(score.n, static_cast<int64_t>(errors.size()));
+    ASSERT_GT(score.n, 50);
+    std::sort(errors.begin(), errors.end());
+    const size_t n = errors.size();
+    EXPECT_NEAR(score.median_rel, (errors[(n - 1) / 2] + errors[n / 2]) / 2, 1e-6);
+    EXPECT_NEAR(score.p90_rel, errors[(9 * n + 9) / 10 - 1], 1e-6);
+    const auto within = std::upper_bound(errors.begin(), errors.end(), 0.05) - errors.begin();
+    EXPECT_NEAR(score.within_5, static_cast<double>(within) / static_cast<double>(n), 1e-3);
+  }
+  EXPECT_LT(scores.continuous.n, scores.all.n);
 }
 
 TEST(DepthError, DensityIsOfAllPixelsAndOfThoseWithStructure) {
