@@ -55,6 +55,7 @@ int Run(const RunOptions& options) {
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
+  wanted.color = record.settings.semidense.enabled && !options.localise;
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();

@@ -91,7 +91,7 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, TrackSt
   }
   TrackResult result;
   try {
-    result = slam.Track({frame.time, frame.image, frame.right, frame.depth});
+    result = slam.Track({frame.time, frame.image, frame.right, frame.depth, frame.color});
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::kInput) throw;
     Drop(frame, error.what(), record);

@@ -25,6 +25,8 @@ struct SourceFrame {
   cv::Mat right;      // stereo only; empty when missing for this frame
   cv::Mat
       depth;  // RGB-D only: CV_16U as stored or CV_32F in metres; empty when missing for this frame
+  // `image` in colour (CV_8UC3, blue green red), when it was asked for and there is any.
+  cv::Mat color = {};
   // Not empty: this frame could not be read and why; images are empty. Whoever takes the frames
   // warns and counts.
   std::string problem;

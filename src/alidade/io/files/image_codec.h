@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-enum class ImageUse { kGray, kColor, kDepth };
+enum class ImageUse { kGray, kColor, kDepth, kGrayAndColor };
 
 // A damaged header may claim any size; no camera has more pixels than this.
 inline constexpr double kMostPixels = 2e8;
@@ -15,6 +15,8 @@ inline constexpr double kMostPixels = 2e8;
 struct DecodedImage {
   cv::Mat image;        // CV_8UC1, CV_8UC3 or, for depth, what is stored
   std::string problem;  // not empty: why there is no image
+  cv::Mat color = {};   // CV_8UC3; with kGrayAndColor only (`image` is the grey one then), and
+                        // empty when what is stored is grey
 };
 
 bool LooksLikeJpeg(std::string_view bytes);

@@ -24,21 +24,31 @@ DecodedImage Decode(std::string_view bytes, ImageUse use) {
   if (bytes.empty()) return {{}, "is empty"};
   if (LooksLikeJpeg(bytes)) return DecodeJpeg(bytes, use);
   if (LooksLikePng(bytes)) return DecodePng(bytes, use);
-  return DecodeByMediaModule(bytes, use);
+  if (use != ImageUse::kGrayAndColor) return DecodeByMediaModule(bytes, use);
+  DecodedImage both = DecodeByMediaModule(bytes, ImageUse::kGray);
+  if (both.problem.empty()) both.color = DecodeByMediaModule(bytes, ImageUse::kColor).image;
+  return both;
 }
 
-cv::Mat Read(const std::string& path, ImageUse use) {
+DecodedImage ReadDecoded(const std::string& path, ImageUse use) {
   const std::string bytes = ReadFile(path);
   DecodedImage decoded = Decode(bytes, use);
   if (!decoded.problem.empty()) ThrowInput(path + " " + decoded.problem);
-  return decoded.image;
+  return decoded;
 }
+
+cv::Mat Read(const std::string& path, ImageUse use) { return ReadDecoded(path, use).image; }
 
 }  // namespace
 
 cv::Mat ReadImageGray(const std::string& path) { return Read(path, ImageUse::kGray); }
 cv::Mat ReadImageColor(const std::string& path) { return Read(path, ImageUse::kColor); }
 cv::Mat ReadDepth(const std::string& path) { return Read(path, ImageUse::kDepth); }
+
+GrayAndColor ReadImageGrayAndColor(const std::string& path) {
+  const DecodedImage decoded = ReadDecoded(path, ImageUse::kGrayAndColor);
+  return {decoded.image, decoded.color};
+}
 
 cv::Size ReadImageSize(const std::string& path) {
   const std::string bytes = ReadFile(path);

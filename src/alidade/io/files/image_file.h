@@ -16,6 +16,12 @@ cv::Mat ReadImageGray(
 cv::Mat ReadImageColor(const std::string& path);  // CV_8UC3, blue green red
 cv::Mat ReadDepth(const std::string& path);       // CV_16UC1 (or CV_32FC1), values as stored
 
+struct GrayAndColor {
+  cv::Mat gray;   // as ReadImageGray() gives it, bit for bit
+  cv::Mat color;  // CV_8UC3, blue green red; empty when the file is grey
+};
+GrayAndColor ReadImageGrayAndColor(const std::string& path);  // decodes once
+
 // Width and height; for JPEG and PNG from the header alone.
 cv::Size ReadImageSize(const std::string& path);
 

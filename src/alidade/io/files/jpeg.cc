@@ -6,6 +6,9 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
 #include "alidade/base/error.h"
 #include "alidade/io/files/image_codec.h"
 
@@ -99,6 +102,16 @@ bool WriteRows(jpeg_compress_struct& info, JumpingErrors& errors, const cv::Mat&
   return true;
 }
 
+// The luma as stored, which is what JCS_GRAYSCALE gives, and the colours.
+DecodedImage FromLumaAndChroma(const cv::Mat& y_cb_cr) {
+  DecodedImage both;
+  cv::extractChannel(y_cb_cr, both.image, 0);
+  cv::Mat y_cr_cb(y_cb_cr.size(), CV_8UC3);
+  cv::mixChannels({y_cb_cr}, {y_cr_cb}, {0, 0, 1, 2, 2, 1});
+  cv::cvtColor(y_cr_cb, both.color, cv::COLOR_YCrCb2BGR);
+  return both;
+}
+
 }  // namespace
 
 bool LooksLikeJpeg(std::string_view bytes) { return bytes.substr(0, 3) == "\xff\xd8\xff"; }
@@ -112,12 +125,19 @@ DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
   if (!ReadHeader(decoder.info, decoder.errors, bytes)) return failed();
   if (1.0 * decoder.info.image_width * decoder.info.image_height > kMostPixels)
     return {{}, "is too large"};
-  const bool gray = use == ImageUse::kGray;
-  decoder.info.out_color_space = gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
+  const J_COLOR_SPACE stored = decoder.info.jpeg_color_space;
+  const bool both = use == ImageUse::kGrayAndColor && stored != JCS_GRAYSCALE;
+  if (both && stored != JCS_YCbCr) {  // rare: without luma of its own
+    DecodedImage decoded = DecodeJpeg(bytes, ImageUse::kGray);
+    if (decoded.problem.empty()) decoded.color = DecodeJpeg(bytes, ImageUse::kColor).image;
+    return decoded;
+  }
+  const bool gray = use != ImageUse::kColor && !both;
+  decoder.info.out_color_space = both ? JCS_YCbCr : gray ? JCS_GRAYSCALE : JCS_EXT_BGR;
   cv::Mat image(static_cast<int>(decoder.info.image_height),
                 static_cast<int>(decoder.info.image_width), gray ? CV_8UC1 : CV_8UC3);
   if (!ReadRows(decoder.info, decoder.errors, image)) return failed();
-  return {image, {}};
+  return both ? FromLumaAndChroma(image) : DecodedImage{image, {}};
 }
 
 cv::Size JpegSize(std::string_view bytes) {

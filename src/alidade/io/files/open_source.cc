@@ -55,6 +55,7 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   recording.name = fs::weakly_canonical(path).filename().string();
+  recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed] = ChooseCalibration(recording.calibration, size, options);
   if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;

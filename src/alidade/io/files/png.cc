@@ -146,6 +146,11 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   if (use == ImageUse::kGray && channels == 3) cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
   if (use == ImageUse::kColor && channels == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
   if (use == ImageUse::kDepth && depth == CV_8U) image.convertTo(image, CV_16U);
+  if (use == ImageUse::kGrayAndColor && channels == 3) {
+    DecodedImage both{{}, {}, image};
+    cv::cvtColor(image, both.image, cv::COLOR_BGR2GRAY);
+    return both;
+  }
   return {image, {}};
 }
 

@@ -21,6 +21,7 @@ class RecordingSource : public FrameSource {
   RecordingSource(Recording recording, Sensor sensor, ImagePreparation preparation,
                   cv::Size raw_size, bool camera_guessed)
       : frames_(std::move(recording.frames)),
+        color_(recording.color),
         preparation_(std::move(preparation)),
         raw_size_(raw_size) {
     info_.name = std::move(recording.name);
@@ -49,7 +50,10 @@ class RecordingSource : public FrameSource {
     frame.problem = recorded.problem;
     if (!frame.problem.empty()) return frame;
     try {
-      frame.image = preparation_.Left(Checked(ReadImageGray(recorded.image), recorded.image));
+      const GrayAndColor read = color_ ? ReadImageGrayAndColor(recorded.image)
+                                       : GrayAndColor{ReadImageGray(recorded.image), {}};
+      frame.image = preparation_.Left(Checked(read.gray, recorded.image));
+      if (!read.color.empty()) frame.color = preparation_.Left(read.color);
     } catch (const Error& error) {
       frame.problem = error.what();
       return frame;
@@ -88,6 +92,7 @@ class RecordingSource : public FrameSource {
 
   SourceInfo info_;
   std::vector<RecordedFrame> frames_;
+  bool color_;
   ImagePreparation preparation_;
   cv::Size raw_size_;
   size_t next_ = 0;

@@ -26,6 +26,7 @@ struct Recording {
   std::string name, kind;  // as in SourceInfo
   std::vector<RecordedFrame> frames;
   bool has_right = false, has_depth = false;
+  bool color = false;                      // frames are to have their colours as well
   std::optional<Calibration> calibration;  // as found beside the images
   double default_depth_factor = 0;         // for calibrations that don't say
 };

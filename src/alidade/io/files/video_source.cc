@@ -20,12 +20,13 @@ class VideoSource : public FrameSource {
  public:
   // `stream` has grabbed its first frame. Without a path (a live camera) there is no seeking.
   VideoSource(SourceInfo info, std::string path, std::unique_ptr<MediaStream> stream,
-              ImagePreparation preparation, cv::Size raw_size)
+              ImagePreparation preparation, cv::Size raw_size, bool color)
       : info_(std::move(info)),
         path_(std::move(path)),
         stream_(std::move(stream)),
         preparation_(std::move(preparation)),
-        raw_size_(raw_size) {}
+        raw_size_(raw_size),
+        color_(color) {}
 
   const SourceInfo& Info() const override { return info_; }
 
@@ -36,6 +37,7 @@ class VideoSource : public FrameSource {
     frame.time = times_[static_cast<size_t>(next_)];
     frame.stamp = FormatTime(frame.time);
     const cv::Mat image = stream_->Gray();
+    const cv::Mat color = color_ ? stream_->Color() : cv::Mat();
     Advance();
     if (image.empty()) {
       frame.problem = info_.name + ": frame " + std::to_string(frame.number) + " cannot be decoded";
@@ -44,6 +46,7 @@ class VideoSource : public FrameSource {
                       " has another size than the first";
     } else {
       frame.image = preparation_.Left(image);
+      if (!color.empty()) frame.color = preparation_.Left(color);
     }
     return frame;
   }
@@ -114,6 +117,7 @@ class VideoSource : public FrameSource {
   std::unique_ptr<MediaStream> stream_;
   ImagePreparation preparation_;
   cv::Size raw_size_;
+  bool color_;  // frames are to have their colours as well
   std::vector<double> stream_times_,
       times_;            // seconds, of the frames met so far: as the stream has them, as given
   int next_ = 0;         // number of the frame the next call gives
@@ -139,7 +143,7 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
   const int frames = stream->FrameCount();
   info.frames = frames > 0 ? frames : -1;
   return std::make_unique<VideoSource>(std::move(info), path, std::move(stream),
-                                       std::move(preparation), first.size());
+                                       std::move(preparation), first.size(), options.color);
 }
 
 }  // namespace

@@ -59,17 +59,22 @@ class Stream : public MediaStream {
   double Time() const override { return time_; }
 
   cv::Mat Gray() override try {
-    cv::Mat color, gray;
+    cv::Mat color, gray;  // new ones: frames given before may still be in use
+    color_.release();
     if (!capture_.retrieve(color) || color.empty()) return {};
     if (color.channels() == 1) {
       gray = color.clone();
     } else {
       cv::cvtColor(color, gray, cv::COLOR_BGR2GRAY);
+      color_ = color;
     }
-    constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
-                                          cv::ROTATE_90_COUNTERCLOCKWISE};
-    if (turns_ > 0) cv::rotate(gray, gray, kTurns[turns_ - 1]);
-    return gray;
+    return Upright(gray);
+  } catch (const cv::Exception&) {
+    return {};
+  }
+
+  cv::Mat Color() override try {
+    return color_.empty() ? cv::Mat() : Upright(color_);
   } catch (const cv::Exception&) {
     return {};
   }
@@ -82,9 +87,20 @@ class Stream : public MediaStream {
 
  private:
   using Clock = std::chrono::steady_clock;
+
+  cv::Mat Upright(const cv::Mat& image) const {
+    constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                                          cv::ROTATE_90_COUNTERCLOCKWISE};
+    if (turns_ == 0) return image;
+    cv::Mat turned;
+    cv::rotate(image, turned, kTurns[turns_ - 1]);
+    return turned;
+  }
+
   cv::VideoCapture capture_;
   bool live_;
   int turns_;
+  cv::Mat color_;  // of the picture Gray() gave last
   Clock::time_point start_{};
   double time_ = 0;
 };

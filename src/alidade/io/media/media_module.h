@@ -22,6 +22,8 @@ class MediaStream {
   // undecodable).
   virtual double Time() const = 0;
   virtual cv::Mat Gray() = 0;
+  // After Gray(): the same picture, CV_8UC3 blue green red; empty when it has no colours.
+  virtual cv::Mat Color() = 0;
   // The next Grab() gives a frame near `time`, as far as the container allows.
   virtual bool SeekNear(double time) = 0;
 };
