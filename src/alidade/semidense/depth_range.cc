@@ -7,7 +7,7 @@ namespace alidade {
 namespace {
 
 constexpr int kEnough = 4;        // landmarks nearby that say something of a place
-constexpr float kMargin = 0.25f;  // share by which things may be nearer or farther than landmarks
+constexpr float kMargin = 0.12f;  // share by which things may be nearer or farther than landmarks
 
 }  // namespace
 

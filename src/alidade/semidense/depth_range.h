@@ -6,26 +6,23 @@
 
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
+#include "alidade/semidense/hypothesis.h"
 
 namespace alidade {
 
 class DepthRange {
  public:
-  struct Interval {
-    float min = 0, max = 0;  // inverse depth; empty when max <= min
-  };
-
   DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const Camera& camera);
-  bool known() const { return all_.max > all_.min; }
-  Interval all() const { return all_; }
+  bool known() const { return !all_.empty(); }
+  DepthInterval all() const { return all_; }
   // That of the landmarks nearby, where there are some, else of all.
-  Interval At(int x, int y) const { return cells_[(y / kCell) * columns_ + x / kCell]; }
+  DepthInterval At(int x, int y) const { return cells_[(y / kCell) * columns_ + x / kCell]; }
 
  private:
   static constexpr int kCell = 32;  // pixels
   int columns_ = 0;
-  Interval all_;
-  std::vector<Interval> cells_;
+  DepthInterval all_;
+  std::vector<DepthInterval> cells_;
 };
 
 }  // namespace alidade

@@ -1,26 +1,25 @@
 #include "alidade/semidense/epipolar_search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
 namespace alidade {
 namespace {
 
-constexpr int kHalf = 2;  // the pattern compared is 2 kHalf + 1 samples along the line
-constexpr int kPattern = 2 * kHalf + 1;
-constexpr int kMargin = kHalf + 1;  // samples needed beyond the places compared
-constexpr int kShift = 5;           // fractional bits of samples
+constexpr int kShift = 5;  // fractional bits of samples
 constexpr int kOne = 1 << kShift;
-constexpr int kMaxPlaces = 256;  // compared on one line, at most: pixels
-constexpr int kLanes = 4;
+constexpr float kInFront =
+    0.1f;  // of the distance in the reference: nearer to the other camera, a point says nothing
 
 // Intensity in the low half, gradient magnitude in the high half, so that one multiplication
 // weighs both.
 inline uint32_t Spread(const uint8_t* pixel) {
   return static_cast<uint32_t>(pixel[0]) | static_cast<uint32_t>(pixel[1]) << 16;
 }
+
+inline int Intensity(uint32_t sample) { return static_cast<int>(sample & 0xffff); }
+inline int Gradient(uint32_t sample) { return static_cast<int>(sample >> 16); }
 
 // Both values at a place between pixels, times kOne.
 inline uint32_t Sample(const cv::Mat& values, float x, float y) {
@@ -37,43 +36,24 @@ inline uint32_t Sample(const cv::Mat& values, float x, float y) {
 struct Directions {
   std::array<float, GradientImage::kTurn> x, y;
   Directions() {
-    for (int i = 0; i < GradientImage::kTurn; ++i) {
-      x[i] = static_cast<float>(std::cos(2 * CV_PI * i / GradientImage::kTurn));
-      y[i] = static_cast<float>(std::sin(2 * CV_PI * i / GradientImage::kTurn));
+    for (size_t i = 0; i < x.size(); ++i) {
+      x[i] =
+          static_cast<float>(std::cos(2 * CV_PI * static_cast<double>(i) / GradientImage::kTurn));
+      y[i] =
+          static_cast<float>(std::sin(2 * CV_PI * static_cast<double>(i) / GradientImage::kTurn));
     }
   }
 };
 
-// One line after the other, with what they share.
-class LineSearch {
- public:
-  LineSearch(const EpipolarPair& pair, const Camera& camera, const SemiDenseSettings& settings);
-  Hypothesis Search(const EdgePixel& pixel, const DepthRange::Interval& range, SearchCount& count);
+const Directions& AllDirections() {
+  static const Directions directions;
+  return directions;
+}
 
- private:
-  // What is sought: the reference around the pixel, one step there being one place on the line.
-  void TakePattern(const EdgePixel& pixel, float step_x, float step_y);
-  // Samples of the line at kMargin places before the first and after the last.
-  void WalkLine(int first, int places, float across, float slope);
-  int BestPlace(int places, int* second);
+}  // namespace
 
-  const EpipolarPair& pair_;
-  const SemiDenseSettings& settings_;
-  Directions directions_;
-  Eigen::Matrix3f M_;  // pixel of the reference at infinity to the other's
-  Eigen::Vector3f b_,
-      epipole_;          // other camera's shift by inverse depth; its centre in the reference
-  float least_cosine_;   // of the angle between gradient and line
-  int turn_, max_turn_;  // of the picture in its plane, and allowed beside it; in steps
-  int width_, height_;
-  bool along_x_ = true;
-  std::array<int16_t, 2 * kPattern> pattern_;  // intensity and gradient, interleaved
-  std::array<int16_t, 2 * (kMaxPlaces + 2 * kMargin + kLanes)> line_{};
-  std::array<int32_t, kMaxPlaces + kLanes> costs_;
-};
-
-LineSearch::LineSearch(const EpipolarPair& pair, const Camera& camera,
-                       const SemiDenseSettings& settings)
+EpipolarSearch::EpipolarSearch(const EpipolarPair& pair, const Camera& camera,
+                               const SemiDenseSettings& settings)
     : pair_(pair), settings_(settings), width_(camera.width), height_(camera.height) {
   Eigen::Matrix3d K;
   K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
@@ -87,188 +67,204 @@ LineSearch::LineSearch(const EpipolarPair& pair, const Camera& camera,
   max_turn_ = static_cast<int>(settings.max_turn / 360 * GradientImage::kTurn);
 }
 
-void LineSearch::TakePattern(const EdgePixel& pixel, float step_x, float step_y) {
-  const auto gain = static_cast<float>(pair_.gain),
-             offset = static_cast<float>(pair_.offset) * kOne;
-  for (int k = -kHalf; k <= kHalf; ++k) {
-    const uint32_t sample = Sample(pair_.reference->values,
-                                   static_cast<float>(pixel.x) + static_cast<float>(k) * step_x,
-                                   static_cast<float>(pixel.y) + static_cast<float>(k) * step_y);
-    const float intensity = static_cast<float>(sample & 0xffff) * gain + offset;
-    const float gradient = static_cast<float>(sample >> 16) * gain;
-    pattern_[2 * (k + kHalf)] = static_cast<int16_t>(intensity);
-    pattern_[2 * (k + kHalf) + 1] = static_cast<int16_t>(std::min(gradient, 255.0f * kOne));
+Hypothesis EpipolarSearch::Search(const EdgePixel& pixel, std::span<const DepthInterval> intervals,
+                                  SearchCount& count) {
+  DepthInterval whole = intervals.front();
+  for (const DepthInterval& interval : intervals) {
+    whole.min = std::min(whole.min, interval.min);
+    whole.max = std::max(whole.max, interval.max);
   }
+  Line line;
+  if (!Prepare(pixel, whole, line) || !TakePattern(pixel, line)) return {};
+  ++count.searches;
+  Match match;
+  for (const DepthInterval& interval : intervals) SearchInterval(line, interval, count, match);
+  return match.cost >= 0 ? Refine(line, match) : Hypothesis{};
 }
 
-void LineSearch::WalkLine(int first, int places, float across, float slope) {
+// Whether the line tells depth at all at this pixel.
+bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole, Line& line) {
+  const Eigen::Vector3f p(pixel.x, pixel.y, 1);
+  line.direction = {epipole_.x() - epipole_.z() * p.x(), epipole_.y() - epipole_.z() * p.y()};
+  const float length = line.direction.norm();
+  if (!(length > 1e-9f)) return false;
+  line.direction /= length;
+  line.gradient_step = pair_.reference->direction.at<uint8_t>(pixel.y, pixel.x);
+  const Directions& directions = AllDirections();
+  line.cosine = std::abs(directions.x[line.gradient_step] * line.direction.x() +
+                         directions.y[line.gradient_step] * line.direction.y());
+  if (line.cosine < least_cosine_) return false;
+
+  line.a = M_ * p;
+  const Eigen::Vector3f far = line.a + whole.min * b_, near = line.a + whole.max * b_;
+  if (far.z() < kInFront || near.z() < kInFront) return false;
+  const Eigen::Vector2f path = near.head<2>() / near.z() - far.head<2>() / far.z();
+  axis_ = std::abs(path.x()) >= std::abs(path.y()) ? 0 : 1;
+  // At a middle depth, by how much a step in the reference moves the match.
+  const Eigen::Vector3f middle = line.a + 0.5f * (whole.min + whole.max) * b_;
+  const Eigen::Vector3f moved = M_.leftCols<2>() * line.direction;
+  line.stretch =
+      (moved[axis_] * middle.z() - middle[axis_] * moved.z()) / (middle.z() * middle.z());
+  return std::abs(line.stretch) > 0.4f && std::abs(line.stretch) < 2.5f;
+}
+
+// What is sought: the reference around the pixel, one step there being one place on the line.
+bool EpipolarSearch::TakePattern(const EdgePixel& pixel, const Line& line) {
+  const Eigen::Vector2f step = line.direction / line.stretch;
+  const Eigen::Vector2f centre(pixel.x, pixel.y);
+  const Eigen::Vector2f reach = kHalf * step.cwiseAbs();
+  if (centre.x() < reach.x() || centre.y() < reach.y() ||
+      centre.x() + reach.x() >= static_cast<float>(width_ - 1) ||
+      centre.y() + reach.y() >= static_cast<float>(height_ - 1))
+    return false;
+  const auto gain = static_cast<float>(pair_.gain);
+  const auto offset = static_cast<float>(pair_.offset) * kOne;
+  for (int k = -kHalf; k <= kHalf; ++k) {
+    const Eigen::Vector2f at = centre + static_cast<float>(k) * step;
+    const uint32_t sample = Sample(pair_.reference->values, at.x(), at.y());
+    const float intensity = static_cast<float>(Intensity(sample)) * gain + offset;
+    const float gradient = static_cast<float>(Gradient(sample)) * gain;
+    pattern_[k + kHalf] = static_cast<uint32_t>(std::clamp(intensity, 0.0f, 255.0f * kOne)) |
+                          static_cast<uint32_t>(std::min(gradient, 255.0f * kOne)) << 16;
+  }
+  return true;
+}
+
+// Samples of the line from kMargin places before the first to as many after the last: at whole
+// pixels along the axis, between two across it.
+void EpipolarSearch::WalkLine(int first, int places, float across, float slope) {
   const cv::Mat& values = pair_.other->values;
   const auto row = static_cast<std::ptrdiff_t>(values.step[0]);
-  const std::ptrdiff_t along = along_x_ ? 2 : row, beside = along_x_ ? row : 2;
-  const int n = places + 2 * kMargin;
+  const std::ptrdiff_t along = axis_ == 0 ? 2 : row, beside = axis_ == 0 ? row : 2;
   const uint8_t* line = values.ptr<uint8_t>() + (first - kMargin) * along;
-  // Fixed point with 16 fractional bits.
   auto position = static_cast<int32_t>((across - static_cast<float>(kMargin) * slope) * 65536);
-  const auto step = static_cast<int32_t>(slope * 65536);
+  const auto step = static_cast<int32_t>(slope * 65536);  // 16 fractional bits
+  const int n = places + 2 * kMargin;
   for (int i = 0; i < n; ++i) {
     const uint8_t* p = line + (position >> 16) * beside;
     const uint32_t w = static_cast<uint32_t>(position & 0xffff) >> (16 - kShift);
     const uint32_t sum = Spread(p) * (kOne - w) + Spread(p + beside) * w;
-    line_[2 * i] = static_cast<int16_t>(sum & 0xffff);
-    line_[2 * i + 1] = static_cast<int16_t>(sum >> 16);
+    line_[i] = sum;
     line += along;
     position += step;
   }
 }
 
-int LineSearch::BestPlace(int places, int* second) {
+// The place on the line most like the pattern: kLanes compared at once.
+int EpipolarSearch::LeastCost(int places) {
+  using cv::v_int32x4;
   std::array<cv::v_int16x8, kPattern> pattern;
   for (int k = 0; k < kPattern; ++k) {
-    const int16_t i = pattern_[2 * k], g = pattern_[2 * k + 1];
-    pattern[k] = cv::v_int16x8(i, g, i, g, i, g, i, g);
+    pattern[k] = cv::v_reinterpret_as_s16(cv::v_setall_u32(pattern_[k]));
   }
+  v_int32x4 index(0, 1, 2, 3), best_index = index;
+  v_int32x4 best = cv::v_setall_s32(INT32_MAX);
+  const v_int32x4 step = cv::v_setall_s32(kLanes), end = cv::v_setall_s32(places);
   for (int t = 0; t < places; t += kLanes) {
-    cv::v_int32x4 sum = cv::v_setzero_s32();
+    v_int32x4 cost = cv::v_setzero_s32();
     for (int k = 0; k < kPattern; ++k) {
       // The first place lies kMargin samples in, and its pattern begins kHalf before it.
-      const cv::v_int16x8 d = cv::v_load(&line_[2 * (t + k + kMargin - kHalf)]) - pattern[k];
-      sum = sum + cv::v_dotprod(d, d);
+      const auto d =
+          cv::v_reinterpret_as_s16(cv::v_load(&line_[t + k + kMargin - kHalf])) - pattern[k];
+      cost = cost + cv::v_dotprod(d, d);
     }
-    cv::v_store(&costs_[t], sum);
+    const v_int32x4 better = (cost < best) & (index < end);
+    best = cv::v_select(better, cost, best);
+    best_index = cv::v_select(better, index, best_index);
+    index = index + step;
   }
-  int best = 0;
-  for (int t = 1; t < places; ++t) {
-    if (costs_[t] < costs_[best]) best = t;
+  std::array<int32_t, kLanes> costs, places_of;
+  cv::v_store(costs.data(), best);
+  cv::v_store(places_of.data(), best_index);
+  int least = 0;
+  for (int lane = 1; lane < kLanes; ++lane) {
+    const bool tie = costs[lane] == costs[least] && places_of[lane] < places_of[least];
+    if (costs[lane] < costs[least] || tie) least = lane;
   }
-  *second = -1;
-  for (int t = 1; t + 1 < places; ++t) {
-    if (std::abs(t - best) < 2 || costs_[t] > costs_[t - 1] || costs_[t] > costs_[t + 1]) continue;
-    if (*second < 0 || costs_[t] < costs_[*second]) *second = t;
-  }
-  return best;
+  least_cost_ = costs[least];
+  return places_of[least];
 }
 
-Hypothesis LineSearch::Search(const EdgePixel& pixel, const DepthRange::Interval& range,
-                              SearchCount& count) {
-  const Eigen::Vector3f p(pixel.x, pixel.y, 1);
-  // The epipolar line in the reference, and the gradient across it.
-  Eigen::Vector2f line(epipole_.x() - epipole_.z() * p.x(), epipole_.y() - epipole_.z() * p.y());
-  const float length = line.norm();
-  if (!(length > 1e-9f)) return {};
-  line /= length;
-  const int direction = pair_.reference->direction.at<uint8_t>(pixel.y, pixel.x);
-  const float cosine =
-      std::abs(directions_.x[direction] * line.x() + directions_.y[direction] * line.y());
-  if (cosine < least_cosine_) return {};
-
-  // Where it is for the nearest, the farthest and a middle depth.
-  const Eigen::Vector3f a = M_ * p;
-  const Eigen::Vector3f far = a + range.min * b_, near = a + range.max * b_;
-  constexpr float kInFront = 0.1f;
-  if (far.z() < kInFront || near.z() < kInFront) return {};
+void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& interval,
+                                    SearchCount& count, Match& match) {
+  const Eigen::Vector3f far = line.a + interval.min * b_, near = line.a + interval.max * b_;
   const Eigen::Vector2f from = far.head<2>() / far.z(), to = near.head<2>() / near.z();
-  along_x_ = std::abs(to.x() - from.x()) >= std::abs(to.y() - from.y());
-  const int axis = along_x_ ? 0 : 1;
-  const Eigen::Vector3f middle = a + 0.5f * (range.min + range.max) * b_;
-  const Eigen::Vector3f moved = M_ * Eigen::Vector3f(line.x(), line.y(), 0);
-  const float stretch =
-      (moved[axis] * middle.z() - middle[axis] * moved.z()) / (middle.z() * middle.z());
-  if (std::abs(stretch) < 0.4f || std::abs(stretch) > 2.5f) return {};
-
-  // Whole pixels along the axis the line follows more; what lies between is found across it.
-  const float u0 = from[axis], u1 = to[axis], v0 = from[1 - axis], v1 = to[1 - axis];
+  const float u0 = from[axis_], u1 = to[axis_], v0 = from[1 - axis_], v1 = to[1 - axis_];
   const float extent = u1 - u0;
-  if (std::abs(extent) < 1e-3f) return {};
+  if (!(std::abs(extent) > 1e-3f && std::abs(u0) < 1e4f && std::abs(u1) < 1e4f)) return;
   const float slope = (v1 - v0) / extent;
-  const int limit_u = along_x_ ? width_ : height_, limit_v = along_x_ ? height_ : width_;
-  if (!(std::abs(u0) < 1e5f && std::abs(u1) < 1e5f)) return {};
+  const int limit_u = axis_ == 0 ? width_ : height_, limit_v = axis_ == 0 ? height_ : width_;
   int first = std::max(static_cast<int>(std::floor(std::min(u0, u1))) - 1, kMargin);
   int last = std::min(static_cast<int>(std::ceil(std::max(u0, u1))) + 1, limit_u - 1 - kMargin);
   // Across, too, it must stay in the picture.
+  const float low = 1, high = static_cast<float>(limit_v) - 3;
   if (std::abs(slope) > 1e-6f) {
-    const float at_low = u0 + (1 - v0) / slope,
-                at_high = u0 + (static_cast<float>(limit_v) - 3 - v0) / slope;
-    first = std::max(
-        first, static_cast<int>(std::ceil(std::max(-1.0f, std::min(at_low, at_high)))) + kMargin);
-    last = std::min(
-        last, static_cast<int>(std::floor(std::min(1e5f, std::max(at_low, at_high)))) - kMargin);
-  } else if (v0 < 1 || v0 > static_cast<float>(limit_v) - 3) {
-    return {};
+    const float a = u0 + (low - v0) / slope, b = u0 + (high - v0) / slope;
+    first = std::max(first, static_cast<int>(std::ceil(std::max(-1.0f, std::min(a, b)))) + kMargin);
+    last = std::min(last, static_cast<int>(std::floor(std::min(1e4f, std::max(a, b)))) - kMargin);
+  } else if (v0 < low || v0 > high) {
+    return;
   }
   const int places = last - first + 1;
-  if (places < 3 || places > kMaxPlaces) return {};
-
-  ++count.searches;
+  if (places < 3 || places > kMaxPlaces) return;
   count.samples += places;
-  const float px = static_cast<float>(pixel.x), py = static_cast<float>(pixel.y);
-  const float reach_x = std::abs(line.x() / stretch) * kHalf,
-              reach_y = std::abs(line.y() / stretch) * kHalf;
-  if (px < reach_x || py < reach_y || px + reach_x > static_cast<float>(width_ - 2) ||
-      py + reach_y > static_cast<float>(height_ - 2))
-    return {};
-  TakePattern(pixel, line.x() / stretch, line.y() / stretch);
-  WalkLine(first, places, v0 + (static_cast<float>(first) - u0) * slope, slope);
-  int second = -1;
-  const int best = BestPlace(places, &second);
-  if (best == 0 || best == places - 1) return {};
-  if (second >= 0 && static_cast<double>(costs_[second]) < settings_.ambiguity * costs_[best])
-    return {};
+  const float across = v0 + (static_cast<float>(first) - u0) * slope;
+  WalkLine(first, places, across, slope);
 
-  // Gauss-Newton on the pattern for the place between the pixels (eq. 10).
-  const int16_t* s = &line_[2 * (best + kMargin)];
+  const int best = LeastCost(places);
+  if (best == 0 || best == places - 1) return;  // no minimum
+  if (match.cost >= 0 && match.cost <= least_cost_) return;
+  match.cost = least_cost_;
+  match.place = first + best;
+  match.across = across + static_cast<float>(best) * slope;
+  match.slope = slope;
+  std::copy_n(&line_[best + kMargin - kHalf - 1], match.samples.size(), match.samples.begin());
+}
+
+// The place between the pixels, and what it says.
+Hypothesis EpipolarSearch::Refine(const Line& line, const Match& match) const {
+  // Gauss-Newton on the pattern (eq. 10).
   float gradient2 = 0, product = 0;
-  for (int k = -kHalf; k <= kHalf; ++k) {
-    for (int c = 0; c < 2; ++c) {
-      const float g = 0.5f * static_cast<float>(s[2 * (k + 1) + c] - s[2 * (k - 1) + c]);
-      const float r = static_cast<float>(pattern_[2 * (k + kHalf) + c] - s[2 * k + c]);
-      gradient2 += g * g;
-      product += g * r;
-    }
+  const auto add = [&](int before, int after, int here, int sought) {
+    const float g = 0.5f * static_cast<float>(after - before);
+    gradient2 += g * g;
+    product += g * static_cast<float>(sought - here);
+  };
+  for (int k = 0; k < kPattern; ++k) {
+    const uint32_t* s = &match.samples[k + 1];
+    add(Intensity(s[-1]), Intensity(s[1]), Intensity(s[0]), Intensity(pattern_[k]));
+    add(Gradient(s[-1]), Gradient(s[1]), Gradient(s[0]), Gradient(pattern_[k]));
   }
   if (gradient2 < 1) return {};
   const float shift = product / gradient2;
   if (std::abs(shift) > 1) return {};
-  const float mean_residual2 = (static_cast<float>(costs_[best]) - product * shift) /
-                               static_cast<float>(2 * kPattern * kOne * kOne);
-  if (mean_residual2 > settings_.max_residual * settings_.max_residual) return {};
-  const float u = static_cast<float>(first + best) + shift;
-  const float v = v0 + (u - u0) * slope;
+  const float residual2 = (static_cast<float>(match.cost) - product * shift) /
+                          static_cast<float>(2 * kPattern * kOne * kOne);
+  if (residual2 > static_cast<float>(settings_.max_residual * settings_.max_residual)) return {};
+  const float u = static_cast<float>(match.place) + shift;
+  const float v = match.across + shift * match.slope;
 
   // The match looks the same way, but for the turn of the picture.
   const int iu = static_cast<int>(u + 0.5f), iv = static_cast<int>(v + 0.5f);
-  const int there = along_x_ ? pair_.other->direction.at<uint8_t>(iv, iu)
-                             : pair_.other->direction.at<uint8_t>(iu, iv);
+  const int there = axis_ == 0 ? pair_.other->direction.at<uint8_t>(iv, iu)
+                               : pair_.other->direction.at<uint8_t>(iu, iv);
   if (there == GradientImage::kUnusable) return {};
-  int turned = (there - direction - turn_) % GradientImage::kTurn;
+  int turned = (there - line.gradient_step - turn_) % GradientImage::kTurn;
   if (turned < 0) turned += GradientImage::kTurn;
   if (std::min(turned, GradientImage::kTurn - turned) > max_turn_) return {};
 
   // eq. 8, and its derivative by the place along the axis.
-  const float denominator = u * b_.z() - b_[axis];
-  const float numerator = a[axis] - u * a.z();
+  const float denominator = u * b_.z() - b_[axis_];
+  const float numerator = line.a[axis_] - u * line.a.z();
   if (std::abs(denominator) < 1e-12f) return {};
   const float inverse_depth = numerator / denominator;
   if (!(inverse_depth > 0)) return {};
-  const float by_place = (-a.z() * denominator - numerator * b_.z()) / (denominator * denominator);
+  const float by_place =
+      (-line.a.z() * denominator - numerator * b_.z()) / (denominator * denominator);
   const float noise = static_cast<float>(settings_.intensity_sigma) * kOne;
-  const float geometric = static_cast<float>(settings_.line_sigma) / cosine;
+  const float geometric = static_cast<float>(settings_.line_sigma) / line.cosine;
   const float sigma_place = std::sqrt(2 * noise * noise / gradient2 + geometric * geometric);
   return {inverse_depth, std::abs(by_place) * sigma_place};
-}
-
-}  // namespace
-
-SearchCount SearchEpipolarLines(const EpipolarPair& pair, const Camera& camera,
-                                const DepthRange& range, const SemiDenseSettings& settings,
-                                size_t begin, std::span<Hypothesis> found) {
-  SearchCount count;
-  LineSearch search(pair, camera, settings);
-  for (size_t i = 0; i < found.size(); ++i) {
-    const EdgePixel& pixel = pair.reference->edges[begin + i];
-    const DepthRange::Interval interval = range.At(pixel.x, pixel.y);
-    found[i] = interval.max > interval.min ? search.Search(pixel, interval, count) : Hypothesis{};
-  }
-  return count;
 }
 
 }  // namespace alidade

@@ -10,4 +10,11 @@ struct Hypothesis {
   bool known() const { return sigma > 0; }
 };
 
+// Where the inverse depth of a pixel may lie; empty when max <= min.
+struct DepthInterval {
+  float min = 0, max = 0;
+
+  bool empty() const { return max <= min; }
+};
+
 }  // namespace alidade

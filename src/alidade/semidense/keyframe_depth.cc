@@ -4,6 +4,7 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/semidense/fuse.h"
+#include "alidade/semidense/narrow.h"
 #include "alidade/semidense/smooth.h"
 
 namespace alidade {
@@ -29,24 +30,28 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
   const std::vector<EdgePixel>& edges = pairs.front().reference->edges;
   const size_t pixels = edges.size();
   std::vector<Hypothesis> fused(pixels);
+  const auto chi2 = static_cast<float>(settings.chi2_pair);
   const int chunks = static_cast<int>((pixels + kChunk - 1) / kChunk);
   std::vector<SearchCount> counts(chunks);
   ParallelFor(chunks, [&](int chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
     const size_t n = std::min<size_t>(kChunk, pixels - begin);
-    std::vector<Hypothesis> found(n * pairs.size());  // by pair, then pixel
-    for (size_t k = 0; k < pairs.size(); ++k) {
-      const SearchCount c = SearchEpipolarLines(pairs[k], camera, range, settings, begin,
-                                                std::span(found).subspan(k * n, n));
-      counts[chunk].searches += c.searches;
-      counts[chunk].samples += c.samples;
-    }
-    std::vector<Hypothesis> of_pixel(pairs.size());
-    for (size_t i = 0; i < n; ++i) {
-      for (size_t k = 0; k < pairs.size(); ++k) of_pixel[k] = found[k * n + i];
-      fused[begin + i] = settings.fuse ? Fuse(of_pixel, static_cast<float>(settings.chi2_pair),
-                                              settings.min_compatible)
-                                       : MostCertain(of_pixel);
+    std::vector<EpipolarSearch> searches;
+    for (const EpipolarPair& pair : pairs) searches.emplace_back(pair, camera, settings);
+    std::vector<Hypothesis> found(pairs.size());
+    for (size_t i = begin; i < begin + n; ++i) {
+      const DepthInterval whole = range.At(edges[i].x, edges[i].y);
+      int known = 0;
+      for (size_t k = 0; k < pairs.size(); ++k) {
+        found[k] = {};
+        // Those left could not make it enough.
+        if (settings.fuse && known + static_cast<int>(pairs.size() - k) < settings.min_compatible)
+          continue;
+        const Intervals intervals = NarrowSearch(std::span(found).first(k), whole, chi2);
+        found[k] = searches[k].Search(edges[i], intervals.span(), counts[chunk]);
+        known += found[k].known();
+      }
+      fused[i] = settings.fuse ? Fuse(found, chi2, settings.min_compatible) : MostCertain(found);
     }
   });
   if (count) {
@@ -57,7 +62,7 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
   }
   if (!settings.smooth) return fused;
   const cv::Size size(camera.width, camera.height);
-  return Smooth(edges, fused, size, static_cast<float>(settings.chi2_pair));
+  return Smooth(edges, fused, size, chi2);
 }
 
 }  // namespace alidade

@@ -10,7 +10,8 @@
 
 namespace alidade {
 
-// From its partners: searched, fused, smoothed. One hypothesis for each of the reference's edges.
+// From its partners, those with the least parallax first, which later ones are narrowed by:
+// searched, fused, smoothed. One hypothesis for each of the reference's edges.
 std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
                                         const Camera& camera, const DepthRange& range,
                                         const SemiDenseSettings& settings,

@@ -142,6 +142,9 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
     pairs.push_back(pair);
     entry.partners.push_back({id, pair.T_other_reference});
   }
+  std::sort(pairs.begin(), pairs.end(), [](const EpipolarPair& a, const EpipolarPair& b) {
+    return a.T_other_reference.t.squaredNorm() < b.T_other_reference.t.squaredNorm();
+  });
   if (!pairs.empty()) {
     entry.depth = DepthFromMotion(pairs, camera_, range, settings_, &report_.search);
   }

@@ -14,11 +14,10 @@ struct SemiDenseSettings {
   double max_turn = 45;  // λ_θ: degrees of difference between gradient directions of a match
   double gradient_weight =
       0.23;  // θ: variance of gradient magnitudes as a share of that of intensities
-  double intensity_sigma = 20;  // σ_I: grey levels
-  double line_sigma = 0.25;     // of a pixel's epipolar line, by errors of poses: pixels
+  double intensity_sigma = 8;  // σ_I: grey levels
+  double line_sigma = 0.5;     // of a pixel's epipolar line, by errors of poses: pixels
   double max_residual =
-      15;  // grey levels, root mean square, between a pixel's surroundings and their match
-  double ambiguity = 1.2;    // the next best match must cost this much more than the best
+      25;  // grey levels, root mean square, between a pixel's surroundings and their match
   double chi2_pair = 5.99;   // hypotheses fused are this compatible (95 %, 2 degrees of freedom)
   double chi2_check = 3.84;  // those of other keyframes this much (95 %, 1)
   int min_compatible = 3;    // λ_N: hypotheses that agree, keyframes that confirm

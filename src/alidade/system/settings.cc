@@ -122,7 +122,6 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("semidense.intensity_sigma", d.intensity_sigma);
   visit("semidense.line_sigma", d.line_sigma);
   visit("semidense.max_residual", d.max_residual);
-  visit("semidense.ambiguity", d.ambiguity);
   visit("semidense.chi2_pair", d.chi2_pair);
   visit("semidense.chi2_check", d.chi2_check);
   visit("semidense.min_compatible", d.min_compatible);
