@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/map/map_store.h"
+#include "alidade/semidense/semidense_mapper.h"
 #include "run_record.h"
 
 namespace alidade {
@@ -23,6 +24,7 @@ struct RunResults {
   MapSnapshot map;
   StageTimes times;
   SlamCounts counts;
+  SemiDenseReport semidense;
   int tracked = 0;  // frames, in all maps
 
   std::optional<int> initialised_at;              // number of the first tracked frame

@@ -30,6 +30,19 @@ ordered_json SettingsJson(const RunRecord& record) {
   return settings;
 }
 
+// What semi-dense mapping did; null when it was not asked for.
+ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& report) {
+  if (!record.settings.semidense.enabled || record.settings.localise) return nullptr;
+  const auto mean = [](int64_t sum, int64_t count) {
+    return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
+  };
+  return {{"keyframes", report.keyframes},
+          {"pixels", mean(report.pixels, report.keyframes)},
+          {"searches", mean(report.search.searches, report.keyframes)},
+          {"mean_search", mean(report.search.samples, report.search.searches)},
+          {"most_behind", report.most_behind}};
+}
+
 // Which frames are in which map, and where its poses are.
 ordered_json MapFiles(const RunResults& results) {
   ordered_json files = ordered_json::array();
@@ -80,6 +93,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
         {"detect", nullptr},
         {"dynamics", nullptr},
         {"semidense", ToJson(results.times.semidense)}}},
+      {"semidense", SemiDenseJson(record, results.semidense)},
       {"cpu_s", record.cpu_s},
       {"wall_s", record.wall_s},
       {"peak_mb", PeakMegabytes()},

@@ -66,6 +66,19 @@ TEST_F(RunCommand, LeavesWhatTheDocumentsSay) {
   EXPECT_EQ(DataLines(out + "/keyframes.txt").size(), stats["keyframes"].get<size_t>());
 }
 
+TEST_F(RunCommand, CountsWhatSemiDenseMappingDid) {
+  EXPECT_TRUE(Stats(Run(Room()))["semidense"].is_null());
+  const json stats = Stats(Run(Room(), {"--semidense"}));
+  const json& counts = stats["semidense"];
+  ASSERT_TRUE(counts.is_object());
+  EXPECT_GE(counts["keyframes"], stats["keyframes"]);
+  EXPECT_GT(counts["pixels"], 0);
+  EXPECT_LT(counts["pixels"], 640 * 480);
+  EXPECT_GT(counts["searches"], counts["pixels"]);  // several keyframes for each
+  EXPECT_GT(counts["mean_search"], 1);
+  EXPECT_LE(counts["most_behind"], 1);  // inline: none waits
+}
+
 TEST_F(RunCommand, CopiesTimeStampsLetterByLetter) {
   const std::string room = Room();
   const std::string out = Run(room);

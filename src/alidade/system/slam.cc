@@ -350,6 +350,8 @@ SlamCounts Slam::Counts() const {
   return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges()};
 }
 
+SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
+
 std::string Slam::SaveMap() const {
   return EncodeMap({Snapshot(), impl_->camera_, NameOf(impl_->settings_.sensor),
                     impl_->settings_.All(), impl_->workers_.places().Save()});

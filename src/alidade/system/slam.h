@@ -12,6 +12,8 @@
 
 namespace alidade {
 
+struct SemiDenseReport;  // alidade/semidense/semidense_mapper.h
+
 enum class TrackState { kInitialising, kTracking, kLost };
 
 struct FrameInput {
@@ -74,6 +76,7 @@ class Slam {
   StageTimes Times() const;
   const Camera& camera() const;  // as used: scaled by the profile
   SlamCounts Counts() const;
+  SemiDenseReport SemiDense() const;  // waits for the keyframe that is worked on
   // Frame::number of the first call of Track(): keyframes of a loaded map have smaller ones.
   int first_number() const;
 

@@ -55,6 +55,12 @@ void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
       id, stop, [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
 }
 
+SemiDenseReport Workers::SemiDense() {
+  SemiDenseReport report;
+  semidense_.WhileResting([&] { report = semidense_mapper_.report(); });
+  return report;
+}
+
 void Workers::Drain() {
   mapping_.Drain();
   looping_.Drain();

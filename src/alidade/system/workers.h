@@ -40,6 +40,7 @@ class Workers {
 
   int loops() const { return loop_closer_.loops(); }
   int merges() const { return loop_closer_.merges(); }
+  SemiDenseReport SemiDense();
   std::vector<double> MapMilliseconds() const { return mapping_.Milliseconds(); }
   std::vector<double> LoopMilliseconds() const { return looping_.Milliseconds(); }
   std::vector<double> SemiDenseMilliseconds() const { return semidense_.Milliseconds(); }
