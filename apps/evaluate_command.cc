@@ -105,7 +105,7 @@ int EvaluateAteCommand(const EvaluateOptions& options) {
   settings.Check();
   settings.source_span = SourceSpan(options);
   const Trajectory truth = ReadTrajectory(options.truth);
-  const Trajectory estimate = ReadTrajectory(options.estimate);
+  const Trajectory estimate = ReadEstimate(options.estimate);
   const AteResult result = EvaluateAte(truth, estimate, settings);
   const double scale = result.T_truth_estimate.s;
   if (options.as_json) {
@@ -142,7 +142,7 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
   settings.Check();
   settings.source_span = SourceSpan(options);
   const RpeResult result =
-      EvaluateRpe(ReadTrajectory(options.truth), ReadTrajectory(options.estimate), settings);
+      EvaluateRpe(ReadTrajectory(options.truth), ReadEstimate(options.estimate), settings);
   if (options.as_json) {
     const json both = {{"trans", ToJson(result.trans, result.scale, result.coverage)},
                        {"rot", ToJson(result.rot, result.scale, result.coverage)}};

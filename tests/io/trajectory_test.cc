@@ -60,6 +60,14 @@ TEST(Trajectory, NanosecondsGetAPointNineDigitsFromTheRight) {
   EXPECT_EQ(StampFromNanoseconds("nan"), "nan");
 }
 
+TEST(Trajectory, OfResultsIsTheEstimateEvenWhereTheTruthLiesBesideIt) {
+  const TempFolder folder;
+  folder.Write("groundtruth.txt", "1 7 7 7 0 0 0 1\n");
+  folder.Write("trajectory.txt", "1 2 3 4 0 0 0 1\n");
+  EXPECT_EQ(ReadEstimate(folder.path()).at(0).T_world_camera.t, Eigen::Vector3d(2, 3, 4));
+  EXPECT_EQ(ReadTrajectory(folder.path()).at(0).T_world_camera.t, Eigen::Vector3d(7, 7, 7));
+}
+
 TEST(Trajectory, OfTheBodyIsTakenToTheLeftCamera) {
   const TempFolder folder;
   folder.Write("mav0/state_groundtruth_estimate0/data.csv",

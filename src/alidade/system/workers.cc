@@ -46,7 +46,6 @@ void Workers::Loop(KeyFrameId id) {
   bool closed = false;
   mapping_.WhileResting([&] { closed = loop_closer_.Close(*match); });
   if (!closed) return;
-  last_closed_ = id;
   adjusting_.Add(id);
 }
 
@@ -65,11 +64,14 @@ void Workers::Drain() {
   mapping_.Drain();
   looping_.Drain();
   adjusting_.Drain();
-  // What was mapped since a loop was closed ties the ends of it better than the loop itself did.
+  // Local windows leave a slow drift of scale and shape that all observations together do not.
   const MapSnapshot map = map_.Snapshot();
-  if (last_closed_.valid() && map.next_keyframe() != adjusted_up_to_) {
+  if (map.next_keyframe() != adjusted_up_to_) {
     adjusted_up_to_ = map.next_keyframe();
-    adjusting_.Add(last_closed_);
+    for (MapId id : map.Maps()) {
+      const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
+      if (keyframes.size() > 2) adjusting_.Add(keyframes.back());
+    }
     adjusting_.Drain();
   }
   semidense_.Drain();
@@ -88,6 +90,7 @@ void Workers::Restore(const SavedMap& saved) {
   for (KeyFrameId id : ids) keyframes.push_back({id, saved.map.Find(id)->frame});
   places_.Restore(saved.places, keyframes);
   loop_closer_.SetEntered(ids);
+  adjusted_up_to_ = saved.map.next_keyframe();
 }
 
 void Workers::Drop(MapId id) {

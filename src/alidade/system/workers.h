@@ -34,7 +34,7 @@ class Workers {
     semidense_mapper_.Keep(id, std::move(picture));
   }
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
-  void Drain();  // until nothing is left to do; a map with loops is adjusted as a whole once more
+  void Drain();  // until nothing is left to do; what grew is adjusted as a whole once more
   void Restore(const SavedMap& saved);  // before the first keyframe
   void Drop(MapId id);                  // a map and its places, without a trace
 
@@ -57,7 +57,6 @@ class Workers {
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
   bool dense_;                   // semi-dense mapping is asked for
-  KeyFrameId last_closed_;       // that closed a loop or merged maps; read when the stages rest
   uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
   Stage adjusting_, looping_, semidense_, mapping_;
 };

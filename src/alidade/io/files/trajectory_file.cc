@@ -58,4 +58,9 @@ Trajectory ReadTrajectory(const std::string& path) {
   return ParseTumTrajectory(text, path);
 }
 
+Trajectory ReadEstimate(const std::string& path) {
+  const std::string result = path + "/trajectory.txt";
+  return ReadTrajectory(fs::is_regular_file(result) ? result : path);
+}
+
 }  // namespace alidade

@@ -14,4 +14,8 @@ namespace alidade {
 // trajectory.txt. Throws Error (input), with file:line where there is one.
 Trajectory ReadTrajectory(const std::string& path);
 
+// The same for what is to be judged: a folder of results stands for its trajectory.txt, even where
+// the truth lies beside it.
+Trajectory ReadEstimate(const std::string& path);
+
 }  // namespace alidade
