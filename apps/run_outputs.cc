@@ -1,10 +1,13 @@
 #include "run_outputs.h"
 
+#include <vector>
+
 #include "alidade/base/error.h"
 #include "alidade/io/cloud.h"
 #include "run_results.h"
 #include "run_stats.h"
 #include "semidense_outputs.h"
+#include "shape_views.h"
 
 namespace alidade {
 namespace {
@@ -24,7 +27,8 @@ std::string LandmarksPly(const RunResults& results) {
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map) {
   const RunResults results = ResultsOf(slam, record);
-  Cloud shape;
+  CloudScene shape;
+  std::vector<ReportPicture> views;
   bool useful = false;
   try {
     for (size_t i = 0; i < results.maps.size(); ++i) {
@@ -41,9 +45,12 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     useful = true;
     if (with_map) folder.Write("map.alidade", slam.SaveMap());
     folder.Write("landmarks.ply", LandmarksPly(results));
-    if (record.settings.semidense.enabled)
-      shape = WriteSemiDense(folder, results, slam.camera(), record.settings.semidense.voxel);
-    folder.Write("report.html", ReportHtml(record, results));
+    if (record.settings.semidense.enabled) {
+      shape = {WriteSemiDense(folder, results, slam.camera(), record.settings.semidense.voxel),
+               PathOf(results)};
+    }
+    if (!shape.cloud.points.empty()) views = WriteShapeViews(folder, shape);
+    folder.Write("report.html", ReportHtml(record, results, views));
   } catch (const Error&) {
     if (!useful) folder.Remove();
     throw;
@@ -53,7 +60,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
           results.map.keyframe_count(),
           results.map.landmark_count(),
           static_cast<int>(results.map.Maps().size()),
-          shape.points.size(),
+          shape.cloud.points.size(),
           PathLength(results.maps.front().trajectory)};
 }
 

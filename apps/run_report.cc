@@ -1,7 +1,6 @@
 #include <cstdio>
 
 #include "alidade/base/timing.h"
-#include "alidade/view/report.h"
 #include "run_stats.h"
 
 namespace alidade {
@@ -16,18 +15,9 @@ std::string Format(const char* format, double value) {
 PlaceDrawing PlaceOf(const RunResults& results, const std::string& unit) {
   PlaceDrawing place;
   place.unit = unit;
+  place.path = PathOf(results);
   // The largest map: others lie in worlds of their own.
   const MapResults& map = results.maps.front();
-  bool going_on = false;
-  size_t next = 0;  // of the trajectory
-  for (const FramePose& frame : results.frames) {
-    const bool here = frame.tracked && frame.map == map.id;
-    if (here) {
-      if (!going_on) place.path.emplace_back();
-      place.path.back().push_back(map.trajectory[next++].T_world_camera);
-    }
-    going_on = here;
-  }
   for (const StampedPose& pose : map.keyframes) {
     place.keyframes.push_back(pose.T_world_camera.t);
   }
@@ -85,12 +75,14 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
 
 }  // namespace
 
-std::string ReportHtml(const RunRecord& record, const RunResults& results) {
+std::string ReportHtml(const RunRecord& record, const RunResults& results,
+                       const std::vector<ReportPicture>& shape) {
   const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
   RunReport report;
   report.title = record.source.name;
   report.facts = FactsOf(record, results, unit);
   report.place = PlaceOf(results, unit);
+  report.shape = shape;
   report.frames = FatesOf(results.frames);
   report.milliseconds = {{"frame", results.times.frame}, {"extract", results.times.extract},
                          {"track", results.times.track}, {"map", results.times.map},

@@ -71,6 +71,22 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   return results;
 }
 
+std::vector<std::vector<Se3>> PathOf(const RunResults& results) {
+  std::vector<std::vector<Se3>> path;
+  const MapResults& map = results.maps.front();
+  bool going_on = false;
+  size_t next = 0;  // of the trajectory
+  for (const FramePose& frame : results.frames) {
+    const bool here = frame.tracked && frame.map == map.id;
+    if (here) {
+      if (!going_on) path.emplace_back();
+      path.back().push_back(map.trajectory[next++].T_world_camera);
+    }
+    going_on = here;
+  }
+  return path;
+}
+
 double PathLength(const Trajectory& trajectory) {
   double length = 0;
   for (size_t i = 1; i < trajectory.size(); ++i) {

@@ -35,6 +35,10 @@ struct RunResults {
 
 RunResults ResultsOf(const Slam& slam, const RunRecord& record);
 
+// The way of the camera through the first map: T_world_camera, one list for each stretch without a
+// gap.
+std::vector<std::vector<Se3>> PathOf(const RunResults& results);
+
 double PathLength(const Trajectory& trajectory);  // in the trajectory's unit
 
 }  // namespace alidade

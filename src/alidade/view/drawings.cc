@@ -1,9 +1,10 @@
 #include "alidade/view/drawings.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+
+#include "alidade/view/upright.h"
 
 namespace alidade {
 namespace {
@@ -25,24 +26,6 @@ std::string OpenSvg(double width, double height, const std::string& label) {
 std::string Text(double x, double y, const std::string& anchor, const std::string& text) {
   return "<text x=\"" + Number(x) + "\" y=\"" + Number(y) + "\" text-anchor=\"" + anchor + "\">" +
          EscapeHtml(text) + "</text>\n";
-}
-
-// Rows: right and up on the page, in world coordinates.
-Eigen::Matrix<double, 2, 3> PageAxes(const std::vector<std::vector<Se3>>& path) {
-  Eigen::Vector3d down = Eigen::Vector3d::Zero();
-  for (const auto& stretch : path) {
-    for (const Se3& T : stretch) down += T.R.col(1);
-  }
-  down = down.norm() > 1e-9 ? Eigen::Vector3d(down.normalized()) : Eigen::Vector3d::UnitY();
-  Eigen::Vector3d forward =
-      path.empty() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(path.front().front().R.col(2));
-  forward -= down * down.dot(forward);
-  if (forward.norm() < 1e-3) forward = down.unitOrthogonal();
-  forward.normalize();
-  Eigen::Matrix<double, 2, 3> axes;
-  axes.row(0) = down.cross(forward).transpose();
-  axes.row(1) = forward.transpose();
-  return axes;
 }
 
 // From world to page; fits what matters of the place into the picture.
@@ -156,7 +139,7 @@ std::string EscapeHtml(const std::string& text) {
 }
 
 std::string DrawFromAbove(const PlaceDrawing& place) {
-  const Page page(place, PageAxes(place.path));
+  const Page page(place, UprightAxes(place.path).topRows<2>());
   std::string svg = OpenSvg(kWidth, kHeight, "trajectory and landmarks from above");
   svg += Dots(page, place.landmarks, "landmarks");
   for (const auto& stretch : place.path) {

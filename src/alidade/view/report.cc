@@ -1,5 +1,7 @@
 #include "alidade/view/report.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 
 #include "alidade/base/timing.h"
@@ -20,6 +22,8 @@ text{font-size:12px;fill:var(--soft)}path,polyline{fill:none;stroke-linecap:roun
 .keyframes{stroke:var(--path);stroke-width:6}.scale{stroke:var(--soft);stroke-width:2}
 .start{fill:#1a9d50}.end{fill:#d43a2f}.tracked{fill:#1a9d50}.lost{fill:#d43a2f}.starting{fill:var(--line)}
 .grid{stroke:var(--line)}.series{stroke:var(--path)}
+.shape{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}.shape figure{margin:0}
+.shape figure:first-child{grid-column:1/-1}.shape img{width:100%;display:block;border-radius:6px}
 .key{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin:0 .3em 0 1em}.key:first-child{margin-left:0}
 summary{cursor:pointer;font-weight:600}details{margin-top:2rem}
 </style>
@@ -75,7 +79,34 @@ std::string Timing(const RunReport& report) {
          DrawSeries(frames, 1.5 * Summarise(frames).p95, "ms");
 }
 
+std::string Shape(const std::vector<ReportPicture>& pictures) {
+  if (pictures.empty()) return "";
+  std::string html = "<h2>Shape</h2>\n<div class=\"shape\">\n";
+  for (const ReportPicture& picture : pictures) {
+    const std::string caption = EscapeHtml(picture.caption);
+    html += "<figure><img alt=\"" + caption + "\" src=\"data:" + picture.type + ";base64," +
+            Base64(picture.bytes) + "\"><figcaption class=\"soft\">" + caption +
+            "</figcaption></figure>\n";
+  }
+  return html + "</div>\n";
+}
+
 }  // namespace
+
+std::string Base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const size_t count = std::min<size_t>(3, bytes.size() - i);
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k)
+      bits = bits << 8 | (k < count ? static_cast<uint8_t>(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k)
+      text.push_back(k <= count ? kDigits[bits >> (18 - 6 * k) & 63] : '=');
+  }
+  return text;
+}
 
 std::string RenderReport(const RunReport& report) {
   std::string html =
@@ -89,6 +120,7 @@ std::string RenderReport(const RunReport& report) {
           "<span class=\"key\" style=\"background:#d43a2f\"></span>end"
           "<span class=\"key\" style=\"background:var(--path)\"></span>path and keyframes"
           "<span class=\"key\" style=\"background:var(--dot)\"></span>landmarks</p>\n";
+  html += Shape(report.shape);
   html += "<h2>Frames</h2>\n" + DrawTimeline(report.frames) +
           "<p class=\"soft\"><span class=\"key\" style=\"background:var(--line)\"></span>starting"
           "<span class=\"key\" style=\"background:#1a9d50\"></span>tracked"
