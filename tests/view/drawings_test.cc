@@ -106,5 +106,23 @@ TEST(Report, WordsOfOthersCannotBecomeMarkup) {
   EXPECT_THAT(html, HasSubstr("a &amp; b &lt; c"));
 }
 
+TEST(Report, PicturesAreWithinThePage) {
+  RunReport report;
+  report.shape = {{"from above", "image/png", "Man"}, {"a<b", "image/jpeg", "Ma"}};
+  const std::string html = RenderReport(report);
+  EXPECT_THAT(html, HasSubstr("alt=\"from above\" src=\"data:image/png;base64,TWFu\""));
+  EXPECT_THAT(html, HasSubstr("alt=\"a&lt;b\" src=\"data:image/jpeg;base64,TWE=\""));
+}
+
+TEST(Base64, EncodesAsTheStandardsExamples) {
+  // RFC 4648, §10.
+  EXPECT_EQ(Base64(""), "");
+  EXPECT_EQ(Base64("f"), "Zg==");
+  EXPECT_EQ(Base64("fo"), "Zm8=");
+  EXPECT_EQ(Base64("foo"), "Zm9v");
+  EXPECT_EQ(Base64("foobar"), "Zm9vYmFy");
+  EXPECT_EQ(Base64("\xfb\xff\xfe"), "+//+");
+}
+
 }  // namespace
 }  // namespace alidade
