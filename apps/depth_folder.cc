@@ -36,7 +36,8 @@ std::optional<Sensor> SensorOf(const json& stats) {
 
 bool WasAskedForDepth(const json& stats) {
   const json settings = stats.is_object() ? stats.value("settings", json()) : json();
-  return settings.is_object() && settings.value("semidense.enabled", json()) == true;
+  const json enabled = settings.is_object() ? settings.value("semidense.enabled", json()) : json();
+  return enabled == 1 || enabled == true;  // settings are written as 0 and 1
 }
 
 // Numbers of the maps that have a list; any may have no depth, the first too.

@@ -20,7 +20,7 @@ constexpr char kExamples[] =
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
-    "--out.";
+    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ (docs/formats.md).";
 
 void Refuse(bool asked, const std::string& flag) {
   if (asked) ThrowUsage(flag + " is not in this version yet");

@@ -40,6 +40,15 @@ std::vector<FrameFate> FatesOf(const std::vector<FramePose>& frames) {
   return fates;
 }
 
+int CountWithDepth(const MapSnapshot& map) {
+  int count = 0;
+  for (KeyFrameId id : map.KeyFrames()) {
+    const KeyFrame& keyframe = *map.Find(id);
+    count += keyframe.depth != nullptr && !keyframe.depth->pixels.empty();
+  }
+  return count;
+}
+
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
                                                          const RunResults& results,
                                                          const std::string& unit) {
@@ -53,11 +62,14 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
       {"first tracked frame",
        results.initialised_at ? std::to_string(*results.initialised_at) : "none"},
       {"keyframes", std::to_string(results.map.keyframe_count())},
-      {"landmarks", std::to_string(results.map.landmark_count())},
-      {"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
-      {"wall time", Format("%.2f s", record.wall_s)},
-      {"CPU time", Format("%.2f s", record.cpu_s)},
-      {"peak memory", Format("%.0f MB", PeakMegabytes())}};
+      {"landmarks", std::to_string(results.map.landmark_count())}};
+  if (record.settings.semidense.enabled && !record.settings.localise)
+    facts.push_back({"keyframes with depth", std::to_string(CountWithDepth(results.map))});
+  facts.insert(facts.end(),
+               {{"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
+                {"wall time", Format("%.2f s", record.wall_s)},
+                {"CPU time", Format("%.2f s", record.cpu_s)},
+                {"peak memory", Format("%.0f MB", PeakMegabytes())}});
   const SlamCounts& counts = results.counts;
   facts.push_back({"loops closed", std::to_string(counts.loops)});
   if (counts.relocalisations > 0)
