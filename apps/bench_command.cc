@@ -10,6 +10,7 @@
 #include "alidade/io/files/file.h"
 #include "arguments.h"
 #include "bench/bench.h"
+#include "bench/semidense.h"
 #include "commands.h"
 
 namespace alidade {
@@ -47,7 +48,8 @@ void FillIn(BenchArguments& arguments) {
 void Print(const bench::Section& section) {
   const Summary u = Summarise(section.u_milliseconds);
   std::printf("\n%s (U = %.2f ms, median of %d)\n", section.name.c_str(), u.median, u.count);
-  std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
+  if (!section.rows.empty())
+    std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
   for (const bench::Row& row : section.rows) {
     const Summary s = Summarise(row.milliseconds);
     std::printf("  %-44s %10.3f %8.3f %10.3f %7d  %s\n", row.name.c_str(), s.median,
@@ -55,10 +57,20 @@ void Print(const bench::Section& section) {
   }
   for (const bench::Table& table : section.tables) {
     std::printf("\n  %s\n", table.name.c_str());
-    for (const std::string& column : table.columns) std::printf("  %16s", column.c_str());
-    for (const std::vector<double>& row : table.rows) {
+    const bool labels = !table.labels.empty();
+    const int width = labels ? 9 : 16, digits = labels ? 2 : 3;
+    if (labels) std::printf("  %-24s", "");
+    for (const std::string& column : table.columns) std::printf("  %*s", width, column.c_str());
+    for (size_t i = 0; i < table.rows.size(); ++i) {
       std::printf("\n");
-      for (double value : row) std::printf("  %16.3f", value);
+      if (labels) std::printf("  %-24s", table.labels[i].c_str());
+      for (double value : table.rows[i]) {
+        if (value == value) {
+          std::printf("  %*.*f", width, digits, value);
+        } else {
+          std::printf("  %*s", width, "-");
+        }
+      }
     }
     std::printf("\n  %s\n", table.note.c_str());
   }
@@ -83,16 +95,40 @@ ordered_json ToJson(const bench::Section& section) {
                               {"columns", table.columns},
                               {"rows", table.rows},
                               {"note", table.note}});
+    if (!table.labels.empty()) json["tables"].back()["labels"] = table.labels;
   }
   return json;
 }
 
+// `all`: what holds for all benches.
+void Write(const std::string& path, ordered_json all, ordered_json sections) {
+  if (path.empty()) return;
+  all["benches"] = std::move(sections);
+  AtomicWriteFile(path, all.dump(2) + "\n");
+}
+
+// `words`: recordings.
+int RunSemiDense(std::vector<std::string> words, const BenchArguments& arguments) {
+  if (!arguments.source.empty()) words.push_back(arguments.source);
+  ordered_json sections = ordered_json::array();
+  for (const std::string& source : bench::SemiDenseSources(words)) {
+    const bench::Section section = bench::BenchSemiDense(source, arguments.frames);
+    Print(section);
+    std::fflush(stdout);
+    sections.push_back(ToJson(section));
+  }
+  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  return 0;
+}
+
 int Run(BenchArguments arguments) {
+  cv::setNumThreads(1);
+  SetThreadCount(0);
+  const std::vector<std::string>& names = arguments.names;
+  if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
   FillIn(arguments);
   std::vector<Bench> benches;
   for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
-  cv::setNumThreads(1);
-  SetThreadCount(0);
   const bench::Recording recording = bench::LoadRecording(arguments.source, arguments.frames);
   const Camera& camera = recording.info.camera;
   std::printf(
@@ -107,13 +143,14 @@ int Run(BenchArguments arguments) {
     std::fflush(stdout);
     sections.push_back(ToJson(section));
   }
-  if (!arguments.out.empty()) {
-    const ordered_json all = {
-        {"version", 1},          {"source", recording.source}, {"frames", recording.frames.size()},
-        {"width", camera.width}, {"height", camera.height},    {"threads", ThreadCount()},
-        {"benches", sections}};
-    AtomicWriteFile(arguments.out, all.dump(2) + "\n");
-  }
+  Write(arguments.out,
+        {{"version", 1},
+         {"source", recording.source},
+         {"frames", recording.frames.size()},
+         {"width", camera.width},
+         {"height", camera.height},
+         {"threads", ThreadCount()}},
+        std::move(sections));
   return 0;
 }
 
@@ -123,11 +160,16 @@ void AddBenchCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("bench", "Time the parts, beside OpenCV's ORB on the same frames");
   auto arguments = std::make_shared<BenchArguments>();
-  command->add_option("NAME", arguments->names, "features, ransac, ba, frame, place: one or more")
+  command
+      ->add_option("NAME", arguments->names,
+                   "features, ransac, ba, frame, place: one or more; or semidense and recordings "
+                   "with depth (synth:room, synth:desk, synth:wall)")
       ->required();
   command->add_option("--source", arguments->source,
                       "Recording to take frames from (synth:room; place: synth:loop)");
-  command->add_option("--frames", arguments->frames, "Frames of it, at most (150)")
+  command
+      ->add_option("--frames", arguments->frames,
+                   "Frames of it, at most (150; semidense: 200, recorded ones 600)")
       ->check(CLI::Range(2, 100000));
   command->add_option("--out", arguments->out, "JSON file to write the numbers to");
   command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });

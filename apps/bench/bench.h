@@ -31,8 +31,9 @@ struct Row {
 struct Table {
   std::string name;
   std::vector<std::string> columns;
-  std::vector<std::vector<double>> rows;  // one for each column
-  std::string note;
+  std::vector<std::vector<double>> rows = {};  // one number for each column; NaN: nothing to tell
+  std::string note = {};
+  std::vector<std::string> labels = {};  // one for each row, or none at all
 };
 
 struct Section {
