@@ -27,7 +27,7 @@ std::string LandmarksPly(const RunResults& results) {
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map) {
   const RunResults results = ResultsOf(slam, record);
-  CloudScene shape;
+  Cloud shape;
   std::vector<ReportPicture> views;
   bool useful = false;
   try {
@@ -46,10 +46,11 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     if (with_map) folder.Write("map.alidade", slam.SaveMap());
     folder.Write("landmarks.ply", LandmarksPly(results));
     if (record.settings.semidense.enabled) {
-      shape = {WriteSemiDense(folder, results, slam.camera(), record.settings.semidense.voxel),
-               PathOf(results)};
+      const double voxel = record.settings.semidense.voxel;
+      shape = WriteSemiDense(folder, results, slam.camera(), voxel);
+      if (!shape.points.empty())
+        views = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
     }
-    if (!shape.cloud.points.empty()) views = WriteShapeViews(folder, shape);
     folder.Write("report.html", ReportHtml(record, results, views));
   } catch (const Error&) {
     if (!useful) folder.Remove();
@@ -60,7 +61,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
           results.map.keyframe_count(),
           results.map.landmark_count(),
           static_cast<int>(results.map.Maps().size()),
-          shape.cloud.points.size(),
+          shape.points.size(),
           PathLength(results.maps.front().trajectory)};
 }
 

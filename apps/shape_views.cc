@@ -1,11 +1,14 @@
 #include "shape_views.h"
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <string>
 #include <utility>
 
 #include "alidade/base/parallel.h"
 #include "alidade/io/files/image_codec.h"
+#include "alidade/view/cloud_picture.h"
+#include "semidense_outputs.h"
 
 namespace alidade {
 namespace {
@@ -18,9 +21,35 @@ constexpr std::pair<CloudView, const char*> kViews[] = {
     {CloudView::kSide, "from its right"},
     {CloudView::kAbove, "from above"}};
 
+// About a pixel of a picture of most of the cloud.
+double PixelOf(const Cloud& cloud) {
+  constexpr double kPixels = 800, kLeftOut = 0.03;
+  Eigen::Vector3d size;
+  std::vector<float> along(cloud.points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (size_t i = 0; i < along.size(); ++i) along[i] = cloud.points[i][axis];
+    const auto rank = [&](double share) {
+      const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(along.size() - 1));
+      std::nth_element(along.begin(), along.begin() + at, along.end());
+      return along[static_cast<size_t>(at)];
+    };
+    size[axis] = rank(1 - kLeftOut) - rank(kLeftOut);
+  }
+  return size.norm() / kPixels;
+}
+
 }  // namespace
 
-std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const CloudScene& scene) {
+std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const RunResults& results,
+                                           const Camera& camera, const Cloud& cloud, double voxel) {
+  // Whoever wants few points, or whose map has large units, wants to see the place all the same;
+  // and no picture needs every pixel of every keyframe.
+  const double pixel = PixelOf(cloud);
+  const CloudScene scene = {
+      voxel > 0 && voxel <= pixel
+          ? cloud
+          : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
+      PathOf(results)};
   constexpr int kCount = static_cast<int>(std::size(kViews));
   std::vector<cv::Mat> drawn(kCount);
   ParallelFor(kCount,

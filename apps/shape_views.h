@@ -3,14 +3,18 @@
 
 #include <vector>
 
-#include "alidade/view/cloud_picture.h"
+#include "alidade/geometry/camera.h"
+#include "alidade/io/cloud.h"
 #include "alidade/view/report.h"
 #include "output_folder.h"
+#include "run_results.h"
 
 namespace alidade {
 
-// semidense.png, and the same with views from other sides for the report. Throws Error (input) when
-// it cannot be written.
-std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const CloudScene& scene);
+// semidense.png, and the same with views from other sides for the report: of the first map's depth,
+// whose cloud with that voxel (0: all points) is `cloud`. Throws Error (input) when it cannot be
+// written.
+std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const RunResults& results,
+                                           const Camera& camera, const Cloud& cloud, double voxel);
 
 }  // namespace alidade
