@@ -27,9 +27,12 @@ namespace {
 constexpr int kInterruptedStatus = 130;
 
 void Say(const RunSummary& summary, const RunRecord& record, const std::string& folder) {
-  const std::string shape = summary.shape_points > 0
-                                ? ", " + std::to_string(summary.shape_points) + " points of shape"
-                                : "";
+  std::string shape;
+  if (summary.shape_points > 0) {
+    shape = ", " + std::to_string(summary.shape_points) + " points of shape";
+  } else if (record.settings.semidense.enabled && !record.settings.localise) {
+    shape = ", no shape (too little was seen from new keyframes)";
+  }
   std::printf("%d of %d frames tracked, %d keyframes, %d landmarks%s, path %.2f %s\n%s in %s\n",
               summary.tracked, summary.frames, summary.keyframes, summary.landmarks, shape.c_str(),
               summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",

@@ -90,11 +90,23 @@ TEST_F(SemiDenseRun, IsTheSameEveryTimeAndTheTrajectoryIsWhatItIsWithout) {
 }
 
 TEST_F(SemiDenseRun, OneWithoutRemovesWhatItLeft) {
+  const auto is_there = [&](const std::string& name) {
+    return fs::exists(results_ / ("out/" + name));
+  };
+  const std::vector<std::string> left = {"depth", "depth.txt", "semidense.ply", "semidense.png"};
   ASSERT_EQ(Run("out").status, 0);
+  for (const std::string& name : left) EXPECT_TRUE(is_there(name)) << name;
   ASSERT_EQ(Run("out", {"--last", "5"}).status, 0);
-  for (const char* name : {"depth", "depth.txt", "semidense.ply", "semidense.png"})
-    EXPECT_FALSE(fs::exists(results_ / (std::string("out/") + name))) << name;
+  for (const std::string& name : left) EXPECT_FALSE(is_there(name)) << name;
   EXPECT_THAT(Text("out/report.html"), Not(HasSubstr("<h2>Shape</h2>")));
+}
+
+TEST_F(SemiDenseRun, SaysWhenThereIsNoShape) {
+  const ProgramResult result = Run("out", {"--semidense", "--last", "1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr(", no shape"));
+  EXPECT_FALSE(fs::exists(results_ / "out/depth"));
+  EXPECT_FALSE(fs::exists(results_ / "out/semidense.ply"));
 }
 
 TEST_F(SemiDenseRun, VoxelsThinTheCloudOut) {
