@@ -148,7 +148,7 @@ OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
     made_ = true;
   }
   // As much as a short run leaves.
-  const std::string probe(64 * 1024, '\0');
+  const std::string probe(65536, '\0');
   try {
     Write("stats.json", probe);
     RemoveOurFiles(path_, kept_);

@@ -30,7 +30,10 @@ std::string WritePictures(OutputFolder& folder, const RunResults& results, const
     written.push_back(name);
     // Flushing hundreds of pictures one by one takes longer than drawing them.
     folder.Write(name, EncodePng(DrawDepth(*keyframe.depth, scale, camera)), Sync::kNo);
-    list += stamp + " " + name + "\n";
+    list += stamp;
+    list += " ";
+    list += name;
+    list += "\n";
   }
   return list;
 }

@@ -175,8 +175,7 @@ TEST_F(EvaluateDepth, NothingToldIsNullNotAnError) {
   EXPECT_EQ(none["keyframes"].size(), 0u);
   // A run that was asked for depth and could tell none leaves no list.
   std::filesystem::remove(result_ + "/depth.txt");
-  folder_.Write("result/stats.json",
-                R"({"sensor": "mono", "settings": {"semidense.enabled": 1}})");
+  folder_.Write("result/stats.json", R"({"sensor": "mono", "settings": {"semidense.enabled": 1}})");
   EXPECT_EQ(Json(folder_.path())["n"], 0);
   // Of two maps only the other may have depth; the main one's scale is not known then.
   WriteResult(folder_, "mono", {{TinyStamp(4), Plain(1.004f / 5)}}, "result/depth.1.txt");

@@ -16,10 +16,10 @@ struct RpeSettings {
   double delta = 1;  // the step: seconds, or poses of the estimate
   DeltaUnit unit = DeltaUnit::kSeconds;
   PairSelection pairs = PairSelection::kAll;
-  Alignment align = Alignment::kSe3;    // only Sim(3) matters: its scale is applied to the estimate
-  double max_dt = 0.02;                 // seconds between a pose and the truth's nearest
+  Alignment align = Alignment::kSe3;  // only Sim(3) matters: its scale is applied to the estimate
+  double max_dt = 0.02;               // seconds between a pose and the truth's nearest
   std::optional<TimeSpan> source_span = std::nullopt;  // as in AteSettings
-  void Check() const;                   // throws Error (usage) naming the field that cannot be
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 struct RpeResult {

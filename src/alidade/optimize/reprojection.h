@@ -1,7 +1,7 @@
 // The residual all of this folder minimises: where a point would be seen minus where it was, and
 // its derivative by the point in the camera frame. Pixel u, v as in Mur-Artal & Tardós 2017, eq. 2
-// and 4, but depth as disparity u - u_right, not as u_right: what shifts a keypoint (blur, a rolling
-// shutter) shifts both columns alike, so that disparity is known far better than either.
+// and 4, but depth as disparity u - u_right, not as u_right: what shifts a keypoint (blur, a
+// rolling shutter) shifts both columns alike, so that disparity is known far better than either.
 #pragma once
 
 #include <cmath>

@@ -84,9 +84,15 @@ std::string Shape(const std::vector<ReportPicture>& pictures) {
   std::string html = "<h2>Shape</h2>\n<div class=\"shape\">\n";
   for (const ReportPicture& picture : pictures) {
     const std::string caption = EscapeHtml(picture.caption);
-    html += "<figure><img alt=\"" + caption + "\" src=\"data:" + picture.type + ";base64," +
-            Base64(picture.bytes) + "\"><figcaption class=\"soft\">" + caption +
-            "</figcaption></figure>\n";
+    html += "<figure><img alt=\"";
+    html += caption;
+    html += "\" src=\"data:";
+    html += picture.type;
+    html += ";base64,";
+    html += Base64(picture.bytes);
+    html += "\"><figcaption class=\"soft\">";
+    html += caption;
+    html += "</figcaption></figure>\n";
   }
   return html + "</div>\n";
 }
