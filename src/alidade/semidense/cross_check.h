@@ -5,18 +5,9 @@
 #include <vector>
 
 #include "alidade/geometry/camera.h"
-#include "alidade/semidense/gradient_image.h"
-#include "alidade/semidense/hypothesis.h"
+#include "alidade/semidense/depth_view.h"
 
 namespace alidade {
-
-// Another keyframe's depth, and where it is.
-struct DepthView {
-  std::span<const EdgePixel> edges;
-  std::span<const Hypothesis> depth;  // one for each edge
-  Se3 T_view_reference;
-  float scale = 1;  // its inverse depths are multiplied by this before they are compared
-};
 
 struct CrossCheckSettings {
   float chi2 = 3.84f;

@@ -6,16 +6,66 @@
 namespace alidade {
 namespace {
 
-constexpr int kEnough = 4;        // landmarks nearby that say something of a place
-constexpr float kMargin = 0.12f;  // share by which things may be nearer or farther than landmarks
+constexpr int kLandmarkCells = 4;    // cells of this class to one cell landmarks are gathered in
+constexpr int kEnoughLandmarks = 4;  // nearby, that say something of a place
+constexpr int kEnoughDepth = 12;     // pixels with depth nearby that do
+// Share by which things may be nearer or farther than what is known nearby.
+constexpr float kMargin = 0.12f;
+
+// What is known within a cell.
+struct Span {
+  float min = 1e30f, max = 0;
+  int count = 0;
+  void Add(float inverse_depth) {
+    min = std::min(min, inverse_depth);
+    max = std::max(max, inverse_depth);
+    ++count;
+  }
+  void Add(const Span& other) {
+    min = std::min(min, other.min);
+    max = std::max(max, other.max);
+    count += other.count;
+  }
+  DepthInterval Widened() const { return {min * (1 - kMargin), max * (1 + kMargin)}; }
+};
+
+// Cells of a picture, each seen with its eight neighbours.
+class SpanGrid {
+ public:
+  SpanGrid(int columns, int rows) : columns_(columns), rows_(rows), spans_(columns * rows) {}
+  Span& At(int column, int row) {
+    column = std::clamp(column, 0, columns_ - 1);
+    return spans_[std::clamp(row, 0, rows_ - 1) * columns_ + column];
+  }
+  Span Around(int column, int row) const {
+    Span all;
+    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
+        all.Add(spans_[r * columns_ + c]);
+      }
+    }
+    return all;
+  }
+
+ private:
+  int columns_, rows_;
+  std::vector<Span> spans_;
+};
 
 }  // namespace
 
-DepthRange::DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const Camera& camera) {
+DepthRange::DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const Camera& camera,
+                       std::span<const DepthView> views) {
   columns_ = (camera.width + kCell - 1) / kCell;
-  const int rows = (camera.height + kCell - 1) / kCell;
-  cells_.resize(columns_ * rows);
-  std::vector<std::vector<float>> near(cells_.size());
+  rows_ = (camera.height + kCell - 1) / kCell;
+  cells_.resize(columns_ * rows_);
+  SpanLandmarks(map, keyframe);
+  if (known()) SpanViews(camera, views);
+}
+
+void DepthRange::SpanLandmarks(const MapSnapshot& map, const KeyFrame& keyframe) {
+  constexpr int kWide = kCell * kLandmarkCells;  // pixels
+  SpanGrid grid(columns_ / kLandmarkCells + 1, rows_ / kLandmarkCells + 1);
   double sum = 0, squares = 0;
   int count = 0;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -24,29 +74,54 @@ DepthRange::DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const C
     if (!landmark) continue;
     const double z = (keyframe.T_camera_world * landmark->p_world).z();
     if (z <= 0) continue;
-    const auto inverse = static_cast<float>(1 / z);
-    sum += inverse;
-    squares += inverse * inverse;
+    sum += 1 / z;
+    squares += 1 / (z * z);
     ++count;
     const Keypoint& keypoint = keyframe.frame->keypoints[i];
-    const int column = std::clamp(static_cast<int>(keypoint.x) / kCell, 0, columns_ - 1);
-    const int row = std::clamp(static_cast<int>(keypoint.y) / kCell, 0, rows - 1);
-    for (int r = std::max(0, row - 1); r <= std::min(rows - 1, row + 1); ++r) {
-      for (int c = std::max(0, column - 1); c <= std::min(columns_ - 1, column + 1); ++c) {
-        near[r * columns_ + c].push_back(inverse);
-      }
-    }
+    grid.At(static_cast<int>(keypoint.x) / kWide, static_cast<int>(keypoint.y) / kWide)
+        .Add(static_cast<float>(1 / z));
   }
-  if (count < kEnough) return;
+  if (count < kEnoughLandmarks) return;
   const double mean = sum / count;
   const double sigma = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  all_.min = static_cast<float>(std::max(0.0, mean - 2 * sigma) * (1 - kMargin));
-  all_.max = static_cast<float>((mean + 2 * sigma) * (1 + kMargin));
-  for (size_t i = 0; i < cells_.size(); ++i) {
-    cells_[i] = all_;
-    if (static_cast<int>(near[i].size()) < kEnough) continue;
-    const auto [least, most] = std::minmax_element(near[i].begin(), near[i].end());
-    cells_[i] = {*least * (1 - kMargin), *most * (1 + kMargin)};
+  Span all;
+  all.Add(static_cast<float>(std::max(0.0, mean - 2 * sigma)));
+  all.Add(static_cast<float>(mean + 2 * sigma));
+  all_ = all.Widened();
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Span near = grid.Around(column / kLandmarkCells, row / kLandmarkCells);
+      cells_[row * columns_ + column] = near.count < kEnoughLandmarks ? all_ : near.Widened();
+    }
+  }
+}
+
+void DepthRange::SpanViews(const Camera& camera, std::span<const DepthView> views) {
+  SpanGrid grid(columns_, rows_);
+  Eigen::Matrix3d K;
+  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
+  for (const DepthView& view : views) {
+    const Se3 T_reference_view = view.T_view_reference.Inverse();
+    const Eigen::Matrix3f M = (K * T_reference_view.R * K.inverse()).cast<float>();
+    const Eigen::Vector3f b = (K * T_reference_view.t).cast<float>();
+    for (size_t i = 0; i < view.edges.size(); ++i) {
+      if (!view.depth[i].known()) continue;
+      const float inverse = view.depth[i].inverse_depth * view.scale;
+      const Eigen::Vector3f p =
+          M * Eigen::Vector3f(view.edges[i].x, view.edges[i].y, 1) + inverse * b;
+      if (p.z() < 0.05f) continue;
+      const float x = p.x() / p.z(), y = p.y() / p.z();
+      if (!(x >= 0 && y >= 0 && x < static_cast<float>(camera.width) &&
+            y < static_cast<float>(camera.height)))
+        continue;
+      grid.At(static_cast<int>(x) / kCell, static_cast<int>(y) / kCell).Add(inverse / p.z());
+    }
+  }
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const Span near = grid.Around(column, row);
+      if (near.count >= kEnoughDepth) cells_[row * columns_ + column] = near.Widened();
+    }
   }
 }
 

@@ -21,13 +21,16 @@ inline uint32_t Spread(const uint8_t* pixel) {
 inline int Intensity(uint32_t sample) { return static_cast<int>(sample & 0xffff); }
 inline int Gradient(uint32_t sample) { return static_cast<int>(sample >> 16); }
 
+constexpr int kFixed = 16;  // fractional bits of places
+
+inline int32_t ToFixed(float x) { return static_cast<int32_t>(x * (1 << kFixed)); }
+
 // Both values at a place between pixels, times kOne.
-inline uint32_t Sample(const cv::Mat& values, float x, float y) {
-  const int xi = static_cast<int>(x), yi = static_cast<int>(y);
-  const auto wx = static_cast<uint32_t>((x - static_cast<float>(xi)) * 8);
-  const auto wy = static_cast<uint32_t>((y - static_cast<float>(yi)) * kOne);
-  const uint8_t* p = values.ptr<uint8_t>(yi) + 2 * xi;
-  const uint8_t* q = p + values.step[0];
+inline uint32_t Sample(const uint8_t* values, std::ptrdiff_t row, int32_t x, int32_t y) {
+  const uint32_t wx = static_cast<uint32_t>(x & 0xffff) >> (kFixed - 3);
+  const uint32_t wy = static_cast<uint32_t>(y & 0xffff) >> (kFixed - kShift);
+  const uint8_t* p = values + (y >> kFixed) * row + 2 * (x >> kFixed);
+  const uint8_t* q = p + row;
   const uint32_t top = Spread(p) * (8 - wx) + Spread(p + 2) * wx;
   const uint32_t bottom = Spread(q) * (8 - wx) + Spread(q + 2) * wx;
   return (top * (kOne - wy) + bottom * wy) >> 3 & 0x1fff1fff;
@@ -113,19 +116,18 @@ bool EpipolarSearch::TakePattern(const EdgePixel& pixel, const Line& line) {
   const Eigen::Vector2f step = line.direction / line.stretch;
   const Eigen::Vector2f centre(pixel.x, pixel.y);
   const Eigen::Vector2f reach = kHalf * step.cwiseAbs();
-  if (centre.x() < reach.x() || centre.y() < reach.y() ||
-      centre.x() + reach.x() >= static_cast<float>(width_ - 1) ||
-      centre.y() + reach.y() >= static_cast<float>(height_ - 1))
+  if (centre.x() < reach.x() + 1 || centre.y() < reach.y() + 1 ||
+      centre.x() + reach.x() >= static_cast<float>(width_ - 2) ||
+      centre.y() + reach.y() >= static_cast<float>(height_ - 2))
     return false;
-  const auto gain = static_cast<float>(pair_.gain);
-  const auto offset = static_cast<float>(pair_.offset) * kOne;
-  for (int k = -kHalf; k <= kHalf; ++k) {
-    const Eigen::Vector2f at = centre + static_cast<float>(k) * step;
-    const uint32_t sample = Sample(pair_.reference->values, at.x(), at.y());
-    const float intensity = static_cast<float>(Intensity(sample)) * gain + offset;
-    const float gradient = static_cast<float>(Gradient(sample)) * gain;
-    pattern_[k + kHalf] = static_cast<uint32_t>(std::clamp(intensity, 0.0f, 255.0f * kOne)) |
-                          static_cast<uint32_t>(std::min(gradient, 255.0f * kOne)) << 16;
+  const uint8_t* values = pair_.values.ptr<uint8_t>();
+  const auto row = static_cast<std::ptrdiff_t>(pair_.values.step[0]);
+  const int32_t step_x = ToFixed(step.x()), step_y = ToFixed(step.y());
+  int32_t x = (pixel.x << kFixed) - kHalf * step_x, y = (pixel.y << kFixed) - kHalf * step_y;
+  for (uint32_t& sample : pattern_) {
+    sample = Sample(values, row, x, y);
+    x += step_x;
+    y += step_y;
   }
   return true;
 }
@@ -137,12 +139,12 @@ void EpipolarSearch::WalkLine(int first, int places, float across, float slope) 
   const auto row = static_cast<std::ptrdiff_t>(values.step[0]);
   const std::ptrdiff_t along = axis_ == 0 ? 2 : row, beside = axis_ == 0 ? row : 2;
   const uint8_t* line = values.ptr<uint8_t>() + (first - kMargin) * along;
-  auto position = static_cast<int32_t>((across - static_cast<float>(kMargin) * slope) * 65536);
-  const auto step = static_cast<int32_t>(slope * 65536);  // 16 fractional bits
+  int32_t position = ToFixed(across - static_cast<float>(kMargin) * slope);
+  const int32_t step = ToFixed(slope);
   const int n = places + 2 * kMargin;
   for (int i = 0; i < n; ++i) {
-    const uint8_t* p = line + (position >> 16) * beside;
-    const uint32_t w = static_cast<uint32_t>(position & 0xffff) >> (16 - kShift);
+    const uint8_t* p = line + (position >> kFixed) * beside;
+    const uint32_t w = static_cast<uint32_t>(position & 0xffff) >> (kFixed - kShift);
     const uint32_t sum = Spread(p) * (kOne - w) + Spread(p + beside) * w;
     line_[i] = sum;
     line += along;
@@ -224,18 +226,19 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
 // The place between the pixels, and what it says.
 Hypothesis EpipolarSearch::Refine(const Line& line, const Match& match) const {
   // Gauss-Newton on the pattern (eq. 10).
-  float gradient2 = 0, product = 0;
+  int32_t sum_gg = 0, sum_gr = 0;
   const auto add = [&](int before, int after, int here, int sought) {
-    const float g = 0.5f * static_cast<float>(after - before);
-    gradient2 += g * g;
-    product += g * static_cast<float>(sought - here);
+    const int g = (after - before) / 2;
+    sum_gg += g * g;
+    sum_gr += g * (sought - here);
   };
   for (int k = 0; k < kPattern; ++k) {
     const uint32_t* s = &match.samples[k + 1];
     add(Intensity(s[-1]), Intensity(s[1]), Intensity(s[0]), Intensity(pattern_[k]));
     add(Gradient(s[-1]), Gradient(s[1]), Gradient(s[0]), Gradient(pattern_[k]));
   }
-  if (gradient2 < 1) return {};
+  if (sum_gg < 1) return {};
+  const auto gradient2 = static_cast<float>(sum_gg), product = static_cast<float>(sum_gr);
   const float shift = product / gradient2;
   if (std::abs(shift) > 1) return {};
   const float residual2 = (static_cast<float>(match.cost) - product * shift) /

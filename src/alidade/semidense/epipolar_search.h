@@ -14,12 +14,12 @@
 
 namespace alidade {
 
-// From a keyframe to another that is searched. Intensities there are gain * I + offset.
+// From a keyframe to another that is searched.
 struct EpipolarPair {
   const GradientImage* reference = nullptr;
   const GradientImage* other = nullptr;
+  cv::Mat values;  // of the reference, as the other's exposure would have made them
   Se3 T_other_reference;
-  double gain = 1, offset = 0;  // unitless; grey levels
 };
 
 struct SearchCount {

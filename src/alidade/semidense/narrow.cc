@@ -1,6 +1,7 @@
 #include "alidade/semidense/narrow.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "alidade/semidense/fuse.h"
 
@@ -19,9 +20,16 @@ Intervals NarrowSearch(std::span<const Hypothesis> found, const DepthInterval& r
     }
     if (!next) break;
     chosen[intervals.count] = next;
-    const float reach = 3 * next->sigma;
-    intervals.list[intervals.count++] = {std::max(range.min, next->inverse_depth - reach),
-                                         std::min(range.max, next->inverse_depth + reach)};
+    float weight = 0, sum = 0;
+    for (const Hypothesis& h : found) {
+      if (!h.known() || !Compatible(*next, h, chi2)) continue;
+      const float w = 1 / (h.sigma * h.sigma);
+      weight += w;
+      sum += w * h.inverse_depth;
+    }
+    const float middle = sum / weight, reach = 3 / std::sqrt(weight);
+    intervals.list[intervals.count++] = {std::max(range.min, middle - reach),
+                                         std::min(range.max, middle + reach)};
   }
   if (intervals.count == 0) intervals.list[intervals.count++] = range;
   return intervals;

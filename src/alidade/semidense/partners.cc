@@ -87,4 +87,14 @@ Exposure CompareExposures(const KeyFrame& reference, const GradientImage& refere
   return exposure;
 }
 
+cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure) {
+  cv::Mat table(1, 256, CV_8UC2), result;
+  for (int i = 0; i < 256; ++i) {
+    table.at<cv::Vec2b>(i) = {cv::saturate_cast<uint8_t>(exposure.gain * i + exposure.offset),
+                              cv::saturate_cast<uint8_t>(exposure.gain * i)};
+  }
+  cv::LUT(values, table, result);
+  return result;
+}
+
 }  // namespace alidade

@@ -23,4 +23,7 @@ struct Exposure {
 Exposure CompareExposures(const KeyFrame& reference, const GradientImage& reference_image,
                           const KeyFrame& other, const GradientImage& other_image);
 
+// `values` of GradientImage as that exposure would have made them.
+cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure);
+
 }  // namespace alidade

@@ -125,7 +125,8 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
     entry.depth = entry.sensor;
     return;
   }
-  const DepthRange range(map, keyframe, camera_);
+  const std::vector<DepthView> views = Views(map, keyframe);
+  const DepthRange range(map, keyframe, camera_, views);
   if (!range.known()) return;
   std::vector<EpipolarPair> pairs;
   for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes,
@@ -136,9 +137,8 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
     pair.reference = &entry.image;
     pair.other = &partner.image;
     pair.T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
-    const Exposure exposure = CompareExposures(keyframe, entry.image, other, partner.image);
-    pair.gain = exposure.gain;
-    pair.offset = exposure.offset;
+    pair.values = WithExposure(entry.image.values,
+                               CompareExposures(keyframe, entry.image, other, partner.image));
     pairs.push_back(pair);
     entry.partners.push_back({id, pair.T_other_reference});
   }
@@ -148,6 +148,20 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
   if (!pairs.empty()) {
     entry.depth = DepthFromMotion(pairs, camera_, range, settings_, &report_.search);
   }
+}
+
+// The neighbours' depth.
+std::vector<DepthView> SemiDenseMapper::Views(const MapSnapshot& map, const KeyFrame& keyframe) {
+  std::vector<DepthView> views;
+  const auto usable = [&](KeyFrameId id) { return Find(id) && Find(id)->estimated; };
+  for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes, usable)) {
+    const Entry& other = *Find(id);
+    const KeyFrame& there = *map.Find(id);
+    views.push_back({other.image.edges, other.depth,
+                     there.T_camera_world * keyframe.T_camera_world.Inverse(),
+                     static_cast<float>(other.scale / there.scale)});
+  }
+  return views;
 }
 
 std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
@@ -161,16 +175,7 @@ std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
     h.sigma *= growth;
   }
   if (settings_.cross_check) {
-    std::vector<DepthView> views;
-    const auto usable = [&](KeyFrameId id) { return Find(id) && Find(id)->estimated; };
-    for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes, usable)) {
-      const Entry& other = *Find(id);
-      const KeyFrame& there = *map.Find(id);
-      views.push_back({other.image.edges, other.depth,
-                       there.T_camera_world * keyframe.T_camera_world.Inverse(),
-                       static_cast<float>(other.scale / there.scale)});
-    }
-    depth = CrossCheck(entry.image.edges, depth, views, camera_,
+    depth = CrossCheck(entry.image.edges, depth, Views(map, keyframe), camera_,
                        {static_cast<float>(settings_.chi2_check), settings_.min_compatible});
   }
   auto result = std::make_shared<DepthMap>();

@@ -10,6 +10,7 @@
 
 #include "alidade/features/picture.h"
 #include "alidade/map/map_store.h"
+#include "alidade/semidense/depth_view.h"
 #include "alidade/semidense/epipolar_search.h"
 #include "alidade/semidense/gradient_image.h"
 #include "alidade/semidense/settings.h"
@@ -49,6 +50,7 @@ class SemiDenseMapper {
   Entry* NextDue(const MapSnapshot& map);
   Entry* NextMoved(const MapSnapshot& map);
   void Estimate(const MapSnapshot& map, Entry& entry);
+  std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
   std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);
 
   MapStore& map_;
