@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "alidade/base/parallel.h"
+#include "alidade/semidense/candidates.h"
 #include "alidade/semidense/fuse.h"
-#include "alidade/semidense/narrow.h"
 #include "alidade/semidense/smooth.h"
 
 namespace alidade {
@@ -42,13 +42,14 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
     for (size_t i = begin; i < begin + n; ++i) {
       const DepthInterval whole = range.At(edges[i].x, edges[i].y);
       int known = 0;
+      Candidates candidates(chi2);
       for (size_t k = 0; k < pairs.size(); ++k) {
         found[k] = {};
         // Those left could not make it enough.
         if (settings.fuse && known + static_cast<int>(pairs.size() - k) < settings.min_compatible)
           continue;
-        const Intervals intervals = NarrowSearch(std::span(found).first(k), whole, chi2);
-        found[k] = searches[k].Search(edges[i], intervals.span(), counts[chunk]);
+        found[k] = searches[k].Search(edges[i], candidates.Around(whole), counts[chunk]);
+        candidates.Add(found[k]);
         known += found[k].known();
       }
       fused[i] = settings.fuse ? Fuse(found, chi2, settings.min_compatible) : MostCertain(found);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
 #include <optional>
 #include <utility>
 
@@ -81,19 +82,36 @@ Exposure CompareExposures(const KeyFrame& reference, const GradientImage& refere
     }
     const double spread = n * xx - x * x;
     if (spread < 1e-6 * n * n) return {};
-    exposure.gain = std::clamp((n * xy - x * y) / spread, 0.5, 2.0);
+    exposure.gain = std::clamp((n * xy - x * y) / spread, 0.5, 1.99);
     exposure.offset = (y - exposure.gain * x) / n;
   }
   return exposure;
 }
 
 cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure) {
-  cv::Mat table(1, 256, CV_8UC2), result;
-  for (int i = 0; i < 256; ++i) {
-    table.at<cv::Vec2b>(i) = {cv::saturate_cast<uint8_t>(exposure.gain * i + exposure.offset),
-                              cv::saturate_cast<uint8_t>(exposure.gain * i)};
+  if (std::abs(exposure.gain - 1) < 0.01 && std::abs(exposure.offset) < 1) return values;
+  cv::Mat result(values.size(), values.type());
+  constexpr int kShift = 7;  // fractional bits of the gain: 255 times 2 still fits
+  const auto gain = static_cast<uint16_t>(std::lround(exposure.gain * (1 << kShift)));
+  const auto offset = static_cast<int16_t>(std::lround(exposure.offset));
+  const cv::v_uint16x8 gains = cv::v_setall_u16(gain);
+  const cv::v_int16x8 offsets(offset, 0, offset, 0, offset, 0, offset, 0);
+  const auto changed = [&](const cv::v_uint16x8& value) {
+    const cv::v_uint16x8 product = cv::v_shr<kShift>(cv::v_mul_wrap(value, gains));
+    return cv::v_reinterpret_as_s16(product) + offsets;
+  };
+  const int bytes = 2 * values.cols;
+  for (int y = 0; y < values.rows; ++y) {
+    const auto* from = values.ptr<uint8_t>(y);
+    auto* to = result.ptr<uint8_t>(y);
+    constexpr int kLanes = 16;
+    for (int i = 0; i < bytes; i += kLanes) {
+      const int at = std::min(i, bytes - kLanes);  // the last ones overlap those before
+      cv::v_uint16x8 low, high;
+      cv::v_expand(cv::v_load(from + at), low, high);
+      cv::v_store(to + at, cv::v_pack_u(changed(low), changed(high)));
+    }
   }
-  cv::LUT(values, table, result);
   return result;
 }
 

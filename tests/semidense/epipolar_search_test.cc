@@ -1,0 +1,156 @@
+#include "alidade/semidense/epipolar_search.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "alidade/semidense/partners.h"
+#include "support/dense_world.h"
+
+namespace alidade {
+namespace {
+
+struct Errors {
+  std::vector<double> relative;  // |found - true| / true of inverse depth
+  std::vector<double> by_sigma;  // |found - true| / sigma
+  size_t edges = 0;
+
+  static double Median(std::vector<double> values) {
+    if (values.empty()) return NAN;
+    std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+    return values[values.size() / 2];
+  }
+  double Share(double bound) const {
+    const auto within = std::count_if(relative.begin(), relative.end(),
+                                      [&](double error) { return error < bound; });
+    return static_cast<double>(within) / static_cast<double>(relative.size());
+  }
+};
+
+// All edge pixels of a view searched in another between 1 and 8 metres.
+Errors SearchAll(const DenseView& reference, const DenseView& other, const Camera& camera,
+                 const Exposure& exposure = {}, const SemiDenseSettings& settings = {}) {
+  const GradientImageMaker maker(camera, settings.min_gradient, settings.gradient_weight);
+  const GradientImage a = maker.Make({reference.image}), b = maker.Make({other.image});
+  const EpipolarPair pair{&a, &b, WithExposure(a.values, exposure),
+                          other.T_camera_world * reference.T_camera_world.Inverse()};
+  EpipolarSearch search(pair, camera, settings);
+  SearchCount count;
+  const std::vector<DepthInterval> range = {{1 / 8.0f, 1.0f}};
+  Errors errors;
+  errors.edges = a.edges.size();
+  for (const EdgePixel& edge : a.edges) {
+    const Hypothesis h = search.Search(edge, range, count);
+    if (!h.known()) continue;
+    const double truth = 1 / reference.depth.at<float>(edge.y, edge.x);
+    errors.relative.push_back(std::abs(h.inverse_depth - truth) / truth);
+    errors.by_sigma.push_back(std::abs(h.inverse_depth - truth) / h.sigma);
+  }
+  return errors;
+}
+
+class EpipolarSearchTest : public testing::Test {
+ protected:
+  const DenseWorld world_;
+  const Camera& camera_ = world_.camera();
+};
+
+TEST_F(EpipolarSearchTest, FindsTheDepthOfASidewaysStep) {
+  const Errors errors =
+      SearchAll(world_.Look(CameraAt({0, 0, 0})),
+                world_.Look(CameraAt({0.2, 0.02, 0}), {.noise_seed = 2}), camera_);
+  EXPECT_GT(errors.relative.size(), errors.edges / 2);
+  EXPECT_LT(Errors::Median(errors.relative),
+            0.015);                    // 17 pixels of disparity at 3 m: a quarter pixel
+  EXPECT_GT(errors.Share(0.05), 0.8);  // one pair alone: some matches are wrong
+  // The standard deviation is none too small, nor many times too large.
+  EXPECT_LT(Errors::Median(errors.by_sigma), 1);
+  EXPECT_GT(Errors::Median(errors.by_sigma), 0.1);
+}
+
+TEST_F(EpipolarSearchTest, FindsTheDepthOfAStepForward) {
+  const Errors errors =
+      SearchAll(world_.Look(CameraAt({0, 0, 0})),
+                world_.Look(CameraAt({0.02, 0, 0.4}), {.noise_seed = 2}), camera_);
+  EXPECT_GT(errors.relative.size(), errors.edges / 4);  // none near the epipole
+  EXPECT_LT(Errors::Median(errors.relative), 0.03);
+}
+
+TEST_F(EpipolarSearchTest, FollowsARolledCamera) {
+  Vector6d roll = Vector6d::Zero();
+  roll[5] = 0.6;  // about the optical axis
+  const Errors errors =
+      SearchAll(world_.Look(CameraAt({0, 0, 0})),
+                world_.Look(Se3::Exp(roll) * CameraAt({0.2, 0, 0}), {.noise_seed = 2}), camera_);
+  EXPECT_GT(errors.relative.size(), errors.edges / 4);
+  EXPECT_LT(Errors::Median(errors.relative), 0.03);
+}
+
+TEST_F(EpipolarSearchTest, ExposuresAreEvenedOut) {
+  const DenseView reference = world_.Look(CameraAt({0, 0, 0}));
+  const DenseView darker =
+      world_.Look(CameraAt({0.2, 0, 0}), {.gain = 0.7, .offset = 10, .noise_seed = 2});
+  const Errors with = SearchAll(reference, darker, camera_, {0.7, 10});
+  const Errors without = SearchAll(reference, darker, camera_);
+  EXPECT_GT(with.relative.size(), 1.3 * without.relative.size());
+  EXPECT_LT(Errors::Median(with.relative), 0.02);
+}
+
+TEST_F(EpipolarSearchTest, AnotherPlaceHasFewMatches) {
+  const DenseWorld elsewhere(77);
+  const Errors errors =
+      SearchAll(world_.Look(CameraAt({0, 0, 0})), elsewhere.Look(CameraAt({0.2, 0, 0})), camera_);
+  EXPECT_LT(errors.relative.size(), errors.edges / 3);
+}
+
+TEST_F(EpipolarSearchTest, ATurnOnTheSpotTellsNothing) {
+  const Errors errors =
+      SearchAll(world_.Look(CameraAt({0, 0, 0})),
+                world_.Look(CameraAt({0, 0, 0}, 0.05), {.noise_seed = 2}), camera_);
+  EXPECT_EQ(errors.relative.size(), 0u);
+}
+
+TEST_F(EpipolarSearchTest, EdgesAlongTheLineAreLeftOut) {
+  // Horizontal stripes, and a step to the side along them.
+  cv::Mat stripes(camera_.height, camera_.width, CV_8U);
+  for (int y = 0; y < stripes.rows; ++y) {
+    stripes.row(y) = static_cast<uint8_t>(128 + 100 * std::sin(y / 3.0));
+  }
+  DenseView a{CameraAt({0, 0, 0}), stripes, cv::Mat(stripes.size(), CV_32F, cv::Scalar(3))};
+  DenseView b{CameraAt({0.2, 0, 0}), stripes, a.depth};
+  EXPECT_EQ(SearchAll(a, b, camera_).relative.size(), 0u);
+}
+
+TEST_F(EpipolarSearchTest, WhatMovesInTheOtherIsNoMatch) {
+  const DenseView reference = world_.Look(CameraAt({0, 0, 0}));
+  const DenseView other = world_.Look(CameraAt({0.2, 0, 0}), {.noise_seed = 2});
+  const SemiDenseSettings settings;
+  const GradientImageMaker maker(camera_, settings.min_gradient, settings.gradient_weight);
+  const cv::Mat all(camera_.height, camera_.width, CV_8U, cv::Scalar(255));
+  const GradientImage a = maker.Make({reference.image}), b = maker.Make({other.image, {}, {}, all});
+  const EpipolarPair pair{&a, &b, a.values,
+                          other.T_camera_world * reference.T_camera_world.Inverse()};
+  EpipolarSearch search(pair, camera_, settings);
+  SearchCount count;
+  const std::vector<DepthInterval> range = {{1 / 8.0f, 1.0f}};
+  for (const EdgePixel& edge : a.edges) EXPECT_FALSE(search.Search(edge, range, count).known());
+  EXPECT_GT(count.searches, 1000);
+}
+
+TEST(WithExposure, IsGainAndOffsetOfEveryPixel) {
+  cv::Mat values(5, 21, CV_8UC2);  // no whole number of lanes
+  for (int i = 0; i < 105; ++i) {
+    values.at<cv::Vec2b>(i / 21, i % 21) = {static_cast<uint8_t>(2 * i), static_cast<uint8_t>(i)};
+  }
+  const cv::Mat changed = WithExposure(values, {1.4, -20});
+  for (int i = 0; i < 105; ++i) {
+    const auto& pixel = changed.at<cv::Vec2b>(i / 21, i % 21);
+    EXPECT_NEAR(pixel[0], std::clamp(1.4 * 2 * i - 20, 0.0, 255.0), 1.5);
+    EXPECT_NEAR(pixel[1], 1.4 * i, 1.5);
+  }
+}
+
+}  // namespace
+}  // namespace alidade
