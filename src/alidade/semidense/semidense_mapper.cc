@@ -8,6 +8,7 @@
 #include "alidade/map/view.h"
 #include "alidade/semidense/cross_check.h"
 #include "alidade/semidense/keyframe_depth.h"
+#include "alidade/semidense/landmark_agreement.h"
 #include "alidade/semidense/partners.h"
 #include "alidade/semidense/sensor_depth.h"
 
@@ -178,11 +179,14 @@ std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
     depth = CrossCheck(entry.image.edges, depth, Views(map, keyframe), camera_,
                        {static_cast<float>(settings_.chi2_check), settings_.min_compatible});
   }
+  const bool believed =
+      settings_.from_sensor || AgreesWithLandmarks(map, keyframe, entry.image.edges, depth, camera_,
+                                                   settings_.max_landmark_difference);
   auto result = std::make_shared<DepthMap>();
   result->width = camera_.width;
   result->height = camera_.height;
   result->scale = keyframe.scale;
-  for (size_t i = 0; i < depth.size(); ++i) {
+  for (size_t i = 0; believed && i < depth.size(); ++i) {
     if (!depth[i].known()) continue;
     const EdgePixel& edge = entry.image.edges[i];
     result->pixels.push_back({edge.x, edge.y, depth[i].inverse_depth, depth[i].sigma, edge.rgb});

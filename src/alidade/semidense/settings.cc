@@ -18,6 +18,7 @@ void SemiDenseSettings::Check() const {
   require(intensity_sigma > 0, "intensity_sigma must be positive");
   require(chi2_pair > 0 && chi2_check > 0, "chi2_pair and chi2_check must be positive");
   require(min_compatible >= 1, "min_compatible must be at least 1");
+  require(max_landmark_difference > 0, "max_landmark_difference must be positive");
   require(delay >= 0, "delay must not be negative");
   require(redo_baseline > 0, "redo_baseline must be positive");
   require(voxel >= 0, "voxel must not be negative");

@@ -125,6 +125,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("semidense.chi2_pair", d.chi2_pair);
   visit("semidense.chi2_check", d.chi2_check);
   visit("semidense.min_compatible", d.min_compatible);
+  visit("semidense.max_landmark_difference", d.max_landmark_difference);
   visit("semidense.fuse", d.fuse);
   visit("semidense.smooth", d.smooth);
   visit("semidense.cross_check", d.cross_check);
