@@ -33,7 +33,9 @@ TEST_F(SemiDenseTruth, ATurningCameraLeavesNoWrongDepth) {
   if (DataFolder().empty()) GTEST_SKIP() << "needs ALIDADE_DATA";
   const json score = Score(DataFolder() + "/fr1_rpy");
   ASSERT_TRUE(score.contains("n"));
-  if (score["n"] > 0) EXPECT_LT(score["median_rel"], 0.05);
+  if (score["n"] > 0) {
+    EXPECT_LT(score["median_rel"], 0.05);
+  }
 }
 
 TEST_F(SemiDenseTruth, ARealRoomIsAsItsDepthCameraSawIt) {
