@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "alidade/base/random.h"
 #include "alidade/semidense/partners.h"
 #include "support/dense_world.h"
+#include "support/texture.h"
 
 namespace alidade {
 namespace {
@@ -137,6 +140,69 @@ TEST_F(EpipolarSearchTest, WhatMovesInTheOtherIsNoMatch) {
   const std::vector<DepthInterval> range = {{1 / 8.0f, 1.0f}};
   for (const EdgePixel& edge : a.edges) EXPECT_FALSE(search.Search(edge, range, count).known());
   EXPECT_GT(count.searches, 1000);
+}
+
+// `picture` within one that is filled with `value` and has room beside it for any slip.
+cv::Mat Framed(const cv::Mat& picture, double value) {
+  constexpr int kBeside = 40;  // pixels
+  cv::Mat frame;
+  cv::copyMakeBorder(picture, frame, kBeside, kBeside, kBeside, kBeside, cv::BORDER_CONSTANT,
+                     cv::Scalar::all(value));
+  return frame(cv::Rect({kBeside, kBeside}, picture.size()));
+}
+
+// Whatever the cameras, poses and intervals: what lies beside the pictures in memory changes
+// nothing.
+TEST(EpipolarSearch, ReadsNothingBesideThePictures) {
+  Random random(11);
+  const SemiDenseSettings settings;
+  SearchCount count;
+  int found = 0;
+  for (int round = 0; round < 60; ++round) {
+    Camera camera;
+    camera.width = static_cast<int>(random.Uniform(20, 200));
+    camera.height = static_cast<int>(random.Uniform(20, 150));
+    camera.fx = camera.width * std::exp(random.Uniform(-1.5, 2));
+    camera.fy = camera.fx * random.Uniform(0.7, 1.4);
+    camera.cx = camera.width * random.Uniform(-0.2, 1.2);
+    camera.cy = camera.height * random.Uniform(-0.2, 1.2);
+    const GradientImageMaker maker(camera, settings.min_gradient, settings.gradient_weight);
+    GradientImage reference, other;
+    for (GradientImage* image : {&reference, &other}) {
+      cv::Mat gray = MakeTexture(camera.width, camera.height, random.Next());
+      *image = maker.Make({gray});
+    }
+    for (int pose = 0; pose < 4; ++pose) {
+      const double length = std::pow(10, random.Uniform(-3, 3));
+      const double turn = std::pow(10, random.Uniform(-4, 0.3));
+      Vector6d xi;
+      for (int i = 0; i < 6; ++i) xi[i] = random.Uniform(-1, 1) * (i < 3 ? length : turn);
+      if (pose == 1) xi.tail<3>().setZero();
+      if (pose == 2) xi[2] = 0;
+      std::vector<EpipolarPair> pairs;
+      std::vector<GradientImage> others;
+      for (const double beside : {0.0, 251.0}) {
+        others.push_back({Framed(other.values, beside), Framed(other.direction, beside), {}});
+      }
+      for (size_t i = 0; i < 2; ++i) {
+        pairs.push_back(
+            {&reference, &others[i], Framed(reference.values, i == 0 ? 0 : 251), Se3::Exp(xi)});
+      }
+      EpipolarSearch one(pairs[0], camera, settings), two(pairs[1], camera, settings);
+      for (size_t i = 0; i < reference.edges.size(); i += 1 + reference.edges.size() / 300) {
+        const auto middle = static_cast<float>(std::pow(10, random.Uniform(-2, 1)) / length);
+        const auto share = static_cast<float>(std::pow(10, random.Uniform(-5, 0.3)));
+        const std::vector<DepthInterval> range = {
+            {middle * std::max(0.0f, 1 - share), middle * (1 + share)}};
+        const Hypothesis a = one.Search(reference.edges[i], range, count);
+        const Hypothesis b = two.Search(reference.edges[i], range, count);
+        ASSERT_EQ(a.inverse_depth, b.inverse_depth);
+        ASSERT_EQ(a.sigma, b.sigma);
+        found += a.known();
+      }
+    }
+  }
+  EXPECT_GT(found, 500);
 }
 
 TEST(WithExposure, IsGainAndOffsetOfEveryPixel) {

@@ -193,7 +193,11 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
   const Eigen::Vector2f from = far.head<2>() / far.z(), to = near.head<2>() / near.z();
   const float u0 = from[axis_], u1 = to[axis_], v0 = from[1 - axis_], v1 = to[1 - axis_];
   const float extent = u1 - u0;
-  if (!(std::abs(extent) > 1e-3f && std::abs(u0) < 1e4f && std::abs(u1) < 1e4f)) return;
+  // Farther out, rounding alone could lead the walk out of the picture.
+  constexpr float kFarthest = 1e4f;  // pixels
+  const bool near_enough = std::abs(u0) < kFarthest && std::abs(u1) < kFarthest &&
+                           std::abs(v0) < kFarthest && std::abs(v1) < kFarthest;
+  if (!(near_enough && std::abs(extent) > 1e-3f)) return;
   const float slope = (v1 - v0) / extent;
   const int limit_u = axis_ == 0 ? width_ : height_, limit_v = axis_ == 0 ? height_ : width_;
   int first = std::max(static_cast<int>(std::floor(std::min(u0, u1))) - 1, kMargin);

@@ -93,23 +93,27 @@ SemiDenseMapper::Entry* SemiDenseMapper::NextDue(const MapSnapshot& map) {
   return next;
 }
 
-// The newest whose partners lie elsewhere than when its depth was found, by too much a share of the
+// Whether partners lie elsewhere than when its depth was found, by too much a share of the
 // parallax.
-SemiDenseMapper::Entry* SemiDenseMapper::NextMoved(const MapSnapshot& map) {
+bool SemiDenseMapper::Moved(const MapSnapshot& map, const Entry& entry) const {
+  if (!entry.estimated) return false;
+  const KeyFrame* keyframe = map.Find(entry.id);
+  const std::optional<double> depth = MedianDepth(map, *keyframe);
+  if (!depth) return false;
+  for (const Entry::Partner& partner : entry.partners) {
+    if (!map.Find(partner.id)) continue;
+    const Se3 now = map.PoseOf(partner.id) * keyframe->T_camera_world.Inverse();
+    const Eigen::Vector3d then = partner.T_partner_keyframe.t * (keyframe->scale / entry.scale);
+    const double allowed = settings_.redo_baseline * then.norm();
+    const double turn = RotationAngle(now, partner.T_partner_keyframe);
+    if ((now.t - then).norm() > allowed || turn * *depth > allowed) return true;
+  }
+  return false;
+}
+
+SemiDenseMapper::Entry* SemiDenseMapper::NewestMoved(const MapSnapshot& map) {
   for (size_t i = entries_.size(); i-- > 0;) {
-    Entry& entry = *entries_[i];
-    if (!entry.estimated) continue;
-    const KeyFrame* keyframe = map.Find(entry.id);
-    const std::optional<double> depth = MedianDepth(map, *keyframe);
-    if (!depth) continue;
-    for (const Entry::Partner& partner : entry.partners) {
-      if (!map.Find(partner.id)) continue;
-      const Se3 now = map.PoseOf(partner.id) * keyframe->T_camera_world.Inverse();
-      const Eigen::Vector3d then = partner.T_partner_keyframe.t * (keyframe->scale / entry.scale);
-      const double allowed = settings_.redo_baseline * then.norm();
-      const double turn = RotationAngle(now, partner.T_partner_keyframe);
-      if ((now.t - then).norm() > allowed || turn * *depth > allowed) return &entry;
-    }
+    if (Moved(map, *entries_[i])) return entries_[i].get();
   }
   return nullptr;
 }
@@ -198,7 +202,7 @@ std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
 void SemiDenseMapper::Process() {
   const MapSnapshot map = TakeIn();
   Entry* entry = NextDue(map);
-  if (!entry) entry = NextMoved(map);
+  if (!entry) entry = NewestMoved(map);
   if (!entry) return;
   Estimate(map, *entry);
   const std::shared_ptr<const DepthMap> depth = Checked(map, *entry);
@@ -212,7 +216,9 @@ void SemiDenseMapper::Finish() {
   for (const auto& entry : entries_) {
     if (!entry->estimated) Estimate(map, *entry);
   }
-  while (Entry* moved = NextMoved(map)) Estimate(map, *moved);
+  for (size_t i = entries_.size(); i-- > 0;) {
+    if (Moved(map, *entries_[i])) Estimate(map, *entries_[i]);
+  }
   std::vector<std::shared_ptr<const DepthMap>> checked;
   for (const auto& entry : entries_) checked.push_back(Checked(map, *entry));
   map_.Commit([&](MapCommit& commit) {

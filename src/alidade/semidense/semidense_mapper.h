@@ -48,7 +48,8 @@ class SemiDenseMapper {
   MapSnapshot TakeIn();  // what was kept, and out what is not in the map (returned) any more
   Entry* Find(KeyFrameId id);
   Entry* NextDue(const MapSnapshot& map);
-  Entry* NextMoved(const MapSnapshot& map);
+  Entry* NewestMoved(const MapSnapshot& map);
+  bool Moved(const MapSnapshot& map, const Entry& entry) const;
   void Estimate(const MapSnapshot& map, Entry& entry);
   std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
   std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);

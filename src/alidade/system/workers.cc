@@ -70,9 +70,10 @@ void Workers::Drain() {
     adjusted_up_to_ = map.next_keyframe();
     for (MapId id : map.Maps()) {
       const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
-      if (keyframes.size() > 2) adjusting_.Add(keyframes.back());
+      if (keyframes.size() <= 2) continue;
+      adjusting_.Add(keyframes.back());
+      adjusting_.Drain();  // one by one: what waits would hurry the one before
     }
-    adjusting_.Drain();
   }
   semidense_.Drain();
   if (dense_) semidense_mapper_.Finish();
