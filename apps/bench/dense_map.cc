@@ -73,7 +73,6 @@ DenseMap MakeDenseMap(const std::string& source, int count, const SlamSettings& 
     const auto it = std::find_if(kept.begin(), kept.end(),
                                  [&](const KeptFrame& k) { return k.number == number; });
     if (it == kept.end() || it->pictures.truth.empty()) continue;
-    if (it == kept.end() || it->pictures.truth.empty()) continue;
     dense.keyframes.push_back(it->pictures);
     dense.keyframes.back().id = id;
   }
