@@ -36,7 +36,7 @@ class CrossCheckTest : public testing::Test {
     return known;
   }
   DepthView Seen(const Known& view, const Known& reference) const {
-    return {view.edges, view.depth, view.T_camera_world * reference.T_camera_world.Inverse(), 1};
+    return {view.edges, view.depth, view.T_camera_world * reference.T_camera_world.Inverse()};
   }
 
   const DenseWorld world_;
@@ -82,25 +82,6 @@ TEST_F(CrossCheckTest, TwoWitnessesAreNotEnoughWhenThreeAreAskedFor) {
   for (const Hypothesis& h : CrossCheck(reference.edges, reference.depth, views, camera_, {})) {
     EXPECT_FALSE(h.known());
   }
-}
-
-TEST_F(CrossCheckTest, AWitnessInOtherUnitsIsScaled) {
-  const Known reference = Make({0, 0, 0}, 0.004, 1);
-  Known other = Make({0.1, 0, 0}, 0.004, 2);
-  for (Hypothesis& h : other.depth) h = {h.inverse_depth / 2, h.sigma / 2};
-  DepthView view = Seen(other, reference);
-  const auto count = [&] {
-    const std::vector<DepthView> views = {view};
-    int known = 0;
-    for (const Hypothesis& h :
-         CrossCheck(reference.edges, reference.depth, views, camera_, {3.84f, 1})) {
-      known += h.known();
-    }
-    return known;
-  };
-  EXPECT_EQ(count(), 0);
-  view.scale = 2;
-  EXPECT_GT(count(), 0.8 * static_cast<double>(reference.edges.size()));
 }
 
 }  // namespace

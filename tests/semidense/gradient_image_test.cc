@@ -90,10 +90,11 @@ TEST(GradientImage, CarriesColours) {
   const cv::Mat gray = MakeTexture(160, 120, 5);
   cv::Mat color(120, 160, CV_8UC3, cv::Scalar(1, 2, 3));  // blue green red
   const GradientImageMaker maker(SmallCamera(), 8, 0.23);
-  const EdgePixel colored = maker.Make({gray, color}).edges.at(10);
-  EXPECT_EQ(colored.rgb, (std::array<uint8_t, 3>{3, 2, 1}));
-  const EdgePixel plain = maker.Make({gray}).edges.at(10);
-  EXPECT_EQ(plain.rgb[0], gray.at<uint8_t>(plain.y, plain.x));
+  EXPECT_EQ(maker.Make({gray, color}).colors.at(10), (std::array<uint8_t, 3>{3, 2, 1}));
+  const GradientImage plain = maker.Make({gray});
+  EXPECT_EQ(plain.colors.size(), plain.edges.size());
+  const EdgePixel& edge = plain.edges.at(10);
+  EXPECT_EQ(plain.colors.at(10)[0], gray.at<uint8_t>(edge.y, edge.x));
 }
 
 }  // namespace

@@ -46,8 +46,8 @@ class Witness {
         const int i = index_[(yi + dy) * width_ + xi + dx];
         if (i < 0) continue;
         const Hypothesis& seen = view_.depth[i];
-        const float sigma = seen.sigma * view_.scale;
-        const float r = seen.inverse_depth * view_.scale - there;
+        const float sigma = seen.sigma;
+        const float r = seen.inverse_depth - there;
         if (r * r > chi2 * (sigma * sigma + own * own)) continue;
         confirmed = true;
         const float w = 1 / (sigma * sigma);

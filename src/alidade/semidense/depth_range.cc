@@ -106,7 +106,7 @@ void DepthRange::SpanViews(const Camera& camera, std::span<const DepthView> view
     const Eigen::Vector3f b = (K * T_reference_view.t).cast<float>();
     for (size_t i = 0; i < view.edges.size(); ++i) {
       if (!view.depth[i].known()) continue;
-      const float inverse = view.depth[i].inverse_depth * view.scale;
+      const float inverse = view.depth[i].inverse_depth;
       const Eigen::Vector3f p =
           M * Eigen::Vector3f(view.edges[i].x, view.edges[i].y, 1) + inverse * b;
       if (p.z() < 0.05f) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "alidade/geometry/se3.h"
 #include "alidade/semidense/gradient_image.h"
@@ -11,9 +12,8 @@ namespace alidade {
 
 struct DepthView {
   std::span<const EdgePixel> edges;
-  std::span<const Hypothesis> depth;  // one for each edge
+  std::vector<Hypothesis> depth;  // one for each edge, in the units of today
   Se3 T_view_reference;
-  float scale = 1;  // its inverse depths are multiplied by this before they are compared
 };
 
 }  // namespace alidade

@@ -70,15 +70,19 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
       const int step = static_cast<int>(a[x] * steps + 0.5f) % GradientImage::kTurn;
       direction[x] = usable ? static_cast<uint8_t>(step) : GradientImage::kUnusable;
       if (m[x] < edge || !usable || !inner_row || x < kBorder || x >= gray.cols - kBorder) continue;
-      EdgePixel pixel{static_cast<uint16_t>(x), static_cast<uint16_t>(y), {g[x], g[x], g[x]}};
-      if (!color.empty()) {
-        const cv::Vec3b& c = color.at<cv::Vec3b>(y, x);
-        pixel.rgb = {c[2], c[1], c[0]};
-      }
-      image.edges.push_back(pixel);
+      image.edges.push_back({static_cast<uint16_t>(x), static_cast<uint16_t>(y)});
+      const cv::Vec3b bgr = color.empty() ? cv::Vec3b::all(g[x]) : color.at<cv::Vec3b>(y, x);
+      image.colors.push_back({bgr[2], bgr[1], bgr[0]});
     }
   }
+  image.edges.shrink_to_fit();
+  image.colors.shrink_to_fit();
   return image;
+}
+
+size_t GradientImage::bytes() const {
+  return values.total() * values.elemSize() + direction.total() +
+         edges.capacity() * sizeof(edges[0]) + colors.capacity() * sizeof(colors[0]);
 }
 
 }  // namespace alidade

@@ -13,7 +13,6 @@ namespace alidade {
 
 struct EdgePixel {
   uint16_t x = 0, y = 0;
-  std::array<uint8_t, 3> rgb{};  // red green blue
 };
 
 struct GradientImage {
@@ -24,6 +23,9 @@ struct GradientImage {
   // view and on what moves.
   cv::Mat direction;
   std::vector<EdgePixel> edges;  // pixels with gradient of λ_G or more, by row, then column
+  std::vector<std::array<uint8_t, 3>> colors;  // one for each: red green blue
+
+  size_t bytes() const;
 
   static constexpr int kTurn = 252;
   static constexpr uint8_t kUnusable = 255;

@@ -9,6 +9,7 @@
 #include "alidade/semidense/cross_check.h"
 #include "alidade/semidense/keyframe_depth.h"
 #include "alidade/semidense/landmark_agreement.h"
+#include "alidade/semidense/packed_depth.h"
 #include "alidade/semidense/partners.h"
 #include "alidade/semidense/sensor_depth.h"
 
@@ -20,8 +21,8 @@ struct SemiDenseMapper::Entry {
   GradientImage image;
   std::vector<Hypothesis> sensor;  // depth as measured, one for each edge; empty: none wanted
   bool estimated = false;
-  std::vector<Hypothesis> depth;  // before the check between keyframes; one for each edge
-  double scale = 1;               // KeyFrame::scale then
+  PackedDepth depth;  // before the check between keyframes; one for each edge
+  double scale = 1;   // KeyFrame::scale then
   struct Partner {
     KeyFrameId id;
     Se3 T_partner_keyframe;  // then
@@ -122,12 +123,12 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
   const KeyFrame& keyframe = *map.Find(entry.id);
   entry.estimated = true;
   entry.scale = keyframe.scale;
-  entry.depth.assign(entry.image.edges.size(), {});
+  entry.depth = PackedDepth(std::vector<Hypothesis>(entry.image.edges.size()));
   entry.partners.clear();
   ++report_.keyframes;
   report_.pixels += static_cast<int64_t>(entry.image.edges.size());
   if (settings_.from_sensor) {
-    entry.depth = entry.sensor;
+    entry.depth = PackedDepth(entry.sensor);
     return;
   }
   const std::vector<DepthView> views = Views(map, keyframe);
@@ -151,7 +152,7 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
     return a.T_other_reference.t.squaredNorm() < b.T_other_reference.t.squaredNorm();
   });
   if (!pairs.empty()) {
-    entry.depth = DepthFromMotion(pairs, camera_, range, settings_, &report_.search);
+    entry.depth = PackedDepth(DepthFromMotion(pairs, camera_, range, settings_, &report_.search));
   }
 }
 
@@ -162,9 +163,8 @@ std::vector<DepthView> SemiDenseMapper::Views(const MapSnapshot& map, const KeyF
   for (KeyFrameId id : ChoosePartners(map, keyframe, settings_.keyframes, usable)) {
     const Entry& other = *Find(id);
     const KeyFrame& there = *map.Find(id);
-    views.push_back({other.image.edges, other.depth,
-                     there.T_camera_world * keyframe.T_camera_world.Inverse(),
-                     static_cast<float>(other.scale / there.scale)});
+    views.push_back({other.image.edges, other.depth.Unpack(other.scale / there.scale),
+                     there.T_camera_world * keyframe.T_camera_world.Inverse()});
   }
   return views;
 }
@@ -172,13 +172,7 @@ std::vector<DepthView> SemiDenseMapper::Views(const MapSnapshot& map, const KeyF
 std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
                                                          const Entry& entry) {
   const KeyFrame& keyframe = *map.Find(entry.id);
-  // In the units of today.
-  const auto growth = static_cast<float>(entry.scale / keyframe.scale);
-  std::vector<Hypothesis> depth = entry.depth;
-  for (Hypothesis& h : depth) {
-    h.inverse_depth *= growth;
-    h.sigma *= growth;
-  }
+  std::vector<Hypothesis> depth = entry.depth.Unpack(entry.scale / keyframe.scale);
   if (settings_.cross_check) {
     depth = CrossCheck(entry.image.edges, depth, Views(map, keyframe), camera_,
                        {static_cast<float>(settings_.chi2_check), settings_.min_compatible});
@@ -193,10 +187,22 @@ std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
   for (size_t i = 0; believed && i < depth.size(); ++i) {
     if (!depth[i].known()) continue;
     const EdgePixel& edge = entry.image.edges[i];
-    result->pixels.push_back({edge.x, edge.y, depth[i].inverse_depth, depth[i].sigma, edge.rgb});
+    result->pixels.push_back(
+        {edge.x, edge.y, depth[i].inverse_depth, depth[i].sigma, entry.image.colors[i]});
   }
   result->pixels.shrink_to_fit();
   return result;
+}
+
+void SemiDenseMapper::CountBytes(const MapSnapshot& map) {
+  report_.bytes = 0;
+  for (const auto& entry : entries_) {
+    report_.bytes +=
+        entry->image.bytes() + entry->depth.bytes() + entry->sensor.capacity() * sizeof(Hypothesis);
+    const KeyFrame* keyframe = map.Find(entry->id);
+    if (keyframe && keyframe->depth)
+      report_.bytes += keyframe->depth->pixels.capacity() * sizeof(DepthPixel);
+  }
 }
 
 void SemiDenseMapper::Process() {
@@ -206,9 +212,9 @@ void SemiDenseMapper::Process() {
   if (!entry) return;
   Estimate(map, *entry);
   const std::shared_ptr<const DepthMap> depth = Checked(map, *entry);
-  map_.Commit([&](MapCommit& commit) {
+  CountBytes(map_.Commit([&](MapCommit& commit) {
     if (KeyFrame* keyframe = commit.Edit(entry->id)) keyframe->depth = depth;
-  });
+  }));
 }
 
 void SemiDenseMapper::Finish() {
@@ -221,11 +227,11 @@ void SemiDenseMapper::Finish() {
   }
   std::vector<std::shared_ptr<const DepthMap>> checked;
   for (const auto& entry : entries_) checked.push_back(Checked(map, *entry));
-  map_.Commit([&](MapCommit& commit) {
+  CountBytes(map_.Commit([&](MapCommit& commit) {
     for (size_t i = 0; i < entries_.size(); ++i) {
       if (KeyFrame* keyframe = commit.Edit(entries_[i]->id)) keyframe->depth = checked[i];
     }
-  });
+  }));
 }
 
 }  // namespace alidade

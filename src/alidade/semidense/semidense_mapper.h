@@ -23,6 +23,7 @@ struct SemiDenseReport {
   int64_t pixels = 0;  // with enough gradient, in those
   SearchCount search;
   int most_behind = 0;  // keyframes that waited at once, whose turn had come
+  size_t bytes = 0;     // that are held now, the finished depth in the map included
 };
 
 class SemiDenseMapper {
@@ -41,7 +42,7 @@ class SemiDenseMapper {
   // against its neighbours', of which only the older ones were known before.
   void Finish();
 
-  const SemiDenseReport& report() const { return report_; }
+  const SemiDenseReport& report() const { return report_; }  // when nothing is in work
 
  private:
   struct Entry;
@@ -50,6 +51,7 @@ class SemiDenseMapper {
   Entry* NextDue(const MapSnapshot& map);
   Entry* NewestMoved(const MapSnapshot& map);
   bool Moved(const MapSnapshot& map, const Entry& entry) const;
+  void CountBytes(const MapSnapshot& map);
   void Estimate(const MapSnapshot& map, Entry& entry);
   std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
   std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);

@@ -34,8 +34,8 @@ struct SemiDenseSettings {
   double redo_baseline =
       0.02;  // a keyframe is worked on again when a baseline changed by this share
 
-  double voxel = 0.01;  // edge of the cubes that hold one point of semidense.ply each; metres or
-                        // map units; 0 = all points
+  double voxel = 0.005;  // edge of the cubes that hold one point of semidense.ply each; metres or
+                         // map units; 0 = all points
 
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
