@@ -139,6 +139,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
   }
   if (terminal.shows_progress() && record.settings.semidense.enabled)
     terminal.SetProgress("semi-dense depth of the last keyframes");
+  progress.ShowFinishing(slam);
   slam.Finish();
   if (cpu) record.cpu_s = cpu->Seconds();
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;

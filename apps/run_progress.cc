@@ -56,4 +56,10 @@ void RunProgress::Show(int frames, TrackState state, const Slam& slam) {
   terminal_.SetProgress(line);
 }
 
+void RunProgress::ShowFinishing(const Slam& slam) {
+  if (!terminal_.shows_progress()) return;
+  terminal_.SetProgress("finishing: " + std::to_string(slam.Snapshot().keyframe_count()) +
+                        " keyframes are adjusted as a whole");
+}
+
 }  // namespace alidade

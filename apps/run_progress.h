@@ -15,6 +15,7 @@ class RunProgress {
   RunProgress& operator=(const RunProgress&) = delete;
 
   void Show(int frames, TrackState state, const Slam& slam);
+  void ShowFinishing(const Slam& slam);  // the last frame is in, the workers are not done
 
  private:
   Terminal& terminal_;

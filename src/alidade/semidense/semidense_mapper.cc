@@ -42,7 +42,10 @@ SemiDenseMapper::SemiDenseMapper(MapStore& map, const Camera& camera,
 SemiDenseMapper::~SemiDenseMapper() = default;
 
 void SemiDenseMapper::Keep(KeyFrameId id, std::shared_ptr<const Picture> picture) {
+  const MapSnapshot map = map_.Snapshot();
   std::lock_guard<std::mutex> lock(inbox_mutex_);
+  // Of maps given up at their start nothing is ever processed.
+  std::erase_if(inbox_, [&](const auto& kept) { return !map.Find(kept.first); });
   inbox_.push_back({id, std::move(picture)});
 }
 

@@ -201,6 +201,8 @@ void SlamSettings::ApplyProfile(const std::string& profile) {
   if (profile != "phone") ThrowUsage("unknown profile '" + profile + "'; known: desktop, phone");
   image_width = 400;
   tracker.extractor.features = 500;
+  semidense.keyframes = 5;
+  semidense.min_gradient = 12;  // the same edges: in a smaller picture they are steeper
   tracker.match_scale = mapper.match_scale = start.match_scale = loop.match_scale = 0.8;
 }
 

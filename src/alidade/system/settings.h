@@ -35,7 +35,7 @@ struct SlamSettings {
   int min_map_keyframes = 5;  // a map left with fewer is forgotten
 
   // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts ×
-  // 0.8. Throws Error (usage) for another name.
+  // 0.8, semi-dense depth from 5 keyframes. Throws Error (usage) for another name.
   void ApplyProfile(const std::string& profile);
   void Check() const;  // throws Error (usage) naming the field that cannot be
 
