@@ -182,7 +182,7 @@ TEST(EpipolarSearch, ReadsNothingBesideThePictures) {
       std::vector<EpipolarPair> pairs;
       std::vector<GradientImage> others;
       for (const double beside : {0.0, 251.0}) {
-        others.push_back({Framed(other.values, beside), Framed(other.direction, beside), {}});
+        others.push_back({Framed(other.values, beside), Framed(other.direction, beside), {}, {}});
       }
       for (size_t i = 0; i < 2; ++i) {
         pairs.push_back(
