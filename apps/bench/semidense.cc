@@ -43,6 +43,7 @@ struct Measured {
   DepthScores scores;
   double milliseconds = 0;  // of CPU per keyframe
   double u = 0;             // the reference's, beside it
+  double megabytes = 0;     // held per keyframe at the end
   SemiDenseReport report;
 };
 
@@ -79,6 +80,8 @@ Measured Measure(const Variant& variant, std::vector<double>& u_milliseconds) {
                           static_cast<double>(dense.keyframes.size());
   take_u();
   measured.u = Summarise(u).median;
+  measured.megabytes = 1e-6 * static_cast<double>(measured.report.bytes) /
+                       static_cast<double>(dense.keyframes.size());
   measured.scores = ScoreDense(dense, store.Snapshot());
   u_milliseconds.insert(u_milliseconds.end(), u.begin(), u.end());
   return measured;
@@ -103,6 +106,7 @@ std::vector<double> Figures(const DepthScore& s, const Measured& m) {
   figures.push_back(mean(m.report.pixels, m.report.keyframes));
   figures.push_back(mean(m.report.search.searches, m.report.pixels));
   figures.push_back(mean(m.report.search.samples, m.report.search.searches));
+  figures.push_back(m.megabytes);
   return figures;
 }
 
@@ -175,7 +179,7 @@ Section BenchSemiDense(const std::string& source, int frames) {
                   ", density, CPU time per keyframe",
               errors};
   for (const char* column :
-       {"density %", "of grad. %", "edges %", "CPU ms", "U", "pixels", "searches", "length"})
+       {"density %", "of grad. %", "edges %", "CPU ms", "U", "pixels", "searches", "length", "MB"})
     table.columns.emplace_back(column);
   table.note = note;
   Table everywhere{source + ": error against " + truth + " at all pixels", errors};

@@ -60,6 +60,7 @@ TEST_F(BenchSemiDense, GivesARowForEachStepAndEachNumberOfKeyframes) {
   EXPECT_EQ(Figure(steps, "RGB-D map, sensor's", "searches"), 0);
   EXPECT_LE(default_figure("density %"), 100);
   EXPECT_GT(default_figure("pixels"), 0);
+  EXPECT_GT(default_figure("MB"), 0.1);
   EXPECT_LT(default_figure("pixels"), 320 * 240);
 
   const json& live = tables[1];
