@@ -137,8 +137,6 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
   } catch (const Error&) {
     record.failure = std::current_exception();
   }
-  if (terminal.shows_progress() && record.settings.semidense.enabled)
-    terminal.SetProgress("semi-dense depth of the last keyframes");
   progress.ShowFinishing(slam);
   slam.Finish();
   if (cpu) record.cpu_s = cpu->Seconds();
