@@ -169,6 +169,23 @@ TEST_F(SemiDenseMapperTest, AKeyframeIsDoneAgainWhenItsNeighboursMoved) {
   EXPECT_EQ(mapper.report().keyframes, settled);
 }
 
+TEST_F(SemiDenseMapperTest, AfterALoopMovedKeyframesAreDoneBesideNewOnes) {
+  Look(WayBeforeTheWall(8, 0.08));
+  SemiDenseMapper mapper(store_, world_.camera(), settings_);
+  for (size_t i = 0; i < 5; ++i) {
+    mapper.Keep(ids_[i], PictureOf(i));
+    mapper.Process();
+  }
+  EXPECT_EQ(mapper.report().keyframes, 3);
+  store_.Commit([&](MapCommit& commit) {
+    commit.Edit(ids_[1])->T_camera_world.t += Eigen::Vector3d(0.02, 0, 0);
+    commit.CountCorrection();
+  });
+  mapper.Keep(ids_[5], PictureOf(5));
+  mapper.Process();
+  EXPECT_EQ(mapper.report().keyframes, 5);
+}
+
 // A loop that was closed: the whole map moves, turns and grows.
 TEST_F(SemiDenseMapperTest, DepthFollowsItsKeyframeInPlaceAndScale) {
   Look(WayBeforeTheWall(7, 0.08));

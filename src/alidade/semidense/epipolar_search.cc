@@ -85,6 +85,18 @@ Hypothesis EpipolarSearch::Search(const EdgePixel& pixel, std::span<const DepthI
   return match.cost >= 0 ? Refine(line, match) : Hypothesis{};
 }
 
+// The part of the interval that lies before the other camera. `a_z`: of Line::a.
+DepthInterval EpipolarSearch::InFront(DepthInterval interval, float a_z) const {
+  if (std::abs(b_.z()) < 1e-6f) return a_z < kInFront ? DepthInterval{} : interval;
+  const float limit = (kInFront - a_z) / b_.z();
+  if (b_.z() < 0) {
+    interval.max = std::min(interval.max, limit);
+  } else {
+    interval.min = std::max(interval.min, limit);
+  }
+  return interval;
+}
+
 // Whether the line tells depth at all at this pixel.
 bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole, Line& line) {
   const Eigen::Vector3f p(pixel.x, pixel.y, 1);
@@ -99,12 +111,13 @@ bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole,
   if (line.cosine < least_cosine_) return false;
 
   line.a = M_ * p;
-  const Eigen::Vector3f far = line.a + whole.min * b_, near = line.a + whole.max * b_;
-  if (far.z() < kInFront || near.z() < kInFront) return false;
+  const DepthInterval seen = InFront(whole, line.a.z());
+  if (seen.empty()) return false;
+  const Eigen::Vector3f far = line.a + seen.min * b_, near = line.a + seen.max * b_;
   const Eigen::Vector2f path = near.head<2>() / near.z() - far.head<2>() / far.z();
   axis_ = std::abs(path.x()) >= std::abs(path.y()) ? 0 : 1;
   // At a middle depth, by how much a step in the reference moves the match.
-  const Eigen::Vector3f middle = line.a + 0.5f * (whole.min + whole.max) * b_;
+  const Eigen::Vector3f middle = line.a + 0.5f * (seen.min + seen.max) * b_;
   const Eigen::Vector3f moved = M_.leftCols<2>() * line.direction;
   line.stretch =
       (moved[axis_] * middle.z() - middle[axis_] * moved.z()) / (middle.z() * middle.z());
@@ -189,7 +202,9 @@ int EpipolarSearch::LeastCost(int places) {
 
 void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& interval,
                                     SearchCount& count, Match& match) {
-  const Eigen::Vector3f far = line.a + interval.min * b_, near = line.a + interval.max * b_;
+  const DepthInterval seen = InFront(interval, line.a.z());
+  if (seen.empty()) return;
+  const Eigen::Vector3f far = line.a + seen.min * b_, near = line.a + seen.max * b_;
   const Eigen::Vector2f from = far.head<2>() / far.z(), to = near.head<2>() / near.z();
   const float u0 = from[axis_], u1 = to[axis_], v0 = from[1 - axis_], v1 = to[1 - axis_];
   const float extent = u1 - u0;

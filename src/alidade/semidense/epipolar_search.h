@@ -58,6 +58,7 @@ class EpipolarSearch {
     std::array<uint32_t, kPattern + 2> samples;  // around it
   };
 
+  DepthInterval InFront(DepthInterval interval, float a_z) const;
   bool Prepare(const EdgePixel& pixel, const DepthInterval& whole, Line& line);
   bool TakePattern(const EdgePixel& pixel, const Line& line);
   void SearchInterval(const Line& line, const DepthInterval& interval, SearchCount& count,

@@ -43,7 +43,8 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
   };
   const cv::Mat gray = straight(picture.gray, cv::INTER_LINEAR);
   const cv::Mat color = straight(picture.color, cv::INTER_LINEAR);
-  const cv::Mat mask = straight(picture.mask, cv::INTER_NEAREST);
+  cv::Mat mask = straight(picture.mask, cv::INTER_NEAREST);
+  if (!mask.empty()) cv::dilate(mask, mask, cv::Mat());  // by the pixel that gradients reach
   cv::Mat gx, gy, magnitude, angle;
   cv::Scharr(gray, gx, CV_32F, 1, 0, 1.0 / 32);
   cv::Scharr(gray, gy, CV_32F, 0, 1, 1.0 / 32);

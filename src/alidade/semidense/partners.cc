@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kLeastBaseline = 0.01;  // of the median depth: less shows no parallax
+constexpr double kLeastBaseline = 0.02;  // of the median depth: less shows too little parallax
 constexpr int kEnough = 20;              // landmarks an exposure is told by
 constexpr int kRounds = 5;
 constexpr double kTrust = 8;  // grey levels: beyond, a pair of intensities weighs less

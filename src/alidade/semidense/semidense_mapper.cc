@@ -210,13 +210,22 @@ void SemiDenseMapper::CountBytes(const MapSnapshot& map) {
 
 void SemiDenseMapper::Process() {
   const MapSnapshot map = TakeIn();
-  Entry* entry = NextDue(map);
-  if (!entry) entry = NewestMoved(map);
-  if (!entry) return;
-  Estimate(map, *entry);
-  const std::shared_ptr<const DepthMap> depth = Checked(map, *entry);
+  Entry* due = NextDue(map);
+  if (due) WorkOn(map, *due);
+  // A loop moves more than the next keyframes would make good: then two are done at a time.
+  if (due && map.corrections() == settled_corrections_) return;
+  if (Entry* moved = NewestMoved(map)) {
+    WorkOn(map, *moved);
+  } else {
+    settled_corrections_ = map.corrections();
+  }
+}
+
+void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
+  Estimate(map, entry);
+  const std::shared_ptr<const DepthMap> depth = Checked(map, entry);
   CountBytes(map_.Commit([&](MapCommit& commit) {
-    if (KeyFrame* keyframe = commit.Edit(entry->id)) keyframe->depth = depth;
+    if (KeyFrame* keyframe = commit.Edit(entry.id)) keyframe->depth = depth;
   }));
 }
 

@@ -35,7 +35,7 @@ class SemiDenseMapper {
   void Keep(KeyFrameId id, std::shared_ptr<const Picture> picture);
 
   // A keyframe was mapped: works on the one whose turn it is now, the newest first, and commits its
-  // depth; where none waits, on one whose neighbours have moved since.
+  // depth; where none waits, or a loop was closed, on one whose neighbours have moved since.
   void Process();
 
   // Nothing will follow: works on all that wait or were moved, and checks every keyframe's depth
@@ -52,6 +52,7 @@ class SemiDenseMapper {
   Entry* NewestMoved(const MapSnapshot& map);
   bool Moved(const MapSnapshot& map, const Entry& entry) const;
   void CountBytes(const MapSnapshot& map);
+  void WorkOn(const MapSnapshot& map, Entry& entry);
   void Estimate(const MapSnapshot& map, Entry& entry);
   std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
   std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);
@@ -63,6 +64,7 @@ class SemiDenseMapper {
   std::mutex inbox_mutex_;
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> inbox_;
   std::vector<std::unique_ptr<Entry>> entries_;  // by id
+  uint64_t settled_corrections_ = 0;  // of the map, up to which all that moved was done again
   SemiDenseReport report_;
 };
 

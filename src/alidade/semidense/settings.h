@@ -14,8 +14,10 @@ struct SemiDenseSettings {
   double max_turn = 45;  // λ_θ: degrees of difference between gradient directions of a match
   double gradient_weight =
       0.23;  // θ: variance of gradient magnitudes as a share of that of intensities
-  double intensity_sigma = 8;  // σ_I: grey levels
-  double line_sigma = 0.5;     // of a pixel's epipolar line, by errors of poses: pixels
+  // σ_I: grey levels. The paper has 20 for a single pixel; here five are compared, and what poses
+  // get wrong has a term of its own (line_sigma).
+  double intensity_sigma = 8;
+  double line_sigma = 0.5;  // of a pixel's epipolar line, by errors of poses: pixels
   double max_residual =
       25;  // grey levels, root mean square, between a pixel's surroundings and their match
   double chi2_pair = 5.99;   // hypotheses fused are this compatible (95 %, 2 degrees of freedom)

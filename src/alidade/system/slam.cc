@@ -234,7 +234,9 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
     return false;
   }
   Mapper::TwoViewMap two;
-  two.a = views->a;
+  const auto first = std::make_shared<Frame>(*views->a);  // the map keeps no pictures
+  first->picture = nullptr;
+  two.a = first;
   two.b = views->b;
   two.T_b_a = views->T_b_a;
   for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
@@ -244,7 +246,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   trial_map_ = keyframe.map;
   trial_keyframes_[0] = keyframe.parent;
   trial_keyframes_[1] = id;
-  KeepPicture(keyframe.parent, *two.a);
+  KeepPicture(keyframe.parent, *views->a);
   KeepPicture(id, *two.b);
   trial_points_ =
       static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
