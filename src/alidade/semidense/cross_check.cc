@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "alidade/base/parallel.h"
+#include "alidade/semidense/pixel_transfer.h"
 
 namespace alidade {
 namespace {
@@ -17,10 +18,9 @@ class Witness {
       if (view.depth[i].known())
         index_[view.edges[i].y * width_ + view.edges[i].x] = static_cast<int>(i);
     }
-    Eigen::Matrix3d K;
-    K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
-    M_ = (K * view.T_view_reference.R * K.inverse()).cast<float>();
-    b_ = (K * view.T_view_reference.t).cast<float>();
+    const PixelTransfer to_view(camera, view.T_view_reference);
+    M_ = to_view.at_infinity;
+    b_ = to_view.shift;
   }
 
   // Of what the view knows at the pixels around the projection, the compatible ones, as one linear

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alidade/semidense/pixel_transfer.h"
+
 namespace alidade {
 namespace {
 
@@ -98,17 +100,14 @@ void DepthRange::SpanLandmarks(const MapSnapshot& map, const KeyFrame& keyframe)
 
 void DepthRange::SpanViews(const Camera& camera, std::span<const DepthView> views) {
   SpanGrid grid(columns_, rows_);
-  Eigen::Matrix3d K;
-  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
   for (const DepthView& view : views) {
-    const Se3 T_reference_view = view.T_view_reference.Inverse();
-    const Eigen::Matrix3f M = (K * T_reference_view.R * K.inverse()).cast<float>();
-    const Eigen::Vector3f b = (K * T_reference_view.t).cast<float>();
+    const PixelTransfer from_view(camera, view.T_view_reference.Inverse());
     for (size_t i = 0; i < view.edges.size(); ++i) {
       if (!view.depth[i].known()) continue;
       const float inverse = view.depth[i].inverse_depth;
       const Eigen::Vector3f p =
-          M * Eigen::Vector3f(view.edges[i].x, view.edges[i].y, 1) + inverse * b;
+          from_view.at_infinity * Eigen::Vector3f(view.edges[i].x, view.edges[i].y, 1) +
+          inverse * from_view.shift;
       if (p.z() < 0.05f) continue;
       const float x = p.x() / p.z(), y = p.y() / p.z();
       if (!(x >= 0 && y >= 0 && x < static_cast<float>(camera.width) &&

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/core/hal/intrin.hpp>
 
+#include "alidade/semidense/pixel_transfer.h"
+
 namespace alidade {
 namespace {
 
@@ -58,12 +60,11 @@ const Directions& AllDirections() {
 EpipolarSearch::EpipolarSearch(const EpipolarPair& pair, const Camera& camera,
                                const SemiDenseSettings& settings)
     : pair_(pair), settings_(settings), width_(camera.width), height_(camera.height) {
-  Eigen::Matrix3d K;
-  K << camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1;
   const Se3& T = pair.T_other_reference;
-  M_ = (K * T.R * K.inverse()).cast<float>();
-  b_ = (K * T.t).cast<float>();
-  epipole_ = (K * T.Inverse().t).cast<float>();
+  const PixelTransfer to_other(camera, T);
+  M_ = to_other.at_infinity;
+  b_ = to_other.shift;
+  epipole_ = PixelTransfer(camera, T.Inverse()).shift;
   least_cosine_ = static_cast<float>(std::cos(settings.max_edge_angle * CV_PI / 180));
   const double turn = std::atan2(T.R(1, 0) - T.R(0, 1), T.R(0, 0) + T.R(1, 1));
   turn_ = static_cast<int>(std::lround(turn / (2 * CV_PI) * GradientImage::kTurn));
