@@ -1,0 +1,26 @@
+// What kind of thing is where in an image, as a network trained for it says.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+namespace alidade {
+
+struct Detection {
+  int class_id = -1;  // index into Detector::ClassNames()
+  float score = 0;    // 0…1
+  cv::Rect2f box;     // pixels of the image given, inside it
+};
+
+// One instance, one thread at a time.
+class Detector {
+ public:
+  virtual ~Detector() = default;
+  // `image`: CV_8UC3 (blue green red) or CV_8UC1, of any size. Best score first, each thing once.
+  // Throws Error (input) when the network gives no usable answer.
+  virtual std::vector<Detection> Detect(const cv::Mat& image) = 0;
+  virtual const std::vector<std::string>& ClassNames() const = 0;
+};
+
+}  // namespace alidade
