@@ -1,16 +1,10 @@
 #include "alidade/io/files/media.h"
 
-#include <dlfcn.h>
-
-#include <filesystem>
-#include <vector>
-
 #include "alidade/base/error.h"
+#include "alidade/base/module/load_module.h"
 
 namespace alidade {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct Module {
   MediaDecodeFunction* decode = nullptr;
@@ -18,49 +12,17 @@ struct Module {
   std::string problem;
 };
 
-// Beside what holds this code (the program, or a library such as the Python module), in ../lib of
-// it, and where the system keeps libraries.
-std::vector<std::string> PlacesToLook() {
-  std::vector<std::string> places;
-  const auto add = [&places](const fs::path& binary) {
-    const fs::path folder = binary.parent_path();
-    places.push_back((folder / kMediaModuleFile).string());
-    places.push_back((folder / "../lib" / kMediaModuleFile).string());
-  };
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) add(program);
-  Dl_info here{};
-  if (dladdr(reinterpret_cast<void*>(&OpenVideo), &here) != 0 && here.dli_fname != nullptr) {
-    add(fs::absolute(here.dli_fname, error));
-  }
-  places.push_back(kMediaModuleFile);
-  return places;
-}
-
-Module LoadModule() {
-  Module module;
-  for (const std::string& place : PlacesToLook()) {
-    std::error_code error;
-    if (place.find('/') != std::string::npos && !fs::exists(place, error)) continue;
-    void* handle = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
-    if (handle == nullptr) {
-      module.problem = dlerror();
-      continue;
-    }
-    module.decode = reinterpret_cast<MediaDecodeFunction*>(dlsym(handle, "alidade_media_decode"));
-    module.open = reinterpret_cast<MediaOpenFunction*>(dlsym(handle, "alidade_media_open"));
-    if (module.decode != nullptr && module.open != nullptr) {
-      module.problem.clear();
-      return module;
-    }
-    module.problem = place + " is not of this version";
-  }
-  return module;
+Module LoadMediaModule() {
+  const LoadedModule loaded =
+      LoadModule(kMediaModuleFile, {"alidade_media_decode", "alidade_media_open"});
+  if (loaded.symbols.empty()) return {nullptr, nullptr, loaded.problem};
+  return {reinterpret_cast<MediaDecodeFunction*>(loaded.symbols[0]),
+          reinterpret_cast<MediaOpenFunction*>(loaded.symbols[1]),
+          {}};
 }
 
 const Module& TheModule() {
-  static const Module module = LoadModule();  // never unloaded
+  static const Module module = LoadMediaModule();
   return module;
 }
 

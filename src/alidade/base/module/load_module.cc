@@ -1,0 +1,55 @@
+#include "alidade/base/module/load_module.h"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> PlacesToLook(const std::string& file) {
+  std::vector<std::string> places;
+  const auto add = [&](const fs::path& binary) {
+    const fs::path folder = binary.parent_path();
+    places.push_back((folder / file).string());
+    places.push_back((folder / "../lib" / file).string());
+    places.push_back((folder / ".." / ALIDADE_LIBDIR / file).string());
+  };
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) add(program);
+  Dl_info here{};
+  if (dladdr(reinterpret_cast<void*>(&LoadModule), &here) != 0 && here.dli_fname != nullptr) {
+    add(fs::absolute(here.dli_fname, error));
+  }
+  places.push_back(file);
+  return places;
+}
+
+}  // namespace
+
+LoadedModule LoadModule(const std::string& file, const std::vector<std::string>& names) {
+  std::string problem;
+  for (const std::string& place : PlacesToLook(file)) {
+    std::error_code error;
+    if (place.find('/') != std::string::npos && !fs::exists(place, error)) continue;
+    void* handle = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (handle == nullptr) {
+      // The last place is the system's: that the file isn't there says less than what went before.
+      if (problem.empty()) problem = dlerror();
+      continue;
+    }
+    LoadedModule module;
+    for (const std::string& name : names) {
+      if (void* symbol = dlsym(handle, name.c_str())) module.symbols.push_back(symbol);
+    }
+    if (module.symbols.size() == names.size()) return module;
+    dlclose(handle);
+    problem = place + " is not of this version";
+  }
+  return {{}, problem};
+}
+
+}  // namespace alidade
