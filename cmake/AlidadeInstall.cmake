@@ -14,10 +14,13 @@ install(TARGETS alidade_library alidade_flags ${ALIDADE_FLOORS} EXPORT AlidadeTa
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(EXPORT AlidadeTargets NAMESPACE Alidade:: DESTINATION ${ALIDADE_CMAKE_DIR})
 install(DIRECTORY src/alidade DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "io/files" EXCLUDE)
+        PATTERN "base/module" EXCLUDE PATTERN "io/files" EXCLUDE PATTERN "io/media" EXCLUDE
+        PATTERN "detect/onnx" EXCLUDE)
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  install(TARGETS alidade_media LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})  # found in ../lib of the program
+  add_dependencies(alidade alidade_media alidade_dnn)  # what is installed is built
+  # The program finds them beside it, see base/module.
+  install(TARGETS alidade_media alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endif()
 configure_package_config_file(cmake/AlidadeConfig.cmake.in ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake
                               INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR})

@@ -1,0 +1,84 @@
+#include <memory>
+#include <opencv2/core/utils/logger.hpp>
+#include <opencv2/dnn.hpp>
+
+#include "alidade/detect/onnx/network_module.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kLongest = 200;  // characters of a reason
+
+// The text between `before` and the first of `ends` after it; "" when it isn't there.
+std::string Between(const std::string& text, const std::string& before, const char* ends) {
+  const size_t at = text.find(before);
+  if (at == std::string::npos) return "";
+  const size_t from = at + before.size();
+  return text.substr(from, text.find_first_of(ends, from) - from);
+}
+
+// OpenCV's reasons go over several lines and name its source files: what a user can make use of,
+// which is the operator it stumbled over, in one line.
+std::string Reason(const cv::Exception& error) {
+  const std::string text = error.what();
+  std::string operation = Between(text, "Node [", "@]");
+  if (operation.empty()) operation = Between(text, "of type \"", "\"");
+  if (!operation.empty()) return "operator " + operation;
+  std::string line = error.err.substr(0, error.err.find('\n')).substr(0, kLongest);
+  return line.empty() ? "an unknown reason" : line;
+}
+
+// Whatever `run` throws, as a reason.
+template <typename Function>
+std::string ReasonOf(const Function& run) {
+  try {
+    run();
+  } catch (const cv::Exception& error) {
+    return Reason(error);
+  } catch (const std::bad_alloc&) {
+    return "not enough memory";
+  } catch (const std::exception& error) {
+    return std::string(error.what()).substr(0, kLongest);
+  } catch (...) {
+    return "an unknown reason";
+  }
+  return "";
+}
+
+class DnnNetwork : public Network {
+ public:
+  explicit DnnNetwork(cv::dnn::Net net) : net_(std::move(net)) {
+    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);  // the same bits wherever it runs
+    net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
+    names_ = net_.getUnconnectedOutLayersNames();
+  }
+
+  std::string Run(const cv::Mat& input, int which, std::vector<cv::Mat>* outputs) override {
+    outputs->clear();
+    return ReasonOf([&] {
+      net_.setInput(input);
+      if (which == kAllOutputs) {
+        net_.forward(*outputs, names_);
+      } else {
+        outputs->push_back(net_.forward(names_.at(static_cast<size_t>(which))));
+      }
+    });
+  }
+
+ private:
+  cv::dnn::Net net_;
+  std::vector<cv::String> names_;
+};
+
+}  // namespace
+}  // namespace alidade
+
+extern "C" __attribute__((visibility("default"))) alidade::Network* alidade_dnn_open(
+    const char* bytes, size_t size, std::string* problem) {
+  using namespace alidade;
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it ourselves
+  std::unique_ptr<Network> network;
+  *problem = ReasonOf(
+      [&] { network = std::make_unique<DnnNetwork>(cv::dnn::readNetFromONNX(bytes, size)); });
+  return network.release();
+}

@@ -1,0 +1,189 @@
+#include "alidade/detect/onnx/model_file.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
+
+#include "alidade/base/error.h"
+#include "alidade/detect/onnx/protobuf.h"
+
+namespace alidade {
+namespace {
+
+// Field numbers of onnx.proto.
+namespace model {
+enum { kIrVersion = 1, kGraph = 7, kMetadata = 14 };
+}
+namespace graph {
+enum { kNode = 1, kInitializer = 5, kInput = 11 };
+}
+namespace node {
+enum { kInput = 1, kOperation = 4 };
+}
+namespace tensor {
+enum { kDims = 1, kName = 8, kDataLocation = 14 };
+}
+namespace value_info {
+enum { kName = 1, kType = 2 };
+}
+namespace type {
+enum { kTensor = 1 };
+}
+namespace tensor_type {
+enum { kElementType = 1, kShape = 2 };
+}
+
+namespace shape {
+enum { kDim = 1 };
+}
+namespace dimension {
+enum { kValue = 1 };
+}
+namespace entry {
+enum { kKey = 1, kValue = 2 };
+}
+
+constexpr uint64_t kMostIrVersion = 100;  // 13 in 2025
+constexpr int64_t kOpenSide = -1;
+
+struct Node {
+  std::string_view operation;
+  std::vector<std::string_view> inputs;
+};
+
+struct Graph {
+  std::vector<Node> nodes;
+  std::vector<OnnxInput> inputs;
+  std::map<std::string_view, std::vector<int64_t>> constants;  // name to shape
+  bool external_weights = false;
+};
+
+// Calls visit(field) for each.
+template <typename Visit>
+void ForEachField(std::string_view message, const Visit& visit) {
+  ProtobufReader reader(message);
+  while (const std::optional<ProtobufField> field = reader.Next()) visit(*field);
+  if (reader.damaged()) ThrowInput("is damaged or cut short");
+}
+
+Node ReadNode(std::string_view bytes) {
+  Node read;
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == node::kInput) read.inputs.push_back(field.bytes);
+    if (field.number == node::kOperation) read.operation = field.bytes;
+  });
+  return read;
+}
+
+void ReadConstant(std::string_view bytes, Graph* read) {
+  std::string_view name;
+  std::vector<int64_t> shape;
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == tensor::kName) name = field.bytes;
+    if (field.number == tensor::kDims) {
+      for (const uint64_t side : Integers(field)) shape.push_back(static_cast<int64_t>(side));
+    }
+    if (field.number == tensor::kDataLocation && field.value == 1) read->external_weights = true;
+  });
+  read->constants[name] = std::move(shape);
+}
+
+// A dimension is a number, or a name when it is left open; some exporters write 0 or -1 for that.
+int64_t ReadSide(std::string_view bytes) {
+  int64_t side = kOpenSide;
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == dimension::kValue && field.is_integer && field.value > 0)
+      side = std::max(static_cast<int64_t>(field.value), kOpenSide);
+  });
+  return side;
+}
+
+void ReadTensorType(std::string_view bytes, OnnxInput* input) {
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == tensor_type::kElementType)
+      input->element_type = static_cast<int>(std::min<uint64_t>(field.value, 1000));
+    if (field.number != tensor_type::kShape) return;
+    ForEachField(field.bytes, [&](const ProtobufField& side) {
+      if (side.number == shape::kDim) input->shape.push_back(ReadSide(side.bytes));
+    });
+  });
+}
+
+OnnxInput ReadInput(std::string_view bytes) {
+  OnnxInput input;
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == value_info::kName) input.name = field.bytes;
+    if (field.number != value_info::kType) return;
+    ForEachField(field.bytes, [&](const ProtobufField& type) {
+      if (type.number == type::kTensor) ReadTensorType(type.bytes, &input);
+    });
+  });
+  return input;
+}
+
+Graph ReadGraph(std::string_view bytes) {
+  Graph read;
+  ForEachField(bytes, [&](const ProtobufField& field) {
+    if (field.number == graph::kNode) read.nodes.push_back(ReadNode(field.bytes));
+    if (field.number == graph::kInitializer) ReadConstant(field.bytes, &read);
+    if (field.number == graph::kInput) read.inputs.push_back(ReadInput(field.bytes));
+  });
+  // Files of the first years list the weights among the inputs.
+  std::erase_if(read.inputs,
+                [&](const OnnxInput& input) { return read.constants.count(input.name) > 0; });
+  return read;
+}
+
+// The first layer as arithmetic with a constant, a batch normalisation, or a convolution with one
+// 1 × 1 filter for each channel.
+bool NormalisesInput(const Graph& read) {
+  constexpr std::array<std::string_view, 5> kArithmetic = {"Sub", "Add", "Mul", "Div",
+                                                           "BatchNormalization"};
+  if (read.inputs.empty()) return false;
+  for (const Node& node : read.nodes) {
+    if (std::count(node.inputs.begin(), node.inputs.end(), read.inputs[0].name) == 0) continue;
+    if (std::count(kArithmetic.begin(), kArithmetic.end(), node.operation) > 0) return true;
+    if (node.operation != "Conv" || node.inputs.size() < 2) return false;
+    const auto weights = read.constants.find(node.inputs[1]);
+    return weights != read.constants.end() && weights->second == std::vector<int64_t>{3, 1, 1, 1};
+  }
+  return false;
+}
+
+std::string ReadClassNames(std::string_view metadata) {
+  std::string_view key, value;
+  ForEachField(metadata, [&](const ProtobufField& field) {
+    if (field.number == entry::kKey) key = field.bytes;
+    if (field.number == entry::kValue) value = field.bytes;
+  });
+  return key == "names" ? std::string(value) : "";
+}
+
+}  // namespace
+
+OnnxModel ReadOnnxModel(std::string_view bytes) {
+  if (bytes.empty()) ThrowInput("is empty");
+  OnnxModel read;
+  bool version = false;
+  std::optional<Graph> graph;
+  ProtobufReader reader(bytes);
+  while (const std::optional<ProtobufField> field = reader.Next()) {
+    if (field->number == model::kIrVersion)
+      version = field->is_integer && field->value > 0 && field->value <= kMostIrVersion;
+    if (!version) continue;  // it comes first: nothing of another file is taken for a network
+    if (field->number == model::kGraph) graph = ReadGraph(field->bytes);
+    if (field->number == model::kMetadata && read.class_names.empty())
+      read.class_names = ReadClassNames(field->bytes);
+  }
+  if (!version) ThrowInput("is no ONNX file");
+  if (reader.damaged()) ThrowInput("is damaged or cut short");
+  if (!graph || graph->nodes.empty())
+    ThrowInput("holds no network: is it an ONNX file, and whole?");
+  read.normalises_input = NormalisesInput(*graph);
+  read.external_weights = graph->external_weights;
+  read.inputs = std::move(graph->inputs);
+  return read;
+}
+
+}  // namespace alidade

@@ -1,0 +1,94 @@
+// Networks with real weights on real pictures: what is found against where the people are. The
+// files are the user's: recordings under ALIDADE_DATA, networks in the folder models beside it.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <sstream>
+
+#include "alidade/detect/onnx/open_detector.h"
+#include "alidade/detect/suppress.h"
+#include "support/temp_folder.h"
+
+namespace alidade {
+namespace {
+
+constexpr float kSameThing = 0.5f;  // overlap that counts as found
+constexpr float kLeastArea =
+    0.01f * 640 * 480;  // smaller people don't count, as in the data's README
+
+std::string ModelPath(const std::string& name) { return DataFolder() + "/../models/" + name; }
+
+// The visible boxes of people, by the time stamp as it is written.
+std::map<std::string, std::vector<cv::Rect2f>> ReadPeople(const std::string& recording) {
+  std::map<std::string, std::vector<cv::Rect2f>> people;
+  std::ifstream file(DataFolder() + "/" + recording + "/people.txt");
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string time, id, cutout;
+    cv::Rect2f box;
+    float visible = 0;
+    words >> time >> id >> cutout >> box.x >> box.y >> box.width >> box.height >> visible;
+    if (words && time[0] != '#' && visible > kLeastArea) people[time].push_back(box);
+  }
+  return people;
+}
+
+struct Recall {
+  int found = 0, all = 0;
+  double share() const { return all > 0 ? static_cast<double>(found) / all : 0; }
+};
+
+// Over every `step`-th frame.
+Recall RecallOfPeople(const std::string& model, const std::string& recording, int step) {
+  const auto detector = OpenDetector(ModelPath(model));
+  Recall recall;
+  int frame = 0;
+  for (const auto& [time, people] : ReadPeople(recording)) {
+    if (frame++ % step != 0) continue;
+    const cv::Mat image = cv::imread(DataFolder() + "/" + recording + "/rgb/" + time + ".jpg");
+    const std::vector<Detection> detections = detector->Detect(image);
+    for (const cv::Rect2f& person : people) {
+      ++recall.all;
+      recall.found += std::any_of(detections.begin(), detections.end(), [&](const Detection& one) {
+        return detector->ClassNames().at(one.class_id) == "person" &&
+               Overlap(one.box, person) > kSameThing;
+      });
+    }
+  }
+  std::printf("%s on %s: %d of %d people, %.3f\n", model.c_str(), recording.c_str(), recall.found,
+              recall.all, recall.share());
+  return recall;
+}
+
+class RealModels : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (DataFolder().empty() || !std::filesystem::exists(ModelPath("")))
+      GTEST_SKIP() << "needs ALIDADE_DATA, and the folder models beside it";
+  }
+};
+
+// All frames, by another program: 0.898 of 939 and 0.773 of 449. A share of n people strays by
+// sqrt(p (1 - p) / n), here .05 and .08: less by two of those is an error.
+TEST_F(RealModels, Yolov5sFindsWalkingPeople) {
+  EXPECT_GT(RecallOfPeople("yolov5s_640x480.onnx", "kitchen_walk", 20).share(), 0.79);
+}
+TEST_F(RealModels, Yolov5sFindsPeopleWhoStay) {
+  EXPECT_GT(RecallOfPeople("yolov5s_640x480.onnx", "kitchen_sit", 15).share(), 0.61);
+}
+
+// No figures to hold them to: most people are found, nearly none would be with colours, sizes or
+// coordinates taken wrongly.
+TEST_F(RealModels, Yolov5nFindsMostPeople) {
+  EXPECT_GT(RecallOfPeople("yolov5n_640x480.onnx", "kitchen_walk", 30).share(), 0.6);
+}
+TEST_F(RealModels, YoloxFindsMostPeople) {
+  EXPECT_GT(RecallOfPeople("yolox_nano_416.onnx", "kitchen_walk", 30).share(), 0.6);
+}
+
+}  // namespace
+}  // namespace alidade
