@@ -23,7 +23,7 @@ std::string Reason(const cv::Exception& error) {
   const std::string text = error.what();
   std::string operation = Between(text, "Node [", "@]");
   if (operation.empty()) operation = Between(text, "of type \"", "\"");
-  if (!operation.empty()) return "operator " + operation;
+  if (!operation.empty()) return "operator " + operation + " is not known, or not used in this way";
   std::string line = error.err.substr(0, error.err.find('\n')).substr(0, kLongest);
   return line.empty() ? "an unknown reason" : line;
 }
