@@ -6,6 +6,7 @@
 #include "alidade/base/random.h"
 #include "alidade/detect/onnx/protobuf.h"
 #include "detect/tiny_network.h"
+#include "support/expect_error.h"
 
 namespace alidade {
 namespace {
@@ -47,13 +48,30 @@ TEST(OnnxModel, KnowsNetworksThatNormaliseTheirInput) {
   EXPECT_TRUE(ReadOnnxModel(network.Bytes()).normalises_input);
   for (const char* operation : {"Sub", "Mul", "Div", "Add", "BatchNormalization"}) {
     OnnxFile file;
-    file.Input("x", {1, 3, 32, 32}).Node(operation, {"x", "mean"}, "y");
+    file.Input("x", {1, 3, 32, 32}).Constant("mean", {1}, {9}).Node(operation, {"x", "mean"}, "y");
     EXPECT_TRUE(ReadOnnxModel(file.Bytes()).normalises_input) << operation;
   }
   for (const char* operation : {"Slice", "Relu", "Conv"}) {
     OnnxFile file;
-    file.Input("x", {1, 3, 32, 32}).Node(operation, {"x", "w"}, "y").Node("Mul", {"y", "y"}, "z");
+    file.Input("x", {1, 3, 32, 32}).Constant("w", {1, 3, 1, 1}, {1, 2, 3});
+    file.Node(operation, {"x", "w"}, "y").Node("Mul", {"y", "y"}, "z");
     EXPECT_FALSE(ReadOnnxModel(file.Bytes()).normalises_input) << operation;
+  }
+}
+
+TEST(OnnxModel, RefusesLayersThatWorkOnNothing) {
+  OnnxFile file;
+  file.Input("x", {1, 3, 32, 32}).Node("Conv", {"x", "weights"}, "y");
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(file.Bytes()); }),
+              testing::HasSubstr("not there"));
+}
+
+TEST(OnnxModel, RefusesConstantsThatAreTooShortOrTooLong) {
+  for (const Shape& shape : {Shape{3}, Shape{1}, Shape{-2}, Shape{1 << 30, 1 << 30, 1 << 30}}) {
+    OnnxFile file;
+    file.Input("x", {2}).Constant("c", shape, {1, 2}).Node("Add", {"x", "c"}, "y");
+    EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(file.Bytes()); }),
+                testing::HasSubstr("is damaged"));
   }
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
@@ -17,14 +18,22 @@ std::string Between(const std::string& text, const std::string& before, const ch
   return text.substr(from, text.find_first_of(ends, from) - from);
 }
 
+// What a damaged file may have put into it stays out.
+std::string Printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.substr(0, kLongest);
+}
+
 // OpenCV's reasons go over several lines and name its source files: what a user can make use of,
 // which is the operator it stumbled over, in one line.
 std::string Reason(const cv::Exception& error) {
   const std::string text = error.what();
   std::string operation = Between(text, "Node [", "@]");
   if (operation.empty()) operation = Between(text, "of type \"", "\"");
-  if (!operation.empty()) return "operator " + operation + " is not known, or not used in this way";
-  std::string line = error.err.substr(0, error.err.find('\n')).substr(0, kLongest);
+  if (!operation.empty())
+    return Printable("operator " + operation) + " is not known, or not used in this way";
+  const std::string line = Printable(error.err.substr(0, error.err.find('\n')));
   return line.empty() ? "an unknown reason" : line;
 }
 
@@ -38,7 +47,7 @@ std::string ReasonOf(const Function& run) {
   } catch (const std::bad_alloc&) {
     return "not enough memory";
   } catch (const std::exception& error) {
-    return std::string(error.what()).substr(0, kLongest);
+    return Printable(error.what());
   } catch (...) {
     return "an unknown reason";
   }
