@@ -56,7 +56,7 @@ std::string ReasonOf(const Function& run) {
 
 class DnnNetwork : public Network {
  public:
-  explicit DnnNetwork(cv::dnn::Net net) : net_(std::move(net)) {
+  explicit DnnNetwork(const cv::dnn::Net& net) : net_(net) {
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);  // the same bits wherever it runs
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     names_ = net_.getUnconnectedOutLayersNames();
@@ -82,9 +82,11 @@ class DnnNetwork : public Network {
 }  // namespace
 }  // namespace alidade
 
-extern "C" __attribute__((visibility("default"))) alidade::Network* alidade_dnn_open(
-    const char* bytes, size_t size, std::string* problem) {
-  using namespace alidade;
+using alidade::DnnNetwork, alidade::Network, alidade::ReasonOf;
+
+extern "C" __attribute__((visibility("default"))) Network* alidade_dnn_open(const char* bytes,
+                                                                            size_t size,
+                                                                            std::string* problem) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it ourselves
   std::unique_ptr<Network> network;
   *problem = ReasonOf(

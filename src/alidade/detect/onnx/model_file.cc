@@ -35,7 +35,6 @@ enum { kTensor = 1 };
 namespace tensor_type {
 enum { kElementType = 1, kShape = 2 };
 }
-
 namespace shape {
 enum { kDim = 1 };
 }
