@@ -128,6 +128,8 @@ std::string DepthPictureFile(const std::string& stamp) {
   return std::string(kDepthFolder) + "/" + stamp + ".png";
 }
 
+std::string MaskPictureFile(const std::string& stamp) { return "mask/" + stamp + ".png"; }
+
 OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
     : path_(path), kept_(kept) {
   const std::string what = "--out " + path + ": ";

@@ -18,6 +18,11 @@ inline constexpr std::string_view kDepthListHeader =
 // Where a depth picture is, within the folder; `stamp` as in keyframes.txt.
 std::string DepthPictureFile(const std::string& stamp);
 
+// The same of masks (mask_writer.h).
+inline constexpr std::string_view kMaskListHeader =
+    "# what was left out as moving: timestamp filename (255 = left out)\n";
+std::string MaskPictureFile(const std::string& stamp);
+
 // A folder for results, made when it is not there. One that is there is taken when it is empty or
 // holds an earlier run, whose files are removed (ours only). Throws Error (input) for any other,
 // and when nothing can be written into it: better now than after the work.

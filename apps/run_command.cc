@@ -9,11 +9,13 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
+#include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
 #include "alidade/system/slam.h"
 #include "any_source.h"
 #include "commands.h"
+#include "mask_writer.h"
 #include "run_loop.h"
 #include "run_options.h"
 #include "run_outputs.h"
@@ -58,28 +60,36 @@ int Run(const RunOptions& options) {
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
-  wanted.color = record.settings.semidense.enabled && !options.localise;
+  record.settings.localise = options.localise;
+  wanted.color = record.settings.WantsColor();
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();
   record.settings.sensor = record.source.sensor;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
-  record.settings.localise = options.localise;
   if (saved && saved->camera.width < record.source.camera.width)
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down
-  Slam slam(record.source.camera, record.settings);
+  std::shared_ptr<Detector> detector;
+  if (options.detector)
+    detector = OpenDetector(*options.detector, record.settings.dynamics.detector);
+  Slam slam(record.source.camera, record.settings, detector);
   if (saved) slam.Load(*saved);
   OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name),
                       options.load ? SavedMapPath(*options.load) : std::string());
 
+  std::optional<MaskWriter> masks;
+  if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  RunFrames(frames, RateFrom(options, record.settings.threaded), slam, terminal, record);
+  RunFrames(frames, RateFrom(options, record.settings.threaded), slam, terminal, record,
+            masks ? &*masks : nullptr);
   record.warnings = terminal.warnings();
   if (record.failure && record.frames == 0) {
+    if (masks) masks->Discard();
     folder.Remove();
     std::rethrow_exception(record.failure);
   }
   const RunSummary summary = WriteOutputs(folder, slam, record, !options.localise);
+  if (masks) masks->Finish();
   if (!options.quiet) Say(summary, record, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
   if (record.interrupted) return kInterruptedStatus;

@@ -76,7 +76,8 @@ void Drop(const SourceFrame& frame, const std::string& problem, RunRecord& recor
   }
 }
 
-TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, TrackState state) {
+TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWriter* masks,
+                TrackState state) {
   ++record.frames;
   if (std::isfinite(frame.time)) {
     if (!record.first_time) record.first_time = frame.time;
@@ -97,6 +98,7 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, TrackSt
     Drop(frame, error.what(), record);
     return state;
   }
+  if (masks) masks->Write(frame, slam.MoverMask());
   record.stamps.push_back(frame.stamp);
   record.numbers.push_back(frame.number);
   if (result.state != TrackState::kTracking) {
@@ -116,7 +118,7 @@ void CatchInterrupts() {
 bool Interrupted() { return g_interrupted != 0; }
 
 void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
-               RunRecord& record) {
+               RunRecord& record, MaskWriter* masks) {
   Pacer pacer(rate);
   RunProgress progress(terminal, source.Info().frames);
   std::optional<CpuMeter> cpu;
@@ -131,7 +133,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
         wall.emplace();
       }
       pacer.WaitFor(frame->time);
-      state = Feed(*frame, slam, record, state);
+      state = Feed(*frame, slam, record, masks, state);
       progress.Show(record.frames, state, slam);
     }
   } catch (const Error&) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "alidade/io/read_ahead.h"
+#include "mask_writer.h"
 #include "run_options.h"
 #include "run_record.h"
 #include "terminal.h"
@@ -13,8 +14,8 @@ void CatchInterrupts();
 bool Interrupted();
 
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
-// that cannot be used are warned about, counted and left out.
+// that cannot be used are warned about, counted and left out. `masks` may be null.
 void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
-               RunRecord& record);
+               RunRecord& record, MaskWriter* masks);
 
 }  // namespace alidade

@@ -60,6 +60,13 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)");
   command.add_option("--first", options.first, "First frame, counted from 0");
   command.add_option("--last", options.last, "Last frame, included");
+  command.add_option("--dynamics", options.dynamics,
+                     "off, geometry (leave out what moves) or full (and what a detector knows to)");
+  command.add_option("--detector", options.detector,
+                     "Network that finds people and other movers (YOLO, .onnx); implies "
+                     "--dynamics full");
+  command.add_flag("--write-masks", options.write_masks,
+                   "What was left out as moving, a picture for every frame, in mask/");
   command.add_flag("--quiet", options.quiet, "Say nothing but errors");
 }
 
@@ -89,33 +96,17 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
       "--semidense", options.semidense,
       "Map shape too: depth at every pixel with structure, as semidense.ply and depth/");
   const std::string later = "Not in this version";
-  command.add_option("--dynamics", options.dynamics, "off (later versions: geometry, full)");
-  for (auto& [name, target] :
-       {std::pair<const char*, std::optional<std::string>&>{"--detector", options.detector},
-        {"--host", options.host}}) {
-    command.add_option(name, target, later)->group("");
-  }
+  command.add_option("--host", options.host, later)->group("");
   command.add_option("--viewer", options.viewer, later)->expected(0, 1)->group("");
-  command.add_flag("--write-masks", options.write_masks, later)->group("");
   command.footer(kExamples);
 }
 
 void CheckRunOptions(const RunOptions& options) {
-  enum class Dynamics { kOff, kGeometry, kFull };
-  const auto dynamics = Choice<Dynamics>(
-      "--dynamics", options.dynamics,
-      {{"off", Dynamics::kOff}, {"geometry", Dynamics::kGeometry}, {"full", Dynamics::kFull}});
-  if (dynamics == Dynamics::kFull && !options.detector) {
-    ThrowUsage("--dynamics full needs --detector MODEL.onnx");
-  }
-  Refuse(options.detector.has_value(), "--detector");
-  Refuse(dynamics != Dynamics::kOff, "--dynamics " + options.dynamics);
   if (options.semidense && options.localise) {
     ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
   }
   Refuse(options.viewer.has_value(), "--viewer");
   Refuse(options.host.has_value(), "--host");
-  Refuse(options.write_masks, "--write-masks");
   if (options.threads < 0) ThrowUsage("--threads must not be negative");
   if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
   if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
@@ -151,6 +142,18 @@ SlamSettings SettingsFrom(const RunOptions& options) {
   }
   if (options.seed) settings.seed = *options.seed;
   if (options.semidense) settings.semidense.enabled = true;
+  if (options.dynamics) {
+    settings.dynamics.mode = DynamicsModeNamed("--dynamics", *options.dynamics);
+  } else if (options.detector) {
+    settings.dynamics.mode = DynamicsMode::kFull;
+  }
+  const DynamicsMode mode = settings.dynamics.mode;
+  if (mode == DynamicsMode::kFull && !options.detector)
+    ThrowUsage("--dynamics full needs --detector MODEL.onnx");
+  if (mode != DynamicsMode::kFull && options.detector)
+    ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
+  if (mode == DynamicsMode::kOff && options.write_masks)
+    ThrowUsage("--write-masks needs --dynamics geometry or full: nothing is left out without");
   settings.Check();
   return settings;
 }

@@ -27,10 +27,10 @@ struct RunOptions {
   bool quiet = false;
   bool localise = false;  // only find poses in the loaded map
   bool semidense = false;
-  // Known words whose work is not in this version.
-  std::string dynamics = "off";
-  std::optional<std::string> detector, viewer, host;
+  std::optional<std::string> dynamics, detector;
   bool write_masks = false;
+  // Known words whose work is not in this version.
+  std::optional<std::string> viewer, host;
 };
 
 // Adds the flags; parsing fills `options`, which must outlive `command`.

@@ -59,15 +59,18 @@ TEST_F(RunOptions, UnknownOptionAndWordNameTheNearest) {
 
 TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
   for (const std::vector<std::string>& flags :
-       std::vector<std::vector<std::string>>{{"--dynamics", "geometry"},
-                                             {"--detector", "model.onnx"},
-                                             {"--viewer"},
-                                             {"--viewer", "8080"},
-                                             {"--write-masks"}}) {
+       std::vector<std::vector<std::string>>{{"--viewer"}, {"--viewer", "8080"}}) {
     ExpectError(2, flags, flags[0]);
     ExpectError(2, flags, "not in this version yet");
   }
+}
+
+TEST_F(RunOptions, DynamicsFlagsThatDoNotGoTogetherAreRefused) {
   ExpectError(2, {"--dynamics", "full"}, "needs --detector");
+  ExpectError(2, {"--dynamics", "geometry", "--detector", "model.onnx"}, "--detector");
+  ExpectError(2, {"--write-masks"}, "needs --dynamics");
+  ExpectError(2, {"--dynamics", "ful"}, "did you mean");
+  ExpectError(3, {"--detector", "no_such_model.onnx"}, "no_such_model.onnx");
 }
 
 TEST_F(RunOptions, SemiDenseMappingIsAFlagAndASetting) {

@@ -10,8 +10,13 @@ namespace alidade {
 struct Detection {
   int class_id = -1;  // index into Detector::ClassNames()
   float score = 0;    // 0…1
-  cv::Rect2f box;     // pixels of the image given, inside it, from edge to edge: pixel i covers
-                      // i to i + 1, its centre is i + 0.5 (as in cv::Rect, unlike keypoints)
+  cv::Rect2f box;     // pixels of the image given, inside it
+};
+
+// What was found in one frame.
+struct FrameDetections {
+  int number = 0;  // Frame::number
+  std::vector<Detection> detections;
 };
 
 // One instance, one thread at a time.

@@ -59,10 +59,20 @@ struct Frame {
   int number = 0;   // counted from 0 in the recording
   std::vector<Keypoint> keypoints;
   std::vector<Descriptor> descriptors;  // one for each keypoint
+  // How likely each keypoint is part of what stands still, 0…1. Empty: nothing is known to move.
+  std::vector<float> static_probability;
   KeypointGrid grid;
   cv::Mat image;                 // 8 bit grey, level 0, as given (not undistorted)
   std::vector<cv::Mat> pyramid;  // all levels; empty once the frame is a keyframe (memory)
   std::shared_ptr<const Picture> picture;  // for dense work, until it is handed over; else null
+
+  // Keypoints less likely to stand still than this take no part in the pose, and less likely ones
+  // than kMappable none in the map.
+  static constexpr float kUsable = 0.05f, kMappable = 0.5f;
+  float Static(int keypoint) const {
+    return static_probability.empty() ? 1.0f : static_probability[keypoint];
+  }
+  bool IsUsable(int keypoint) const { return Static(keypoint) >= kUsable; }
 };
 
 template <typename Visit>

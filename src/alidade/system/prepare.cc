@@ -41,7 +41,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
     if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
       ThrowInput("depth must be 16 bit or float");
   }
-  if (!settings.semidense.enabled) {
+  if (!settings.WantsColor()) {
     prepared.color.release();
   } else if (prepared.color.empty() && prepared.image.channels() >= 3) {
     prepared.color = prepared.image;

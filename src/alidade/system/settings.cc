@@ -132,6 +132,21 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("semidense.delay", d.delay);
   visit("semidense.redo_baseline", d.redo_baseline);
   visit("semidense.voxel", d.voxel);
+  auto& y = s.dynamics;
+  visit("dynamics.mode", y.mode);
+  visit("dynamics.moving_classes", y.moving_classes);
+  visit("dynamics.carried_classes", y.carried_classes);
+  visit("dynamics.detector.min_score", y.detector.min_score);
+  visit("dynamics.detector.max_overlap", y.detector.max_overlap);
+  visit("dynamics.detector_every_frames", y.detector_every_frames);
+  visit("dynamics.detector_latency_frames", y.detector_latency_frames);
+  visit("dynamics.detector_rest", y.detector_rest);
+  visit("dynamics.drop_detections", y.drop_detections);
+  visit("dynamics.bridge_seconds", y.bridge_seconds);
+  visit("dynamics.foreground", y.foreground);
+  visit("dynamics.geometry", y.geometry);
+  visit("dynamics.propagate", y.propagate);
+  visit("dynamics.weigh", y.weigh);
   auto& i = s.start;
   visit("start.min_matches", i.min_matches);
   visit("start.match_scale", i.match_scale);
@@ -149,7 +164,7 @@ void VisitFields(Settings& s, Visit&& visit) {
 }
 
 template <typename Value>
-Value Parse(const std::string& name, const std::string& text) {
+Value ParseNumber(const std::string& name, const std::string& text) {
   char* end = nullptr;
   double number = std::strtod(text.c_str(), &end);
   const bool whole = std::is_integral_v<Value>;
@@ -166,11 +181,26 @@ Value Parse(const std::string& name, const std::string& text) {
 }
 
 template <typename Value>
-std::string Format(Value value) {
-  std::ostringstream out;
-  out.precision(10);
-  out << value;
-  return out.str();
+Value Parse(const std::string& name, const std::string& text) {
+  if constexpr (std::is_same_v<Value, std::string>) {
+    return text;
+  } else if constexpr (std::is_same_v<Value, DynamicsMode>) {
+    return DynamicsModeNamed("setting " + name, text);
+  } else {
+    return ParseNumber<Value>(name, text);
+  }
+}
+
+template <typename Value>
+std::string Format(const Value& value) {
+  if constexpr (std::is_same_v<Value, DynamicsMode>) {
+    return NameOf(value);
+  } else {
+    std::ostringstream out;
+    out.precision(10);
+    out << value;
+    return out.str();
+  }
 }
 
 }  // namespace
@@ -214,6 +244,7 @@ void SlamSettings::Check() const {
   loop.Check();
   places.Check();
   semidense.Check();
+  dynamics.Check();
   if (!(new_map_seconds >= 0) || new_map_frames < 1)
     ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/dynamics/settings.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/looping/settings.h"
 #include "alidade/mapping/settings.h"
@@ -27,6 +28,7 @@ struct SlamSettings {
   PlaceSettings places;
   LoopSettings loop;
   SemiDenseSettings semidense;
+  DynamicsSettings dynamics;
   bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
   // When lost, a new map is started only after so long and so many frames that showed something:
   // with depth it could start at once, and would always be quicker than recognising a place.
@@ -38,6 +40,10 @@ struct SlamSettings {
   // 0.8, semi-dense depth from 5 keyframes. Throws Error (usage) for another name.
   void ApplyProfile(const std::string& profile);
   void Check() const;  // throws Error (usage) naming the field that cannot be
+  // Whether the colours of images are of use.
+  bool WantsColor() const {
+    return (semidense.enabled && !localise) || dynamics.mode == DynamicsMode::kFull;
+  }
 
   // Sets one field from text. Throws Error (usage) for an unknown name, with the nearest known one,
   // or a value that is not of its type.

@@ -4,8 +4,11 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/dynamics/dynamic_filter.h"
+#include "alidade/features/subset.h"
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
+#include "alidade/system/detection_feed.h"
 #include "alidade/system/prepare.h"
 #include "alidade/system/workers.h"
 #include "alidade/tracking/tracker.h"
@@ -39,11 +42,31 @@ std::shared_ptr<const Picture> Copied(const Picture& picture) {
                                            picture.depth.clone(), picture.mask.clone()});
 }
 
+std::vector<int> MappableKeypoints(const Frame& frame) {
+  std::vector<int> kept;
+  for (int k = 0; k < static_cast<int>(frame.keypoints.size()); ++k) {
+    if (frame.Static(k) >= Frame::kMappable) kept.push_back(k);
+  }
+  return kept;
+}
+
+// The map never knows of keypoints on what may move.
+void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
+  const std::vector<int> kept = MappableKeypoints(*placed.frame);
+  if (kept.size() == placed.frame->keypoints.size()) return;
+  std::vector<LandmarkId> matches;
+  if (!placed.matches.empty()) {
+    for (int k : kept) matches.push_back(placed.matches[k]);
+  }
+  placed.frame = std::make_shared<Frame>(KeypointSubset(*placed.frame, kept, camera));
+  placed.matches = std::move(matches);
+}
+
 }  // namespace
 
 class Slam::Impl {
  public:
-  Impl(const Camera& given, const SlamSettings& settings);
+  Impl(const Camera& given, const SlamSettings& settings, std::shared_ptr<Detector> detector);
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
 
@@ -53,6 +76,9 @@ class Slam::Impl {
   bool dense_;  // semi-dense mapping is asked for
   Workers workers_;
   Tracker tracker_;
+  DetectionFeed detections_;
+  std::optional<DynamicFilter> dynamics_;  // none: everything is taken to stand still
+  PlacedFrame last_;                       // the last frame, as it was tracked
   MonoStart start_;
   TrackState state_ = TrackState::kInitialising;
   std::vector<FrameRecord> records_;
@@ -61,6 +87,9 @@ class Slam::Impl {
   int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
 
  private:
+  void BeginDynamics(const FrameInput& prepared, int number);
+  void JudgeFeatures(Frame& frame, const Se3* T_camera_world);
+  void EndDynamics(const Frame& frame, const TrackResult& result);
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
@@ -80,19 +109,30 @@ class Slam::Impl {
   MapId trial_map_;
   KeyFrameId trial_keyframes_[2];
 
-  double lost_since_ = 0;  // time of the first frame without a pose, seconds
-  int lost_sighted_ = 0;   // frames since that showed something
+  double dynamics_ms_ = 0;  // of the present frame, so far
+  double lost_since_ = 0;   // time of the first frame without a pose, seconds
+  int lost_sighted_ = 0;    // frames since that showed something
 };
 
-Slam::Impl::Impl(const Camera& given, const SlamSettings& settings)
+Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
+                 std::shared_ptr<Detector> detector)
     : given_(given),
       settings_(Seeded(settings)),
       camera_(CameraInUse(given, settings)),
       dense_(settings.semidense.enabled && !settings.localise),
       workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
+      detections_(settings.dynamics.mode == DynamicsMode::kFull ? detector : nullptr,
+                  settings_.dynamics, settings_.threaded, settings_.seed),
       start_(camera_, settings_.start) {
   settings_.Check();
+  const DynamicsMode mode = settings_.dynamics.mode;
+  if (mode == DynamicsMode::kFull && !detector) ThrowUsage("dynamics full needs a detector");
+  if (mode != DynamicsMode::kOff) {
+    const bool named = mode == DynamicsMode::kFull;
+    dynamics_.emplace(camera_, settings_.dynamics,
+                      named ? detector->ClassNames() : std::vector<std::string>());
+  }
 }
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
@@ -100,19 +140,57 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   if (!records_.empty() && input.time <= records_.back().time)
     ThrowInput("the frame's time does not grow");
   const FrameInput prepared = Prepare(input, given_, camera_, settings_);
+  const int number = first_number_ + static_cast<int>(records_.size());
+  BeginDynamics(prepared, number);
   const Stopwatch extracting;
-  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
-                                      first_number_ + static_cast<int>(records_.size()));
+  const auto frame =
+      tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time, number);
   times_.extract.push_back(extracting.Milliseconds());
   records_.push_back({});
   records_.back().time = input.time;
   if (dense_) frame->picture = PictureOf(prepared);
+  last_ = {};
+  last_.frame = frame;
   const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
+  EndDynamics(*frame, result);
   times_.frame.push_back(whole.Milliseconds());
   return result;
+}
+
+void Slam::Impl::BeginDynamics(const FrameInput& prepared, int number) {
+  dynamics_ms_ = 0;
+  if (!dynamics_) return;
+  const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
+  detections_.Offer(number, seen);
+  const Stopwatch advancing;
+  dynamics_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
+                     detections_.Take(number));
+  dynamics_ms_ += advancing.Milliseconds();
+}
+
+// What the features are worth, before the pose is made of them.
+void Slam::Impl::JudgeFeatures(Frame& frame, const Se3* T_camera_world) {
+  if (!dynamics_) return;
+  const Stopwatch watch;
+  dynamics_->Judge(frame, T_camera_world);
+  if (dense_) {
+    Picture picture = *frame.picture;
+    picture.mask = dynamics_->Mask();
+    frame.picture = std::make_shared<Picture>(picture);
+  }
+  dynamics_ms_ += watch.Milliseconds();
+}
+
+void Slam::Impl::EndDynamics(const Frame& frame, const TrackResult& result) {
+  if (!dynamics_) return;
+  const Stopwatch watch;
+  const Se3 T_camera_world = result.T_world_camera.Inverse();
+  dynamics_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
+                      workers_.map().Snapshot().corrections());
+  times_.dynamics.push_back(dynamics_ms_ + watch.Milliseconds());
 }
 
 // `map`: the one the pose is in.
@@ -125,6 +203,7 @@ void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const Ma
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
+  LeaveOutMovers(placed, camera_);
   const KeyFrameId id = workers_.mapper().Insert(placed.frame, anchor, placed.matches);
   const MapSnapshot map = workers_.map().Snapshot();
   const KeyFrame& keyframe = *map.Find(id);
@@ -143,6 +222,7 @@ void Slam::Impl::KeepPicture(KeyFrameId id, const Frame& frame) {
 // No pose: known places first; a new map only where none is known, or none was recognised for long.
 TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
   const MapSnapshot map = workers_.map().Snapshot();
+  JudgeFeatures(*frame, nullptr);
   if (map.keyframe_count() > 0) {
     const Stopwatch watch;
     std::vector<KeyFrameId> candidates;
@@ -203,6 +283,10 @@ void Slam::Impl::LeaveMap() {
 
 TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   TrackResult result;
+  if (dynamics_) {
+    last_.frame = std::make_shared<Frame>(*frame);
+    *frame = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
+  }
   const bool started = settings_.sensor == Sensor::kMono ? StartWithMotion(frame, result)
                                                          : StartWithDepth(frame, result);
   if (!started) return result;
@@ -275,8 +359,12 @@ void Slam::Impl::GiveUpStart() {
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
   const MapSnapshot map = workers_.map().Snapshot();
-  TrackEstimate estimate = tracker_.Estimate(tracker_.Predict(frame, map), map);
-  times_.track.push_back(watch.Milliseconds());
+  PlacedFrame guess = tracker_.Predict(frame, map);
+  const double predicting = watch.Milliseconds();
+  JudgeFeatures(*frame, &guess.T_camera_world);
+  const Stopwatch estimating;
+  TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
+  times_.track.push_back(predicting + estimating.Milliseconds());
   TrackResult result;
   if (trial_left_ > 0) {
     if (!estimate.tracked ||
@@ -310,6 +398,7 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
     for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
     workers_.mapper().Count(sightings);
   }
+  last_ = estimate.placed;
   if (result.keyframe) {
     AddKeyFrame(estimate.placed,
                 AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));
@@ -338,8 +427,8 @@ void Slam::Impl::Load(const SavedMap& saved) {
   lost_since_ = -1e300;  // nothing was lost: only frames that show something must fail first
 }
 
-Slam::Slam(const Camera& camera, const SlamSettings& settings)
-    : impl_(std::make_unique<Impl>(camera, settings)) {}
+Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)
+    : impl_(std::make_unique<Impl>(camera, settings, std::move(detector))) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Finish() { impl_->workers_.Drain(); }
@@ -347,6 +436,20 @@ void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
 const Camera& Slam::camera() const { return impl_->camera_; }
 int Slam::first_number() const { return impl_->first_number_; }
+
+std::vector<FeatureUse> Slam::Features() const {
+  std::vector<FeatureUse> features;
+  const PlacedFrame& last = impl_->last_;
+  if (!last.frame) return features;
+  for (size_t k = 0; k < last.frame->keypoints.size(); ++k) {
+    const Keypoint& keypoint = last.frame->keypoints[k];
+    features.push_back({keypoint.raw_x, keypoint.raw_y, last.frame->Static(static_cast<int>(k)),
+                        k < last.matches.size() && last.matches[k].valid()});
+  }
+  return features;
+}
+
+cv::Mat Slam::MoverMask() const { return impl_->dynamics_ ? impl_->dynamics_->Mask() : cv::Mat(); }
 
 SlamCounts Slam::Counts() const {
   return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges()};
@@ -364,6 +467,7 @@ StageTimes Slam::Times() const {
   times.map = impl_->workers_.MapMilliseconds();
   times.loop = impl_->workers_.LoopMilliseconds();
   times.semidense = impl_->workers_.SemiDenseMilliseconds();
+  times.detect = impl_->detections_.Milliseconds();
   return times;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/base/timing.h"
+#include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
@@ -43,9 +44,18 @@ struct FramePose {
   Se3 T_world_camera_live;  // as it was when the frame was done
 };
 
+// A feature of a frame, and what became of it.
+struct FeatureUse {
+  float x = 0, y = 0;            // raw pixels
+  float static_probability = 1;  // 0…1
+  bool matched = false;          // the pose agrees with the landmark it shows
+};
+
 // Milliseconds, one sample per frame (map, loop: per keyframe).
 struct StageTimes {
   std::vector<double> frame, extract, track, map, loop, semidense;
+  std::vector<double> detect;    // per frame the detector was given
+  std::vector<double> dynamics;  // flow, geometry and belief, not the detector
 };
 
 struct SlamCounts {
@@ -55,8 +65,9 @@ struct SlamCounts {
 class Slam {
  public:
   // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo
-  // camera.baseline.
-  Slam(const Camera& camera, const SlamSettings& settings);
+  // camera.baseline, settings.dynamics.mode full a detector.
+  Slam(const Camera& camera, const SlamSettings& settings,
+       std::shared_ptr<Detector> detector = nullptr);
   ~Slam();
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
@@ -69,6 +80,11 @@ class Slam {
   // time that does not grow; the system stays as it was then.
   TrackResult Track(const FrameInput& input);
   void Finish();  // waits until the workers have nothing left to do
+
+  // Of the last frame: its features, and what was left out as moving (CV_8U, 255, of the camera's
+  // size; empty without dynamics).
+  std::vector<FeatureUse> Features() const;
+  cv::Mat MoverMask() const;
 
   MapSnapshot Snapshot() const;               // cheap, consistent, safe to keep
   std::vector<FramePose> Trajectory() const;  // every frame so far

@@ -32,8 +32,9 @@ void LookFor(Candidate& candidate, const PlacedFrame& placed, const Camera& came
                   static_cast<float>(ScaleOfLevel(view->level));
   sought.min_level = view->level - 1;
   sought.max_level = view->level;
-  candidate.sighting =
-      FindNear(*placed.frame, sought, [&](int k) { return !placed.matches[k].valid(); });
+  candidate.sighting = FindNear(*placed.frame, sought, [&](int k) {
+    return !placed.matches[k].valid() && placed.frame->IsUsable(k);
+  });
 }
 
 }  // namespace

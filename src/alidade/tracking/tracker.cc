@@ -97,7 +97,8 @@ void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float r
       sought.max_level = before.level;
     }
     if (baseline > 0) sought.right_x = static_cast<float>(pixel.x() - camera_.bf() / p.z());
-    const Sighting found = FindNear(now, sought, [&](int k) { return !guess.matches[k].valid(); });
+    const Sighting found = FindNear(
+        now, sought, [&](int k) { return !guess.matches[k].valid() && now.IsUsable(k); });
     if (found.keypoint < 0 || found.distance > settings_.max_distance) continue;
     guess.matches[found.keypoint] = id;
     matched.push_back(found.keypoint);
@@ -114,11 +115,13 @@ void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrame
   guess.inliers = 0;
   const KeyFrame* keyframe = map.Find(id);
   if (!keyframe) return;
-  std::vector<int> known, all(guess.frame->keypoints.size());
+  std::vector<int> known, all;
   for (size_t i = 0; i < keyframe->landmarks.size(); ++i) {
     if (keyframe->landmarks[i].valid()) known.push_back(static_cast<int>(i));
   }
-  for (size_t i = 0; i < all.size(); ++i) all[i] = static_cast<int>(i);
+  for (int i = 0; i < static_cast<int>(guess.frame->keypoints.size()); ++i) {
+    if (guess.frame->IsUsable(i)) all.push_back(i);
+  }
 
   std::vector<Eigen::Vector3d> points;
   std::vector<Eigen::Vector2d> pixels;
@@ -200,7 +203,9 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
     if (!landmark) continue;
     const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
-    matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right});
+    const double weight = placed.frame->Static(static_cast<int>(i));
+    matches.push_back(
+        {landmark->p_world, m.pixel, weight * m.inv_sigma2, weight * m.inv_sigma2_right});
     keypoints.push_back(static_cast<int>(i));
   }
   PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);

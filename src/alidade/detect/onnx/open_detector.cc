@@ -136,7 +136,6 @@ class OnnxDetector : public Detector {
                       : ""));
     }
     std::vector<NetworkOutput> views;
-    views.reserve(outputs.size());
     for (const cv::Mat& output : outputs) views.push_back(ViewOf(output));
     layout_ = RecogniseYolo(views, input_);
   }

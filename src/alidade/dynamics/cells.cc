@@ -1,0 +1,106 @@
+#include "alidade/dynamics/cells.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace alidade {
+namespace {
+
+// Median of the positive values among those read at nine places of each cell; 0 when fewer than
+// three have one.
+template <typename Read>
+std::vector<float> Medians(const Cells& cells, cv::Size image, Read&& read) {
+  std::vector<float> medians(cells.count(), 0);
+  const float step = cells.size() / 3;
+  for (int i = 0; i < cells.count(); ++i) {
+    const cv::Point2f centre = cells.Centre(i);
+    std::array<float, 9> values;
+    int count = 0;
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        const int x = static_cast<int>(centre.x + static_cast<float>(dx) * step + 0.5f);
+        const int y = static_cast<int>(centre.y + static_cast<float>(dy) * step + 0.5f);
+        if (x < 0 || y < 0 || x >= image.width || y >= image.height) continue;
+        const float value = read(x, y);
+        if (value > 0 && std::isfinite(value)) values[count++] = value;
+      }
+    }
+    if (count < 3) continue;
+    std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
+    medians[i] = values[count / 2];
+  }
+  return medians;
+}
+
+}  // namespace
+
+Cells::Cells(const Camera& camera)
+    : camera_(camera),
+      distorted_(camera.HasDistortion()),
+      size_(static_cast<float>(camera.width) / kColumns),
+      rows_(std::max(1, static_cast<int>(std::lround(static_cast<float>(camera.height) / size_)))) {
+  rays_.reserve(count());
+  for (int i = 0; i < count(); ++i) {
+    const Eigen::Vector2d raw(Centre(i).x, Centre(i).y);
+    rays_.push_back(camera_.Unproject(distorted_ ? camera_.Undistort(raw) : raw));
+  }
+}
+
+int Cells::At(float x, float y) const {
+  const int c = std::clamp(static_cast<int>((x + 0.5f) / size_), 0, kColumns - 1);
+  const int r = std::clamp(static_cast<int>((y + 0.5f) / size_), 0, rows_ - 1);
+  return r * kColumns + c;
+}
+
+cv::Point2f Cells::Centre(int cell) const {
+  return {(static_cast<float>(cell % kColumns) + 0.5f) * size_ - 0.5f,
+          (static_cast<float>(cell / kColumns) + 0.5f) * size_ - 0.5f};
+}
+
+int Cells::Project(const Eigen::Vector3d& p) const {
+  if (!(p.z() > 0.01)) return -1;
+  const Eigen::Vector2d ideal = camera_.Project(p);
+  if (!(std::abs(ideal.x()) < 1e4 && std::abs(ideal.y()) < 1e4)) return -1;
+  const Eigen::Vector2d raw = distorted_ ? camera_.Distort(ideal) : ideal;
+  if (!(raw.x() >= -0.5 && raw.y() >= -0.5 && raw.x() < camera_.width - 0.5 &&
+        raw.y() < camera_.height - 0.5))
+    return -1;
+  return At(static_cast<float>(raw.x()), static_cast<float>(raw.y()));
+}
+
+std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth) {
+  if (depth.type() == CV_32FC1)
+    return Medians(cells, depth.size(), [&](int x, int y) { return depth.at<float>(y, x); });
+  const auto unit = static_cast<float>(1 / camera.depth_factor);
+  return Medians(cells, depth.size(),
+                 [&](int x, int y) { return static_cast<float>(depth.at<uint16_t>(y, x)) * unit; });
+}
+
+std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,
+                                      const cv::Mat& right) {
+  constexpr int kShrink = 2, kWindow = 15, kSixteenths = 16;
+  constexpr double kNearest = 0.5;  // metres: what is nearer has no match
+  cv::Mat small_left, small_right, disparity;
+  const cv::Size size(left.cols / kShrink, left.rows / kShrink);
+  cv::resize(left, small_left, size, 0, 0, cv::INTER_AREA);
+  cv::resize(right, small_right, size, 0, 0, cv::INTER_AREA);
+  const double widest = camera.bf() / kNearest / kShrink;
+  const int disparities = std::clamp(static_cast<int>(std::ceil(widest / 16)) * 16, 16,
+                                     std::max(16, size.width / 32 * 16));
+  const auto matcher = cv::StereoBM::create(disparities, kWindow);
+  matcher->setTextureThreshold(10);
+  matcher->setUniquenessRatio(12);
+  matcher->setSpeckleWindowSize(0);
+  matcher->compute(small_left, small_right, disparity);
+  const auto bf = static_cast<float>(camera.bf() * kSixteenths / kShrink);
+  return Medians(cells, left.size(), [&](int x, int y) {
+    const int v = std::min(y / kShrink, size.height - 1), u = std::min(x / kShrink, size.width - 1);
+    const int16_t d = disparity.at<int16_t>(v, u);
+    return d > kSixteenths ? bf / static_cast<float>(d) : 0.0f;
+  });
+}
+
+}  // namespace alidade

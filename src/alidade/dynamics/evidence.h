@@ -1,0 +1,58 @@
+// What geometry says about what moves: as log-odds of standing still, to be added up.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "alidade/dynamics/cells.h"
+#include "alidade/geometry/se3.h"
+
+namespace alidade {
+
+// An earlier frame.
+struct PastView {
+  int number = 0;  // of the frame
+  Se3 T_camera_world;
+  std::vector<float> depth;            // of each cell, metres; 0 = unknown; empty: none is measured
+  std::vector<float> static_log_odds;  // of each cell, as believed then
+};
+
+// How far two depths of one surface may be apart: noise of sensors that measure disparity grows as
+// z² (Khoshelham & Elberink 2012), errors of poses as z.
+inline float DepthTolerance(float z) { return 0.04f + 0.02f * z + 0.004f * z * z; }
+
+enum class Comparison : uint8_t {
+  kUnknown,  // not seen then, or hidden
+  kSame,     // there was a surface at that place
+  kFree      // one looked through the place: what is there now has come since
+};
+
+// Every cell of the present view against an earlier one; also says which cell of it was met (-1).
+// Bescos et al. 2018, §III-C, with the least difference among neighbours so that outlines do not
+// count.
+struct DepthComparison {
+  std::vector<Comparison> result;
+  std::vector<int> met;
+};
+DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
+                             const Se3& T_camera_world, const PastView& past);
+
+// Where a point seen at an earlier pixel may be now: a piece of its epipolar line.
+struct EpipolarSegment {
+  Eigen::Vector2d from, to;  // at the least and the most inverse depth, undistorted pixels
+  bool in_front = true;      // false: it could not be seen now
+};
+// `ray`: (x/z, y/z, 1) then; inverse depths then, 1/metres, may be 0 (infinitely far).
+EpipolarSegment SegmentOf(const Camera& camera, const Eigen::Vector3d& ray, const Se3& T_now_then,
+                          double min_inverse_depth, double max_inverse_depth);
+double DistanceTo(const EpipolarSegment& segment, const Eigen::Vector2d& pixel);  // pixels
+
+// Spreads what is known of some cells over the surface they are on: an average weighted by distance
+// (standard deviation of some three cells) that does not cross steps of depth. Without depth it
+// crosses everything. Gastal & Oliveira 2011, recursive filtering. `weights`: how much each counts.
+void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth,
+                        std::vector<float>& values, std::vector<float>& weights);
+
+}  // namespace alidade

@@ -1,0 +1,80 @@
+#include "alidade/dynamics/flow_tracks.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/tracking.hpp>
+
+namespace alidade {
+namespace {
+
+// Half size is enough to tell a mover from the rest, at a quarter of the cost.
+constexpr int kShrink = 2;
+constexpr int kLevels = 3;
+const cv::Size kWindow(13, 13);  // pixels of the half-size image
+constexpr float kReturn = 0.5f;  // pixels there: a track followed back must end so near its start
+constexpr int kCell = 24;        // pixels: a track is begun where there is none
+constexpr int kPerCell = 1;
+constexpr int kMost = 600;
+
+}  // namespace
+
+void FlowTracks::Advance(const cv::Mat& gray) {
+  cv::Mat small;
+  cv::resize(gray, small, {gray.cols / kShrink, gray.rows / kShrink}, 0, 0, cv::INTER_AREA);
+  std::vector<cv::Mat> pyramid;
+  cv::buildOpticalFlowPyramid(small, pyramid, kWindow, kLevels);
+  ++frames_;
+  if (!tracks_.empty() && !pyramid_.empty()) {
+    std::vector<cv::Point2f> before, now, back;
+    for (const FlowTrack& track : tracks_) {
+      before.push_back(track.at() / kShrink);
+      const bool moves = track.length() > 1;  // the last motion is the best guess of the next
+      now.push_back(before.back() +
+                    (moves ? (track.at() - track.Before(1)) / kShrink : cv::Point2f()));
+    }
+    back = before;
+    std::vector<uint8_t> found, found_back;
+    const cv::TermCriteria enough(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 15, 0.03);
+    cv::calcOpticalFlowPyrLK(pyramid_, pyramid, before, now, found, cv::noArray(), kWindow, kLevels,
+                             enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+    cv::calcOpticalFlowPyrLK(pyramid, pyramid_, now, back, found_back, cv::noArray(), kWindow, 1,
+                             enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+    std::vector<FlowTrack> kept;
+    for (size_t i = 0; i < tracks_.size(); ++i) {
+      const cv::Point2f p = now[i] * kShrink, astray = back[i] - before[i];
+      if (!found[i] || !found_back[i] || std::hypot(astray.x, astray.y) > kReturn) continue;
+      if (!(p.x >= 0 && p.y >= 0 && p.x <= static_cast<float>(gray.cols - 1) &&
+            p.y <= static_cast<float>(gray.rows - 1)))
+        continue;
+      FlowTrack& track = tracks_[i];
+      track.path.push_back(p);
+      if (track.length() > kHistory) track.path.pop_front();
+      kept.push_back(std::move(track));
+    }
+    tracks_ = std::move(kept);
+  }
+  pyramid_ = std::move(pyramid);
+}
+
+void FlowTracks::Seed(std::span<const Keypoint> keypoints, cv::Size image) {
+  const int columns = image.width / kCell + 1, rows = image.height / kCell + 1;
+  std::vector<uint8_t> count(static_cast<size_t>(columns) * rows, 0);
+  const auto cell = [&](cv::Point2f p) -> uint8_t& {
+    return count[static_cast<size_t>(p.y / kCell) * columns + static_cast<size_t>(p.x / kCell)];
+  };
+  for (const FlowTrack& track : tracks_) ++cell(track.at());
+  for (const Keypoint& keypoint : keypoints) {
+    if (tracks_.size() >= kMost) break;
+    if (keypoint.level > 2) continue;
+    const cv::Point2f p(keypoint.raw_x, keypoint.raw_y);
+    if (cell(p) >= kPerCell) continue;
+    ++cell(p);
+    FlowTrack track;
+    track.id = next_id_++;
+    track.first = frames_;
+    track.path = {p};
+    tracks_.push_back(std::move(track));
+  }
+}
+
+}  // namespace alidade

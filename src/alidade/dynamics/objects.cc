@@ -1,0 +1,135 @@
+#include "alidade/dynamics/objects.h"
+
+#include <algorithm>
+#include <string>
+
+#include "alidade/detect/suppress.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kPast = FlowTracks::kHistory;
+constexpr float kSame = 0.3f;      // overlap from which a detection is of an object known already
+constexpr size_t kEnoughFlow = 4;  // tracks that tell how an object moved
+
+float Median(std::vector<float>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Median motion over the last `ago` frames of the tracks that `belongs` (called with where they
+// were then) lets through.
+template <typename Belongs>
+std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int ago,
+                                        Belongs&& belongs) {
+  std::vector<float> x, y;
+  for (const FlowTrack& track : tracks) {
+    if (track.length() <= ago || !belongs(track.Before(ago))) continue;
+    const cv::Point2f motion = track.at() - track.Before(ago);
+    x.push_back(motion.x);
+    y.push_back(motion.y);
+  }
+  if (x.size() < kEnoughFlow) return {};
+  return cv::Point2f(Median(x), Median(y));
+}
+
+cv::Rect2f Inner(const cv::Rect2f& box, float share) {
+  const cv::Size2f size(box.width * share, box.height * share);
+  return {box.x + (box.width - size.width) / 2, box.y + (box.height - size.height) / 2, size.width,
+          size.height};
+}
+
+bool IsListed(const std::string& list, const std::string& name) {
+  return ("," + list + ",").find("," + name + ",") != std::string::npos;
+}
+
+}  // namespace
+
+ObjectTracks::ObjectTracks(const DynamicsSettings& settings,
+                           std::span<const std::string> class_names)
+    : settings_(settings) {
+  for (const std::string& name : class_names) {
+    roles_.push_back(IsListed(settings.moving_classes, name)    ? Role::kMoving
+                     : IsListed(settings.carried_classes, name) ? Role::kCarried
+                                                                : Role::kNone);
+  }
+}
+
+ObjectTracks::Role ObjectTracks::RoleOf(int class_id) const {
+  return class_id >= 0 && class_id < static_cast<int>(roles_.size()) ? roles_[class_id]
+                                                                     : Role::kNone;
+}
+
+void ObjectTracks::Advance(std::span<const FlowTrack> tracks, const Cells& cells, double time,
+                           cv::Size image) {
+  const cv::Rect2f picture(0, 0, static_cast<float>(image.width), static_cast<float>(image.height));
+  std::vector<MovingObject> kept;
+  for (MovingObject& object : objects_) {
+    const bool known = !object.cells.empty();
+    const auto motion = MedianMotion(tracks, 1, [&](cv::Point2f p) {
+      if (known)
+        return std::binary_search(object.cells.begin(), object.cells.end(), cells.At(p.x, p.y));
+      return Inner(object.box, 0.6f).contains(p);
+    });
+    if (motion) object.velocity = *motion;
+    object.past.push_front(object.box);
+    if (object.past.size() > kPast) object.past.pop_back();
+    object.box += object.velocity;
+    if (time - object.seen > settings_.bridge_seconds || (object.box & picture).area() <= 0)
+      continue;
+    kept.push_back(std::move(object));
+  }
+  objects_ = std::move(kept);
+}
+
+void ObjectTracks::Update(std::span<const Detection> detections, int ago, double time,
+                          std::span<const FlowTrack> tracks, const Cells& cells) {
+  (void)cells;
+  std::vector<uint8_t> taken(objects_.size(), 0);
+  for (const Detection& detection : detections) {
+    const Role role = RoleOf(detection.class_id);
+    if (role == Role::kNone) continue;
+    const auto then = [&](const MovingObject& object) {
+      if (ago == 0 || object.past.empty()) return object.box;
+      return object.past[std::min(static_cast<size_t>(ago), object.past.size()) - 1];
+    };
+    int best = -1;
+    float most = kSame;
+    for (size_t i = 0; i < taken.size(); ++i) {
+      const float overlap = Overlap(then(objects_[i]), detection.box);
+      if (taken[i] || overlap <= most) continue;
+      most = overlap;
+      best = static_cast<int>(i);
+    }
+    if (best >= 0) {
+      MovingObject& object = objects_[best];
+      taken[best] = 1;
+      const cv::Rect2f old = then(object);
+      const cv::Point2f moved = (object.box.tl() + object.box.br() - old.tl() - old.br()) / 2;
+      object.box = detection.box + moved;
+      object.class_id = detection.class_id;
+      object.carried = role == Role::kCarried;
+      object.seen = std::max(object.seen, time);
+      continue;
+    }
+    MovingObject object;
+    object.id = next_id_++;
+    object.class_id = detection.class_id;
+    object.carried = role == Role::kCarried;
+    object.box = detection.box;
+    object.seen = time;
+    const cv::Rect2f inner = Inner(detection.box, 0.6f);
+    const auto motion =
+        ago > 0 && settings_.propagate
+            ? MedianMotion(tracks, ago, [&](cv::Point2f p) { return inner.contains(p); })
+            : std::nullopt;
+    if (motion) {
+      object.velocity = *motion / static_cast<float>(ago);
+      object.box += *motion;
+    }
+    objects_.push_back(std::move(object));
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,97 @@
+#include "alidade/system/detection_feed.h"
+
+#include <chrono>
+#include <string>
+
+#include "alidade/base/log.h"
+#include "alidade/base/parallel.h"
+#include "alidade/base/timing.h"
+
+namespace alidade {
+
+DetectionFeed::DetectionFeed(std::shared_ptr<Detector> detector, const DynamicsSettings& settings,
+                             bool threaded, uint64_t seed)
+    : detector_(std::move(detector)), settings_(settings), threaded_(threaded), random_(seed) {
+  if (detector_ && threaded_) thread_ = std::thread([this] { Run(); });
+}
+
+DetectionFeed::~DetectionFeed() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::optional<FrameDetections> DetectionFeed::Detect(int number, const cv::Mat& image) {
+  const Stopwatch watch;
+  try {
+    FrameDetections answer{number, detector_->Detect(image)};
+    std::lock_guard<std::mutex> lock(mutex_);
+    milliseconds_.push_back(watch.Milliseconds());
+    if (random_.Uniform() < settings_.drop_detections) return {};
+    return answer;
+  } catch (const std::exception& error) {
+    failed_ = true;
+    LogWarning("the detector failed at frame " + std::to_string(number) + " (" + error.what() +
+               "); going on with geometry alone");
+    return {};
+  }
+}
+
+void DetectionFeed::Offer(int number, const cv::Mat& image) {
+  if (!detector_ || failed_) return;
+  if (threaded_) {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      image.copyTo(offered_);
+      offered_number_ = number;
+    }
+    changed_.notify_all();
+  } else if (number % settings_.detector_every_frames == 0) {
+    if (auto answer = Detect(number, image)) answers_.push_back(std::move(*answer));
+  }
+}
+
+std::optional<FrameDetections> DetectionFeed::Take(int number) {
+  std::lock_guard<std::mutex> lock(mutex_);
+  std::optional<FrameDetections> newest;
+  const int due = threaded_ ? number : number - settings_.detector_latency_frames;
+  while (!answers_.empty() && answers_.front().number <= due) {
+    newest = std::move(answers_.front());
+    answers_.pop_front();
+  }
+  return newest;
+}
+
+std::vector<double> DetectionFeed::Milliseconds() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return milliseconds_;
+}
+
+void DetectionFeed::Run() {
+  KeepLoopsOnThisThread();
+  LowerThreadPriority();
+  while (!failed_) {
+    cv::Mat image;
+    int number = 0;
+    {
+      std::unique_lock<std::mutex> lock(mutex_);
+      changed_.wait(lock, [&] { return stopping_ || !offered_.empty(); });
+      if (stopping_) return;
+      std::swap(image, offered_);
+      offered_.release();
+      number = offered_number_;
+    }
+    const Stopwatch watch;
+    auto answer = Detect(number, image);
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (answer) answers_.push_back(std::move(*answer));
+    const std::chrono::duration<double, std::milli> rest(watch.Milliseconds() *
+                                                         settings_.detector_rest);
+    if (changed_.wait_for(lock, rest, [&] { return stopping_; })) return;
+  }
+}
+
+}  // namespace alidade
