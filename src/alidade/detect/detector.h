@@ -10,7 +10,8 @@ namespace alidade {
 struct Detection {
   int class_id = -1;  // index into Detector::ClassNames()
   float score = 0;    // 0…1
-  cv::Rect2f box;     // pixels of the image given, inside it
+  cv::Rect2f box;     // pixels of the image given, inside it, from edge to edge: pixel i covers
+                      // i to i + 1, its centre is i + 0.5 (as in cv::Rect, unlike keypoints)
 };
 
 // What was found in one frame.

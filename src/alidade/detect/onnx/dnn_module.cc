@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
@@ -17,14 +18,22 @@ std::string Between(const std::string& text, const std::string& before, const ch
   return text.substr(from, text.find_first_of(ends, from) - from);
 }
 
+// What a damaged file may have put into it stays out.
+std::string Printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  return text.substr(0, kLongest);
+}
+
 // OpenCV's reasons go over several lines and name its source files: what a user can make use of,
 // which is the operator it stumbled over, in one line.
 std::string Reason(const cv::Exception& error) {
   const std::string text = error.what();
   std::string operation = Between(text, "Node [", "@]");
   if (operation.empty()) operation = Between(text, "of type \"", "\"");
-  if (!operation.empty()) return "operator " + operation;
-  std::string line = error.err.substr(0, error.err.find('\n')).substr(0, kLongest);
+  if (!operation.empty())
+    return Printable("operator " + operation) + " is not known, or not used in this way";
+  const std::string line = Printable(error.err.substr(0, error.err.find('\n')));
   return line.empty() ? "an unknown reason" : line;
 }
 
@@ -38,7 +47,7 @@ std::string ReasonOf(const Function& run) {
   } catch (const std::bad_alloc&) {
     return "not enough memory";
   } catch (const std::exception& error) {
-    return std::string(error.what()).substr(0, kLongest);
+    return Printable(error.what());
   } catch (...) {
     return "an unknown reason";
   }
@@ -47,7 +56,7 @@ std::string ReasonOf(const Function& run) {
 
 class DnnNetwork : public Network {
  public:
-  explicit DnnNetwork(cv::dnn::Net net) : net_(std::move(net)) {
+  explicit DnnNetwork(const cv::dnn::Net& net) : net_(net) {
     net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);  // the same bits wherever it runs
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     names_ = net_.getUnconnectedOutLayersNames();
@@ -73,9 +82,11 @@ class DnnNetwork : public Network {
 }  // namespace
 }  // namespace alidade
 
-extern "C" __attribute__((visibility("default"))) alidade::Network* alidade_dnn_open(
-    const char* bytes, size_t size, std::string* problem) {
-  using namespace alidade;
+using alidade::DnnNetwork, alidade::Network, alidade::ReasonOf;
+
+extern "C" __attribute__((visibility("default"))) Network* alidade_dnn_open(const char* bytes,
+                                                                            size_t size,
+                                                                            std::string* problem) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it ourselves
   std::unique_ptr<Network> network;
   *problem = ReasonOf(

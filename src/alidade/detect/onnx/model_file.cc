@@ -4,9 +4,11 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "alidade/base/error.h"
 #include "alidade/detect/onnx/protobuf.h"
+#include "alidade/detect/onnx/tensor.h"
 
 namespace alidade {
 namespace {
@@ -19,10 +21,10 @@ namespace graph {
 enum { kNode = 1, kInitializer = 5, kInput = 11 };
 }
 namespace node {
-enum { kInput = 1, kOperation = 4 };
+enum { kInput = 1, kOutput = 2, kOperation = 4, kAttribute = 5 };
 }
-namespace tensor {
-enum { kDims = 1, kName = 8, kDataLocation = 14 };
+namespace attribute {
+enum { kTensor = 5 };
 }
 namespace value_info {
 enum { kName = 1, kType = 2 };
@@ -33,7 +35,6 @@ enum { kTensor = 1 };
 namespace tensor_type {
 enum { kElementType = 1, kShape = 2 };
 }
-
 namespace shape {
 enum { kDim = 1 };
 }
@@ -49,7 +50,7 @@ constexpr int64_t kOpenSide = -1;
 
 struct Node {
   std::string_view operation;
-  std::vector<std::string_view> inputs;
+  std::vector<std::string_view> inputs, outputs;
 };
 
 struct Graph {
@@ -71,22 +72,20 @@ Node ReadNode(std::string_view bytes) {
   Node read;
   ForEachField(bytes, [&](const ProtobufField& field) {
     if (field.number == node::kInput) read.inputs.push_back(field.bytes);
+    if (field.number == node::kOutput) read.outputs.push_back(field.bytes);
     if (field.number == node::kOperation) read.operation = field.bytes;
+    if (field.number != node::kAttribute) return;
+    ForEachField(field.bytes, [](const ProtobufField& part) {
+      if (part.number == attribute::kTensor) ReadTensor(part.bytes);  // it may throw
+    });
   });
   return read;
 }
 
 void ReadConstant(std::string_view bytes, Graph* read) {
-  std::string_view name;
-  std::vector<int64_t> shape;
-  ForEachField(bytes, [&](const ProtobufField& field) {
-    if (field.number == tensor::kName) name = field.bytes;
-    if (field.number == tensor::kDims) {
-      for (const uint64_t side : Integers(field)) shape.push_back(static_cast<int64_t>(side));
-    }
-    if (field.number == tensor::kDataLocation && field.value == 1) read->external_weights = true;
-  });
-  read->constants[name] = std::move(shape);
+  OnnxTensor tensor = ReadTensor(bytes);
+  read->external_weights |= tensor.external;
+  read->constants[tensor.name] = std::move(tensor.shape);
 }
 
 // A dimension is a number, or a name when it is left open; some exporters write 0 or -1 for that.
@@ -122,6 +121,20 @@ OnnxInput ReadInput(std::string_view bytes) {
   return input;
 }
 
+// Each layer works on what the file holds or a layer before it makes: OpenCV doesn't look.
+void CheckConnections(const Graph& read) {
+  std::set<std::string_view> known;
+  for (const OnnxInput& input : read.inputs) known.insert(input.name);
+  for (const auto& [name, shape] : read.constants) known.insert(name);
+  for (const Node& node : read.nodes) {
+    for (const std::string_view input : node.inputs) {
+      if (!input.empty() && known.count(input) == 0)
+        ThrowInput("is damaged: a layer works on something that is not there");
+    }
+    known.insert(node.outputs.begin(), node.outputs.end());
+  }
+}
+
 Graph ReadGraph(std::string_view bytes) {
   Graph read;
   ForEachField(bytes, [&](const ProtobufField& field) {
@@ -132,6 +145,7 @@ Graph ReadGraph(std::string_view bytes) {
   // Files of the first years list the weights among the inputs.
   std::erase_if(read.inputs,
                 [&](const OnnxInput& input) { return read.constants.count(input.name) > 0; });
+  CheckConnections(read);
   return read;
 }
 

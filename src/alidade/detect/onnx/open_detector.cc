@@ -136,6 +136,7 @@ class OnnxDetector : public Detector {
                       : ""));
     }
     std::vector<NetworkOutput> views;
+    views.reserve(outputs.size());
     for (const cv::Mat& output : outputs) views.push_back(ViewOf(output));
     layout_ = RecogniseYolo(views, input_);
   }
