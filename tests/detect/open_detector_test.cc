@@ -141,6 +141,78 @@ TEST_F(OpenDetectorTest, GivesYolov6RedGreenBlueFrom0To1) {
   EXPECT_NEAR(ScoreOfPlane(network, 0, 1, "a", kPicture), 200.0 / 255, 1e-5);
 }
 
+// The last layers of YOLOv8 as its exporter writes them when it simplifies: each side of a box is a
+// distribution over 16 distances from the cell's centre, in strides (Li et al. 2020). It writes the
+// strides once; `stride_rows` 4 repeats them for each number of the box.
+std::string LastLayersOfYolov8(int stride_rows) {
+  constexpr int kBins = 16, kSides = 4, kClasses = 2, kRows = kSides * kBins + kClasses;
+  TinyNetwork network({1, kRows, kTinyCells}, 0);
+  const int cell = 5, distances[kSides] = {1, 0, 2, 1};  // left, top, right, bottom
+  for (int side = 0; side < kSides; ++side)
+    network.At(kBins * side + distances[side], cell) = 60;  // all but certain
+  for (int i = 0; i < kTinyCells; ++i) {
+    network.At(kRows - 2, i) = -9;
+    network.At(kRows - 1, i) = i == cell ? 9 : -9;
+  }
+  std::vector<float> centres, strides, bins;
+  for (const int axis : {0, 1}) {
+    for (const int stride : {8, 16, 32}) {
+      const int row = kTinySide / stride;
+      for (int i = 0; i < row * row; ++i) {
+        centres.push_back(static_cast<float>(axis == 0 ? i % row : i / row) + 0.5f);
+      }
+    }
+  }
+  for (int row = 0; row < stride_rows; ++row) {
+    for (int i = 0; i < kTinyCells; ++i) strides.push_back(i < 16 ? 8 : i < 20 ? 16 : 32);
+  }
+  for (int i = 0; i < kBins; ++i) bins.push_back(static_cast<float>(i));
+
+  OnnxFile file = network.File("heads");
+  const auto slice = [&file](const std::string& from, const std::string& to, int64_t a, int64_t b) {
+    file.Constant(to + ".a", {a}).Constant(to + ".b", {b}).Constant(to + ".axis", {1});
+    file.Node("Slice", {from, to + ".a", to + ".b", to + ".axis"}, to);
+  };
+  slice("heads", "sides", 0, kSides * kBins);
+  slice("heads", "classes", kSides * kBins, kRows);
+  file.Constant("shape4", {1, kSides, kBins, kTinyCells})
+      .Constant("shape3", {1, kSides, kTinyCells});
+  file.Constant("bins", {1, kBins, 1, 1}, bins);
+  file.Node("Reshape", {"sides", "shape4"}, "split");
+  file.Node("Transpose", {"split"}, "turned", {{"perm", {0, 2, 1, 3}}});
+  file.Node("Softmax", {"turned"}, "likely", {{"axis", {1}}});
+  file.Node("Conv", {"likely", "bins"}, "mean", {{"kernel_shape", {1, 1}}});
+  file.Node("Reshape", {"mean", "shape3"}, "distances");
+  slice("distances", "to_left_top", 0, 2);
+  slice("distances", "to_right_bottom", 2, 4);
+  file.Constant("centres", {1, 2, kTinyCells}, centres).Constant("two", {1}, {2.0f});
+  file.Constant("strides", {1, stride_rows, kTinyCells}, strides);
+  file.Node("Sub", {"centres", "to_left_top"}, "left_top");
+  file.Node("Add", {"centres", "to_right_bottom"}, "right_bottom");
+  file.Node("Add", {"left_top", "right_bottom"}, "sum").Node("Div", {"sum", "two"}, "middle");
+  file.Node("Sub", {"right_bottom", "left_top"}, "size");
+  file.Node("Concat", {"middle", "size"}, "box", {{"axis", {1}}});
+  file.Node("Mul", {"box", "strides"}, "pixels").Node("Sigmoid", {"classes"}, "scores");
+  file.Node("Concat", {"pixels", "scores"}, "output0", {{"axis", {1}}});
+  return file.Output("output0", {1, kSides + kClasses, kTinyCells}).Bytes();
+}
+
+TEST_F(OpenDetectorTest, RunsTheLastLayersOfYolov8) {
+  const auto detector = Open(LastLayersOfYolov8(4));
+  const std::vector<Detection> found = detector->Detect(kPicture);
+  ASSERT_EQ(found.size(), 1u);  // cell centre (1.5, 1.5) · 8: from (4, 12) to (28, 20)
+  EXPECT_EQ(found[0].class_id, 1);
+  EXPECT_NEAR(found[0].box.x, 4, 1e-3);
+  EXPECT_NEAR(found[0].box.y, 12, 1e-3);
+  EXPECT_NEAR(found[0].box.width, 24, 1e-3);
+  EXPECT_NEAR(found[0].box.height, 8, 1e-3);
+}
+
+TEST_F(OpenDetectorTest, SaysWhatThisOpenCvCannotRun) {
+  if (CV_VERSION_MAJOR > 4 || CV_VERSION_MINOR > 6) GTEST_SKIP() << "newer ones can";
+  EXPECT_THAT(Complaint(LastLayersOfYolov8(1)), HasSubstr("of a newer OpenCV"));
+}
+
 TEST_F(OpenDetectorTest, RunsNetworksThatSuppressThemselves) {
   TinyNetwork network({1, 4, 6}, 0);
   const float row[6] = {2, 4, 20, 30, 0.5f, 7};

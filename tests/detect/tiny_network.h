@@ -35,7 +35,8 @@ struct TinyNetwork {
   float& At(int row, int column) { return values[static_cast<size_t>(row * shape[2] + column)]; }
   size_t Index(int row, int column) const { return static_cast<size_t>(row * shape[2] + column); }
 
-  OnnxFile File() const {
+  // With its output called `last`, for more layers to work on.
+  OnnxFile File(const std::string& last) const {
     const auto count = static_cast<int64_t>(values.size());
     std::vector<float> weights(3 * values.size(), 0);  // one row for each value
     for (const Dependence& d : dependences)
@@ -51,11 +52,11 @@ struct TinyNetwork {
     file.Constant("constants", {count}, values);
     file.Node("Conv", {"means", "weights", "constants"}, "numbers", {{"kernel_shape", {1, 1}}});
     file.Constant("shape", shape);
-    file.Node("Reshape", {"numbers", "shape"}, "output0");
-    file.Output("output0", shape);
+    file.Node("Reshape", {"numbers", "shape"}, last);
     if (!names.empty()) file.Metadata("names", names);
     return file;
   }
+  OnnxFile File() const { return File("output0").Output("output0", shape); }
   std::string Bytes() const { return File().Bytes(); }
 };
 

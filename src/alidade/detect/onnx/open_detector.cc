@@ -22,6 +22,9 @@ namespace {
 constexpr int kStride = 32;          // of the coarsest cells: sides are multiples of it
 constexpr int64_t kMostSide = 4096;  // pixels: beyond, it is a damaged file
 constexpr int kOpenSize = 640;       // of both sides when the file leaves them open
+constexpr char kAdvice[] =
+    "; networks of the YOLOv5 and YOLOX families can be, others may need the layers of a newer "
+    "OpenCV";
 constexpr int kTrialGrey = 114;
 constexpr int kFloat = 1, kHalf = 10;  // TensorProto.DataType
 
@@ -79,7 +82,8 @@ std::unique_ptr<Network> OpenNetwork(const std::string& bytes) {
   const auto open = reinterpret_cast<NetworkOpenFunction*>(module.symbols[0]);
   std::string problem;
   std::unique_ptr<Network> network(open(bytes.data(), bytes.size(), &problem));
-  if (!network) ThrowInput("is no network that OpenCV " CV_VERSION " can read: " + problem);
+  if (!network)
+    ThrowInput("is no network that OpenCV " CV_VERSION " can read: " + problem + kAdvice);
   return network;
 }
 
@@ -130,10 +134,10 @@ class OnnxDetector : public Detector {
     std::vector<cv::Mat> outputs;
     const std::string problem = network_->Run(ToNetworkInput(grey, {}), kAllOutputs, &outputs);
     if (!problem.empty()) {
-      ThrowInput("OpenCV " CV_VERSION " cannot run this network: " + problem +
+      ThrowInput("is no network that OpenCV " CV_VERSION " can run: " + problem +
                  (LeavesSizeOpen(model)
                       ? "; its input size is left open, export it with a fixed one"
-                      : ""));
+                      : kAdvice));
     }
     std::vector<NetworkOutput> views;
     views.reserve(outputs.size());
