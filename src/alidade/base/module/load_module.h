@@ -1,5 +1,6 @@
 // Loads a part of the program that lives in a shared library of its own, because linking what it
-// stands on would cost every start (77 MB and 0.1 s for OpenCV's media and network parts).
+// stands on would cost every start (77 MB and 0.1 s for OpenCV's media), or because most runs do
+// without it (its networks).
 #pragma once
 
 #include <string>
