@@ -1,5 +1,6 @@
 // `alidade bench`: how long the parts take, in milliseconds and in U (docs/benchmarks.md).
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -10,6 +11,7 @@
 #include "alidade/io/files/file.h"
 #include "arguments.h"
 #include "bench/bench.h"
+#include "bench/dynamic.h"
 #include "bench/semidense.h"
 #include "commands.h"
 
@@ -22,6 +24,7 @@ struct BenchArguments {
   std::vector<std::string> names;
   std::string source, out;
   int frames = 0;  // 0: see FillIn()
+  bench::DynamicOptions dynamic;
 };
 
 using Bench = bench::Section (*)(const bench::Recording&);
@@ -47,28 +50,40 @@ void FillIn(BenchArguments& arguments) {
 
 void Print(const bench::Section& section) {
   const Summary u = Summarise(section.u_milliseconds);
-  std::printf("\n%s (U = %.2f ms, median of %d)\n", section.name.c_str(), u.median, u.count);
+  if (u.count > 0) {
+    std::printf("\n%s (U = %.2f ms, median of %d)\n", section.name.c_str(), u.median, u.count);
+  } else {
+    std::printf("\n%s\n", section.name.c_str());
+  }
   if (!section.rows.empty())
     std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
   for (const bench::Row& row : section.rows) {
     const Summary s = Summarise(row.milliseconds);
     std::printf("  %-44s %10.3f %8.3f %10.3f %7d  %s\n", row.name.c_str(), s.median,
-                s.median / u.median, s.p95, s.count, row.note.c_str());
+                u.count > 0 ? s.median / u.median : 0.0, s.p95, s.count, row.note.c_str());
   }
   for (const bench::Table& table : section.tables) {
     std::printf("\n  %s\n", table.name.c_str());
     const bool labels = !table.labels.empty();
     const int width = labels ? 9 : 16, digits = labels ? 2 : 3;
-    if (labels) std::printf("  %-24s", "");
-    for (const std::string& column : table.columns) std::printf("  %*s", width, column.c_str());
+    size_t longest = 24;
+    for (const std::string& label : table.labels) longest = std::max(longest, label.size());
+    const int label_width = static_cast<int>(longest);
+    if (labels) std::printf("  %-*s", label_width, "");
+    std::vector<int> widths;
+    for (const std::string& column : table.columns) {
+      widths.push_back(std::max(width, static_cast<int>(column.size())));
+      std::printf("  %*s", widths.back(), column.c_str());
+    }
     for (size_t i = 0; i < table.rows.size(); ++i) {
       std::printf("\n");
-      if (labels) std::printf("  %-24s", table.labels[i].c_str());
-      for (double value : table.rows[i]) {
+      if (labels) std::printf("  %-*s", label_width, table.labels[i].c_str());
+      for (size_t column = 0; column < widths.size(); ++column) {
+        const double value = table.rows[i][column];
         if (value == value) {
-          std::printf("  %*.*f", width, digits, value);
+          std::printf("  %*.*f", widths[column], digits, value);
         } else {
-          std::printf("  %*s", width, "-");
+          std::printf("  %*s", widths[column], "-");
         }
       }
     }
@@ -121,11 +136,24 @@ int RunSemiDense(std::vector<std::string> words, const BenchArguments& arguments
   return 0;
 }
 
+// `words`: recordings.
+int RunDynamic(const std::vector<std::string>& words, BenchArguments arguments) {
+  bench::DynamicOptions& options = arguments.dynamic;
+  options.sources = words;
+  if (!arguments.source.empty()) options.sources.push_back(arguments.source);
+  options.frames = arguments.frames;
+  const bench::Section section = bench::BenchDynamic(options);
+  Print(section);
+  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, {ToJson(section)});
+  return 0;
+}
+
 int Run(BenchArguments arguments) {
   cv::setNumThreads(1);
   SetThreadCount(0);
   const std::vector<std::string>& names = arguments.names;
   if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
+  if (names[0] == "dynamic") return RunDynamic({names.begin() + 1, names.end()}, arguments);
   FillIn(arguments);
   std::vector<Bench> benches;
   for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
@@ -154,6 +182,33 @@ int Run(BenchArguments arguments) {
   return 0;
 }
 
+void AddDynamicOptions(CLI::App& command, bench::DynamicOptions& options) {
+  const auto add = [&](const std::string& name, auto& value, const std::string& help) {
+    return command.add_option(name, value, help)->group("Of dynamic");
+  };
+  const auto many = [&](const std::string& name, std::vector<std::string>& values,
+                        const std::string& help) {
+    add(name, values, help)
+        ->take_all()
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  const auto flag = [&](const std::string& name, bool& value, const std::string& help) {
+    command.add_flag(name, value, help)->group("Of dynamic");
+  };
+  add("--detector", options.detector, "Network that finds people (.onnx), for mode full");
+  many("--sensor", options.sensors, "rgbd, stereo, mono; default: the recording's own, and mono");
+  add("--seeds", options.seeds, "Runs of each kind, of which medians are told (1)")
+      ->check(CLI::Range(1, 100));
+  many("--plain", options.plain,
+       "The same frames without people, DIR or DIR:first-last, for each recording");
+  many("--set", options.settings, "One setting of all runs, name=value");
+  flag("--ablation", options.ablation, "What each part is worth");
+  flag("--latency", options.latency, "Late and lost detections");
+  flag("!--no-live", options.live, "Leave out the threaded runs, which take their time");
+  add("--pictures", options.pictures, "Folder for pictures of the features, before and after");
+}
+
 }  // namespace
 
 void AddBenchCommand(CLI::App& app, Action& action) {
@@ -163,14 +218,17 @@ void AddBenchCommand(CLI::App& app, Action& action) {
   command
       ->add_option("NAME", arguments->names,
                    "features, ransac, ba, frame, place: one or more; or semidense and recordings "
-                   "with depth (synth:room, synth:desk, synth:wall)")
+                   "with depth (synth:room, synth:desk, synth:wall); or dynamic and recordings of "
+                   "people (synth:room?actors=3)")
       ->required();
   command->add_option("--source", arguments->source,
                       "Recording to take frames from (synth:room; place: synth:loop)");
   command
       ->add_option("--frames", arguments->frames,
-                   "Frames of it, at most (150; semidense: 200, recorded ones 600)")
+                   "Frames of it, at most (150; semidense: 200, recorded ones 600; dynamic: 200, "
+                   "recorded ones all)")
       ->check(CLI::Range(2, 100000));
+  AddDynamicOptions(*command, arguments->dynamic);
   command->add_option("--out", arguments->out, "JSON file to write the numbers to");
   command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });
 }

@@ -121,7 +121,7 @@ Sensor ChooseSensor(const SynthSettings& settings, const SourceOptions& options)
   return sensor;
 }
 
-class SynthSource : public FrameSource {
+class SynthSource : public ActorSource {
  public:
   SynthSource(SynthSettings settings, const SourceOptions& options)
       : recording_(settings),
@@ -149,8 +149,11 @@ class SynthSource : public FrameSource {
     frame.true_depth = preparation_.Depth(rendered.depth_exact);
     if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);
     if (info_.sensor == Sensor::kRgbd) frame.depth = preparation_.Depth(rendered.depth);
+    mask_ = preparation_.Depth(rendered.mask);
     return frame;
   }
+
+  cv::Mat ActorMask() const override { return mask_; }
 
   bool Seek(int frames) override {
     next_ = frames;
@@ -161,6 +164,7 @@ class SynthSource : public FrameSource {
   SynthRecording recording_;
   ImagePreparation preparation_;
   SourceInfo info_;
+  cv::Mat mask_;
   int next_ = 0;
 };
 
@@ -194,6 +198,13 @@ SynthSettings ParseSynthSource(const std::string& source) {
   }
   settings.Check();
   return settings;
+}
+
+std::unique_ptr<ActorSource> OpenActorSource(const std::string& source,
+                                             const SourceOptions& options) {
+  const SynthSettings settings = ParseSynthSource(source);
+  ChooseSensor(settings, options);
+  return std::make_unique<SynthSource>(settings, options);
 }
 
 std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,

@@ -23,6 +23,15 @@ SynthSettings ParseSynthSource(const std::string& source);
 std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,
                                              const SourceOptions& options = {});
 
+// A rendered source that tells where the actors are, too.
+class ActorSource : public FrameSource {
+ public:
+  // Of the frame that Next() gave last: CV_8U, 255 = an actor.
+  virtual cv::Mat ActorMask() const = 0;
+};
+std::unique_ptr<ActorSource> OpenActorSource(const std::string& source,
+                                             const SourceOptions& options = {});  // from frame 0 on
+
 // Stamps as the source and the files of `alidade synth` have them: seconds with 6 digits after the
 // point.
 std::string SynthStamp(double seconds);

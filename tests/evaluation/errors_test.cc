@@ -144,6 +144,24 @@ TEST(Rpe, ConsecutivePairsDoNotOverlap) {
   EXPECT_LT(result.trans.max, 1e-12);
 }
 
+TEST(Rpe, OfEveryTwoPosesGrowsWithTheTimeBetween) {
+  constexpr int kPoses = 40;
+  constexpr double kDrift = 0.01;  // metres per pose, along x
+  Trajectory truth, estimate;
+  for (int i = 0; i < kPoses; ++i) {
+    truth.push_back({i / 30.0, {Eigen::Matrix3d::Identity(), {0, 0.1 * i, 0}}, ""});
+    estimate.push_back(truth.back());
+    estimate.back().T_world_camera.t.x() += kDrift * i;
+  }
+  const RpeResult result = EvaluateRpe(truth, estimate, {.pairs = PairSelection::kEvery});
+  EXPECT_EQ(result.trans.n, kPoses * kPoses);
+  // Two numbers drawn evenly from n have a mean squared difference of (n² - 1) / 6.
+  EXPECT_NEAR(result.trans.rmse, kDrift * std::sqrt((kPoses * kPoses - 1) / 6.0), 1e-12);
+  EXPECT_NEAR(result.trans.max, kDrift * (kPoses - 1), 1e-12);
+  EXPECT_EQ(result.trans.min, 0);
+  EXPECT_NEAR(result.rot.max, 0, 1e-12);
+}
+
 TEST(Rpe, AppliesTheScaleWhenAsked) {
   const Trajectory truth = Helix(90);
   const Trajectory estimate = Moved(truth, 0.25, kElsewhere);

@@ -35,6 +35,12 @@ std::vector<std::pair<int, int>> ChoosePairs(const TimeOrder& estimate,
     }
     return pairs;
   }
+  if (settings.pairs == PairSelection::kEvery) {
+    for (int i = 0; i <= last; ++i) {
+      for (int j = 0; j <= last; ++j) pairs.push_back({i, j});
+    }
+    return pairs;
+  }
   for (int i = 0; i <= last; ++i) {
     const int j = Partner(estimate, i, settings);
     if (j >= 0 && j != last) pairs.push_back({i, j});

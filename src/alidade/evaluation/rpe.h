@@ -10,6 +10,8 @@ enum class DeltaUnit { kSeconds, kFrames };
 enum class PairSelection {
   kAll,          // a pair from each pose of the estimate, as TUM's tool with a fixed delta
   kConsecutive,  // a pair begins where the last one ended: no overlap, independent errors
+  kEvery,        // each pose with each, forth and back, itself included, whatever lies between:
+                 // what TUM's tool draws 10000 from when it is given no fixed delta
 };
 
 struct RpeSettings {
