@@ -52,6 +52,9 @@ class DynamicFilter {
                         std::vector<float>& weights) const;
   void AddFlowEvidence(const Se3& T_camera_world, std::vector<float>& evidence,
                        std::vector<float>& weights);
+  void SpreadBelief();
+  void FindObjects();
+  float Belief(int cell) const;  // log-odds of standing still, objects included
   float BeliefAt(const Keypoint& keypoint) const;
 
   Camera camera_;
@@ -61,9 +64,10 @@ class DynamicFilter {
   ObjectTracks objects_;
 
   DynamicInput now_;
-  std::vector<float> depth_;     // of each cell; empty: none is measured
-  std::vector<float> belief_;    // log-odds of standing still, of each cell, by geometry
-  std::vector<uint8_t> object_;  // of each cell: 1 = an object's that moves by itself
+  std::vector<float> depth_;      // of each cell; empty: none is measured
+  std::vector<float> belief_;     // log-odds of standing still, of each cell, by geometry
+  std::vector<float> certainty_;  // of each cell, 0…1: how much it was itself held against others
+  std::vector<uint8_t> object_;   // of each cell: 1 = an object's that moves by itself
   std::deque<std::shared_ptr<const PastView>>
       recent_;  // the last frames, newest first; null where lost
   std::deque<std::shared_ptr<const PastView>> older_;  // some of those before, newest first

@@ -6,16 +6,15 @@
 namespace alidade {
 namespace {
 
-constexpr float kFade = 0.75f;  // from cell to cell on one surface
+constexpr float kPastUnmeasured = 0.2f;
 constexpr float kStep = 0.05f;  // of the depth: a step so high lets next to nothing pass
-constexpr float kFadeUnmeasured = 0.6f;
 
 // How much passes from a cell to its neighbour.
 float Passes(std::span<const float> depth, int a, int b) {
-  if (depth.empty() || !(depth[a] > 0) || !(depth[b] > 0))
-    return depth.empty() ? kFadeUnmeasured : 0.4f;
+  if (depth.empty()) return 1;
+  if (!(depth[a] > 0) || !(depth[b] > 0)) return kPastUnmeasured;
   const float step = std::abs(depth[a] - depth[b]) / (kStep * std::min(depth[a], depth[b]));
-  return step > 1 ? 0 : kFade * (1 - step * step);
+  return step > 1 ? 0 : 1 - step * step;
 }
 
 }  // namespace
@@ -91,11 +90,11 @@ double DistanceTo(const EpipolarSegment& segment, const Eigen::Vector2d& pixel) 
   return (pixel - segment.from - share * along).norm();
 }
 
-void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth,
+void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth, float fade,
                         std::vector<float>& values, std::vector<float>& weights) {
   for (int i = 0; i < cells.count(); ++i) values[i] *= weights[i];
   const auto pass = [&](int from, int to) {
-    const float share = Passes(depth, from, to);
+    const float share = fade * Passes(depth, from, to);
     values[to] += share * (values[from] - values[to]);
     weights[to] += share * (weights[from] - weights[to]);
   };

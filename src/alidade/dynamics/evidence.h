@@ -49,10 +49,11 @@ EpipolarSegment SegmentOf(const Camera& camera, const Eigen::Vector3d& ray, cons
                           double min_inverse_depth, double max_inverse_depth);
 double DistanceTo(const EpipolarSegment& segment, const Eigen::Vector2d& pixel);  // pixels
 
-// Spreads what is known of some cells over the surface they are on: an average weighted by distance
-// (standard deviation of some three cells) that does not cross steps of depth. Without depth it
-// crosses everything. Gastal & Oliveira 2011, recursive filtering. `weights`: how much each counts.
-void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth,
+// Spreads what is known of some cells over the surface they are on: a weighted average that fades
+// with distance, to `fade` from cell to cell, and does not cross steps of depth. Without depth it
+// crosses everything. `weights`: how much each cell's own value counts; afterwards, how much was
+// heard there. Gastal & Oliveira 2011 (recursive filtering).
+void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth, float fade,
                         std::vector<float>& values, std::vector<float>& weights);
 
 }  // namespace alidade

@@ -15,9 +15,11 @@ constexpr float kNearest = 0.2f;  // metres: begin of the first bin
 constexpr float kWiden = 0.06f;   // of the box's size, on every side: boxes cut off hands and feet
 constexpr float kReach = 0.22f;   // of the depth, but …
 constexpr float kMinReach =
-    0.45f;                      // … at least so many metres before and behind the middle: an arm
-constexpr float kStep = 0.04f;  // of the depth, from one cell of a surface to the next
-constexpr float kOval = 2.6f;   // exponent of the oval: between an ellipse and the box
+    0.45f;                       // … at least so many metres before and behind the middle: an arm
+constexpr float kStep = 0.04f;   // of the depth, from one cell of a surface to the next
+constexpr float kStatic = 3.5f;  // log-odds: known to stand still
+constexpr float kMiddle = 0.3f, kMostStill = 0.7f;
+constexpr float kOval = 2.6f;  // exponent of the oval: between an ellipse and the box
 
 float Inside(const cv::Rect2f& box, cv::Point2f p, float exponent) {
   const float u = std::abs(p.x - box.x - box.width / 2) / (box.width / 2);
@@ -39,11 +41,13 @@ int BinOf(float z) {
 }
 
 // Depth of what fills the middle of the box; 0 when nothing there has depth.
-float CoreDepth(const Cells& cells, std::span<const float> depth, const cv::Rect2f& box) {
+float CoreDepth(const Cells& cells, std::span<const float> depth,
+                std::span<const float> static_log_odds, float least_static, const cv::Rect2f& box) {
   std::array<float, kBins> weights{};
   VisitBox(cells, box, [&](int i) {
     const float off = Inside(box, cells.Centre(i), 2);
-    if (depth[i] > 0 && off < 1) weights[BinOf(depth[i])] += std::exp(-3 * off);
+    if (depth[i] > 0 && off < 1 && static_log_odds[i] <= least_static)
+      weights[BinOf(depth[i])] += std::exp(-3 * off);
   });
   int best = -1;
   float most = 0;
@@ -65,16 +69,27 @@ float CoreDepth(const Cells& cells, std::span<const float> depth, const cv::Rect
 
 }  // namespace
 
-std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
-                                const cv::Rect2f& box) {
+std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box) {
   std::vector<int> found;
-  const float core = depth.empty() ? 0 : CoreDepth(cells, depth, box);
-  if (core <= 0) {
-    VisitBox(cells, box, [&](int i) {
-      if (Inside(box, cells.Centre(i), kOval) <= 1) found.push_back(i);
-    });
-    return found;
-  }
+  VisitBox(cells, box, [&](int i) {
+    if (Inside(box, cells.Centre(i), kOval) <= 1) found.push_back(i);
+  });
+  return found;
+}
+
+std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
+                                std::span<const float> static_log_odds, const cv::Rect2f& box) {
+  // Something that stood still before it was detected fills the middle all the same.
+  int of_core = 0, still = 0;
+  VisitBox(cells, box, [&](int i) {
+    if (!(depth[i] > 0) || Inside(box, cells.Centre(i), 2) > kMiddle) return;
+    ++of_core;
+    still += static_log_odds[i] > kStatic;
+  });
+  const float least_static = still > kMostStill * of_core ? 1e9f : kStatic;
+  const float core = CoreDepth(cells, depth, static_log_odds, least_static, box);
+  if (core <= 0) return CellsInOval(cells, box);
+  std::vector<int> found;
   const cv::Rect2f wide(box.x - kWiden * box.width, box.y - kWiden * box.height,
                         (1 + 2 * kWiden) * box.width, (1 + 2 * kWiden) * box.height);
   const float reach = std::max(kMinReach, kReach * core), begin = 0.06f * core;
@@ -82,6 +97,7 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
   std::deque<int> front;
   VisitBox(cells, wide, [&](int i) {
     if (!(depth[i] > 0) || std::abs(depth[i] - core) > reach) return;
+    if (static_log_odds[i] > least_static) return;
     state[i] = 1;
     if (std::abs(depth[i] - core) <= begin && Inside(box, cells.Centre(i), 2) < 0.5f) {
       state[i] = 2;

@@ -48,10 +48,13 @@ class ObjectTracks {
   int next_id_ = 0;
 };
 
-// The cells of the picture that an object covers. With depth (one value per cell, 0 = unknown): the
-// surface that fills the middle of its box, grown as far as depth goes on; `before`: what it
-// covered in the last frame, moved on (may be empty). Without depth: an oval in the box.
+// The cells of the picture that an object covers, sorted: of the surface that fills the middle of
+// its box all that depth leads to without a step. `depth`: of each cell, metres, 0 = unknown.
+// `static_log_odds`: of each cell; what is known well to stand still is something else, such as the
+// floor.
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
-                                const cv::Rect2f& box);
+                                std::span<const float> static_log_odds, const cv::Rect2f& box);
+// Those of an oval in the box: all that can be said without depth.
+std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box);
 
 }  // namespace alidade
