@@ -2,17 +2,18 @@
 // the order Advance, Judge, Remember for each frame.
 #pragma once
 
-#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "alidade/dynamics/cells.h"
-#include "alidade/dynamics/evidence.h"
 #include "alidade/dynamics/flow_tracks.h"
+#include "alidade/dynamics/history.h"
 #include "alidade/dynamics/objects.h"
 #include "alidade/dynamics/settings.h"
+#include "alidade/dynamics/surface_belief.h"
+#include "alidade/dynamics/track_belief.h"
 #include "alidade/features/frame.h"
 
 namespace alidade {
@@ -25,20 +26,27 @@ struct DynamicInput {
   cv::Mat right;  // CV_8U, rectified; may be empty
 };
 
+// What is known of the camera before the pose is.
+struct PoseGuess {
+  Se3 T_camera_world;
+  double nearest = 0.4;  // metres or map units: nothing is nearer
+};
+
 class DynamicFilter {
  public:
   // `class_names`: of the detector whose answers will come; may be empty.
   DynamicFilter(const Camera& camera, const DynamicsSettings& settings,
                 std::span<const std::string> class_names);
+  DynamicFilter(const DynamicFilter&) = delete;
+  DynamicFilter& operator=(const DynamicFilter&) = delete;
 
   // A new frame, before its features: flow, depth, and where the known objects are by now.
   // `arrived`: an answer of the detector, for this frame or one before it.
   void Advance(const DynamicInput& input, const std::optional<FrameDetections>& arrived);
   // 255 where movers are expected, one pixel for each cell: features there are of little use.
   cv::Mat ExpectedMovers() const;
-  // Fills frame.static_probability. `T_camera_world`: first guess of the pose; null when there is
-  // none.
-  void Judge(Frame& frame, const Se3* T_camera_world);
+  // Fills frame.static_probability. `guess`: null when there is none.
+  void Judge(Frame& frame, const PoseGuess* guess);
   // Ends the frame. `T_camera_world`: its pose; null when lost. `corrections`: of the map it is in.
   void Remember(const Frame& frame, const Se3* T_camera_world, uint64_t corrections);
 
@@ -47,14 +55,9 @@ class DynamicFilter {
   const std::vector<MovingObject>& objects() const { return objects_.objects(); }
 
  private:
-  void CarryBelief(const Se3* T_camera_world);
-  void AddDepthEvidence(const Se3& T_camera_world, std::vector<float>& evidence,
-                        std::vector<float>& weights) const;
-  void AddFlowEvidence(const Se3& T_camera_world, std::vector<float>& evidence,
-                       std::vector<float>& weights);
-  void SpreadBelief();
-  void FindObjects();
-  float Belief(int cell) const;  // log-odds of standing still, objects included
+  void JudgeWithDepth(const PoseGuess& guess);
+  void JudgeWithoutDepth(const PoseGuess* guess);
+  void FindObjects(std::span<const uint8_t> proven);
   float BeliefAt(const Keypoint& keypoint) const;
 
   Camera camera_;
@@ -62,15 +65,15 @@ class DynamicFilter {
   Cells cells_;
   FlowTracks tracks_;
   ObjectTracks objects_;
+  SurfaceBelief surfaces_;
+  TrackBelief track_belief_;
+  History history_;
 
   DynamicInput now_;
-  std::vector<float> depth_;      // of each cell; empty: none is measured
-  std::vector<float> belief_;     // log-odds of standing still, of each cell, by geometry
-  std::vector<float> certainty_;  // of each cell, 0…1: how much it was itself held against others
-  std::vector<uint8_t> object_;   // of each cell: 1 = an object's that moves by itself
-  std::deque<std::shared_ptr<const PastView>>
-      recent_;  // the last frames, newest first; null where lost
-  std::deque<std::shared_ptr<const PastView>> older_;  // some of those before, newest first
+  std::vector<float> depth_;     // of each cell; empty: none is measured
+  std::vector<float> geometry_;  // log-odds of standing still, of each cell, objects apart
+  std::vector<uint8_t> object_;  // of each cell: nonzero = of one that moves by itself
+  std::vector<float> belief_;    // of each cell, all together
   uint64_t corrections_ = 0;
 };
 

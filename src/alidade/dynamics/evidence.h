@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "alidade/dynamics/cells.h"
+#include "alidade/dynamics/history.h"
 #include "alidade/geometry/se3.h"
 
 namespace alidade {
-
-// An earlier frame.
-struct PastView {
-  int number = 0;  // of the frame
-  Se3 T_camera_world;
-  std::vector<float> depth;            // of each cell, metres; 0 = unknown; empty: none is measured
-  std::vector<float> static_log_odds;  // of each cell, as believed then
-};
 
 // How far two depths of one surface may be apart: noise of sensors that measure disparity grows as
 // z² (Khoshelham & Elberink 2012), errors of poses as z.

@@ -19,6 +19,7 @@ constexpr float kMinReach =
 constexpr float kStep = 0.04f;   // of the depth, from one cell of a surface to the next
 constexpr float kStatic = 3.5f;  // log-odds: known to stand still
 constexpr float kMiddle = 0.3f, kMostStill = 0.7f;
+constexpr float kRim = 0.4f;   // of the oval: outside it background may be seen
 constexpr float kOval = 2.6f;  // exponent of the oval: between an ellipse and the box
 
 float Inside(const cv::Rect2f& box, cv::Point2f p, float exponent) {
@@ -69,10 +70,13 @@ float CoreDepth(const Cells& cells, std::span<const float> depth,
 
 }  // namespace
 
-std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box) {
+std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
+                             std::span<const uint8_t> proven) {
   std::vector<int> found;
   VisitBox(cells, box, [&](int i) {
-    if (Inside(box, cells.Centre(i), kOval) <= 1) found.push_back(i);
+    const float off = Inside(box, cells.Centre(i), kOval);
+    if (off > 1 || (off > kRim && !proven.empty() && proven[i])) return;
+    found.push_back(i);
   });
   return found;
 }

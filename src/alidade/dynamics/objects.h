@@ -55,6 +55,8 @@ class ObjectTracks {
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
                                 std::span<const float> static_log_odds, const cv::Rect2f& box);
 // Those of an oval in the box: all that can be said without depth.
-std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box);
+// `proven`: cells (nonzero) that stand still for certain, left out at the rim; may be empty.
+std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
+                             std::span<const uint8_t> proven = {});
 
 }  // namespace alidade

@@ -42,6 +42,23 @@ std::shared_ptr<const Picture> Copied(const Picture& picture) {
                                            picture.depth.clone(), picture.mask.clone()});
 }
 
+// Nothing is much nearer than the nearest of the landmarks in view.
+PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map) {
+  constexpr double kNearer = 0.4;
+  PoseGuess guess;
+  guess.T_camera_world = placed.T_camera_world;
+  std::vector<double> depths;
+  for (LandmarkId id : placed.matches) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (landmark) depths.push_back((placed.T_camera_world * landmark->p_world).z());
+  }
+  if (depths.empty()) return guess;
+  const auto low = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 20);
+  std::nth_element(depths.begin(), low, depths.end());
+  guess.nearest = kNearer * std::max(*low, 1e-6);
+  return guess;
+}
+
 std::vector<int> MappableKeypoints(const Frame& frame) {
   std::vector<int> kept;
   for (int k = 0; k < static_cast<int>(frame.keypoints.size()); ++k) {
@@ -88,7 +105,7 @@ class Slam::Impl {
 
  private:
   void BeginDynamics(const FrameInput& prepared, int number);
-  void JudgeFeatures(Frame& frame, const Se3* T_camera_world);
+  void JudgeFeatures(Frame& frame, const PoseGuess* guess);
   void EndDynamics(const Frame& frame, const TrackResult& result);
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
@@ -172,10 +189,10 @@ void Slam::Impl::BeginDynamics(const FrameInput& prepared, int number) {
 }
 
 // What the features are worth, before the pose is made of them.
-void Slam::Impl::JudgeFeatures(Frame& frame, const Se3* T_camera_world) {
+void Slam::Impl::JudgeFeatures(Frame& frame, const PoseGuess* guess) {
   if (!dynamics_) return;
   const Stopwatch watch;
-  dynamics_->Judge(frame, T_camera_world);
+  dynamics_->Judge(frame, guess);
   if (dense_) {
     Picture picture = *frame.picture;
     picture.mask = dynamics_->Mask();
@@ -361,7 +378,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const MapSnapshot map = workers_.map().Snapshot();
   PlacedFrame guess = tracker_.Predict(frame, map);
   const double predicting = watch.Milliseconds();
-  JudgeFeatures(*frame, &guess.T_camera_world);
+  const PoseGuess where = GuessOf(guess, map);
+  JudgeFeatures(*frame, &where);
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
   times_.track.push_back(predicting + estimating.Milliseconds());

@@ -1,0 +1,122 @@
+#include "alidade/dynamics/flow_votes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/dynamics/evidence.h"
+#include "alidade/geometry/two_view_ransac.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kMostAgo = 15;     // frames
+constexpr double kMoved = 3;     // pixels off where it should be …
+constexpr double kShare = 0.15;  // … and of the way it went: errors of depth and pose grow with it
+
+int8_t Vote(double off, double way) {
+  const double moved = kMoved + kShare * way;
+  return off > moved ? -1 : off < moved / 2 ? 1 : 0;
+}
+
+struct InverseDepths {
+  double least = 0, most = 0;  // 1/metres
+};
+
+// What depth a point may have had, by the cells around: corners often lie on an outline.
+InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest) {
+  const int cell = cells.At(then.x, then.y);
+  if (past.depth.empty() || !(past.depth[cell] > 0)) return {0, 1 / nearest};
+  float near = past.depth[cell], far = near;
+  cells.VisitAround(cell, 1, [&](int n) {
+    if (!(past.depth[n] > 0)) return;
+    near = std::min(near, past.depth[n]);
+    far = std::max(far, past.depth[n]);
+  });
+  constexpr double kFar = 1.03, kNear = 0.97;  // noise
+  return {1 / (kFar * far), 1 / (kNear * near)};
+}
+
+}  // namespace
+
+std::vector<int8_t> VoteByPose(const Camera& camera, const Cells& cells,
+                               std::span<const FlowTrack> tracks, const Se3& T_camera_world,
+                               const History& history, double nearest) {
+  std::vector<int8_t> votes(tracks.size(), 0);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const FlowTrack& track = tracks[i];
+    // Of the frames it was seen in, the oldest with a known pose: the most parallax.
+    int ago = std::min(track.length() - 1, kMostAgo);
+    while (ago >= 2 && !history.Before(ago)) --ago;
+    if (ago < 2) continue;
+    const PastView& past = *history.Before(ago);
+    const cv::Point2f then = track.Before(ago);
+    const Eigen::Vector2d pixel_then = camera.Undistort({then.x, then.y});
+    const Eigen::Vector2d pixel_now = camera.Undistort({track.at().x, track.at().y});
+    const InverseDepths range = MayHave(cells, past, then, nearest);
+    const EpipolarSegment segment =
+        SegmentOf(camera, camera.Unproject(pixel_then),
+                  T_camera_world * past.T_camera_world.Inverse(), range.least, range.most);
+    votes[i] = segment.in_front
+                   ? Vote(DistanceTo(segment, pixel_now), (pixel_now - pixel_then).norm())
+                   : int8_t{-1};
+  }
+  return votes;
+}
+
+std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTrack> tracks,
+                                    std::span<const uint8_t> left_out, uint64_t seed) {
+  constexpr int kAgo = 10, kIterations = 100;
+  constexpr size_t kEnough = 40;
+  constexpr double kLeastShare = 0.5;       // of the tracks
+  constexpr double kHomographyShare = 0.9;  // of the inliers of the other: the camera only turned
+  std::vector<int8_t> votes(tracks.size(), 0);
+  std::vector<Eigen::Vector2d> a, b;
+  std::vector<size_t> used;
+  const Eigen::Vector2d middle(camera.cx, camera.cy);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    if (tracks[i].length() <= kAgo || left_out[i]) continue;
+    const cv::Point2f then = tracks[i].Before(kAgo), now = tracks[i].at();
+    a.push_back((camera.Undistort({then.x, then.y}) - middle) / kMoved * 2);
+    b.push_back((camera.Undistort({now.x, now.y}) - middle) / kMoved * 2);
+    used.push_back(i);
+  }
+  if (used.size() < kEnough) return votes;
+  const RansacModels models = FitTwoViewModels(a, b, kIterations, seed, false);
+  const bool turned = models.homography.inliers > kHomographyShare * models.fundamental.inliers;
+  const RansacModel& model = turned ? models.homography : models.fundamental;
+  if (model.inliers < kLeastShare * static_cast<double>(used.size())) return votes;
+  for (size_t k = 0; k < used.size(); ++k) votes[used[k]] = model.inlier[k] ? 1 : -1;
+  return votes;
+}
+
+std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
+                              std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
+  constexpr int kReach = 3;          // cells around
+  constexpr float kSurface = 0.06f;  // of the depth
+  constexpr int kEnough = 3;         // tracks
+  constexpr float kAgreed = 0.4f;    // mean vote
+  std::vector<int> sums(cells.count(), 0), counts(cells.count(), 0);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
+    sums[cell] += votes[i];
+    ++counts[cell];
+  }
+  std::vector<int8_t> agreed(tracks.size(), 0);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
+    int sum = 0, count = 0;
+    cells.VisitAround(cell, kReach, [&](int n) {
+      const bool apart = !depth.empty() && depth[n] > 0 && depth[cell] > 0 &&
+                         std::abs(depth[n] - depth[cell]) > kSurface * depth[cell];
+      if (apart) return;
+      sum += sums[n];
+      count += counts[n];
+    });
+    if (count < kEnough) continue;
+    const float mean = static_cast<float>(sum) / static_cast<float>(count);
+    agreed[i] = mean < -kAgreed ? -1 : mean > kAgreed ? 1 : 0;
+  }
+  return agreed;
+}
+
+}  // namespace alidade
