@@ -1,14 +1,12 @@
 #include "export_folder.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
+#include "draft_folder.h"
 
 namespace alidade {
 namespace {
@@ -51,30 +49,6 @@ void CheckFree(const fs::path& path) {
   }
 }
 
-// Gone at the end unless it was renamed.
-class Draft {
- public:
-  explicit Draft(const fs::path& path) : path_(path) {
-    std::error_code error;
-    fs::create_directories(path_, error);
-    if (error) ThrowInput(path_.string() + ": cannot be made: " + error.message());
-    fd_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (fd_ >= 0) Occupy(fd_);
-  }
-  ~Draft() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Draft(const Draft&) = delete;
-  Draft& operator=(const Draft&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-  int fd_ = -1;
-};
-
 }  // namespace
 
 void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>& files) {
@@ -85,12 +59,12 @@ void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>&
     std::error_code ignored;
     if (HoldsOnlyOurs(left)) fs::remove_all(left, ignored);
   }
-  const Draft draft(TemporaryBeside(path.string()));
+  const DraftFolder draft(path.string());
   for (const ColmapFile& file : files) {
-    AtomicWriteFile((draft.path() / file.name).string(), file.bytes);
+    AtomicWriteFile(draft.path() + "/" + file.name, file.bytes);
   }
   const nlohmann::ordered_json marker = {{"version", 1}, {"colmap", files.size()}};
-  AtomicWriteFile((draft.path() / kMarker).string(), marker.dump(2) + "\n");
+  AtomicWriteFile(draft.path() + "/" + kMarker, marker.dump(2) + "\n");
   std::error_code error;
   for (const char* name : kOurFiles) fs::remove(path / name, error);
   fs::rename(draft.path(), path, error);

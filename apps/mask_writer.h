@@ -1,26 +1,37 @@
-// mask/TIMESTAMP.png and mask.txt: what was left out of each frame as moving.
+// mask/TIMESTAMP.png and mask.txt: what was left out of each frame as moving (docs/formats.md).
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "alidade/io/frame_source.h"
+#include "draft_folder.h"
 #include "output_folder.h"
 
 namespace alidade {
 
+// Pictures are gathered in a folder beside their place: until Finish() there is no mask/, and when
+// it is never called (the run failed, or was killed) none of them stays.
 class MaskWriter {
  public:
   explicit MaskWriter(OutputFolder& folder) : folder_(folder) {}
-  // `mask`: CV_8U, 255 = left out; scaled to the frame's size; empty: nothing was left out.
+
+  // `mask`: CV_8U, 255 = left out; scaled to the frame's size, pixel by pixel; empty: nothing was
+  // left out. Throws Error (input) when it cannot be written: then there will be no masks at all.
   void Write(const SourceFrame& frame, const cv::Mat& mask);
-  void Finish();   // the list of all that was written
-  void Discard();  // takes all of it back
+  // The pictures to their place, then the list of them. Throws Error (input), leaving neither.
+  void Finish();
+  void Discard();  // takes back all that was not finished
 
  private:
+  void Publish();
+
   OutputFolder& folder_;
-  std::vector<std::string> written_;
+  std::unique_ptr<DraftFolder> draft_;
+  std::vector<std::string> written_;  // names in the output folder
   std::string list_;
+  bool given_up_ = false;
 };
 
 }  // namespace alidade

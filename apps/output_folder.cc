@@ -18,7 +18,15 @@ namespace fs = std::filesystem;
 constexpr std::array<const char*, 10> kOurFiles = {
     "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt", "map.alidade",
     "landmarks.ply",  "semidense.ply",       "semidense.png", "report.html",     "stats.json"};
-constexpr const char* kDepthFolder = "depth";
+
+// Pictures with a list: NAME/STAMP.png and NAME.txt, where maps have their own NAME.1.txt, …
+struct PictureKind {
+  std::string name;
+  std::string_view header;  // first line of the list
+  bool numbered;
+};
+const PictureKind kDepth{"depth", kDepthListHeader, true};
+const PictureKind kMasks{"mask", kMaskListHeader, false};
 
 // trajectory.1.txt and the like, of further maps.
 bool IsNumbered(const std::string& name, const std::string& what, const std::string& ending) {
@@ -41,13 +49,14 @@ bool IsOurs(const std::string& name) {
          IsNumbered(name, "semidense", ".ply");
 }
 
-bool IsDepthList(const fs::path& path) {
+bool IsList(const fs::path& path, const PictureKind& kind) {
   const std::string name = path.filename().string();
-  if (StartsWith(name, "depth.txt.tmp")) return true;
-  if (name != "depth.txt" && !IsNumbered(name, "depth", ".txt")) return false;
+  if (StartsWith(name, kind.name + ".txt.tmp")) return true;
+  if (name != kind.name + ".txt" && !(kind.numbered && IsNumbered(name, kind.name, ".txt")))
+    return false;
   std::error_code error;
   return fs::is_regular_file(path, error) &&
-         StartsWith(ReadFile(path.string()), std::string(kDepthListHeader));
+         StartsWith(ReadFile(path.string()), std::string(kind.header));
 }
 
 nlohmann::json StatsIn(const fs::path& folder) {
@@ -77,20 +86,20 @@ void AddStamps(const fs::path& list, std::set<std::string>& stamps) {
   }
 }
 
-// Depth pictures of the run in `folder`, and temporaries of such: those its lists name and, for a
-// run that was killed before it wrote them, those of its keyframes.
-std::vector<fs::path> DepthPictures(const fs::path& folder) {
-  const bool shape = MappedShape(StatsIn(folder));
+// Pictures of the run in `folder`, and temporaries of such: those its lists name and, for a run
+// that was killed before it wrote those of depth, those of its keyframes.
+std::vector<fs::path> Pictures(const fs::path& folder, const PictureKind& kind) {
+  const bool by_keyframe = kind.name == kDepth.name && MappedShape(StatsIn(folder));
   std::set<std::string> stamps;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
     const bool keyframes = name == "keyframes.txt" || IsNumbered(name, "keyframes", ".txt");
-    if (IsDepthList(entry.path()) || (shape && keyframes)) AddStamps(entry.path(), stamps);
+    if (IsList(entry.path(), kind) || (by_keyframe && keyframes)) AddStamps(entry.path(), stamps);
   }
   std::vector<fs::path> pictures;
   if (stamps.empty()) return pictures;
-  for (const auto& entry : fs::directory_iterator(folder / kDepthFolder, error)) {
+  for (const auto& entry : fs::directory_iterator(folder / kind.name, error)) {
     const std::string name = entry.path().filename().string();
     const size_t ending = name.rfind(".png");
     if (ending == std::string::npos || stamps.count(name.substr(0, ending)) == 0) continue;
@@ -100,14 +109,36 @@ std::vector<fs::path> DepthPictures(const fs::path& folder) {
   return pictures;
 }
 
+// Folders of masks that a run which was killed has not finished.
+std::vector<std::string> LeftDrafts(const fs::path& folder) {
+  return StaleTemporaries((folder / kMasks.name).string());
+}
+
+// Nothing in it but what a run that was killed may leave before it has results.
+bool HoldsNothing(const fs::path& folder, std::error_code& error) {
+  std::set<std::string> drafts;
+  for (const std::string& draft : LeftDrafts(folder))
+    drafts.insert(fs::path(draft).filename().string());
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (drafts.count(entry.path().filename().string()) == 0) return false;
+  }
+  return true;
+}
+
 void RemoveOurFiles(const fs::path& folder, const fs::path& kept = {}) {
-  const std::vector<fs::path> pictures = DepthPictures(folder);
-  std::vector<fs::path> ours = pictures;
+  std::vector<fs::path> ours;
+  std::vector<fs::path> emptied;
+  for (const PictureKind& kind : {kDepth, kMasks}) {
+    const std::vector<fs::path> pictures = Pictures(folder, kind);
+    if (!pictures.empty()) emptied.push_back(folder / kind.name);
+    ours.insert(ours.end(), pictures.begin(), pictures.end());
+  }
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     std::error_code none;
     if (!kept.empty() && fs::equivalent(entry.path(), kept, none)) continue;
-    if (IsOurs(entry.path().filename().string()) || IsDepthList(entry.path()))
+    if (IsOurs(entry.path().filename().string()) || IsList(entry.path(), kDepth) ||
+        IsList(entry.path(), kMasks))
       ours.push_back(entry.path());
   }
   for (const fs::path& path : ours) {
@@ -115,7 +146,8 @@ void RemoveOurFiles(const fs::path& folder, const fs::path& kept = {}) {
       ThrowInput("cannot remove " + path.string() + ": " + error.message());
     }
   }
-  if (!pictures.empty()) fs::remove(folder / kDepthFolder, error);  // only when it is empty
+  for (const fs::path& path : emptied) fs::remove(path, error);  // only when nothing is in it
+  for (const std::string& draft : LeftDrafts(folder)) fs::remove_all(draft, error);
 }
 
 }  // namespace
@@ -125,10 +157,10 @@ std::string NumberedFile(const std::string& name, size_t number, const std::stri
 }
 
 std::string DepthPictureFile(const std::string& stamp) {
-  return std::string(kDepthFolder) + "/" + stamp + ".png";
+  return kDepth.name + "/" + stamp + ".png";
 }
 
-std::string MaskPictureFile(const std::string& stamp) { return "mask/" + stamp + ".png"; }
+std::string MaskPictureFile(const std::string& stamp) { return kMasks.name + "/" + stamp + ".png"; }
 
 OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
     : path_(path), kept_(kept) {
@@ -136,7 +168,7 @@ OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
   std::error_code error;
   if (fs::exists(fs::symlink_status(path, error))) {
     if (!fs::is_directory(path, error)) ThrowInput(what + "there is a file of that name");
-    const bool empty = fs::is_empty(path, error);
+    const bool empty = HoldsNothing(path, error);
     if (error) ThrowInput(what + error.message());
     if (!empty && !AreOurs(StatsIn(path))) {
       ThrowInput(

@@ -88,8 +88,8 @@ int Run(const RunOptions& options) {
     folder.Remove();
     std::rethrow_exception(record.failure);
   }
-  const RunSummary summary = WriteOutputs(folder, slam, record, !options.localise);
-  if (masks) masks->Finish();
+  const RunSummary summary =
+      WriteOutputs(folder, slam, record, !options.localise, masks ? &*masks : nullptr);
   if (!options.quiet) Say(summary, record, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
   if (record.interrupted) return kInterruptedStatus;

@@ -25,7 +25,7 @@ std::string LandmarksPly(const RunResults& results) {
 }  // namespace
 
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
-                        bool with_map) {
+                        bool with_map, MaskWriter* masks) {
   const RunResults results = ResultsOf(slam, record);
   Cloud shape;
   std::vector<ReportPicture> views;
@@ -52,7 +52,9 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
         views = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
     }
     folder.Write("report.html", ReportHtml(record, results, views));
+    if (masks) masks->Finish();
   } catch (const Error&) {
+    if (masks) masks->Discard();
     if (!useful) folder.Remove();
     throw;
   }

@@ -1,6 +1,7 @@
 // The folder `alidade run` leaves behind (docs/formats.md).
 #pragma once
 
+#include "mask_writer.h"
 #include "output_folder.h"
 #include "run_record.h"
 
@@ -16,6 +17,6 @@ struct RunSummary {
 // Writes everything. Throws Error (input) when a file cannot be written; what stays then is whole,
 // and is nothing at all unless stats.json is among it.
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
-                        bool with_map = true);
+                        bool with_map = true, MaskWriter* masks = nullptr);
 
 }  // namespace alidade

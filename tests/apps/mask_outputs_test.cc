@@ -1,0 +1,193 @@
+// Masks of what was left out as moving: what a run leaves of them, and what becomes of an earlier
+// one's.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgproc.hpp>
+#include <set>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/image_file.h"
+#include "mask_writer.h"
+#include "support/program.h"
+#include "support/rendered.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+std::set<std::string> FilesUnder(const std::string& folder) {
+  std::set<std::string> names;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    names.insert(fs::relative(entry.path(), folder).generic_string());
+  return names;
+}
+
+constexpr char kStats[] = R"({"version": 1, "source": "x", "coverage": 1, "settings": {}})";
+
+class MaskOutputs : public testing::Test {
+ protected:
+  static SourceFrame Frame(const std::string& stamp) {
+    SourceFrame frame;
+    frame.stamp = stamp;
+    frame.time = std::stod(stamp);
+    frame.image = cv::Mat(6, 8, CV_8U, cv::Scalar(100));
+    return frame;
+  }
+  // Left half of a camera of half the size.
+  static cv::Mat LeftHalf() {
+    cv::Mat mask = cv::Mat::zeros(3, 4, CV_8U);
+    mask.colRange(0, 2) = 255;
+    return mask;
+  }
+  void WriteTwo(OutputFolder& folder) {
+    MaskWriter masks(folder);
+    masks.Write(Frame("1.50"), LeftHalf());
+    masks.Write(Frame("2.50"), {});
+    masks.Finish();
+  }
+
+  TempFolder temp_;
+  std::string out_ = temp_ / "out";
+};
+
+TEST_F(MaskOutputs, HaveTheSizeOfTheFramesAndAList) {
+  OutputFolder folder(out_);
+  WriteTwo(folder);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png"));
+  EXPECT_EQ(ReadText(out_ + "/mask.txt"),
+            std::string(kMaskListHeader) + "1.50 mask/1.50.png\n2.50 mask/2.50.png\n");
+  const cv::Mat first = ReadImageGray(out_ + "/mask/1.50.png");
+  ASSERT_EQ(first.size(), cv::Size(8, 6));
+  EXPECT_EQ(cv::countNonZero(first), 24);
+  EXPECT_EQ(cv::countNonZero(first.colRange(0, 4) == 255), 24);
+  EXPECT_EQ(cv::countNonZero(ReadImageGray(out_ + "/mask/2.50.png")), 0);
+}
+
+TEST_F(MaskOutputs, AreNotThereUntilTheyAreComplete) {
+  OutputFolder folder(out_);
+  {
+    MaskWriter masks(folder);
+    masks.Write(Frame("1.50"), LeftHalf());
+    EXPECT_FALSE(fs::exists(out_ + "/mask"));
+    EXPECT_FALSE(fs::exists(out_ + "/mask.txt"));
+  }
+  EXPECT_TRUE(FilesUnder(out_).empty());  // never finished
+}
+
+TEST_F(MaskOutputs, ThatCannotBeListedDoNotStay) {
+  OutputFolder folder(out_);
+  temp_.Folder("out/mask.txt");  // in the way
+  EXPECT_THROW(WriteTwo(folder), Error);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask.txt"));
+}
+
+TEST_F(MaskOutputs, OfAnEarlierRunGoAndNobodyElses) {
+  {
+    OutputFolder folder(out_);
+    WriteTwo(folder);
+  }
+  temp_.Write("out/stats.json", kStats);
+  temp_.Write("out/mask/mine.png", "a picture of my own");
+  {
+    OutputFolder again(out_);
+    EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask/mine.png"));
+    WriteTwo(again);  // beside it
+    EXPECT_THAT(FilesUnder(out_),
+                ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png", "mask/mine.png"));
+  }
+  fs::remove(out_ + "/mask/mine.png");
+  temp_.Write("out/stats.json", kStats);
+  OutputFolder third(out_);
+  EXPECT_TRUE(FilesUnder(out_).empty());
+}
+
+TEST_F(MaskOutputs, SomeoneElsesListStays) {
+  temp_.Write("out/stats.json", kStats);
+  temp_.Write("out/mask.txt", "# person masks\n1.50 mask/1.50.png\n");
+  temp_.Write("out/mask/1.50.png", "a person's");
+  OutputFolder folder(out_);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png"));
+}
+
+TEST_F(MaskOutputs, OfARunThatWasKilledAreNoHindrance) {
+  temp_.Write("out/mask.tmp123-0/1.50.png", "ours");
+  OutputFolder folder(out_);
+  EXPECT_TRUE(FilesUnder(out_).empty());
+}
+
+TEST_F(MaskOutputs, ARunOfAnotherProgramIsLeftAlone) {
+  OutputFolder folder(out_);
+  MaskWriter busy(folder);
+  busy.Write(Frame("1.50"), LeftHalf());
+  EXPECT_THROW(OutputFolder{out_}, Error);
+  busy.Finish();
+  EXPECT_TRUE(fs::exists(out_ + "/mask/1.50.png"));
+}
+
+class MaskRun : public testing::Test {
+ protected:
+  static std::string Recording() {
+    return Rendered({"desk", "--frames", "12", "--actors", "2", "--seed", "3"});
+  }
+  ProgramResult Run(std::vector<std::string> words) {
+    words.insert(words.begin(), {"run", recording_, "--quiet", "--out", out_});
+    return RunAlidade(words);
+  }
+  // Second fields of the lines of mask.txt.
+  std::vector<std::string> Listed() {
+    std::vector<std::string> names;
+    for (const std::string& line : DataLines(out_ + "/mask.txt"))
+      names.push_back(line.substr(line.find(' ') + 1));
+    return names;
+  }
+
+  TempFolder temp_;
+  std::string recording_ = Recording(), out_ = temp_ / "out";
+};
+
+TEST_F(MaskRun, LeavesAMaskForEveryFrame) {
+  const ProgramResult result = Run({"--dynamics", "geometry", "--write-masks"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<std::string> names = Listed();
+  const std::vector<std::string> frames = DataLines(recording_ + "/rgb.txt");
+  ASSERT_EQ(names.size(), frames.size());
+  for (size_t i = 0; i < names.size(); ++i) {
+    const std::string stamp = frames[i].substr(0, frames[i].find(' '));
+    EXPECT_EQ(names[i], "mask/" + stamp + ".png");
+    EXPECT_EQ(ReadImageSize(out_ + "/" + names[i]), cv::Size(640, 480));
+  }
+  // A run without masks clears them.
+  ASSERT_EQ(Run({"--last", "3"}).status, 0);
+  EXPECT_FALSE(fs::exists(out_ + "/mask.txt"));
+  EXPECT_FALSE(fs::exists(out_ + "/mask"));
+}
+
+TEST_F(MaskRun, PhonesMasksAreScaledToTheFrames) {
+  const ProgramResult result =
+      Run({"--dynamics", "geometry", "--write-masks", "--profile", "phone"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  for (const std::string& name : Listed()) {
+    const cv::Mat mask = ReadImageGray(out_ + "/" + name);
+    EXPECT_EQ(mask.size(), cv::Size(640, 480));
+    EXPECT_EQ(cv::countNonZero((mask != 0) & (mask != 255)), 0) << name;  // nothing in between
+  }
+}
+
+TEST_F(MaskRun, FramesThatAreSkippedHaveNone) {
+  recording_ = CopyOf(Recording(), temp_);
+  const std::string bad = DataLines(recording_ + "/rgb.txt")[5];
+  const std::string stamp = bad.substr(0, bad.find(' '));
+  temp_.Write("recording/" + bad.substr(bad.find(' ') + 1), "no picture");
+  const ProgramResult result = Run({"--dynamics", "geometry", "--write-masks"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(Listed().size(), 11u);
+  EXPECT_FALSE(fs::exists(out_ + "/mask/" + stamp + ".png"));
+}
+
+}  // namespace
+}  // namespace alidade
