@@ -197,6 +197,7 @@ void AddDynamicOptions(CLI::App& command, bench::DynamicOptions& options) {
     command.add_flag(name, value, help)->group("Of dynamic");
   };
   add("--detector", options.detector, "Network that finds people (.onnx), for mode full");
+  add("--camera", options.camera, "Calibration (camera.yaml) instead of the recordings' own");
   many("--sensor", options.sensors, "rgbd, stereo, mono; default: the recording's own, and mono");
   add("--seeds", options.seeds, "Runs of each kind, of which medians are told (1)")
       ->check(CLI::Range(1, 100));

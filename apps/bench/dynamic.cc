@@ -126,10 +126,12 @@ class Study {
       variant.runs.push_back(
           RunDynamic(scene, settings, detector_, detected, i == 0 ? visit : nullptr));
       const DynamicRun& run = variant.runs.back();
-      std::printf("%s %s, %s, seed %d: ATE %.2f cm, %d of %d frames from %d on\n",
-                  scene.name.c_str(), NameOf(settings.sensor), name.c_str(),
-                  static_cast<int>(settings.seed), 100 * run.errors.ate.rmse, run.tracked,
-                  run.frames, run.start);
+      std::printf("%s %s, %s, seed %d: %d of %d frames", scene.name.c_str(),
+                  NameOf(settings.sensor), name.c_str(), static_cast<int>(settings.seed),
+                  run.tracked, run.frames);
+      if (run.errors.ate.n > 0)
+        std::printf(" from %d on, ATE %.2f cm", run.start, 100 * run.errors.ate.rmse);
+      std::printf("\n");
       std::fflush(stdout);
     }
     return variant;
@@ -268,11 +270,11 @@ Section BenchDynamic(const DynamicOptions& options) {
     const bool rendered = IsSynthSource(sources[i]);
     const int count = options.frames > 0 ? options.frames : rendered ? kRenderedFrames : 0;
     const DynamicScene scene =
-        LoadDynamicScene(sources[i], 0, count - 1, options.detector.has_value());
+        LoadDynamicScene(sources[i], 0, count - 1, options.detector.has_value(), options.camera);
     std::optional<DynamicScene> plain;
     if (const auto part = PlainOf(options, sources[i], i)) {
       const int last = count > 0 ? part->first + count - 1 : part->last;
-      plain = LoadDynamicScene(part->source, part->first, last, false);
+      plain = LoadDynamicScene(part->source, part->first, last, false, options.camera);
     }
     Boxes detected;
     if (detector && scene.has_masks())

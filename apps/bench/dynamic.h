@@ -12,6 +12,7 @@ namespace alidade::bench {
 struct DynamicOptions {
   std::vector<std::string> sources;     // none: rendered rooms with people
   std::optional<std::string> detector;  // none: only what works without
+  std::optional<std::string> camera;    // calibration of all that are recorded; none: their own
   std::vector<std::string> sensors;     // none: what the recording has, and one camera
   std::vector<std::string> plain;       // the same frames without people, one for each source
   std::vector<std::string> settings;    // name=value, of every run

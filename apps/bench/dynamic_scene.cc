@@ -101,11 +101,7 @@ void LoadRendered(int first, int last, DynamicScene& scene) {
   if (ParseSynthSource(scene.source).actors == 0) scene.masks.clear();
 }
 
-void LoadRecorded(int first, int last, bool color, DynamicScene& scene) {
-  SourceOptions options;
-  options.first = first;
-  options.last = last;
-  options.color = color;
+void LoadRecorded(const SourceOptions& options, DynamicScene& scene) {
   const auto opened = OpenAnySource(scene.source, options);
   scene.info = opened->Info();
   while (auto frame = opened->Next()) {
@@ -116,7 +112,8 @@ void LoadRecorded(int first, int last, bool color, DynamicScene& scene) {
 
 }  // namespace
 
-DynamicScene LoadDynamicScene(const std::string& source, int first, int last, bool color) {
+DynamicScene LoadDynamicScene(const std::string& source, int first, int last, bool color,
+                              const std::optional<std::string>& camera_file) {
   DynamicScene scene;
   scene.source = source;
   scene.name = NameOfSource(source);
@@ -124,7 +121,12 @@ DynamicScene LoadDynamicScene(const std::string& source, int first, int last, bo
   if (rendered) {
     LoadRendered(first, last, scene);
   } else {
-    LoadRecorded(first, last, color, scene);
+    SourceOptions options;
+    options.camera_file = camera_file;
+    options.first = first;
+    options.last = last;
+    options.color = color;
+    LoadRecorded(options, scene);
   }
   if (scene.frames.size() < 2)
     ThrowInput("bench: " + source + " has fewer than 2 frames that can be read");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct DynamicScene {
 // `source`: a TUM folder with groundtruth.txt, or `synth:…`; frames `first` to `last` (-1: the
 // end). Masks are those of its mask.txt, boxes of people.txt or around each piece of mask. Throws
 // Error (input) when there are fewer than 2 frames or no truth.
-DynamicScene LoadDynamicScene(const std::string& source, int first, int last, bool color);
+// `camera_file`: calibration instead of the recording's own, of recorded ones.
+DynamicScene LoadDynamicScene(const std::string& source, int first, int last, bool color,
+                              const std::optional<std::string>& camera_file = {});
 
 }  // namespace alidade::bench

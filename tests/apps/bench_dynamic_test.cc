@@ -6,9 +6,11 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
+#include "alidade/io/files/image_file.h"
 #include "support/program.h"
 #include "support/rendered.h"
 
@@ -112,6 +114,28 @@ TEST_F(BenchDynamic, ComparesWithTheRenderedMasksAndWithTheSceneWithoutPeople) {
   const double alone = Figure(plain, source + " rgbd off", "plain");
   EXPECT_NEAR(Figure(plain, source + " rgbd off", "x 2"), std::max(2 * alone, alone + 0.5), 1e-9);
   EXPECT_EQ(TableOf(bench, "each run")["rows"].size(), 8u);  // sensors, modes, seeds
+}
+
+TEST_F(BenchDynamic, ComparesTheMasksThatRunWrites) {
+  const std::string results = folder_ / "masks";
+  const ProgramResult run = RunAlidade(
+      {"run", Recording(), "--dynamics", "geometry", "--write-masks", "--quiet", "--out", results});
+  ASSERT_EQ(run.status, 0) << run.err;
+  double sum = 0;
+  int frames = 0;
+  for (const std::string& line : DataLines(Recording() + "/mask.txt")) {
+    const std::string stamp = line.substr(0, line.find(' ')), name = line.substr(stamp.size() + 1);
+    const cv::Mat truth = ReadImageGray(Recording() + "/" + name);
+    const cv::Mat mask = ReadImageGray(results + "/mask/" + stamp + ".png");
+    const int either = cv::countNonZero(truth | mask);
+    if (either == 0) continue;
+    sum += static_cast<double>(cv::countNonZero(truth & mask)) / either;
+    ++frames;
+  }
+  ASSERT_GT(frames, 0);
+  const json bench = Bench({Recording(), "--sensor", "rgbd", "--no-live"});
+  const std::string label = fs::path(Recording()).filename().string() + " rgbd geometry";
+  EXPECT_NEAR(Figure(TableOf(bench, "masks of movers"), label, "IoU"), 100 * sum / frames, 1e-9);
 }
 
 TEST_F(BenchDynamic, DrawsPicturesWhereItIsAskedTo) {
