@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <map>
 
 #include "alidade/base/error.h"
 #include "alidade/detect/onnx/open_detector.h"
@@ -118,9 +120,19 @@ class Study {
   Study(const DynamicOptions& options, SlamSettings settings, std::shared_ptr<Detector> detector)
       : options_(options), settings_(std::move(settings)), detector_(std::move(detector)) {}
 
+  // Runs that were made before, under whatever name, are not made again.
   DynamicVariant Run(const std::string& name, const DynamicScene& scene, const Boxes& detected,
-                     SlamSettings settings, const FrameVisitor& visit = nullptr) const {
+                     SlamSettings settings, const FrameVisitor& visit = nullptr) {
     DynamicVariant variant{name, {}, {}, {}};
+    settings.seed = settings_.seed;
+    std::string key = scene.source + " " + std::to_string(scene.frames.front().number);
+    for (const auto& [field, value] : settings.All()) key += " " + value;
+    key += NameOf(settings.sensor);
+    std::vector<DynamicRun>& known = known_[key];
+    if (!known.empty()) {
+      variant.runs = known;
+      return variant;
+    }
     for (int i = 0; i < options_.seeds; ++i) {
       settings.seed = settings_.seed + static_cast<uint64_t>(i);
       variant.runs.push_back(
@@ -134,10 +146,11 @@ class Study {
       std::printf("\n");
       std::fflush(stdout);
     }
+    known = variant.runs;
     return variant;
   }
 
-  DynamicCase Modes(const DynamicScene& scene, const Boxes& detected, Sensor sensor) const {
+  DynamicCase Modes(const DynamicScene& scene, const Boxes& detected, Sensor sensor) {
     DynamicCase of;
     of.label = scene.name + " " + NameOf(sensor);
     AddBoxes(scene, detected, of);
@@ -148,7 +161,7 @@ class Study {
     return of;
   }
 
-  void ComparePlain(const DynamicScene& plain, Sensor sensor, DynamicCase& of) const {
+  void ComparePlain(const DynamicScene& plain, Sensor sensor, DynamicCase& of) {
     of.plain = Run("off, plain", plain, {}, With(sensor, DynamicsMode::kOff)).runs;
     for (DynamicVariant& variant : of.variants) {
       for (size_t i = 0; i < variant.runs.size(); ++i) {
@@ -159,7 +172,7 @@ class Study {
     }
   }
 
-  Table Ablation(const DynamicScene& scene, const Boxes& detected, Sensor sensor) const {
+  Table Ablation(const DynamicScene& scene, const Boxes& detected, Sensor sensor) {
     DynamicCase of;
     AddBoxes(scene, detected, of);
     of.variants.push_back(Run("off", scene, detected, With(sensor, DynamicsMode::kOff)));
@@ -181,7 +194,7 @@ class Study {
     return VariantTable("ablation: " + scene.name + " " + NameOf(sensor), of);
   }
 
-  Table Latency(const DynamicScene& scene, const Boxes& detected, Sensor sensor) const {
+  Table Latency(const DynamicScene& scene, const Boxes& detected, Sensor sensor) {
     DynamicCase of;
     AddBoxes(scene, detected, of);
     SlamSettings settings = With(sensor, DynamicsMode::kFull);
@@ -236,13 +249,13 @@ class Study {
   const DynamicOptions& options_;
   SlamSettings settings_;
   std::shared_ptr<Detector> detector_;
+  std::map<std::string, std::vector<DynamicRun>> known_;  // by recording and settings
 };
 
 SlamSettings SettingsOf(const DynamicOptions& options) {
   RunOptions run;
   run.settings = options.settings;
-  SlamSettings settings = SettingsFrom(run);
-  return settings;
+  return SettingsFrom(run);
 }
 
 }  // namespace
@@ -261,7 +274,7 @@ Section BenchDynamic(const DynamicOptions& options) {
     detector = std::make_shared<RememberingDetector>(network);
   }
   if (!options.pictures.empty()) std::filesystem::create_directories(options.pictures);
-  const Study study(options, settings, detector);
+  Study study(options, settings, detector);
   Section section;
   section.name = "dynamic";
   std::vector<DynamicCase> cases;

@@ -113,7 +113,8 @@ TEST_F(BenchDynamic, ComparesWithTheRenderedMasksAndWithTheSceneWithoutPeople) {
   const json plain = TableOf(bench, "against the same frames");
   const double alone = Figure(plain, source + " rgbd off", "plain");
   EXPECT_NEAR(Figure(plain, source + " rgbd off", "x 2"), std::max(2 * alone, alone + 0.5), 1e-9);
-  EXPECT_EQ(TableOf(bench, "each run")["rows"].size(), 8u);  // sensors, modes, seeds
+  EXPECT_EQ(TableOf(bench, "each run")["rows"].size(),
+            12u);  // sensors, modes and without people, seeds
 }
 
 TEST_F(BenchDynamic, ComparesTheMasksThatRunWrites) {

@@ -167,6 +167,30 @@ TEST_F(MaskRun, LeavesAMaskForEveryFrame) {
   EXPECT_FALSE(fs::exists(out_ + "/mask"));
 }
 
+TEST_F(MaskRun, ThatIsInterruptedLeavesThoseOfTheFramesSoFar) {
+  const ProgramResult result =
+      RunAlidade({"run", recording_, "--quiet", "--out", out_, "--dynamics", "geometry",
+                  "--write-masks", "--repeat", "500"},
+                 [&](pid_t child) {
+                   const auto pictures = [&] {
+                     std::error_code none;
+                     int count = 0;
+                     for (const auto& entry : fs::recursive_directory_iterator(out_, none))
+                       count += entry.path().extension() == ".png";
+                     return count;
+                   };
+                   for (int i = 0; i < 600 && pictures() < 3; ++i)  // a minute
+                     usleep(100000);
+                   kill(child, SIGINT);
+                 });
+  EXPECT_EQ(result.status, 130) << result.err;
+  const auto stats = nlohmann::json::parse(ReadText(out_ + "/stats.json"), nullptr, false);
+  const std::vector<std::string> names = Listed();
+  EXPECT_GE(names.size(), 3u);
+  EXPECT_EQ(names.size(), stats["frames"].get<size_t>());
+  for (const std::string& name : names) EXPECT_TRUE(fs::exists(out_ + "/" + name)) << name;
+}
+
 TEST_F(MaskRun, PhonesMasksAreScaledToTheFrames) {
   const ProgramResult result =
       Run({"--dynamics", "geometry", "--write-masks", "--profile", "phone"});
