@@ -24,6 +24,7 @@ double Median(std::vector<double> values) {
 template <typename Figure>
 double MedianOf(const std::vector<DynamicRun>& runs, Figure&& figure) {
   std::vector<double> values;
+  values.reserve(runs.size());
   for (const DynamicRun& run : runs) values.push_back(figure(run));
   return Median(std::move(values));
 }

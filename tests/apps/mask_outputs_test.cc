@@ -13,6 +13,7 @@
 #include "mask_writer.h"
 #include "support/program.h"
 #include "support/rendered.h"
+#include "support/small_disk.h"
 
 namespace alidade {
 namespace {
@@ -199,6 +200,24 @@ TEST_F(MaskRun, PhonesMasksAreScaledToTheFrames) {
     const cv::Mat mask = ReadImageGray(out_ + "/" + name);
     EXPECT_EQ(mask.size(), cv::Size(640, 480));
     EXPECT_EQ(cv::countNonZero((mask != 0) & (mask != 255)), 0) << name;  // nothing in between
+  }
+}
+
+TEST_F(MaskRun, AFullDiskLeavesAllOfThemOrNone) {
+  // Full with the first masks; with the last; with what comes after them.
+  for (const int kilobytes : {24, 56, 88, 120, 180}) {
+    const std::string folder = temp_.Folder("disk" + std::to_string(kilobytes));
+    const SmallDisk disk(folder, kilobytes);
+    if (!disk.mounted()) GTEST_SKIP() << "mounting is not permitted here";
+    out_ = folder + "/out";
+    const ProgramResult result = Run({"--dynamics", "geometry", "--write-masks"});
+    EXPECT_EQ(result.status, 3) << kilobytes;
+    EXPECT_EQ(LineCount(result.err), 1) << result.err;
+    if (!fs::exists(out_)) continue;
+    const std::set<std::string> names = FilesUnder(out_);
+    EXPECT_TRUE(names.count("stats.json")) << "what stays can be written over";
+    EXPECT_EQ(names.count("mask"), names.count("mask.txt"));
+    for (const std::string& name : names) EXPECT_EQ(name.find("tmp"), std::string::npos) << name;
   }
 }
 

@@ -1,7 +1,6 @@
 // What `alidade run` leaves behind, and where.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "alidade/io/files/trajectory_file.h"
 #include "support/program.h"
 #include "support/sliding_recording.h"
+#include "support/small_disk.h"
 
 namespace alidade {
 namespace {
@@ -128,25 +128,6 @@ TEST_F(RunOutputs, BadSourceLeavesNoFolder) {
   EXPECT_EQ(RunAlidade({"run", results_ / "nothing-here", "--out", out}).status, 3);
   EXPECT_FALSE(fs::exists(out));
 }
-
-// A file system of its own, of some kilobytes.
-class SmallDisk {
- public:
-  SmallDisk(const std::string& folder, int kilobytes)
-      : folder_(folder),
-        mounted_(mount("tmpfs", folder.c_str(), "tmpfs", 0,
-                       ("size=" + std::to_string(kilobytes) + "k").c_str()) == 0) {}
-  ~SmallDisk() {
-    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  bool mounted() const { return mounted_; }
-
- private:
-  std::string folder_;
-  bool mounted_;
-};
 
 TEST_F(RunOutputs, FullDiskLeavesNoPartOfAFile) {
   // Too small to begin with; room for the trajectory but not for all; for nearly all.

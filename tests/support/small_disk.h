@@ -1,0 +1,29 @@
+// A file system that is soon full.
+#pragma once
+
+#include <sys/mount.h>
+
+#include <string>
+
+namespace alidade {
+
+// A file system of its own, of some kilobytes.
+class SmallDisk {
+ public:
+  SmallDisk(const std::string& folder, int kilobytes)
+      : folder_(folder),
+        mounted_(mount("tmpfs", folder.c_str(), "tmpfs", 0,
+                       ("size=" + std::to_string(kilobytes) + "k").c_str()) == 0) {}
+  ~SmallDisk() {
+    if (mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  bool mounted() const { return mounted_; }
+
+ private:
+  std::string folder_;
+  bool mounted_;
+};
+
+}  // namespace alidade
