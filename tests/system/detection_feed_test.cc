@@ -1,0 +1,242 @@
+// The detector beside the tracker: when its answers come, and that nobody waits for it.
+#include "alidade/system/detection_feed.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+#include "support/expect_error.h"
+#include "support/scripted_detector.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+// A picture that names its frame.
+cv::Mat Picture(int number) { return cv::Mat(8, 8, CV_8U, cv::Scalar(number)); }
+
+// Says the number of the frame it was shown.
+std::vector<Detection> NumberOf(const cv::Mat& image) { return {{image.at<uint8_t>(0, 0), 1, {}}}; }
+
+class InlineFeed : public testing::Test {
+ protected:
+  // The frames whose answers come at each of `frames` frames; -1: none.
+  std::vector<int> Play(int frames, uint64_t seed = 1) {
+    shown_.clear();
+    const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat& image) {
+      shown_.push_back(image.at<uint8_t>(0, 0));
+      return NumberOf(image);
+    });
+    DetectionFeed feed(detector, settings_, false, seed);
+    std::vector<int> answers;
+    for (int number = 0; number < frames; ++number) {
+      feed.Offer(number, Picture(number));
+      const auto answer = feed.Take(number);
+      answers.push_back(answer ? answer->number : -1);
+      if (!answer) continue;
+      EXPECT_EQ(answer->detections.size(), 1u);
+      EXPECT_EQ(answer->detections[0].class_id, answer->number);
+      EXPECT_FALSE(feed.Take(number).has_value());  // once
+    }
+    EXPECT_EQ(feed.Milliseconds().size(), shown_.size());
+    return answers;
+  }
+  DynamicsSettings settings_;
+  std::vector<int> shown_;
+};
+
+TEST_F(InlineFeed, EverySoManyFramesOneIsAnsweredSoManyFramesLater) {
+  for (int every : {1, 3, 6}) {
+    for (int late : {0, 1, 5, 10}) {
+      settings_.detector_every_frames = every;
+      settings_.detector_latency_frames = late;
+      const std::vector<int> answers = Play(40);
+      for (int number = 0; number < 40; ++number) {
+        const int of = number - late;
+        EXPECT_EQ(answers[number], of >= 0 && of % every == 0 ? of : -1);
+      }
+      for (size_t i = 0; i < shown_.size(); ++i) EXPECT_EQ(shown_[i], static_cast<int>(i) * every);
+    }
+  }
+}
+
+TEST_F(InlineFeed, AnswersThatAreThrownAwayAreTheSameOnesForTheSameSeed) {
+  settings_.detector_every_frames = 1;
+  settings_.detector_latency_frames = 0;
+  settings_.drop_detections = 0.3;
+  const std::vector<int> answers = Play(200);
+  EXPECT_EQ(Play(200), answers);
+  EXPECT_NE(Play(200, 2), answers);
+  const auto dropped = std::count(answers.begin(), answers.end(), -1);
+  EXPECT_NEAR(static_cast<double>(dropped), 60, 20);  // three standard deviations
+  settings_.drop_detections = 1;
+  EXPECT_EQ(Play(50), std::vector<int>(50, -1));
+}
+
+TEST_F(InlineFeed, OfSeveralThatAreDueTheNewestIsHandedOver) {
+  settings_.detector_every_frames = 1;
+  settings_.detector_latency_frames = 2;
+  DetectionFeed feed(std::make_shared<ScriptedDetector>(NumberOf), settings_, false, 1);
+  for (int number = 0; number < 10; ++number) feed.Offer(number, Picture(number));
+  EXPECT_EQ(feed.Take(9)->number, 7);
+  EXPECT_FALSE(feed.Take(9).has_value());
+  EXPECT_EQ(feed.Take(11)->number, 9);
+}
+
+TEST_F(InlineFeed, ADetectorThatFailsIsToldOfOnceAndNotAskedAgain) {
+  settings_.detector_every_frames = 1;
+  settings_.detector_latency_frames = 0;
+  int asked = 0;
+  const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat& image) {
+    if (++asked == 3) throw Error(ErrorKind::kInput, "its answers are not numbers");
+    return NumberOf(image);
+  });
+  const WarningCatcher warnings;
+  DetectionFeed feed(detector, settings_, false, 1);
+  int answers = 0;
+  for (int number = 0; number < 10; ++number) {
+    feed.Offer(number, Picture(number));
+    answers += feed.Take(number).has_value();
+  }
+  EXPECT_EQ(asked, 3);
+  EXPECT_EQ(answers, 2);
+  EXPECT_THAT(warnings.text(), HasSubstr("its answers are not numbers"));
+  EXPECT_THAT(warnings.text(), HasSubstr("frame 2"));
+  EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
+}
+
+TEST_F(InlineFeed, WithoutADetectorThereAreNoAnswers) {
+  for (bool threaded : {false, true}) {
+    DetectionFeed feed(nullptr, settings_, threaded, 1);
+    for (int number = 0; number < 10; ++number) {
+      feed.Offer(number, Picture(number));
+      EXPECT_FALSE(feed.Take(number).has_value());
+    }
+    EXPECT_TRUE(feed.Milliseconds().empty());
+  }
+}
+
+// A detector that does nothing until it is let.
+class Gate {
+ public:
+  std::vector<Detection> Detect(const cv::Mat& image) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    shown_.push_back(image.at<uint8_t>(0, 0));
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return allowed_ >= shown_.size(); });
+    return NumberOf(image);
+  }
+  void Let(size_t answers) {
+    std::lock_guard<std::mutex> lock(mutex_);
+    allowed_ += answers;
+    changed_.notify_all();
+  }
+  // Waits until it has been shown so many frames, and says which.
+  std::vector<int> WaitForShown(size_t count) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [&] { return shown_.size() >= count; });
+    return shown_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<int> shown_;
+  size_t allowed_ = 0;
+};
+
+class ThreadedFeed : public testing::Test {
+ protected:
+  ThreadedFeed() { settings_.detector_rest = 0; }
+  std::unique_ptr<DetectionFeed> Feed() {
+    return std::make_unique<DetectionFeed>(
+        std::make_shared<ScriptedDetector>(
+            [this](const cv::Mat& image) { return gate_.Detect(image); }),
+        settings_, true, 1);
+  }
+  // The test's time limit ends what never comes.
+  static FrameDetections WaitForAnswer(DetectionFeed& feed, int number) {
+    for (;;) {
+      if (auto answer = feed.Take(number)) return *answer;
+      std::this_thread::yield();
+    }
+  }
+  Gate gate_;
+  DynamicsSettings settings_;
+};
+
+TEST_F(ThreadedFeed, TheNewestFrameWinsAndNobodyWaitsForASlowDetector) {
+  const auto feed = Feed();
+  feed->Offer(0, Picture(0));
+  gate_.WaitForShown(1);
+  for (int number = 1; number < 100; ++number) {  // it is busy with the first all the while
+    feed->Offer(number, Picture(number));
+    EXPECT_FALSE(feed->Take(number).has_value());
+  }
+  gate_.Let(1);
+  EXPECT_EQ(gate_.WaitForShown(2), (std::vector<int>{0, 99}));
+  EXPECT_EQ(WaitForAnswer(*feed, 100).number, 0);
+  gate_.Let(1);
+  const FrameDetections answer = WaitForAnswer(*feed, 100);
+  EXPECT_EQ(answer.number, 99);
+  EXPECT_EQ(answer.detections[0].class_id, 99);
+  EXPECT_EQ(feed->Milliseconds().size(), 2u);
+}
+
+TEST_F(ThreadedFeed, ThePictureIsTheDetectorsOwn) {
+  const auto feed = Feed();
+  feed->Offer(0, Picture(0));
+  gate_.WaitForShown(1);
+  cv::Mat picture = Picture(5);
+  feed->Offer(5, picture);
+  picture.setTo(200);  // the next frame is read into it
+  gate_.Let(2);
+  EXPECT_EQ(gate_.WaitForShown(2).back(), 5);
+}
+
+TEST_F(ThreadedFeed, NothingQueuesUp) {
+  const auto feed = Feed();
+  gate_.Let(1000);
+  for (int number = 0; number < 200; ++number) feed->Offer(number, Picture(number));
+  while (WaitForAnswer(*feed, 200).number != 199) std::this_thread::yield();
+  EXPECT_FALSE(feed->Take(200).has_value());
+}
+
+TEST_F(ThreadedFeed, ADetectorThatFailsIsToldOfOnceAndNotAskedAgain) {
+  const WarningCatcher warnings;
+  std::atomic<int> asked = 0;
+  {
+    DetectionFeed feed(
+        std::make_shared<ScriptedDetector>([&](const cv::Mat&) -> std::vector<Detection> {
+          ++asked;
+          throw std::runtime_error("out of memory");
+        }),
+        settings_, true, 1);
+    feed.Offer(0, Picture(0));
+    while (asked == 0) std::this_thread::yield();
+    for (int number = 1; number < 50; ++number) {
+      feed.Offer(number, Picture(number));
+      EXPECT_FALSE(feed.Take(number).has_value());
+    }
+  }
+  EXPECT_EQ(asked, 1);
+  EXPECT_THAT(warnings.text(), HasSubstr("out of memory"));
+  EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
+}
+
+TEST_F(ThreadedFeed, EndsWhileFramesAreOfferedAndWhileItRests) {
+  settings_.detector_rest = 100;
+  gate_.Let(1000);
+  for (int i = 0; i < 20; ++i) {
+    const auto feed = Feed();
+    for (int number = 0; number < i; ++number) feed->Offer(number, Picture(number));
+  }
+}
+
+}  // namespace
+}  // namespace alidade
