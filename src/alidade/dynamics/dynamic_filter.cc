@@ -108,21 +108,52 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   }
 }
 
-// Of the cell with the keypoint's depth; where its depth is not known, the worst around it: an
-// outline moves with what it is the outline of.
-float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
-  const int cell = cells_.At(keypoint.raw_x, keypoint.raw_y);
-  if (depth_.empty()) return belief_[cell];
-  float belief = belief_[cell], least = 1e9f;
+// Metres at a pixel of the depth image; 0 where there is no reading.
+float DynamicFilter::DepthAt(int x, int y) const {
+  if (x < 0 || y < 0 || x >= now_.depth.cols || y >= now_.depth.rows) return 0;
+  if (now_.depth.type() == CV_32FC1) return now_.depth.at<float>(y, x);
+  return static_cast<float>(now_.depth.at<uint16_t>(y, x) / camera_.depth_factor);
+}
+
+// Log-odds of the surface around a cell that has depth z; `otherwise` where none has.
+float DynamicFilter::BeliefOfSurface(int cell, float z, float otherwise) const {
+  constexpr float kSurface = 0.08f;  // of the depth
+  float belief = otherwise, least = kSurface * z;
   cells_.VisitAround(cell, 1, [&](int n) {
-    if (!keypoint.has_depth()) {
-      belief = std::min(belief, belief_[n]);
-    } else if (depth_[n] > 0 && std::abs(depth_[n] - keypoint.depth) < least) {
-      least = std::abs(depth_[n] - keypoint.depth);
-      belief = belief_[n];
-    }
+    if (!(depth_[n] > 0) || std::abs(depth_[n] - z) >= least) return;
+    least = std::abs(depth_[n] - z);
+    belief = belief_[n];
   });
   return belief;
+}
+
+// Of the surface the keypoint is on; where its depth is not known, the worst around it: an outline
+// moves with what it is the outline of.
+float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
+  constexpr int kReach = 2;  // pixels, to the next reading
+  const int cell = cells_.At(keypoint.raw_x, keypoint.raw_y);
+  if (depth_.empty()) return belief_[cell];
+  float lowest = belief_[cell];
+  cells_.VisitAround(cell, 1, [&](int n) { lowest = std::min(lowest, belief_[n]); });
+  if (lowest >= 0) return belief_[cell];
+  if (keypoint.has_depth()) return BeliefOfSurface(cell, keypoint.depth, lowest);
+  if (now_.depth.empty()) return lowest;
+  const int x = static_cast<int>(std::lround(keypoint.raw_x));
+  const int y = static_cast<int>(std::lround(keypoint.raw_y));
+  const float here = DepthAt(x, y);
+  if (here > 0) return BeliefOfSurface(cell, here, lowest);
+  float belief = 0;
+  bool known = false;
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const float z = DepthAt(x + dx, y + dy);
+      if (!(z > 0)) continue;
+      const float of_it = BeliefOfSurface(cell, z, lowest);
+      belief = known ? std::min(belief, of_it) : of_it;
+      known = true;
+    }
+  }
+  return known ? belief : lowest;
 }
 
 void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, uint64_t corrections) {

@@ -58,6 +58,8 @@ class DynamicFilter {
   void JudgeWithDepth(const PoseGuess& guess);
   void JudgeWithoutDepth(const PoseGuess* guess);
   void FindObjects(std::span<const uint8_t> proven);
+  float DepthAt(int x, int y) const;
+  float BeliefOfSurface(int cell, float z, float otherwise) const;
   float BeliefAt(const Keypoint& keypoint) const;
 
   Camera camera_;
