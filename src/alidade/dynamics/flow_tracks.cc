@@ -1,8 +1,11 @@
 #include "alidade/dynamics/flow_tracks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/tracking.hpp>
+
+#include "alidade/base/parallel.h"
 
 namespace alidade {
 namespace {
@@ -12,9 +15,10 @@ constexpr int kShrink = 2;
 constexpr int kLevels = 3;
 const cv::Size kWindow(13, 13);  // pixels of the half-size image
 constexpr float kReturn = 0.5f;  // pixels there: a track followed back must end so near its start
-constexpr int kCell = 24;        // pixels: a track is begun where there is none
+constexpr int kCell = 27;        // pixels: a track is begun where there is none
 constexpr int kPerCell = 1;
-constexpr int kMost = 600;
+constexpr int kMost = 500;
+constexpr int kChunk = 64;  // tracks a thread follows at a time
 
 }  // namespace
 
@@ -34,11 +38,25 @@ void FlowTracks::Advance(const cv::Mat& gray) {
     }
     back = before;
     std::vector<uint8_t> found, found_back;
-    const cv::TermCriteria enough(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 15, 0.03);
-    cv::calcOpticalFlowPyrLK(pyramid_, pyramid, before, now, found, cv::noArray(), kWindow, kLevels,
-                             enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
-    cv::calcOpticalFlowPyrLK(pyramid, pyramid_, now, back, found_back, cv::noArray(), kWindow, 1,
-                             enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+    const int count = static_cast<int>(before.size());
+    found.resize(before.size());
+    found_back.resize(before.size());
+    ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
+      const int first = chunk * kChunk, size = std::min(kChunk, count - first);
+      const auto part = [&](std::vector<cv::Point2f>& points) {
+        return cv::Mat(size, 1, CV_32FC2, points.data() + first);
+      };
+      const auto flags = [&](std::vector<uint8_t>& of) {
+        return cv::Mat(size, 1, CV_8U, of.data() + first);
+      };
+      const cv::TermCriteria enough(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 10, 0.03);
+      cv::Mat p_before = part(before), p_now = part(now), p_back = part(back);
+      cv::Mat f_now = flags(found), f_back = flags(found_back);
+      cv::calcOpticalFlowPyrLK(pyramid_, pyramid, p_before, p_now, f_now, cv::noArray(), kWindow,
+                               kLevels, enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+      cv::calcOpticalFlowPyrLK(pyramid, pyramid_, p_now, p_back, f_back, cv::noArray(), kWindow, 0,
+                               enough, cv::OPTFLOW_USE_INITIAL_FLOW, 1e-3);
+    });
     std::vector<FlowTrack> kept;
     for (size_t i = 0; i < tracks_.size(); ++i) {
       const cv::Point2f p = now[i] * kShrink, astray = back[i] - before[i];
