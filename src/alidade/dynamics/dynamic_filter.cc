@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/dynamics/evidence.h"
 #include "alidade/dynamics/flow_votes.h"
 
 namespace alidade {
@@ -106,6 +107,26 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
     if (!settings_.weigh) p = p >= Frame::kMappable ? 1.0f : 0.0f;
     frame.static_probability[k] = p > kSure ? 1 : p;
   }
+  FeedTheStarving(frame);
+}
+
+// Where too few certain features are left, what may stand still has a small say rather than
+// nothing: better a pose that leans on them a little than none.
+void DynamicFilter::FeedTheStarving(Frame& frame) const {
+  constexpr float kEnough = 0.15f;  // of the features …
+  constexpr float kLeast = 120;     // … and so many at least, are certain
+  constexpr float kSmall = 0.15f;   // say of the others
+  const auto certain = static_cast<float>(
+      std::count_if(frame.static_probability.begin(), frame.static_probability.end(),
+                    [](float p) { return p >= Frame::kMappable; }));
+  const auto all = static_cast<float>(frame.keypoints.size());
+  if (certain >= kEnough * all && certain >= std::min(kLeast, all / 2)) return;
+  for (size_t k = 0; k < frame.keypoints.size(); ++k) {
+    const Keypoint& keypoint = frame.keypoints[k];
+    const int cell = cells_.At(keypoint.raw_x, keypoint.raw_y);
+    if (geometry_[cell] < 0) continue;  // seen to move
+    frame.static_probability[k] = std::max(frame.static_probability[k], kSmall);
+  }
 }
 
 // Metres at a pixel of the depth image; 0 where there is no reading.
@@ -169,6 +190,27 @@ void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, uint
     view->static_log_odds = belief_;
   }
   history_.Add(std::move(view));
+}
+
+Sight DynamicFilter::Look(const Eigen::Vector3d& p) const {
+  constexpr int kEnough = 5;  // neighbours with depth
+  const int cell = cells_.Project(p);
+  if (cell < 0) return Sight::kClear;
+  if (depth_.empty()) return belief_[cell] < 0 ? Sight::kHidden : Sight::kClear;
+  const auto z = static_cast<float>(p.z());
+  const float tolerance = DepthTolerance(z);
+  int known = 0, behind = 0;
+  bool still = false, mover = false;
+  cells_.VisitAround(cell, 1, [&](int n) {
+    if (!(depth_[n] > 0)) return;
+    ++known;
+    behind += depth_[n] > z + 2 * tolerance;
+    if (std::abs(depth_[n] - z) > tolerance) return;
+    (belief_[n] < 0 ? mover : still) = true;
+  });
+  if (still || known < kEnough) return Sight::kClear;
+  if (mover) return Sight::kOnMover;
+  return behind == known ? Sight::kGone : Sight::kHidden;
 }
 
 cv::Mat DynamicFilter::Mask() const {

@@ -10,6 +10,7 @@
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
 #include "alidade/dynamics/history.h"
+#include "alidade/dynamics/landmark_belief.h"
 #include "alidade/dynamics/objects.h"
 #include "alidade/dynamics/settings.h"
 #include "alidade/dynamics/surface_belief.h"
@@ -50,6 +51,9 @@ class DynamicFilter {
   // Ends the frame. `T_camera_world`: its pose; null when lost. `corrections`: of the map it is in.
   void Remember(const Frame& frame, const Se3* T_camera_world, uint64_t corrections);
 
+  // What there is where a point of the camera's frame should be seen.
+  Sight Look(const Eigen::Vector3d& p) const;
+
   // What is left out as moving, of the camera's size: CV_8U, 255 = moves. Raw pixels.
   cv::Mat Mask() const;
   const std::vector<MovingObject>& objects() const { return objects_.objects(); }
@@ -58,6 +62,7 @@ class DynamicFilter {
   void JudgeWithDepth(const PoseGuess& guess);
   void JudgeWithoutDepth(const PoseGuess* guess);
   void FindObjects(std::span<const uint8_t> proven);
+  void FeedTheStarving(Frame& frame) const;
   float DepthAt(int x, int y) const;
   float BeliefOfSurface(int cell, float z, float otherwise) const;
   float BeliefAt(const Keypoint& keypoint) const;

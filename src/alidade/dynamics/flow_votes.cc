@@ -14,7 +14,8 @@ constexpr double kMoved = 3;     // pixels off where it should be …
 constexpr double kShare = 0.15;  // … and of the way it went: errors of depth and pose grow with it
 
 int8_t Vote(double off, double way, bool measured) {
-  static const double A=getenv("VA")?atof(getenv("VA")):1.5, S=getenv("VS")?atof(getenv("VS")):0.03;
+  static const double A = getenv("VA") ? atof(getenv("VA")) : 1.5,
+                      S = getenv("VS") ? atof(getenv("VS")) : 0.03;
   const double moved = measured ? kMoved + kShare * way : A + S * way;
   return off > moved ? -1 : off < moved / 2 ? 1 : 0;
 }
@@ -27,7 +28,8 @@ struct InverseDepths {
 // What depth a point may have had, by the cells around: corners often lie on an outline.
 InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest) {
   const int cell = cells.At(then.x, then.y);
-  if (past.depth.empty() || !(past.depth[cell] > 0)) return {getenv("FAR") ? 1/(nearest*atof(getenv("FAR"))) : 0, 1 / nearest, false};
+  if (past.depth.empty() || !(past.depth[cell] > 0))
+    return {getenv("FAR") ? 1 / (nearest * atof(getenv("FAR"))) : 0, 1 / nearest, false};
   float near = past.depth[cell], far = near;
   cells.VisitAround(cell, 1, [&](int n) {
     if (!(past.depth[n] > 0)) return;
@@ -58,9 +60,9 @@ std::vector<int8_t> VoteByPose(const Camera& camera, const Cells& cells,
     const EpipolarSegment segment =
         SegmentOf(camera, camera.Unproject(pixel_then),
                   T_camera_world * past.T_camera_world.Inverse(), range.least, range.most);
-    votes[i] = segment.in_front
-                   ? Vote(DistanceTo(segment, pixel_now), (pixel_now - pixel_then).norm(), range.measured)
-                   : int8_t{-1};
+    votes[i] = segment.in_front ? Vote(DistanceTo(segment, pixel_now),
+                                       (pixel_now - pixel_then).norm(), range.measured)
+                                : int8_t{-1};
   }
   return votes;
 }
@@ -93,10 +95,10 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
 
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
                               std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
-  const int kReach = depth.empty() && getenv("KR") ? atoi(getenv("KR")) : 3;          // cells around
-  constexpr float kSurface = 0.06f;  // of the depth
-  constexpr int kEnough = 3;         // tracks
-  constexpr float kAgreed = 0.4f;    // mean vote
+  const int kReach = depth.empty() && getenv("KR") ? atoi(getenv("KR")) : 3;  // cells around
+  constexpr float kSurface = 0.06f;                                           // of the depth
+  constexpr int kEnough = 3;                                                  // tracks
+  constexpr float kAgreed = 0.4f;                                             // mean vote
   std::vector<int> sums(cells.count(), 0), counts(cells.count(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);

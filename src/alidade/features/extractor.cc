@@ -14,9 +14,10 @@
 namespace alidade {
 namespace {
 
-constexpr int kBandCells = 3;  // rows of cells that one thread looks through at a time
-constexpr int kChunk = 64;     // keypoints it describes at a time
-constexpr int kAround = 4;     // rows that FAST needs above and below
+constexpr int kBandCells = 3;          // rows of cells that one thread looks through at a time
+constexpr int kChunk = 64;             // keypoints it describes at a time
+constexpr double kAvoidedShare = 0.4;  // of what avoided places would get: enough to see them move
+constexpr int kAround = 4;             // rows that FAST needs above and below
 
 // How many keypoints each level gets: shares fall with the level's side (1 / 1.2), and what a level
 // cannot fill goes to the others in the same proportion.
@@ -44,6 +45,25 @@ std::array<int, kPyramidLevels> LevelBudgets(const std::array<int, kPyramidLevel
     }
   }
   return budget;
+}
+
+// Sum of the levels' shares of the budget.
+double ScaleSum() {
+  double sum = 0;
+  for (int l = 0; l < kPyramidLevels; ++l) sum += 1 / ScaleOfLevel(l);
+  return sum;
+}
+
+// Takes those where `avoid` is not 0 out of `corners`.
+std::vector<Corner> TakeAvoided(std::vector<Corner>& corners, cv::Size level,
+                                const cv::Mat& avoid) {
+  std::vector<Corner> avoided, useful;
+  for (const Corner& corner : corners) {
+    const int x = corner.x * avoid.cols / level.width, y = corner.y * avoid.rows / level.height;
+    (avoid.at<uint8_t>(y, x) ? avoided : useful).push_back(corner);
+  }
+  corners = std::move(useful);
+  return avoided;
 }
 
 // All rows of all levels, cut where rows of cells end.
@@ -113,7 +133,8 @@ std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& ban
                        settings_.fast_threshold);
 }
 
-Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number) {
+Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number,
+                         const cv::Mat& avoid) {
   if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8 bit grey");
   if (image.cols != camera.width || image.rows != camera.height) {
     ThrowUsage("extractor: the image is " + std::to_string(image.cols) + "x" +
@@ -149,11 +170,25 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
     std::vector<Corner>& all = corners[bands[b].level];
     all.insert(all.end(), found[b].begin(), found[b].end());
   }
+  std::array<std::vector<Corner>, kPyramidLevels> avoided;
+  if (!avoid.empty()) {
+    for (int l = 0; l < kPyramidLevels; ++l) avoided[l] = TakeAvoided(corners[l], sizes[l], avoid);
+  }
   std::array<int, kPyramidLevels> available{};
   for (int l = 0; l < kPyramidLevels; ++l) available[l] = static_cast<int>(corners[l].size());
   const std::array<int, kPyramidLevels> budget = LevelBudgets(available, settings_.features);
   ParallelFor(kPyramidLevels, [&](int l) {
+    const size_t useful = corners[l].size();
     corners[l] = SpreadCorners(corners[l], sizes[l], budget[l], settings_.evenness);
+    if (avoided[l].empty()) return;
+    const double share =
+        static_cast<double>(avoided[l].size()) / static_cast<double>(avoided[l].size() + useful);
+    const int few =
+        static_cast<int>(kAvoidedShare * share * settings_.features / ScaleOfLevel(l) / ScaleSum());
+    const std::vector<Corner> rest = SpreadCorners(avoided[l], sizes[l], few, settings_.evenness);
+    corners[l].insert(corners[l].end(), rest.begin(), rest.end());
+    std::sort(corners[l].begin(), corners[l].end(),
+              [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   });
 
   // Direction, descriptor and position of each.

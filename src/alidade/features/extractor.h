@@ -31,7 +31,10 @@ class Extractor {
   // `image`: 8 bit grey, continuous or not, of the camera's size. Keypoints are undistorted with
   // `camera` (raw_x, raw_y keep the image position) and sorted by level, then row, then column. The
   // result does not depend on the number of threads. A structureless image gives an empty frame.
-  Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number);
+  // `avoid` (CV_8U, of any size, laid over the image; may be empty): where it is not 0 keypoints
+  // are of little use. All that are wanted are then found elsewhere, and only a few there.
+  Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number,
+                const cv::Mat& avoid = {});
 
   struct Band {
     int level, first_row, end_row;

@@ -28,6 +28,8 @@ struct Landmark {
       Eigen::Vector3f::Zero();               // mean viewing direction, camera to landmark, unit
   float min_distance = 0, max_distance = 0;  // metres: where its scale is within the pyramid
 
+  // How likely it stands still, 0…1: weighs what is seen of it in poses and adjustments.
+  float static_probability = 1;
   KeyFrameId born;  // newest keyframe when it was made: young ones are on trial
 };
 

@@ -181,12 +181,15 @@ class Decoder {
     landmark.normal = {from.normal()->x(), from.normal()->y(), from.normal()->z()};
     landmark.min_distance = from.min_distance();
     landmark.max_distance = from.max_distance();
+    landmark.static_probability = from.static_probability();
     landmark.born = {from.born()};
     landmark.reference = {from.reference()};
     Require(landmark.normal.norm() <= 1.001f, "a landmark's normal is no direction");
     Require(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
                 landmark.max_distance <= kFarthest,
             "a landmark can be seen from nowhere");
+    Require(landmark.static_probability >= 0 && landmark.static_probability <= 1,
+            "a landmark's probability of standing still is none");
     Require(landmark.born.value < file_.next_keyframe(),
             "a landmark was born in a keyframe that never was");
     bool reference_sees_it = false;

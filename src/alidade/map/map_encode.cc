@@ -69,7 +69,8 @@ Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& 
   const fb::Descriptor descriptor = Encode(landmark.descriptor);
   return fb::CreateLandmark(builder, landmark.id.value, &p_world, observations,
                             landmark.reference.value, landmark.born.value, &descriptor, &normal,
-                            landmark.min_distance, landmark.max_distance);
+                            landmark.min_distance, landmark.max_distance,
+                            landmark.static_probability);
 }
 
 Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera) {

@@ -1,6 +1,7 @@
 #include "alidade/mapping/mapper.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "alidade/mapping/fuse.h"
 #include "alidade/mapping/local_window.h"
@@ -33,6 +34,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
       if (!keypoint.has_depth() || keypoint.depth > settings_.max_depth) continue;
       if (commit.Find(id)->landmarks[i].valid()) continue;
       Landmark landmark;
+      landmark.static_probability = settings_.young_static;
       landmark.p_world = T_world_camera * camera_.Unproject(keypoint.pixel(), keypoint.depth);
       landmark.reference = landmark.born = id;
       landmark.observations = {{id, static_cast<int>(i)}};
@@ -56,6 +58,7 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
     for (const auto& point : start.points) {
       Landmark landmark;
       landmark.p_world = point.p_a;
+      landmark.static_probability = settings_.young_static;
       landmark.reference = first;
       landmark.born = second;
       landmark.observations = {{first, point.keypoint_a}, {second, point.keypoint_b}};
@@ -102,6 +105,29 @@ void Mapper::Count(std::span<const std::pair<LandmarkId, bool>> sightings) {
   }
 }
 
+void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
+  constexpr float kBound = 4;  // what was believed for long can be unlearnt in a second
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  for (const auto& [id, log_odds] : evidence) {
+    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
+    float& sum = tallies_[id.value].static_log_odds;
+    sum = std::clamp(sum + log_odds, -kBound, kBound);
+    doubted_.push_back(id);
+  }
+}
+
+// Probabilities of standing still of all that were doubted since, in order of id.
+std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  std::sort(doubted_.begin(), doubted_.end());
+  doubted_.erase(std::unique(doubted_.begin(), doubted_.end()), doubted_.end());
+  std::vector<std::pair<LandmarkId, float>> belief;
+  for (LandmarkId id : doubted_)
+    belief.push_back({id, 1 / (1 + std::exp(-tallies_[id.value].static_log_odds))});
+  doubted_.clear();
+  return belief;
+}
+
 MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   MapperReport report;
   MapSnapshot map = map_.Snapshot();
@@ -118,8 +144,17 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     weak = FindWeakLandmarks(map, young_, tallies_, id, has_depth_, settings_, still_young);
   }
   young_ = std::move(still_young);
+  const std::vector<std::pair<LandmarkId, float>> belief = TakeBelief();
+  for (const auto& [landmark, probability] : belief) {
+    if (probability < settings_.least_static) weak.push_back(landmark);
+  }
   report.landmarks_culled = static_cast<int>(weak.size());
   map = map_.Commit([&](MapCommit& commit) {
+    for (const auto& [landmark, probability] : belief) {
+      Landmark* edited = commit.Edit(landmark);
+      if (!edited) continue;
+      edited->static_probability = probability > settings_.sure_static ? 1 : probability;
+    }
     for (LandmarkId landmark : weak) commit.Remove(landmark);
     const std::vector<LandmarkId> seen = commit.Find(id)->landmarks;
     for (LandmarkId landmark : seen) {
@@ -133,6 +168,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     for (const NewLandmark& entry : made) {
       Landmark landmark;
       landmark.p_world = entry.p_world;
+      landmark.static_probability = settings_.young_static;
       landmark.reference = landmark.born = id;
       landmark.observations = {entry.first, entry.second};
       const LandmarkId added = commit.Add(std::move(landmark));

@@ -44,11 +44,17 @@ class Mapper {
   // What the tracker looked for and found since the last call. Thread-safe.
   void Count(std::span<const std::pair<LandmarkId, bool>> sightings);
 
+  // What frames said of landmarks, as log-odds of standing still, to be added up. Thread-safe; the
+  // next Process() enters it in the map, and removes those that are likely to move.
+  void Doubt(std::span<const std::pair<LandmarkId, float>> evidence);
+
   // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the
   // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
 
  private:
+  std::vector<std::pair<LandmarkId, float>> TakeBelief();
+
   MapStore& map_;
   Camera camera_;
   MapperSettings settings_;
@@ -56,6 +62,7 @@ class Mapper {
   std::vector<LandmarkId> young_;  // on trial
   std::mutex tallies_mutex_;
   std::vector<SightingTally> tallies_;  // by landmark id
+  std::vector<LandmarkId> doubted_;     // since the last Process(), some more than once
 };
 
 }  // namespace alidade

@@ -27,6 +27,11 @@ struct MapperSettings {
   double fuse_radius = 3.0;  // pixels on level 0
   int fuse_distance = 50;    // bits of 256
 
+  // Things that move. Where none are looked for, all landmarks count fully from the first.
+  float young_static = 1;     // probability that a new landmark stands still; 0.5 with dynamics
+  float least_static = 0.2f;  // below, a landmark is removed
+  float sure_static = 0.9f;   // above, it counts fully
+
   // Culling (ORB-SLAM §VI-B, VI-E).
   double min_found_share = 0.25;  // found / expected sightings of a landmark on trial
   int trial_keyframes = 3;        // a landmark is on trial for as many keyframes after its own

@@ -17,6 +17,7 @@ struct MatchPair {
   Double2 u, v, right;       // seen, pixels
   Double2 weight, weight_r;  // 1/px²; 0: the match, or its u_right, cannot be used
   Double2 huber;             // standard deviations
+  Double2 trust;             // 0…1
   Mask2 active;              // ones: counts in this round
 };
 
@@ -30,13 +31,13 @@ std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matc
                             const PoseOnlySettings& settings) {
   MatchPair none;
   none.x = none.y = none.u = none.v = none.right = none.weight = none.weight_r = Both(0);
-  none.z = none.huber = Both(1);
+  none.z = none.huber = none.trust = Both(1);
   none.active = Mask2{0, 0};
   std::vector<MatchPair> pairs((matches.size() + 1) / 2, none);
   for (size_t i = 0; i < matches.size(); ++i) {
     const PoseMatch& m = matches[i];
     if (!m.p_world.allFinite() || !m.pixel.head<2>().allFinite()) continue;
-    if (!(m.inv_sigma2 > 0) || !std::isfinite(m.inv_sigma2)) continue;
+    if (!(m.inv_sigma2 > 0) || !std::isfinite(m.inv_sigma2) || !(m.trust > 0)) continue;
     const bool stereo =
         HasRight(k, m.pixel.z()) && m.inv_sigma2_right > 0 && std::isfinite(m.inv_sigma2_right);
     MatchPair& p = pairs[i / 2];
@@ -49,6 +50,7 @@ std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matc
     p.right[lane] = stereo ? m.pixel.z() : 0;
     p.weight[lane] = m.inv_sigma2;
     p.weight_r[lane] = stereo ? m.inv_sigma2_right : 0;
+    p.trust[lane] = m.trust;
     p.huber[lane] = stereo ? settings.huber_stereo : settings.huber_mono;
     p.active[lane] = -1;
   }
@@ -96,7 +98,7 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     const Double2 cap = far * m.weight;
     const Double2 chi2 = Min(s.chi2, cap);
     const Mask2 near = (s.chi2 < cap) & s.in_front & m.active;
-    Double2 w = near ? m.weight : zero, wr = near ? m.weight_r : zero, loss;
+    Double2 w = near ? m.weight * m.trust : zero, wr = near ? m.weight_r * m.trust : zero, loss;
     if (robust) {
       const Double2 root = Sqrt(chi2);
       const Double2 irls = Min(m.huber / Max(root, Both(1e-9)), Both(1));
@@ -109,7 +111,7 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     } else {
       loss = 0.5 * chi2;
     }
-    cost += m.active ? loss : zero;
+    cost += m.active ? loss * m.trust : zero;
     const Double2 wu = w * s.e.u_x, wv = w * s.e.v_y;
     const Double2 a = wu * s.e.u_x, b = wv * s.e.v_y;
     const Double2 c = wu * s.e.u_z, d = wv * s.e.v_z;

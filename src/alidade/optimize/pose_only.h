@@ -25,6 +25,7 @@ struct PoseMatch {
       pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
   double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
   double inv_sigma2_right = 1;  // the same of the disparity u - u_right, 1/px²
+  double trust = 1;             // 0…1: its say in the pose; the gate does not change with it
 };
 
 struct PoseOnlyResult {

@@ -18,8 +18,10 @@ namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
 
-// One seed for every random choice.
+// One seed for every random choice; with dynamics landmarks must earn their weight.
 SlamSettings Seeded(SlamSettings settings) {
+  if (settings.dynamics.mode != DynamicsMode::kOff && settings.dynamics.weigh)
+    settings.mapper.young_static = 0.5f;
   settings.tracker.seed = settings.start.two_view.seed = settings.loop.seed = settings.seed;
   return settings;
 }
@@ -112,6 +114,8 @@ class Slam::Impl {
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
   TrackResult FindBack(const std::shared_ptr<Frame>& frame);
+  std::vector<std::pair<LandmarkId, bool>> DoubtLandmarks(const TrackEstimate& estimate,
+                                                          const MapSnapshot& map);
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
@@ -160,8 +164,8 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   const int number = first_number_ + static_cast<int>(records_.size());
   BeginDynamics(prepared, number);
   const Stopwatch extracting;
-  const auto frame =
-      tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time, number);
+  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
+                                      number, dynamics_ ? dynamics_->ExpectedMovers() : cv::Mat());
   times_.extract.push_back(extracting.Milliseconds());
   records_.push_back({});
   records_.back().time = input.time;
@@ -402,6 +406,23 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   return result;
 }
 
+// Tells the mapper what the frame says of each landmark; returns the sightings that nothing moving
+// hid.
+std::vector<std::pair<LandmarkId, bool>> Slam::Impl::DoubtLandmarks(const TrackEstimate& estimate,
+                                                                    const MapSnapshot& map) {
+  std::vector<std::pair<LandmarkId, bool>> sightings;
+  std::vector<std::pair<LandmarkId, float>> evidence;
+  for (const SightingCount& s : estimate.sightings) {
+    const Landmark* landmark = map.Find(s.landmark);
+    if (!landmark) continue;
+    const Sight sight = dynamics_->Look(estimate.placed.T_camera_world * landmark->p_world);
+    evidence.push_back({s.landmark, EvidenceOf(sight, s.found)});
+    if (s.found || sight == Sight::kClear) sightings.push_back({s.landmark, s.found});
+  }
+  workers_.mapper().Doubt(evidence);
+  return sightings;
+}
+
 TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   state_ = TrackState::kTracking;
   TrackResult result;
@@ -414,6 +435,7 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   if (!settings_.localise) {
     std::vector<std::pair<LandmarkId, bool>> sightings;
     for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
+    if (dynamics_) sightings = DoubtLandmarks(estimate, map);
     workers_.mapper().Count(sightings);
   }
   last_ = estimate.placed;

@@ -26,8 +26,9 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
 }
 
 std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right,
-                                        const cv::Mat& depth, double time, int number) {
-  auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number));
+                                        const cv::Mat& depth, double time, int number,
+                                        const cv::Mat& avoid) {
+  auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number, avoid));
   if (!depth.empty()) AttachDepth(depth, camera_, *frame);
   if (!right.empty())
     MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
@@ -97,8 +98,8 @@ void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float r
       sought.max_level = before.level;
     }
     if (baseline > 0) sought.right_x = static_cast<float>(pixel.x() - camera_.bf() / p.z());
-    const Sighting found = FindNear(
-        now, sought, [&](int k) { return !guess.matches[k].valid() && now.IsUsable(k); });
+    const Sighting found =
+        FindNear(now, sought, [&](int k) { return !guess.matches[k].valid() && now.IsUsable(k); });
     if (found.keypoint < 0 || found.distance > settings_.max_distance) continue;
     guess.matches[found.keypoint] = id;
     matched.push_back(found.keypoint);
@@ -203,9 +204,8 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
     if (!landmark) continue;
     const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
-    const double weight = placed.frame->Static(static_cast<int>(i));
-    matches.push_back(
-        {landmark->p_world, m.pixel, weight * m.inv_sigma2, weight * m.inv_sigma2_right});
+    const double trust = placed.frame->Static(static_cast<int>(i)) * landmark->static_probability;
+    matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right, trust});
     keypoints.push_back(static_cast<int>(i));
   }
   PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
@@ -280,6 +280,7 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   int near_tracked = 0, near_new = 0;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     if (!placed.frame->keypoints[i].has_depth()) continue;
+    if (placed.frame->Static(static_cast<int>(i)) < Frame::kMappable) continue;
     ++(placed.matches[i].valid() ? near_tracked : near_new);
   }
   return near_tracked < Scaled(100) && near_new > Scaled(70);

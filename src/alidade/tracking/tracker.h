@@ -34,9 +34,9 @@ class Tracker {
   // `camera`: as the frames are; with depth_factor and baseline 0 for monocular use.
   Tracker(const Camera& camera, TrackerSettings settings);
 
-  // Turns images into a frame. `right` and `depth` may be empty.
+  // Turns images into a frame. `right` and `depth` may be empty. `avoid`: see Extractor.
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
-                                 double time, int number);
+                                 double time, int number, const cv::Mat& avoid = {});
   // First guess of the pose: constant velocity and the last frame's landmarks, or the reference
   // keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
