@@ -140,7 +140,7 @@ TEST_F(FilterOfAWalkedRoom, FindsThePeopleWithTwoCameras) {
   Play(watcher, room);
   EXPECT_GT(overlap_, 0.3);  // block matching widens them
   EXPECT_LT(in_use_.people, 0.4 * in_use_.all_people);
-  EXPECT_GT(in_use_.room, 0.9 * in_use_.all_room);
+  EXPECT_GT(in_use_.room, 0.85 * in_use_.all_room);  // the share beside people is lost
 }
 
 TEST_F(FilterOfAWalkedRoom, LeavesTheRoomAloneWithOneCamera) {

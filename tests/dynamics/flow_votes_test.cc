@@ -108,9 +108,10 @@ INSTANTIATE_TEST_SUITE_P(Depth, VotesByPose, testing::Bool(),
                          [](const auto& which) { return which.param ? "WithDepth" : "Without"; });
 
 TEST(VotesByPoseAndDepth, FindWhatMovesAlongTheEpipolarLineAsSomethingNearerWould) {
-  // The camera goes to the right; what goes to the left is seen as something nearer that stands.
+  // The camera goes to the right and a little up; what goes to the left and a little down is seen
+  // as something nearer that stands.
   FollowedSettings settings;
-  settings.board = [](int frame) { return Eigen::Vector3d(0.2 - 0.03 * frame, 0, 2); };
+  settings.board = [](int frame) { return Eigen::Vector3d(0.2 - 0.02 * frame, 0.004 * frame, 2); };
   const FollowedPoints without = FollowPoints(settings);
   EXPECT_EQ(ShareOf(without, ByPose(without), true, -1), 0);  // it might well stand
   settings.depth = true;

@@ -68,7 +68,7 @@ class ObjectTracksTest : public testing::Test {
     }
   }
   void Detect(std::vector<Detection> detections, int ago) {
-    objects_.Update(detections, ago, now_ * kFrame, Flow(), cells_);
+    objects_.Update(detections, ago, (now_ - ago) * kFrame, Flow());
   }
   Detection Person(int ago) const { return {kPerson, 0.9f, BoxAt(now_ - ago)}; }
 

@@ -30,20 +30,25 @@ DynamicFilter::DynamicFilter(const Camera& camera, const DynamicsSettings& setti
 void DynamicFilter::Advance(const DynamicInput& input,
                             const std::optional<FrameDetections>& arrived) {
   now_ = input;
+  times_.push_front(input.time);
+  if (times_.size() > FlowTracks::kHistory) times_.pop_back();
   tracks_.Advance(input.gray);
   depth_.clear();
   if (!input.depth.empty()) depth_ = DepthOfCells(cells_, camera_, input.depth);
   if (!input.right.empty()) depth_ = StereoDepthOfCells(cells_, camera_, input.gray, input.right);
   objects_.Advance(tracks_.tracks(), cells_, input.time, input.gray.size());
   if (arrived) {
-    objects_.Update(arrived->detections, input.number - arrived->number, input.time,
-                    tracks_.tracks(), cells_);
+    const int ago = input.number - arrived->number;
+    const bool known = static_cast<size_t>(ago) < times_.size();
+    objects_.Update(arrived->detections, ago, known ? times_[ago] : input.time, tracks_.tracks());
   }
 }
 
 cv::Mat DynamicFilter::ExpectedMovers() const {
   cv::Mat movers(cells_.rows(), cells_.columns(), CV_8U);
-  for (int i = 0; i < cells_.count(); ++i) movers.data[i] = belief_[i] < 0 ? 255 : 0;
+  // Without depth geometry tells single features, not what they are on.
+  for (int i = 0; i < cells_.count(); ++i)
+    movers.data[i] = object_[i] || (!depth_.empty() && belief_[i] < 0) ? 255 : 0;
   return movers;
 }
 
@@ -51,10 +56,10 @@ cv::Mat DynamicFilter::ExpectedMovers() const {
 // which only the rim of a box can hold; may be empty.
 void DynamicFilter::FindObjects(std::span<const uint8_t> proven) {
   std::fill(object_.begin(), object_.end(), uint8_t{0});
-  const bool cut = settings_.foreground && !depth_.empty();
   for (MovingObject& object : objects_.objects()) {
-    object.cells = cut ? FindForeground(cells_, depth_, geometry_, object.box)
-                       : CellsInOval(cells_, object.box, proven);
+    object.cells = !settings_.foreground ? CellsInBox(cells_, object.box)
+                   : depth_.empty()      ? CellsInOval(cells_, object.box, proven)
+                                         : FindForeground(cells_, depth_, geometry_, object.box);
     if (object.carried) continue;
     for (int i : object.cells) object_[i] = 1;
   }

@@ -2,6 +2,7 @@
 // the order Advance, Judge, Remember for each frame.
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -77,6 +78,7 @@ class DynamicFilter {
   History history_;
 
   DynamicInput now_;
+  std::deque<double> times_;     // of the last frames, newest first, seconds
   std::vector<float> depth_;     // of each cell; empty: none is measured
   std::vector<float> geometry_;  // log-odds of standing still, of each cell, objects apart
   std::vector<uint8_t> object_;  // of each cell: nonzero = of one that moves by itself

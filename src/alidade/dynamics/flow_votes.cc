@@ -9,27 +9,26 @@
 namespace alidade {
 namespace {
 
-constexpr int kMostAgo = 15;     // frames
-constexpr double kMoved = 3;     // pixels off where it should be …
-constexpr double kShare = 0.15;  // … and of the way it went: errors of depth and pose grow with it
+constexpr int kMostAgo = 15;  // frames
+// Pixels off where it should be, and of the way it went: errors of pose, and of measured depth,
+// grow with it.
+constexpr double kMoved = 1.5, kMovedMeasured = 3;
+constexpr double kShare = 0.05, kShareMeasured = 0.15;
 
 int8_t Vote(double off, double way, bool measured) {
-  static const double A = getenv("VA") ? atof(getenv("VA")) : 1.5,
-                      S = getenv("VS") ? atof(getenv("VS")) : 0.03;
-  const double moved = measured ? kMoved + kShare * way : A + S * way;
+  const double moved = measured ? kMovedMeasured + kShareMeasured * way : kMoved + kShare * way;
   return off > moved ? -1 : off < moved / 2 ? 1 : 0;
 }
 
 struct InverseDepths {
   double least = 0, most = 0;  // 1/metres
-  bool measured = false;
+  bool measured = false;       // by a sensor
 };
 
 // What depth a point may have had, by the cells around: corners often lie on an outline.
 InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest) {
   const int cell = cells.At(then.x, then.y);
-  if (past.depth.empty() || !(past.depth[cell] > 0))
-    return {getenv("FAR") ? 1 / (nearest * atof(getenv("FAR"))) : 0, 1 / nearest, false};
+  if (past.depth.empty() || !(past.depth[cell] > 0)) return {0, 1 / nearest, false};
   float near = past.depth[cell], far = near;
   cells.VisitAround(cell, 1, [&](int n) {
     if (!(past.depth[n] > 0)) return;
@@ -72,7 +71,8 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
   constexpr int kAgo = 10, kIterations = 100;
   constexpr size_t kEnough = 40;
   constexpr double kLeastShare = 0.5;       // of the tracks
-  constexpr double kHomographyShare = 0.9;  // of the inliers of the other: the camera only turned
+  constexpr double kSigma = 1.5;            // pixels
+  constexpr double kHomographyShare = .85;  // of the inliers of the other: the camera only turned
   std::vector<int8_t> votes(tracks.size(), 0);
   std::vector<Eigen::Vector2d> a, b;
   std::vector<size_t> used;
@@ -80,8 +80,8 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
   for (size_t i = 0; i < tracks.size(); ++i) {
     if (tracks[i].length() <= kAgo || left_out[i]) continue;
     const cv::Point2f then = tracks[i].Before(kAgo), now = tracks[i].at();
-    a.push_back((camera.Undistort({then.x, then.y}) - middle) / kMoved * 2);
-    b.push_back((camera.Undistort({now.x, now.y}) - middle) / kMoved * 2);
+    a.push_back((camera.Undistort({then.x, then.y}) - middle) / kSigma);
+    b.push_back((camera.Undistort({now.x, now.y}) - middle) / kSigma);
     used.push_back(i);
   }
   if (used.size() < kEnough) return votes;
@@ -95,10 +95,10 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
 
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
                               std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
-  const int kReach = depth.empty() && getenv("KR") ? atoi(getenv("KR")) : 3;  // cells around
-  constexpr float kSurface = 0.06f;                                           // of the depth
-  constexpr int kEnough = 3;                                                  // tracks
-  constexpr float kAgreed = 0.4f;                                             // mean vote
+  constexpr int kReach = 3;          // cells around
+  constexpr float kSurface = 0.06f;  // of the depth
+  constexpr int kEnough = 3;         // tracks
+  constexpr float kAgreed = 0.4f;    // mean vote
   std::vector<int> sums(cells.count(), 0), counts(cells.count(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);

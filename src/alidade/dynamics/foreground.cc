@@ -70,6 +70,12 @@ float CoreDepth(const Cells& cells, std::span<const float> depth,
 
 }  // namespace
 
+std::vector<int> CellsInBox(const Cells& cells, const cv::Rect2f& box) {
+  std::vector<int> found;
+  VisitBox(cells, box, [&](int i) { found.push_back(i); });
+  return found;
+}
+
 std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
                              std::span<const uint8_t> proven) {
   std::vector<int> found;

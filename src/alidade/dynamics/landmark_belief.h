@@ -16,7 +16,7 @@ enum class Sight {
 inline float EvidenceOf(Sight sight, bool found) {
   switch (sight) {
     case Sight::kOnMover:
-      return -1.0f;
+      return -0.4f;
     case Sight::kGone:
       return found ? 0.0f : -0.7f;
     case Sight::kHidden:

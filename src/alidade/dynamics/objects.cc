@@ -75,7 +75,7 @@ void ObjectTracks::Advance(std::span<const FlowTrack> tracks, const Cells& cells
     if (motion) object.velocity = *motion;
     object.past.push_front(object.box);
     if (object.past.size() > kPast) object.past.pop_back();
-    object.box += object.velocity;
+    if (settings_.propagate) object.box += object.velocity;
     if (time - object.seen > settings_.bridge_seconds || (object.box & picture).area() <= 0)
       continue;
     kept.push_back(std::move(object));
@@ -83,9 +83,8 @@ void ObjectTracks::Advance(std::span<const FlowTrack> tracks, const Cells& cells
   objects_ = std::move(kept);
 }
 
-void ObjectTracks::Update(std::span<const Detection> detections, int ago, double time,
-                          std::span<const FlowTrack> tracks, const Cells& cells) {
-  (void)cells;
+void ObjectTracks::Update(std::span<const Detection> detections, int ago, double seen,
+                          std::span<const FlowTrack> tracks) {
   std::vector<uint8_t> taken(objects_.size(), 0);
   for (const Detection& detection : detections) {
     const Role role = RoleOf(detection.class_id);
@@ -107,10 +106,10 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
       taken[best] = 1;
       const cv::Rect2f old = then(object);
       const cv::Point2f moved = (object.box.tl() + object.box.br() - old.tl() - old.br()) / 2;
-      object.box = detection.box + moved;
+      object.box = settings_.propagate ? detection.box + moved : detection.box;
       object.class_id = detection.class_id;
       object.carried = role == Role::kCarried;
-      object.seen = std::max(object.seen, time);
+      object.seen = std::max(object.seen, seen);
       continue;
     }
     MovingObject object;
@@ -118,7 +117,7 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
     object.class_id = detection.class_id;
     object.carried = role == Role::kCarried;
     object.box = detection.box;
-    object.seen = time;
+    object.seen = seen;
     const cv::Rect2f inner = Inner(detection.box, 0.6f);
     const auto motion =
         ago > 0 && settings_.propagate

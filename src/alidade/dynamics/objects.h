@@ -32,9 +32,10 @@ class ObjectTracks {
   // Moves every object on to the frame the tracks are in: by the flow of what it covers, else as it
   // moved before. Those not detected for too long, or gone from the picture, are dropped.
   void Advance(std::span<const FlowTrack> tracks, const Cells& cells, double time, cv::Size image);
-  // An answer of the detector for the frame `ago` frames before the present one, taken at `time`.
-  void Update(std::span<const Detection> detections, int ago, double time,
-              std::span<const FlowTrack> tracks, const Cells& cells);
+  // An answer of the detector for the frame `ago` frames before the present one, taken at `seen`
+  // (seconds).
+  void Update(std::span<const Detection> detections, int ago, double seen,
+              std::span<const FlowTrack> tracks);
   std::vector<MovingObject>& objects() { return objects_; }
   const std::vector<MovingObject>& objects() const { return objects_; }
 
@@ -54,6 +55,8 @@ class ObjectTracks {
 // floor.
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
                                 std::span<const float> static_log_odds, const cv::Rect2f& box);
+// All in the box.
+std::vector<int> CellsInBox(const Cells& cells, const cv::Rect2f& box);
 // Those of an oval in the box: all that can be said without depth.
 // `proven`: cells (nonzero) that stand still for certain, left out at the rim; may be empty.
 std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-constexpr float kMoved = -0.6f, kStood = 0.1f;  // log-odds, per frame
+constexpr float kMoved = -1.0f, kStood = 0.1f;  // log-odds, per frame
 constexpr float kLeast = -6, kMost = 3;
 constexpr float kForget = 0.01f;
 constexpr float kProven = 1.5f;

@@ -44,6 +44,19 @@ std::shared_ptr<const Picture> Copied(const Picture& picture) {
                                            picture.depth.clone(), picture.mask.clone()});
 }
 
+// A keyframe keeps only what stands still for certain: it must be tied to the map by that alone.
+bool HoldsWithoutMovers(const PlacedFrame& placed) {
+  constexpr int kLeast = 20;       // landmarks, …
+  constexpr double kShare = 0.25;  // … and of those the pose was found with
+  int tied = 0, all = 0;
+  for (size_t k = 0; k < placed.matches.size(); ++k) {
+    if (!placed.matches[k].valid()) continue;
+    ++all;
+    tied += placed.frame->Static(static_cast<int>(k)) >= Frame::kMappable;
+  }
+  return tied == all || (tied >= kLeast && tied >= kShare * all);
+}
+
 // Nothing is much nearer than the nearest of the landmarks in view.
 PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map) {
   constexpr double kNearer = 0.4;
@@ -410,16 +423,20 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
 // hid.
 std::vector<std::pair<LandmarkId, bool>> Slam::Impl::DoubtLandmarks(const TrackEstimate& estimate,
                                                                     const MapSnapshot& map) {
+  constexpr double kMostOnMovers = 0.5;  // more, and it is the movers that are not believed
   std::vector<std::pair<LandmarkId, bool>> sightings;
   std::vector<std::pair<LandmarkId, float>> evidence;
+  int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
     const Landmark* landmark = map.Find(s.landmark);
     if (!landmark) continue;
     const Sight sight = dynamics_->Look(estimate.placed.T_camera_world * landmark->p_world);
+    on_movers += sight == Sight::kOnMover;
     evidence.push_back({s.landmark, EvidenceOf(sight, s.found)});
     if (s.found || sight == Sight::kClear) sightings.push_back({s.landmark, s.found});
   }
-  workers_.mapper().Doubt(evidence);
+  if (on_movers <= kMostOnMovers * static_cast<double>(evidence.size()))
+    workers_.mapper().Doubt(evidence);
   return sightings;
 }
 
@@ -430,8 +447,8 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   // A busy mapper is not given more than it can chew; with depth the tracker lives on new
   // keyframes, so it may queue some.
   const bool may_insert = workers_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
-  result.keyframe =
-      estimate.wants_keyframe && trial_left_ == 0 && may_insert && !settings_.localise;
+  result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert &&
+                    !settings_.localise && HoldsWithoutMovers(estimate.placed);
   if (!settings_.localise) {
     std::vector<std::pair<LandmarkId, bool>> sightings;
     for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
