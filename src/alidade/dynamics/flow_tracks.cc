@@ -13,10 +13,11 @@ namespace {
 // Half size is enough to tell a mover from the rest, at a quarter of the cost.
 constexpr int kShrink = 2;
 constexpr int kLevels = 3;
-const cv::Size kWindow(13, 13);  // pixels of the half-size image
+const cv::Size kWindow(9, 9);    // pixels of the half-size image
 constexpr float kReturn = 0.5f;  // pixels there: a track followed back must end so near its start
 constexpr int kCell = 27;        // pixels: a track is begun where there is none
 constexpr int kPerCell = 1;
+constexpr double kCut = 0.2;  // of the tracks: with fewer left the view is another
 constexpr int kMost = 500;
 constexpr int kChunk = 64;  // tracks a thread follows at a time
 
@@ -69,6 +70,8 @@ void FlowTracks::Advance(const cv::Mat& gray) {
       if (track.length() > kHistory) track.path.pop_front();
       kept.push_back(std::move(track));
     }
+    // After a cut some find a match all the same: chance.
+    if (static_cast<double>(kept.size()) < kCut * count) kept.clear();
     tracks_ = std::move(kept);
   }
   pyramid_ = std::move(pyramid);

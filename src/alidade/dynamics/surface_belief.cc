@@ -59,7 +59,7 @@ void SurfaceBelief::AddDepth(int number, std::span<const float> depth, const Se3
       same[i] = std::max(same[i], age * trust);
     }
   };
-  for (size_t k : {size_t{8}, size_t{5}, size_t{2}, size_t{0}}) compare(history.Older(k));
+  for (size_t k : {size_t{8}, size_t{4}, size_t{1}}) compare(history.Older(k));
   for (int ago : {16, 7}) compare(history.Before(ago));
   for (int i = 0; i < cells_.count(); ++i) {
     const bool moved = free[i] && same[i] < kTrusted;
