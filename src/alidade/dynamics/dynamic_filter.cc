@@ -60,9 +60,17 @@ void DynamicFilter::FindObjects(std::span<const uint8_t> proven) {
     object.cells = !settings_.foreground ? CellsInBox(cells_, object.box)
                    : depth_.empty()      ? CellsInOval(cells_, object.box, proven)
                                          : FindForeground(cells_, depth_, geometry_, object.box);
-    if (object.carried) continue;
+    if (object.carried && !IsCarried(object)) continue;
     for (int i : object.cells) object_[i] = 1;
   }
+}
+
+// A chair moves as a whole: when a good part of it is seen to, all of it does.
+bool DynamicFilter::IsCarried(const MovingObject& object) const {
+  constexpr double kPart = 0.4;
+  const auto moving = std::count_if(object.cells.begin(), object.cells.end(),
+                                    [&](int i) { return geometry_[i] < 0; });
+  return static_cast<double>(moving) > kPart * static_cast<double>(object.cells.size());
 }
 
 void DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
@@ -98,6 +106,7 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   std::vector<uint8_t> proven;
   if (settings_.geometry) {
     if (!depth_.empty() && guess) JudgeWithDepth(*guess);
+    if (!depth_.empty() && !guess) std::fill(geometry_.begin(), geometry_.end(), kUnknownStatic);
     if (depth_.empty()) {
       JudgeWithoutDepth(guess);
       if (settings_.foreground) proven = track_belief_.Proven(cells_, tracks_.tracks());

@@ -63,6 +63,7 @@ class DynamicFilter {
   void JudgeWithDepth(const PoseGuess& guess);
   void JudgeWithoutDepth(const PoseGuess* guess);
   void FindObjects(std::span<const uint8_t> proven);
+  bool IsCarried(const MovingObject& object) const;
   void FeedTheStarving(Frame& frame) const;
   float DepthAt(int x, int y) const;
   float BeliefOfSurface(int cell, float z, float otherwise) const;

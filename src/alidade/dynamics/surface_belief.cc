@@ -22,8 +22,13 @@ SurfaceBelief::SurfaceBelief(const Cells& cells)
 std::vector<int> SurfaceBelief::Carry(std::span<const float> depth, const Se3& T_camera_world,
                                       const History& history) {
   std::vector<int> from(cells_.count(), -1);
-  const PastView* last = history.Before(1);
-  if (last && !last->depth.empty()) from = CompareDepth(cells_, depth, T_camera_world, *last).met;
+  constexpr int kGap = 5;  // frames that may come without depth
+  for (int ago = 1; ago <= kGap; ++ago) {
+    const PastView* last = history.Before(ago);
+    if (!last || last->depth.empty()) continue;
+    from = CompareDepth(cells_, depth, T_camera_world, *last).met;
+    break;
+  }
   std::vector<float> log_odds(cells_.count(), kUnknownStatic), certainty(cells_.count(), 0);
   for (int i = 0; i < cells_.count(); ++i) {
     if (from[i] < 0) continue;
