@@ -125,7 +125,8 @@ class Study {
                      SlamSettings settings, const FrameVisitor& visit = nullptr) {
     DynamicVariant variant{name, {}, {}, {}};
     settings.seed = settings_.seed;
-    std::string key = scene.source + " " + std::to_string(scene.frames.front().number);
+    std::string key = scene.source + " " + std::to_string(scene.frames.front().number) + " " +
+                      std::to_string(scene.frames.size());
     for (const auto& [field, value] : settings.All()) key += " " + value;
     key += NameOf(settings.sensor);
     std::vector<DynamicRun>& known = known_[key];

@@ -39,7 +39,7 @@ class Watcher {
     frame_.time = seen.time;
     const PoseGuess guess{T_camera_world, 0.4};
     filter_.Judge(frame_, senses_.pose ? &guess : nullptr);
-    filter_.Remember(frame_, senses_.pose ? &T_camera_world : nullptr, 0);
+    filter_.Remember(frame_, senses_.pose ? &T_camera_world : nullptr, {});
   }
   cv::Mat Mask() const { return filter_.Mask(); }
   const Frame& frame() const { return frame_; }
@@ -202,9 +202,10 @@ TEST_F(FilterOfAWalkedRoom, GoesOnAfterFramesWithoutAPoseAndAfterTheMapWasCorrec
     // From frame 10 on the world is another.
     Se3 pose = Walked().T_camera_world[i];
     if (i >= 10) pose = pose * Se3{Eigen::Matrix3d::Identity(), {5, -3, 1}};
-    const PoseGuess guess{pose, 0.4};
+    const WorldId world{{}, i >= 10 ? 1u : 0u};
+    const PoseGuess guess{pose, 0.4, world};
     filter.Judge(frame, lost ? nullptr : &guess);
-    filter.Remember(frame, lost ? nullptr : &pose, i >= 10 ? 1 : 0);
+    filter.Remember(frame, lost ? nullptr : &pose, world);
     if (i >= 70) overlap += OverlapOf(filter.Mask(), seen.mask) / 10;
   }
   EXPECT_GT(overlap, 0.6);

@@ -46,6 +46,7 @@ Cells::Cells(const Camera& camera)
   for (int i = 0; i < count(); ++i) {
     const Eigen::Vector2d raw(Centre(i).x, Centre(i).y);
     rays_.push_back(camera_.Unproject(distorted_ ? camera_.Undistort(raw) : raw));
+    reach2_ = std::max(reach2_, 1.2 * rays_.back().head<2>().squaredNorm());
   }
 }
 
@@ -62,6 +63,8 @@ cv::Point2f Cells::Centre(int cell) const {
 
 int Cells::Project(const Eigen::Vector3d& p) const {
   if (!(p.z() > 0.01)) return -1;
+  if (p.head<2>().squaredNorm() > reach2_ * p.z() * p.z())
+    return -1;  // lens models fold back there
   const Eigen::Vector2d ideal = camera_.Project(p);
   if (!(std::abs(ideal.x()) < 1e4 && std::abs(ideal.y()) < 1e4)) return -1;
   const Eigen::Vector2d raw = distorted_ ? camera_.Distort(ideal) : ideal;

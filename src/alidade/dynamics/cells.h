@@ -2,8 +2,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <opencv2/core.hpp>
-#include <optional>
 #include <vector>
 
 #include "alidade/geometry/camera.h"
@@ -37,6 +37,7 @@ class Cells {
   float size_;
   int rows_;
   std::vector<Eigen::Vector3d> rays_;
+  double reach2_ = 0;  // squared distance from the axis at depth 1 that is seen, with some more
 };
 
 template <typename Visit>

@@ -96,7 +96,8 @@ void DynamicFilter::JudgeWithoutDepth(const PoseGuess* guess) {
     std::vector<uint8_t> on_object;
     for (const FlowTrack& track : tracks)
       on_object.push_back(object_[cells_.At(track.at().x, track.at().y)]);
-    votes = VoteByAgreement(camera_, tracks, on_object, static_cast<uint64_t>(now_.number));
+    votes = VoteByAgreement(camera_, tracks, on_object,
+                            settings_.seed + static_cast<uint64_t>(now_.number));
   }
   track_belief_.Update(tracks, Consensus(cells_, {}, tracks, votes));
   geometry_ = track_belief_.OfCells(cells_, tracks);
@@ -104,10 +105,13 @@ void DynamicFilter::JudgeWithoutDepth(const PoseGuess* guess) {
 
 void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   std::vector<uint8_t> proven;
+  if (guess) Enter(guess->world);
   if (settings_.geometry) {
     if (!depth_.empty() && guess) JudgeWithDepth(*guess);
     if (!depth_.empty() && !guess) std::fill(geometry_.begin(), geometry_.end(), kUnknownStatic);
-    if (depth_.empty()) {
+    // A frame that comes without depth keeps what the last ones said.
+    const bool had_depth = surfaces_.number() >= now_.number - SurfaceBelief::kGap;
+    if (depth_.empty() && !had_depth) {
       JudgeWithoutDepth(guess);
       if (settings_.foreground) proven = track_belief_.Proven(cells_, tracks_.tracks());
     }
@@ -121,7 +125,7 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
     if (!settings_.weigh) p = p >= Frame::kMappable ? 1.0f : 0.0f;
     frame.static_probability[k] = p > kSure ? 1 : p;
   }
-  FeedTheStarving(frame);
+  if (settings_.weigh) FeedTheStarving(frame);
 }
 
 // Where too few certain features are left, what may stand still has a small say rather than
@@ -191,9 +195,13 @@ float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
   return known ? belief : lowest;
 }
 
-void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, uint64_t corrections) {
-  if (corrections != corrections_) history_.Clear();  // earlier poses are no longer in this world
-  corrections_ = corrections;
+void DynamicFilter::Enter(const WorldId& world) {
+  if (!(world == world_)) history_.Clear();
+  world_ = world;
+}
+
+void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world) {
+  if (T_camera_world) Enter(world);
   tracks_.Seed(frame.keypoints, now_.gray.size());
   std::shared_ptr<PastView> view;
   if (T_camera_world) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/ids.h"
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
 #include "alidade/dynamics/history.h"
@@ -28,10 +29,20 @@ struct DynamicInput {
   cv::Mat right;  // CV_8U, rectified; may be empty
 };
 
+// Whose world a pose is in: views of another cannot be held against it.
+struct WorldId {
+  MapId map;
+  uint64_t corrections = 0;  // of the map store: loops and merges move worlds
+  bool operator==(const WorldId& other) const {
+    return map == other.map && corrections == other.corrections;
+  }
+};
+
 // What is known of the camera before the pose is.
 struct PoseGuess {
   Se3 T_camera_world;
   double nearest = 0.4;  // metres or map units: nothing is nearer
+  WorldId world = {};
 };
 
 class DynamicFilter {
@@ -49,8 +60,8 @@ class DynamicFilter {
   cv::Mat ExpectedMovers() const;
   // Fills frame.static_probability. `guess`: null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
-  // Ends the frame. `T_camera_world`: its pose; null when lost. `corrections`: of the map it is in.
-  void Remember(const Frame& frame, const Se3* T_camera_world, uint64_t corrections);
+  // Ends the frame. `T_camera_world`: its pose, in that world; null when lost.
+  void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
 
   // What there is where a point of the camera's frame should be seen.
   Sight Look(const Eigen::Vector3d& p) const;
@@ -60,6 +71,7 @@ class DynamicFilter {
   const std::vector<MovingObject>& objects() const { return objects_.objects(); }
 
  private:
+  void Enter(const WorldId& world);
   void JudgeWithDepth(const PoseGuess& guess);
   void JudgeWithoutDepth(const PoseGuess* guess);
   void FindObjects(std::span<const uint8_t> proven);
@@ -84,7 +96,7 @@ class DynamicFilter {
   std::vector<float> geometry_;  // log-odds of standing still, of each cell, objects apart
   std::vector<uint8_t> object_;  // of each cell: nonzero = of one that moves by itself
   std::vector<float> belief_;    // of each cell, all together
-  uint64_t corrections_ = 0;
+  WorldId world_;
 };
 
 }  // namespace alidade

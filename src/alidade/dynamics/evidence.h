@@ -1,8 +1,7 @@
-// What geometry says about what moves: as log-odds of standing still, to be added up.
+// What geometry says about what moves: depth against an earlier view, flow against the pose.
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <span>
 #include <vector>
 

@@ -1,6 +1,7 @@
 #include "alidade/dynamics/objects.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 
 #include "alidade/detect/suppress.h"
@@ -97,7 +98,7 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
     float most = kSame;
     for (size_t i = 0; i < taken.size(); ++i) {
       const float overlap = Overlap(then(objects_[i]), detection.box);
-      if (taken[i] || overlap <= most) continue;
+      if (taken[i] || overlap <= most || objects_[i].carried != (role == Role::kCarried)) continue;
       most = overlap;
       best = static_cast<int>(i);
     }

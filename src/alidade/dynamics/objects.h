@@ -22,7 +22,7 @@ struct MovingObject {
   std::deque<cv::Rect2f> past;  // in the frames before, the last one first
   cv::Point2f velocity;         // of the box, pixels per frame
   double seen = 0;              // time of the last frame it was detected in, seconds
-  std::vector<int> cells;       // what of the picture it covers, sorted; found by FindForeground
+  std::vector<int> cells;       // what of the picture it covers, sorted; found anew in every frame
 };
 
 class ObjectTracks {

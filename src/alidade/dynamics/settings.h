@@ -1,6 +1,7 @@
 // Settings of what keeps moving things out of pose and map.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "alidade/detect/settings.h"
@@ -45,6 +46,8 @@ struct DynamicsSettings {
   bool geometry = true;    // flow, epipolar lines and depth against the predicted pose
   bool propagate = true;   // detections are carried to the present frame; false: used as they come
   bool weigh = true;       // belief weighs residuals; false: a feature counts fully or not at all
+
+  uint64_t seed = 1;  // of random samples; the system's
 
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };

@@ -22,10 +22,9 @@ SurfaceBelief::SurfaceBelief(const Cells& cells)
 std::vector<int> SurfaceBelief::Carry(std::span<const float> depth, const Se3& T_camera_world,
                                       const History& history) {
   std::vector<int> from(cells_.count(), -1);
-  constexpr int kGap = 5;  // frames that may come without depth
   for (int ago = 1; ago <= kGap; ++ago) {
     const PastView* last = history.Before(ago);
-    if (!last || last->depth.empty()) continue;
+    if (!last || last->number != number_) continue;
     from = CompareDepth(cells_, depth, T_camera_world, *last).met;
     break;
   }
@@ -111,6 +110,7 @@ void SurfaceBelief::Spread(std::span<const float> depth) {
 void SurfaceBelief::Update(int number, std::span<const float> depth, const Se3& T_camera_world,
                            const History& history, std::span<const uint8_t> resting,
                            std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
+  number_ = number;
   Evidence evidence{std::vector<float>(cells_.count(), 0), std::vector<float>(cells_.count(), 0)};
   AddDepth(number, depth, T_camera_world, history, evidence);
   AddFlow(depth, tracks, votes, evidence);

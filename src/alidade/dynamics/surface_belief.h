@@ -17,6 +17,8 @@ inline constexpr float kObjectStatic = -4;     // of what a detector knows to mo
 
 class SurfaceBelief {
  public:
+  static constexpr int kGap = 5;  // frames that may come without depth
+
   explicit SurfaceBelief(const Cells& cells);  // keeps a reference
 
   // Moves all that is believed on to the present frame: what a cell shows is believed to be what
@@ -30,6 +32,7 @@ class SurfaceBelief {
               const History& history, std::span<const uint8_t> resting,
               std::span<const FlowTrack> tracks, std::span<const int8_t> votes);
   const std::vector<float>& log_odds() const { return log_odds_; }
+  int number() const { return number_; }  // of the last frame with depth
 
  private:
   struct Evidence {
@@ -42,6 +45,7 @@ class SurfaceBelief {
   void Spread(std::span<const float> depth);
 
   const Cells& cells_;
+  int number_ = -1000;  // of the frame the belief is of
   std::vector<float> log_odds_;
   std::vector<float> certainty_;  // of each cell, 0…1: how much it was itself held against others
 };

@@ -12,6 +12,7 @@ namespace alidade {
 // How often a landmark was expected in a frame, and found.
 struct SightingTally {
   uint32_t expected = 0, found = 0;
+  bool doubted = false;       // since the mapper last looked
   float static_log_odds = 0;  // what was seen since it was born says so, or against it
 };
 

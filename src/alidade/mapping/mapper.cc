@@ -105,6 +105,16 @@ void Mapper::Count(std::span<const std::pair<LandmarkId, bool>> sightings) {
   }
 }
 
+void Mapper::Restore(const MapSnapshot& map) {
+  constexpr float kLeast = 0.02f;
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  for (LandmarkId id : map.Landmarks()) {
+    const float p = std::clamp(map.Find(id)->static_probability, kLeast, 1 - kLeast);
+    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
+    tallies_[id.value].static_log_odds = std::log(p / (1 - p));
+  }
+}
+
 void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
   constexpr float kBound = 4;  // what was believed for long can be unlearnt in a second
   std::lock_guard<std::mutex> lock(tallies_mutex_);
@@ -112,7 +122,8 @@ void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
     if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
     float& sum = tallies_[id.value].static_log_odds;
     sum = std::clamp(sum + log_odds, -kBound, kBound);
-    doubted_.push_back(id);
+    if (!tallies_[id.value].doubted) doubted_.push_back(id);
+    tallies_[id.value].doubted = true;
   }
 }
 
@@ -120,10 +131,12 @@ void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
 std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   std::sort(doubted_.begin(), doubted_.end());
-  doubted_.erase(std::unique(doubted_.begin(), doubted_.end()), doubted_.end());
   std::vector<std::pair<LandmarkId, float>> belief;
-  for (LandmarkId id : doubted_)
-    belief.push_back({id, 1 / (1 + std::exp(-tallies_[id.value].static_log_odds))});
+  for (LandmarkId id : doubted_) {
+    SightingTally& tally = tallies_[id.value];
+    tally.doubted = false;
+    belief.push_back({id, 1 / (1 + std::exp(-tally.static_log_odds))});
+  }
   doubted_.clear();
   return belief;
 }
@@ -151,9 +164,10 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   report.landmarks_culled = static_cast<int>(weak.size());
   map = map_.Commit([&](MapCommit& commit) {
     for (const auto& [landmark, probability] : belief) {
-      Landmark* edited = commit.Edit(landmark);
-      if (!edited) continue;
-      edited->static_probability = probability > settings_.sure_static ? 1 : probability;
+      const float entered = probability > settings_.sure_static ? 1 : probability;
+      const Landmark* before = commit.Find(landmark);
+      if (settings_.young_static >= 1 || !before || before->static_probability == entered) continue;
+      commit.Edit(landmark)->static_probability = entered;
     }
     for (LandmarkId landmark : weak) commit.Remove(landmark);
     const std::vector<LandmarkId> seen = commit.Find(id)->landmarks;

@@ -44,6 +44,8 @@ class Mapper {
   // What the tracker looked for and found since the last call. Thread-safe.
   void Count(std::span<const std::pair<LandmarkId, bool>> sightings);
 
+  // A loaded map: what was believed of its landmarks. Before the first frame.
+  void Restore(const MapSnapshot& map);
   // What frames said of landmarks, as log-odds of standing still, to be added up. Thread-safe; the
   // next Process() enters it in the map, and removes those that are likely to move.
   void Doubt(std::span<const std::pair<LandmarkId, float>> evidence);
@@ -62,7 +64,7 @@ class Mapper {
   std::vector<LandmarkId> young_;  // on trial
   std::mutex tallies_mutex_;
   std::vector<SightingTally> tallies_;  // by landmark id
-  std::vector<LandmarkId> doubted_;     // since the last Process(), some more than once
+  std::vector<LandmarkId> doubted_;     // since the last Process()
 };
 
 }  // namespace alidade

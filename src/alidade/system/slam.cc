@@ -22,7 +22,8 @@ constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame w
 SlamSettings Seeded(SlamSettings settings) {
   if (settings.dynamics.mode != DynamicsMode::kOff && settings.dynamics.weigh)
     settings.mapper.young_static = 0.5f;
-  settings.tracker.seed = settings.start.two_view.seed = settings.loop.seed = settings.seed;
+  settings.dynamics.seed = settings.tracker.seed = settings.start.two_view.seed =
+      settings.loop.seed = settings.seed;
   return settings;
 }
 
@@ -90,8 +91,13 @@ void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
   if (!placed.matches.empty()) {
     for (int k : kept) matches.push_back(placed.matches[k]);
   }
-  placed.frame = std::make_shared<Frame>(KeypointSubset(*placed.frame, kept, camera));
+  auto frame = std::make_shared<Frame>(KeypointSubset(*placed.frame, kept, camera));
+  frame->picture = nullptr;  // the map keeps none
+  placed.frame = std::move(frame);
   placed.matches = std::move(matches);
+  placed.inliers =
+      static_cast<int>(std::count_if(placed.matches.begin(), placed.matches.end(),
+                                     [](LandmarkId landmark) { return landmark.valid(); }));
 }
 
 }  // namespace
@@ -143,6 +149,7 @@ class Slam::Impl {
   MapId trial_map_;
   KeyFrameId trial_keyframes_[2];
 
+  WorldId world_;           // of the last pose
   double dynamics_ms_ = 0;  // of the present frame, so far
   double lost_since_ = 0;   // time of the first frame without a pose, seconds
   int lost_sighted_ = 0;    // frames since that showed something
@@ -189,7 +196,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
-  EndDynamics(*frame, result);
+  EndDynamics(*last_.frame, result);
   times_.frame.push_back(whole.Milliseconds());
   return result;
 }
@@ -223,7 +230,7 @@ void Slam::Impl::EndDynamics(const Frame& frame, const TrackResult& result) {
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
   dynamics_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
-                      workers_.map().Snapshot().corrections());
+                      world_);
   times_.dynamics.push_back(dynamics_ms_ + watch.Milliseconds());
 }
 
@@ -233,10 +240,12 @@ void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const Ma
   record.tracked = true;
   record.anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   record.T_world_camera_live = placed.T_camera_world.Inverse();
+  world_ = {map.MapOf(reference), map.corrections()};
   tracker_.Remember(placed, reference, map);
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
+  const std::shared_ptr<const Picture> picture = placed.frame->picture;
   LeaveOutMovers(placed, camera_);
   const KeyFrameId id = workers_.mapper().Insert(placed.frame, anchor, placed.matches);
   const MapSnapshot map = workers_.map().Snapshot();
@@ -245,7 +254,7 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
   placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(placed, id, map);
-  KeepPicture(id, *placed.frame);
+  if (dense_) workers_.Keep(id, Copied(*picture));
   workers_.Add(id);
 }
 
@@ -265,7 +274,8 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     const auto may_be = [&](KeyFrameId id) {
       return map.Find(id) && (candidates.empty() || id != candidates[0]);
     };
-    for (const PlaceMatch& match : workers_.places().Query(*frame, may_be, kRelocaliseCandidates)) {
+    const Frame still = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
+    for (const PlaceMatch& match : workers_.places().Query(still, may_be, kRelocaliseCandidates)) {
       candidates.push_back(match.id);
     }
     TrackEstimate estimate = tracker_.Relocalise(frame, map, candidates);
@@ -395,7 +405,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const MapSnapshot map = workers_.map().Snapshot();
   PlacedFrame guess = tracker_.Predict(frame, map);
   const double predicting = watch.Milliseconds();
-  const PoseGuess where = GuessOf(guess, map);
+  PoseGuess where = GuessOf(guess, map);
+  where.world = {map.MapOf(tracker_.reference()), map.corrections()};
   JudgeFeatures(*frame, &where);
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);

@@ -86,6 +86,7 @@ void Workers::WhileResting(const std::function<void()>& change) {
 
 void Workers::Restore(const SavedMap& saved) {
   map_.Restore(saved.map);
+  mapper_.Restore(saved.map);
   const std::vector<KeyFrameId> ids = saved.map.KeyFrames();
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
   for (KeyFrameId id : ids) keyframes.push_back({id, saved.map.Find(id)->frame});

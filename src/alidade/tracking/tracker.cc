@@ -229,6 +229,12 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   TrackEstimate estimate;
+  // What was matched for the guess and has proved to move since has no say.
+  for (size_t k = 0; k < guess.matches.size(); ++k) {
+    if (!guess.matches[k].valid() || guess.frame->IsUsable(static_cast<int>(k))) continue;
+    guess.matches[k] = {};
+    --guess.inliers;
+  }
   const int enough_to_try = Scaled(settings_.min_after_prediction);
   if (guess.inliers < enough_to_try) {
     estimate.placed = std::move(guess);
