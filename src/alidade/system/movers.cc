@@ -1,0 +1,66 @@
+#include "alidade/system/movers.h"
+
+#include <algorithm>
+#include <memory>
+#include <utility>
+
+#include "alidade/features/subset.h"
+
+namespace alidade {
+
+// A keyframe keeps only what stands still for certain: it must be tied to the map by that alone.
+bool HoldsWithoutMovers(const PlacedFrame& placed) {
+  constexpr int kLeast = 20;       // landmarks, …
+  constexpr double kShare = 0.25;  // … and of those the pose was found with
+  int tied = 0, all = 0;
+  for (size_t k = 0; k < placed.matches.size(); ++k) {
+    if (!placed.matches[k].valid()) continue;
+    ++all;
+    tied += placed.frame->Static(static_cast<int>(k)) >= Frame::kMappable;
+  }
+  return tied == all || (tied >= kLeast && tied >= kShare * all);
+}
+
+// Nothing is much nearer than the nearest of the landmarks in view.
+PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map) {
+  constexpr double kNearer = 0.4;
+  PoseGuess guess;
+  guess.T_camera_world = placed.T_camera_world;
+  std::vector<double> depths;
+  for (LandmarkId id : placed.matches) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (landmark) depths.push_back((placed.T_camera_world * landmark->p_world).z());
+  }
+  if (depths.empty()) return guess;
+  const auto low = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 20);
+  std::nth_element(depths.begin(), low, depths.end());
+  guess.nearest = kNearer * std::max(*low, 1e-6);
+  return guess;
+}
+
+std::vector<int> MappableKeypoints(const Frame& frame) {
+  std::vector<int> kept;
+  for (int k = 0; k < static_cast<int>(frame.keypoints.size()); ++k) {
+    if (frame.Static(k) >= Frame::kMappable) kept.push_back(k);
+  }
+  return kept;
+}
+
+// The map never knows of keypoints on what may move.
+void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
+  const std::vector<int> kept = MappableKeypoints(*placed.frame);
+  if (kept.size() == placed.frame->keypoints.size()) return;
+  std::vector<LandmarkId> matches;
+  if (!placed.matches.empty()) {
+    for (int k : kept) matches.push_back(placed.matches[k]);
+  }
+  auto frame = std::make_shared<Frame>(KeypointSubset(*placed.frame, kept, camera));
+  frame->picture = nullptr;  // the map keeps none
+  placed.frame = std::move(frame);
+  placed.matches = std::move(matches);
+  placed.inliers =
+      static_cast<int>(std::count_if(placed.matches.begin(), placed.matches.end(),
+                                     [](LandmarkId landmark) { return landmark.valid(); }));
+}
+
+}  // namespace alidade

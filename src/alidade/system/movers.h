@@ -1,0 +1,24 @@
+// What tracked frames mean to the dynamic filter, and what the filter's word means to keyframes.
+#pragma once
+
+#include <vector>
+
+#include "alidade/dynamics/dynamic_filter.h"
+#include "alidade/map/map_store.h"
+#include "alidade/tracking/placed_frame.h"
+
+namespace alidade {
+
+// Whether a frame is tied to the map by what stands still for certain: only that enters keyframes.
+bool HoldsWithoutMovers(const PlacedFrame& placed);
+
+// Where the camera is, before movers are told apart; without the world's name.
+PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map);
+
+// Keypoints that may enter the map, in order.
+std::vector<int> MappableKeypoints(const Frame& frame);
+
+// The frame without the others, their matches gone too; its picture is left out.
+void LeaveOutMovers(PlacedFrame& placed, const Camera& camera);
+
+}  // namespace alidade
