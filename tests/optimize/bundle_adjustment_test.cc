@@ -22,7 +22,7 @@ double CostOf(const BundleProblem& problem, const BundleSettings& settings = {})
         ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
     const double bound = std::isfinite(o.pixel.z()) ? settings.huber_stereo : settings.huber_mono;
     const double root = std::sqrt(chi2);
-    cost += root <= bound ? 0.5 * chi2 : bound * (root - 0.5 * bound);
+    cost += o.trust * (root <= bound ? 0.5 * chi2 : bound * (root - 0.5 * bound));
   }
   return cost;
 }
@@ -319,6 +319,30 @@ TEST(AdjustBundle, APointThatCannotMoveForwardHoldsNobodyBack) {
   EXPECT_LT(LargestPointError(problem, expected), 1e-3);
 }
 
+// Points that walked on while the cameras passed: all of them drag the cameras the same way.
+TEST(AdjustBundle, WhatIsHardlyTrustedHardlyPulls) {
+  const BundleProblem clean = MakeBundleProblem({.stereo = 1, .noise_px = 0.5, .seed = 35});
+  const auto walking = [](const BundleObservation& o) { return o.point % 3 == 0; };
+  const BundleSettings settings{.max_iterations = 60, .min_relative_decrease = 1e-10};
+  const auto pulled_by = [&](double trust) {
+    BundleProblem without = clean, with = clean;
+    std::erase_if(without.observations, walking);
+    for (BundleObservation& o : with.observations) {
+      if (!walking(o)) continue;
+      o.pixel.x() += 3.0 * o.camera;
+      o.pixel.z() += 3.0 * o.camera;
+      o.trust = trust;
+    }
+    AdjustBundle(without, settings);
+    const BundleReport report = AdjustBundle(with, settings);
+    EXPECT_NEAR(report.final_cost, CostOf(with), 1e-9 * report.initial_cost);
+    return LargestCameraError(without, with);
+  };
+  EXPECT_GT(pulled_by(1), 0.01);  // metres
+  EXPECT_LT(pulled_by(1e-3), 0.001);
+  EXPECT_EQ(pulled_by(0), 0);
+}
+
 TEST(AdjustBundle, PointsSeenOnceByOneEyeDoNoHarm) {
   const BundleProblem clean = MakeBundleProblem({.seed = 33});
   BundleProblem problem = clean;
@@ -382,6 +406,8 @@ TEST(ChiSquared, IsTheSquaredErrorInStandardDeviations) {
   o.inv_sigma2 = 0.25;
   o.inv_sigma2_right = 0.5;
   // The disparity u - u_right is off by 3 - 2.
+  EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 1, 1e-10);
+  o.trust = 0.1;  // says nothing of how well it fits
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 1, 1e-10);
   o.pixel.z() = kNaN;
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25, 1e-10);

@@ -43,6 +43,17 @@ TEST(BundleAgainstCeres, SameOptimumOnMixedProblemsWithOutliers) {
   }
 }
 
+TEST(BundleAgainstCeres, SameOptimumWhenSomeAreTrustedLess) {
+  BundleProblem problem =
+      MakeBundleProblem({.points = 150, .min_track = 4, .outliers = 0.05, .seed = 4});
+  for (BundleObservation& o : problem.observations) o.trust = 0.05 + 0.19 * (o.point % 6);
+  BundleProblem ours = problem, theirs = problem;
+  const BundleReport report = AdjustBundle(ours, kToTheEnd);
+  const ceres::Solver::Summary summary = AdjustWithCeres(theirs, kToTheEnd);
+  EXPECT_NEAR(report.initial_cost, summary.initial_cost, 1e-9 * summary.initial_cost);
+  EXPECT_NEAR(report.final_cost, summary.final_cost, 1e-6 * summary.final_cost);
+}
+
 TEST(BundleAgainstCeres, SameOptimumNearAPlane) {
   ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0, .seed = 11});
   ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0.5, .outliers = 0.05, .seed = 12});

@@ -39,6 +39,7 @@ void ByJets(const BundleCamera& camera, const Eigen::Vector3d& X, const Camera& 
   for (int i = 0; i < rows; ++i) chi2 += residual[i].a * residual[i].a;
   double rho[3];
   ceres::HuberLoss(huber).Evaluate(chi2, rho);
+  rho[1] *= o.trust;
   H.setZero();
   g.setZero();
   for (int i = 0; i < rows; ++i) {
@@ -55,7 +56,8 @@ TEST(LineariseBundle, AgreesWithAutomaticDerivatives) {
   for (const double outliers : {0.0, 0.5}) {
     BundleProblem problem = MakeBundleProblem({.points = 30, .outliers = outliers, .seed = 41});
     const BundleSettings settings;
-    for (const BundleObservation& o : problem.observations) {
+    for (BundleObservation& o : problem.observations) {
+      o.trust = 0.2 * (1 + o.camera % 5);
       // One camera, one point, one sighting: the sums are that sighting's terms.
       BundleProblem one;
       one.camera = problem.camera;

@@ -1,6 +1,7 @@
 // Bundle adjustment by Ceres: the oracle.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "alidade/optimize/bundle_adjustment.h"
@@ -23,13 +24,16 @@ inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   ceres::HuberLoss mono(settings.huber_mono), stereo(settings.huber_stereo);
+  std::vector<std::unique_ptr<ceres::LossFunction>> losses;  // of each observation
   ceres::Problem ceres_problem(ownership);
   auto* ordering = new ceres::ParameterBlockOrdering;
   for (const BundleObservation& o : problem.observations) {
     double* pose = poses[o.camera].data();
     double* point = problem.points[o.point].data();
-    ceres_problem.AddResidualBlock(MakeCeresReprojection(problem.camera, o),
-                                   std::isfinite(o.pixel.z()) ? &stereo : &mono, pose, point);
+    losses.push_back(std::make_unique<ceres::ScaledLoss>(
+        std::isfinite(o.pixel.z()) ? &stereo : &mono, o.trust, ceres::DO_NOT_TAKE_OWNERSHIP));
+    ceres_problem.AddResidualBlock(MakeCeresReprojection(problem.camera, o), losses.back().get(),
+                                   pose, point);
     if (problem.fixed[o.camera]) ceres_problem.SetParameterBlockConstant(pose);
     ordering->AddElementToGroup(point, 0);
     ordering->AddElementToGroup(pose, 1);

@@ -36,7 +36,6 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
 
   std::vector<LandmarkId> points;
-  std::vector<double> trust;  // of each point
   for (LandmarkId id : landmarks) {
     const Landmark* landmark = map.Find(id);
     if (!landmark) continue;
@@ -46,12 +45,10 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
       if (index < 0) continue;
       const Measurement m =
           Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
-      const double weight = landmark->static_probability;
       problem.observations.push_back(
-          {index, point, m.pixel, weight * m.inv_sigma2, weight * m.inv_sigma2_right});
+          {index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right, landmark->static_probability});
     }
     points.push_back(id);
-    trust.push_back(std::max(1e-3f, landmark->static_probability));
     problem.points.push_back(landmark->p_world);
   }
 
@@ -64,8 +61,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   for (const BundleObservation& o : problem.observations) {
     const double chi2 =
         ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
-    if (chi2 > trust[o.point] * Gate(o))
-      result.outliers.push_back({points[o.point], cameras[o.camera]});
+    if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});
   }
   return result;
 }

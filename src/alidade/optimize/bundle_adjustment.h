@@ -17,6 +17,7 @@ struct BundleObservation {
       pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
   double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
   double inv_sigma2_right = 1;  // the same of the disparity u - u_right, 1/px²
+  double trust = 1;             // 0…1: its say in the result; its chi² does not change with it
 };
 
 struct BundleProblem {
@@ -40,17 +41,18 @@ struct BundleSettings {
 };
 
 struct BundleReport {
-  double initial_cost = 0, final_cost = 0;  // ½ sum of Huber losses, unitless
+  double initial_cost = 0, final_cost = 0;  // ½ sum of Huber losses by trust, unitless
   int iterations = 0;
   bool converged = false;  // stopped by the decrease, not by the count or `stop`
 };
 
 // Improves `problem` in place; its cost never rises. Points and cameras that nothing usable was
-// seen of stay as they are. Observations that are not numbers, or whose point starts behind the
-// camera, are left out for good. A point whose step would take it behind one of its cameras stays
-// where it was in that step; a step in which the cameras alone would do that is rejected. Without a
-// fixed camera the damping holds the gauge. `stop` (may be null) is looked at between iterations.
-// The result is the same with any number of threads. Throws Error on indices that aren't there.
+// seen of stay as they are. Observations that are not numbers, not trusted at all, or whose point
+// starts behind the camera, are left out for good. A point whose step would take it behind one of
+// its cameras stays where it was in that step; a step in which the cameras alone would do that is
+// rejected. Without a fixed camera the damping holds the gauge. `stop` (may be null) is looked at
+// between iterations. The result is the same with any number of threads. Throws Error on indices
+// that aren't there.
 BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);
 

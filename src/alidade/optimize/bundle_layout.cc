@@ -32,7 +32,7 @@ bool Usable(const BundleProblem& problem, const BundleObservation& o) {
   const Se3& T = problem.T_camera_world[o.camera];
   const Eigen::Vector3d& p_world = problem.points[o.point];
   return o.pixel.head<2>().allFinite() && o.inv_sigma2 > 0 && std::isfinite(o.inv_sigma2) &&
-         p_world.allFinite() && T.R.allFinite() && T.t.allFinite() &&
+         o.trust > 0 && p_world.allFinite() && T.R.allFinite() && T.t.allFinite() &&
          T.R.row(2).dot(p_world) + T.t.z() > kMinDepth;
 }
 
@@ -49,6 +49,7 @@ BundleSighting Sight(const Intrinsics& k, const BundleObservation& o, int slot,
   s.weight = o.inv_sigma2;
   s.weight_r = stereo ? o.inv_sigma2_right : 0;
   s.huber = stereo ? settings.huber_stereo : settings.huber_mono;
+  s.trust = o.trust;
   return s;
 }
 

@@ -16,6 +16,7 @@ struct BundleSighting {
   double u, v, right;       // pixels; right = 0 without
   double weight, weight_r;  // 1/px²; weight_r = 0 without
   double huber;             // standard deviations
+  double trust;             // above 0, up to 1
 };
 
 struct BundlePoint {

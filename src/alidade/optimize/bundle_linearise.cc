@@ -10,8 +10,8 @@ namespace {
 // Two sightings of one point, side by side.
 struct Terms {
   Double2 Y[3];  // point from the camera's centre, world axes
-  Double2
-      N[6];  // B' W B, W with Huber's weight at this state (iteratively reweighted least squares)
+  // B' W B, W with trust, and Huber's weight at this state (iteratively reweighted least squares)
+  Double2 N[6];
   Double2 g[3];  // B' W r
   Double2 cost;
   Mask2 in_front;
@@ -36,10 +36,11 @@ struct Terms {
   const Double2 chi2 = w * (e.u * e.u + e.v * e.v) + wr * (e.d * e.d);
   const Double2 huber{s0.huber, s1.huber};
   const Double2 root = Sqrt(chi2), inner = Min(root, huber);
-  t.cost = inner * (root - 0.5 * inner);
-  const Double2 irls = root > huber ? huber / root : Both(1);
-  w *= irls;
-  wr *= irls;
+  const Double2 trust{s0.trust, s1.trust};
+  t.cost = trust * (inner * (root - 0.5 * inner));
+  const Double2 say = trust * (root > huber ? huber / root : Both(1));
+  w *= say;
+  wr *= say;
   // Rows of B = A R.
   Double2 U[3], V[3], S[3];
   for (int i = 0; i < 3; ++i) {
