@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/base/log_odds.h"
 #include "alidade/dynamics/evidence.h"
 #include "alidade/dynamics/flow_votes.h"
 
@@ -11,8 +12,6 @@ namespace alidade {
 namespace {
 
 constexpr float kSure = 0.8f;  // probability from which a feature counts fully
-
-float Probability(float log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
 }  // namespace
 
@@ -121,7 +120,7 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
     belief_[i] = object_[i] ? kObjectStatic : std::max(geometry_[i], kObjectStatic + 0.1f);
   frame.static_probability.resize(frame.keypoints.size());
   for (size_t k = 0; k < frame.keypoints.size(); ++k) {
-    float p = Probability(BeliefAt(frame.keypoints[k]));
+    float p = ProbabilityOf(BeliefAt(frame.keypoints[k]));
     if (!settings_.weigh) p = p >= Frame::kMappable ? 1.0f : 0.0f;
     frame.static_probability[k] = p > kSure ? 1 : p;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alidade/base/log_odds.h"
 #include "alidade/dynamics/evidence.h"
 
 namespace alidade {
@@ -11,8 +12,6 @@ namespace {
 constexpr float kForget = 0.01f;    // share of the way back to what is unknown, per frame
 constexpr float kRemember = 0.95f;  // of certainty, per frame
 constexpr float kLearn = 0.3f;      // certainty, by the weight of a frame's evidence
-
-float Probability(float log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
 }  // namespace
 
@@ -59,7 +58,7 @@ void SurfaceBelief::AddDepth(int number, std::span<const float> depth, const Se3
       free[i] |= comparison.result[i] == Comparison::kFree;
       if (comparison.result[i] != Comparison::kSame) continue;
       const float before = past->static_log_odds[comparison.met[i]];
-      const float trust = std::max(before > kObjectStatic ? least : 0, Probability(before));
+      const float trust = std::max(before > kObjectStatic ? least : 0, ProbabilityOf(before));
       same[i] = std::max(same[i], age * trust);
     }
   };

@@ -1,8 +1,8 @@
 #include "alidade/mapping/mapper.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "alidade/base/log_odds.h"
 #include "alidade/mapping/fuse.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/mapping/triangulate.h"
@@ -111,7 +111,7 @@ void Mapper::Restore(const MapSnapshot& map) {
   for (LandmarkId id : map.Landmarks()) {
     const float p = std::clamp(map.Find(id)->static_probability, kLeast, 1 - kLeast);
     if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
-    tallies_[id.value].static_log_odds = std::log(p / (1 - p));
+    tallies_[id.value].static_log_odds = LogOddsOf(p);
   }
 }
 
@@ -135,7 +135,7 @@ std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   for (LandmarkId id : doubted_) {
     SightingTally& tally = tallies_[id.value];
     tally.doubted = false;
-    belief.push_back({id, 1 / (1 + std::exp(-tally.static_log_odds))});
+    belief.push_back({id, ProbabilityOf(tally.static_log_odds)});
   }
   doubted_.clear();
   return belief;
