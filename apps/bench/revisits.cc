@@ -5,6 +5,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
+#include "alidade/features/depth_image.h"
 #include "alidade/features/extractor.h"
 #include "alidade/io/association.h"
 #include "alidade/io/files/trajectory_file.h"
@@ -14,14 +15,6 @@
 namespace alidade::bench {
 namespace {
 
-// Metres along z at a pixel; 0 where unknown.
-double DepthAt(const cv::Mat& depth, const Camera& camera, const Eigen::Vector2d& raw) {
-  const int x = static_cast<int>(std::lround(raw.x())), y = static_cast<int>(std::lround(raw.y()));
-  if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) return 0;
-  return depth.type() == CV_32F ? depth.at<float>(y, x)
-                                : depth.at<uint16_t>(y, x) / camera.depth_factor;
-}
-
 // Of the landmarks of `a` (keypoints with depth), the share in view of `b`.
 double ShareInView(const PosedFrame& a, const PosedFrame& b, const Camera& camera) {
   constexpr double kNear = 0.1;                         // metres: not seen so close
@@ -29,6 +22,7 @@ double ShareInView(const PosedFrame& a, const PosedFrame& b, const Camera& camer
                                                         // poses' errors stay below
   constexpr int kFew = 20;                              // landmarks that say nothing
   const Se3 T_b_a = b.T_world_camera.Inverse() * a.T_world_camera;
+  const DepthImage depth_of_b(b.depth, camera);
   int landmarks = 0, seen = 0;
   for (const Keypoint& keypoint : a.frame->keypoints) {
     if (!keypoint.has_depth()) continue;
@@ -40,7 +34,9 @@ double ShareInView(const PosedFrame& a, const PosedFrame& b, const Camera& camer
         pixel.y() > camera.height - 1) {
       continue;
     }
-    const double there = b.depth.empty() ? 0 : DepthAt(b.depth, camera, camera.Distort(pixel));
+    const Eigen::Vector2d raw = camera.Distort(pixel);
+    const double there = depth_of_b.At(static_cast<int>(std::lround(raw.x())),
+                                       static_cast<int>(std::lround(raw.y())));
     if (there > 0 && std::abs(there - p.z()) > kHiddenRatio * p.z() + kHidden) continue;
     ++seen;
   }

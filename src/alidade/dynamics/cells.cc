@@ -6,6 +6,8 @@
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/features/depth_image.h"
+
 namespace alidade {
 namespace {
 
@@ -75,11 +77,8 @@ int Cells::Project(const Eigen::Vector3d& p) const {
 }
 
 std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth) {
-  if (depth.type() == CV_32FC1)
-    return Medians(cells, depth.size(), [&](int x, int y) { return depth.at<float>(y, x); });
-  const auto unit = static_cast<float>(1 / camera.depth_factor);
-  return Medians(cells, depth.size(),
-                 [&](int x, int y) { return static_cast<float>(depth.at<uint16_t>(y, x)) * unit; });
+  const DepthImage image(depth, camera);
+  return Medians(cells, image.size(), [&](int x, int y) { return image.At(x, y); });
 }
 
 std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,

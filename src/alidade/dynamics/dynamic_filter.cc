@@ -7,6 +7,7 @@
 #include "alidade/base/log_odds.h"
 #include "alidade/dynamics/evidence.h"
 #include "alidade/dynamics/flow_votes.h"
+#include "alidade/features/depth_image.h"
 
 namespace alidade {
 namespace {
@@ -148,9 +149,7 @@ void DynamicFilter::FeedTheStarving(Frame& frame) const {
 
 // Metres at a pixel of the depth image; 0 where there is no reading.
 float DynamicFilter::DepthAt(int x, int y) const {
-  if (x < 0 || y < 0 || x >= now_.depth.cols || y >= now_.depth.rows) return 0;
-  if (now_.depth.type() == CV_32FC1) return now_.depth.at<float>(y, x);
-  return static_cast<float>(now_.depth.at<uint16_t>(y, x) / camera_.depth_factor);
+  return DepthImage(now_.depth, camera_).At(x, y);
 }
 
 // Log-odds of the surface around a cell that has depth z; `otherwise` where none has.

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "alidade/features/depth_image.h"
+
 namespace alidade {
 namespace {
 
@@ -15,15 +17,12 @@ std::vector<Hypothesis> DepthFromSensor(const cv::Mat& depth, std::span<const Ed
                                         const Camera& camera) {
   std::vector<Hypothesis> hypotheses(edges.size());
   if (depth.empty()) return hypotheses;
+  const DepthImage image(depth, camera);
   for (size_t i = 0; i < edges.size(); ++i) {
     const Eigen::Vector2d raw = camera.Distort({edges[i].x, edges[i].y});
-    const int x = static_cast<int>(std::lround(raw.x())),
-              y = static_cast<int>(std::lround(raw.y()));
-    if (x < 0 || y < 0 || x >= depth.cols || y >= depth.rows) continue;
-    const double z = depth.type() == CV_16U ? depth.at<uint16_t>(y, x) / camera.depth_factor
-                                            : depth.at<float>(y, x);
-    if (!(z > 0 && std::isfinite(z))) continue;
-    hypotheses[i] = {static_cast<float>(1 / z), kSigma};
+    const float z =
+        image.At(static_cast<int>(std::lround(raw.x())), static_cast<int>(std::lround(raw.y())));
+    if (z > 0) hypotheses[i] = {1 / z, kSigma};
   }
   return hypotheses;
 }
