@@ -111,6 +111,16 @@ TEST(CellNeighbours, AreThoseInThePictureAndTheCellItself) {
   EXPECT_EQ(count(7, 0), 1);
 }
 
+TEST(ApartInDepth, AreCellsWithAStepBetweenThem) {
+  const std::vector<float> depth = {2, 2.1f, 2.2f, 1.9f, 1.8f, 0};
+  const std::vector<bool> apart = {false, false, true, false, true, false};
+  for (int other = 0; other < 6; ++other) {
+    EXPECT_EQ(ApartInDepth(depth, 0, other), apart[other]) << other;
+    EXPECT_FALSE(ApartInDepth(depth, 5, other)) << other;
+    EXPECT_FALSE(ApartInDepth({}, 0, other)) << other;
+  }
+}
+
 // The same reading all over, and a few that are not.
 TEST(DepthOfCells, IsTheSameFromBothKindsOfImagesInMetres) {
   const Camera camera = MakeCamera(401, 303, false);

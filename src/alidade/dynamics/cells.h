@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <opencv2/core.hpp>
+#include <span>
 #include <vector>
 
 #include "alidade/geometry/camera.h"
@@ -47,6 +49,14 @@ void Cells::VisitAround(int cell, int reach, Visit&& visit) const {
     for (int x = std::max(0, c - reach); x <= std::min(kColumns - 1, c + reach); ++x)
       visit(y * kColumns + x);
   }
+}
+
+// Whether `other` is not on the surface that `cell` is on, as their depths tell: metres, 0 =
+// unknown, may be empty. What is unknown is apart from nothing.
+inline bool ApartInDepth(std::span<const float> depth, int cell, int other) {
+  constexpr float kSurface = 0.06f;  // of the depth
+  return !depth.empty() && depth[other] > 0 && depth[cell] > 0 &&
+         std::abs(depth[other] - depth[cell]) > kSurface * depth[cell];
 }
 
 // Metres along z in every cell, 0 = unknown: the median of nine readings.

@@ -95,10 +95,9 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
 
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
                               std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
-  constexpr int kReach = 3;          // cells around
-  constexpr float kSurface = 0.06f;  // of the depth
-  constexpr int kEnough = 3;         // tracks
-  constexpr float kAgreed = 0.4f;    // mean vote
+  constexpr int kReach = 3;        // cells around
+  constexpr int kEnough = 3;       // tracks
+  constexpr float kAgreed = 0.4f;  // mean vote
   std::vector<int> sums(cells.count(), 0), counts(cells.count(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
@@ -110,9 +109,7 @@ std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
     int sum = 0, count = 0;
     cells.VisitAround(cell, kReach, [&](int n) {
-      const bool apart = !depth.empty() && depth[n] > 0 && depth[cell] > 0 &&
-                         std::abs(depth[n] - depth[cell]) > kSurface * depth[cell];
-      if (apart) return;
+      if (ApartInDepth(depth, cell, n)) return;
       sum += sums[n];
       count += counts[n];
     });

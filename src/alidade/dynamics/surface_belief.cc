@@ -77,15 +77,12 @@ void SurfaceBelief::AddFlow(std::span<const float> depth, std::span<const FlowTr
   constexpr float kConfirmed = 0.06f;              // evidence of depth that something stands still
   constexpr float kMoved = -0.5f, kStood = 0.02f;  // log-odds, per frame and track
   constexpr float kStoodWeight = 0.2f;
-  constexpr float kSurface = 0.06f;  // of the depth
   for (size_t t = 0; t < tracks.size(); ++t) {
     if (votes[t] == 0) continue;
     const bool moved = votes[t] < 0;
     const int cell = cells_.At(tracks[t].at().x, tracks[t].at().y);
     cells_.VisitAround(cell, 1, [&](int n) {
-      const bool apart = depth[n] > 0 && depth[cell] > 0 &&
-                         std::abs(depth[n] - depth[cell]) > kSurface * depth[cell];
-      if (apart || (moved && evidence.log_odds[n] > kConfirmed)) return;
+      if (ApartInDepth(depth, cell, n) || (moved && evidence.log_odds[n] > kConfirmed)) return;
       evidence.log_odds[n] += moved ? kMoved : kStood;
       evidence.weights[n] += moved ? 1 : kStoodWeight;
     });
