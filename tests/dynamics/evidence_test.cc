@@ -8,19 +8,10 @@
 #include <vector>
 
 #include "alidade/base/random.h"
+#include "support/vga_camera.h"
 
 namespace alidade {
 namespace {
-
-Camera MakeCamera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 Se3 Motion(const Eigen::Vector3d& t, const Eigen::Vector3d& turn) {
   Vector6d xi;
@@ -44,7 +35,7 @@ class SegmentTest : public testing::Test {
                      1 / nearest);
   }
 
-  Camera camera_ = MakeCamera();
+  Camera camera_ = MakeVgaCamera();
   Eigen::Vector3d ray_{0.1, -0.05, 1};
   Se3 T_now_then_ = Motion({0.1, 0.02, 0.03}, {0.01, -0.02, 0.005});
 };
@@ -140,7 +131,7 @@ class CompareDepthTest : public testing::Test {
     return static_cast<double>(found) / all;
   }
 
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   const cv::Rect2f board_{240, 160, 160, 160}, inside_{256, 176, 128, 128};
 };
 
@@ -249,7 +240,7 @@ TEST_F(CompareDepthTest, OutlinesOfWhatStandsStillAreNoMotion) {
 
 class SpreadTest : public testing::Test {
  protected:
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   std::vector<float> values_ = std::vector<float>(cells_.count(), 0);
   std::vector<float> weights_ = std::vector<float>(cells_.count(), 0);
   int At(int column, int row) const { return row * cells_.columns() + column; }

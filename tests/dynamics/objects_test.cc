@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "support/vga_camera.h"
+
 namespace alidade {
 namespace {
 
@@ -16,16 +18,6 @@ const std::vector<std::string> kNames = {"person", "chair", "toaster", "chairlif
 enum Class { kPerson, kChair, kToaster, kChairlift };
 const cv::Size kImage(640, 480);
 constexpr double kFrame = 1 / 30.0;  // seconds
-
-Camera MakeCamera() {
-  Camera camera;
-  camera.width = kImage.width;
-  camera.height = kImage.height;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 float Apart(const cv::Rect2f& a, const cv::Rect2f& b) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.br().x - b.br().x),
@@ -72,7 +64,7 @@ class ObjectTracksTest : public testing::Test {
   }
   Detection Person(int ago) const { return {kPerson, 0.9f, BoxAt(now_ - ago)}; }
 
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   DynamicsSettings settings_;
   ObjectTracks objects_{settings_, kNames};
   cv::Rect2f begin_{150, 120, 110, 230};
@@ -207,7 +199,7 @@ class ForegroundTest : public testing::Test {
     return static_cast<double>(count) / static_cast<double>(wanted.size());
   }
 
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   std::vector<float> depth_, static_;
   std::vector<int> person_;
   cv::Rect2f box_{260, 110, 120, 300};

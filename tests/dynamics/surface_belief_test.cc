@@ -7,18 +7,10 @@
 #include <memory>
 #include <vector>
 
+#include "support/vga_camera.h"
+
 namespace alidade {
 namespace {
-
-Camera MakeCamera() {
-  Camera camera;
-  camera.width = 640;
-  camera.height = 480;
-  camera.fx = camera.fy = 525;
-  camera.cx = 319.5;
-  camera.cy = 239.5;
-  return camera;
-}
 
 class SurfaceBeliefTest : public testing::Test {
  protected:
@@ -68,7 +60,7 @@ class SurfaceBeliefTest : public testing::Test {
     return static_cast<double>(moving) / all;
   }
 
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   SurfaceBelief belief_{cells_};
   History history_;
   std::vector<uint8_t> resting_ = std::vector<uint8_t>(cells_.count(), 0), on_board_;

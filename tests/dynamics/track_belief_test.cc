@@ -7,21 +7,13 @@
 #include <vector>
 
 #include "alidade/dynamics/surface_belief.h"
+#include "support/vga_camera.h"
 
 namespace alidade {
 namespace {
 
 class TrackBeliefTest : public testing::Test {
  protected:
-  static Camera MakeCamera() {
-    Camera camera;
-    camera.width = 640;
-    camera.height = 480;
-    camera.fx = camera.fy = 525;
-    camera.cx = 319.5;
-    camera.cy = 239.5;
-    return camera;
-  }
   static FlowTrack TrackAt(uint32_t id, float x, float y) {
     FlowTrack track;
     track.id = id;
@@ -36,7 +28,7 @@ class TrackBeliefTest : public testing::Test {
     for (int i = 0; i < times; ++i) belief_.Update(tracks_, votes);
   }
 
-  Cells cells_{MakeCamera()};
+  Cells cells_{MakeVgaCamera()};
   TrackBelief belief_;
   std::vector<FlowTrack> tracks_ = {TrackAt(1, 100, 100), TrackAt(4, 320, 240),
                                     TrackAt(9, 540, 400)};

@@ -11,6 +11,7 @@
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
 #include "alidade/dynamics/history.h"
+#include "support/vga_camera.h"
 
 namespace alidade {
 
@@ -42,11 +43,7 @@ struct FollowedPoints {
 // Points stand on two walls at 2.5 m and 4 m, to the left and to the right.
 inline FollowedPoints FollowPoints(const FollowedSettings& settings) {
   FollowedPoints made;
-  made.camera.width = 640;
-  made.camera.height = 480;
-  made.camera.fx = made.camera.fy = 525;
-  made.camera.cx = 319.5;
-  made.camera.cy = 239.5;
+  made.camera = MakeVgaCamera();
   const Cells cells(made.camera);
   Random random(21);
   const auto wall_at = [](double x) { return x < 0 ? 2.5 : 4.0; };
