@@ -65,6 +65,23 @@ TEST_F(InlineFeed, EverySoManyFramesOneIsAnsweredSoManyFramesLater) {
   }
 }
 
+// As where a recording goes on in a saved map.
+TEST_F(InlineFeed, TheFirstFrameIsShownWhateverItsNumber) {
+  settings_.detector_every_frames = 6;
+  settings_.detector_latency_frames = 2;
+  std::vector<int> shown;
+  const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat& image) {
+    shown.push_back(image.at<uint8_t>(0, 0));
+    return NumberOf(image);
+  });
+  DetectionFeed feed(detector, settings_, false, 1);
+  for (int number = 100; number < 115; ++number) {
+    feed.Offer(number, Picture(number));
+    EXPECT_EQ(feed.Take(number).has_value(), (number - 102) % 6 == 0) << number;
+  }
+  EXPECT_EQ(shown, (std::vector<int>{100, 106, 112}));
+}
+
 TEST_F(InlineFeed, AnswersThatAreThrownAwayAreTheSameOnesForTheSameSeed) {
   settings_.detector_every_frames = 1;
   settings_.detector_latency_frames = 0;

@@ -49,7 +49,7 @@ void DetectionFeed::Offer(int number, const cv::Mat& image) {
       offered_number_ = number;
     }
     changed_.notify_all();
-  } else if (number % settings_.detector_every_frames == 0) {
+  } else if (offers_++ % settings_.detector_every_frames == 0) {
     if (auto answer = Detect(number, image)) answers_.push_back(std::move(*answer));
   }
 }

@@ -16,8 +16,9 @@
 
 namespace alidade {
 
-// Threaded: a thread of its own that takes the newest frame whenever it is free. Inline: every k-th
-// frame, its answer handed over a fixed number of frames later: the same every time.
+// Threaded: a thread of its own that takes the newest frame whenever it is free. Inline: the
+// first frame and every k-th after it, each answer handed over a fixed number of frames later: the
+// same every time.
 class DetectionFeed {
  public:
   // `detector` may be null: then there are never answers.
@@ -43,6 +44,7 @@ class DetectionFeed {
   std::condition_variable changed_;
   cv::Mat offered_;  // threaded: the newest frame; empty when taken
   int offered_number_ = 0;
+  int offers_ = 0;  // inline: so far
   bool stopping_ = false;
   std::deque<FrameDetections> answers_;
   std::vector<double> milliseconds_;
