@@ -7,6 +7,7 @@
 #include <map>
 
 #include "alidade/base/error.h"
+#include "alidade/detect/class_names.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/files/image_file.h"
 #include "bench/dynamic_live.h"
@@ -72,14 +73,13 @@ std::vector<Sensor> SensorsOf(const DynamicOptions& options, Sensor best) {
 // Boxes of things that move by themselves, in every frame: by a detector that is never late.
 Boxes DetectEverywhere(const DynamicScene& scene, const DynamicsSettings& settings,
                        Detector& detector) {
-  const std::string moving = "," + settings.moving_classes + ",";
   Boxes boxes;
   for (const SourceFrame& frame : scene.frames) {
     boxes.emplace_back();
     for (const Detection& found :
          detector.Detect(frame.color.empty() ? frame.image : frame.color)) {
       const std::string& name = detector.ClassNames()[static_cast<size_t>(found.class_id)];
-      if (moving.find("," + name + ",") != std::string::npos) boxes.back().push_back(found.box);
+      if (IsListed(settings.moving_classes, name)) boxes.back().push_back(found.box);
     }
   }
   return boxes;

@@ -38,5 +38,14 @@ TEST(ClassNames, AreNumbersWhenNobodySays) {
   EXPECT_EQ(NamesFor(80, {"robot"})[56], "class 56");
 }
 
+TEST(ClassNames, AreListedWhole) {
+  const std::string list = "cat,cell phone,chair";
+  for (const char* name : {"cat", "cell phone", "chair"}) EXPECT_TRUE(IsListed(list, name)) << name;
+  for (const char* name : {"ca", "at", "phone", "chairlift"})
+    EXPECT_FALSE(IsListed(list, name)) << name;
+  EXPECT_TRUE(IsListed("cat", "cat"));
+  EXPECT_FALSE(IsListed("", "cat"));
+}
+
 }  // namespace
 }  // namespace alidade

@@ -121,4 +121,8 @@ std::vector<std::string> NamesFor(int classes, std::vector<std::string> from_fil
   return names;
 }
 
+bool IsListed(const std::string& list, const std::string& name) {
+  return ("," + list + ",").find("," + name + ",") != std::string::npos;
+}
+
 }  // namespace alidade

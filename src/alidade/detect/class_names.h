@@ -18,4 +18,7 @@ std::vector<std::string> ParseClassNames(std::string_view text);
 // "class 7". `classes` 0: as many as the file names, or COCO's.
 std::vector<std::string> NamesFor(int classes, std::vector<std::string> from_file);
 
+// Whether `list`, names with commas between, has this one.
+bool IsListed(const std::string& list, const std::string& name);
+
 }  // namespace alidade

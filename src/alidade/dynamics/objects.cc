@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "alidade/detect/class_names.h"
 #include "alidade/detect/suppress.h"
 
 namespace alidade {
@@ -39,10 +40,6 @@ cv::Rect2f Inner(const cv::Rect2f& box, float share) {
   const cv::Size2f size(box.width * share, box.height * share);
   return {box.x + (box.width - size.width) / 2, box.y + (box.height - size.height) / 2, size.width,
           size.height};
-}
-
-bool IsListed(const std::string& list, const std::string& name) {
-  return ("," + list + ",").find("," + name + ",") != std::string::npos;
 }
 
 }  // namespace
