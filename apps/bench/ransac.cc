@@ -1,6 +1,7 @@
 // Two views: homography and fundamental matrix in RANSAC, 200 samples of 8 matches each, serial and
 // parallel.
 #include "alidade/base/error.h"
+#include "alidade/base/median.h"
 #include "alidade/base/parallel.h"
 #include "alidade/features/extractor.h"
 #include "alidade/features/matching.h"
@@ -55,9 +56,7 @@ Section BenchRansac(const Recording& recording) {
   };
   std::vector<double> sizes;
   for (const Pair& p : pairs) sizes.push_back(static_cast<double>(p.a.size()));
-  std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
-                   sizes.end());
-  const std::string size = std::to_string(static_cast<int>(sizes[sizes.size() / 2])) + " matches";
+  const std::string size = std::to_string(static_cast<int>(UpperMedian(sizes))) + " matches";
 
   SetThreadCount(0);
   const std::string all = std::to_string(ThreadCount()) + " threads";

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/median.h"
 
 namespace alidade {
 namespace {
@@ -123,12 +124,6 @@ void ForEachCell(cv::Size input, const Visit& visit) {
   }
 }
 
-float Median(std::vector<float> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Centres stay near their cells: decoded ones lie within a few strides of theirs, offsets within a
 // few of zero. Whichever the median is nearer to; along x and y, where the cells spread most.
 bool CentresAreDecoded(const Table& table, cv::Size input) {
@@ -139,7 +134,7 @@ bool CentresAreDecoded(const Table& table, cv::Size input) {
                         std::abs(table(row, 1) / s - static_cast<float>(y) - 0.5f));
     from_zero.push_back(std::abs(table(row, 0) - 0.5f) + std::abs(table(row, 1) - 0.5f));
   });
-  return Median(std::move(from_cell)) < Median(std::move(from_zero));
+  return UpperMedian(from_cell) < UpperMedian(from_zero);
 }
 
 // From edge to edge, clipped to the input.

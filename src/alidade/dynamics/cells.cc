@@ -5,7 +5,9 @@
 #include <cmath>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <span>
 
+#include "alidade/base/median.h"
 #include "alidade/features/depth_image.h"
 
 namespace alidade {
@@ -31,8 +33,7 @@ std::vector<float> Medians(const Cells& cells, cv::Size image, Read&& read) {
       }
     }
     if (count < 3) continue;
-    std::nth_element(values.begin(), values.begin() + count / 2, values.begin() + count);
-    medians[i] = values[count / 2];
+    medians[i] = UpperMedian(std::span(values).first(count));
   }
   return medians;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 
+#include "alidade/base/median.h"
 #include "alidade/dynamics/objects.h"
 
 namespace alidade {
@@ -63,9 +64,7 @@ float CoreDepth(const Cells& cells, std::span<const float> depth,
     if (!(depth[i] > 0) || Inside(box, cells.Centre(i), 2) >= 1) return;
     if (BinOf(depth[i]) == best || BinOf(depth[i]) == best + 1) values.push_back(depth[i]);
   });
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return UpperMedian(values);
 }
 
 }  // namespace

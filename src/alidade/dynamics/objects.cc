@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "alidade/base/median.h"
 #include "alidade/detect/class_names.h"
 #include "alidade/detect/suppress.h"
 
@@ -13,12 +14,6 @@ namespace {
 constexpr size_t kPast = FlowTracks::kHistory;
 constexpr float kSame = 0.3f;      // overlap from which a detection is of an object known already
 constexpr size_t kEnoughFlow = 4;  // tracks that tell how an object moved
-
-float Median(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Median motion over the last `ago` frames of the tracks that `belongs` (called with where they
 // were then) lets through.
@@ -33,7 +28,7 @@ std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int a
     y.push_back(motion.y);
   }
   if (x.size() < kEnoughFlow) return {};
-  return cv::Point2f(Median(x), Median(y));
+  return cv::Point2f(UpperMedian(x), UpperMedian(y));
 }
 
 cv::Rect2f Inner(const cv::Rect2f& box, float share) {

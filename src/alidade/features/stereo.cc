@@ -7,6 +7,7 @@
 #include <opencv2/core/hal/intrin.hpp>
 
 #include "alidade/base/error.h"
+#include "alidade/base/median.h"
 #include "alidade/base/parallel.h"
 #include "alidade/features/extractor.h"
 #include "alidade/features/pyramid.h"
@@ -178,11 +179,7 @@ void MatchStereo(const Frame& right, const Camera& camera, Frame& left) {
     if (d.difference >= 0) differences.push_back(d.difference);
   }
   double limit = 0;
-  if (!differences.empty()) {
-    const auto middle = differences.begin() + static_cast<int>(differences.size()) / 2;
-    std::nth_element(differences.begin(), middle, differences.end());
-    limit = kOutlier * *middle;
-  }
+  if (!differences.empty()) limit = kOutlier * UpperMedian(differences);
   for (int i = 0; i < count; ++i) {
     Keypoint& k = left.keypoints[i];
     const Disparity& d = found[i];

@@ -1,8 +1,8 @@
 #include "alidade/map/view.h"
 
-#include <algorithm>
 #include <vector>
 
+#include "alidade/base/median.h"
 #include "alidade/features/guided_search.h"
 
 namespace alidade {
@@ -35,9 +35,7 @@ std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyfra
     if (landmark) depths.push_back((keyframe.T_camera_world * landmark->p_world).z());
   }
   if (depths.empty()) return {};
-  const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-  std::nth_element(depths.begin(), middle, depths.end());
-  return *middle;
+  return UpperMedian(depths);
 }
 
 }  // namespace alidade

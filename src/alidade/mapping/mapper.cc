@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "alidade/base/log_odds.h"
+#include "alidade/base/median.h"
 #include "alidade/mapping/fuse.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/mapping/triangulate.h"
@@ -84,9 +85,7 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
       depths.push_back(landmark->p_world.z());
     }
     if (depths.empty()) return;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    const double scale = 1 / *middle;
+    const double scale = 1 / UpperMedian(depths);
     commit.Edit(second)->T_camera_world.t *= scale;
     for (LandmarkId id : good) {
       commit.Edit(id)->p_world *= scale;

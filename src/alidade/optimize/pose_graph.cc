@@ -1,10 +1,11 @@
 #include "alidade/optimize/pose_graph.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/median.h"
 #include "alidade/optimize/damping.h"
 #include "alidade/optimize/pose_graph_system.h"
 
@@ -75,9 +76,7 @@ double LengthScale(const PoseGraph& graph, const std::vector<int>& edges) {
     if (length > 0) lengths.push_back(length);
   }
   if (lengths.empty()) return 1;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return 10 * *middle;
+  return 10 * UpperMedian(lengths);
 }
 
 template <int kDof>

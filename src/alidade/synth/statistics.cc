@@ -1,18 +1,12 @@
 #include "alidade/synth/statistics.h"
 
-#include <algorithm>
 #include <numbers>
 #include <opencv2/core.hpp>
 
+#include "alidade/base/median.h"
+
 namespace alidade {
 namespace {
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double Share(int part, const cv::Mat& of) {
   return static_cast<double>(part) / static_cast<double>(of.total());
@@ -54,8 +48,10 @@ SynthStatistics StatisticsCollector::Result() const {
     speeds.push_back(step * fps_);
     turns.push_back(RotationAngle(poses_[i], poses_[i - 1]) * 180 / std::numbers::pi * fps_);
   }
-  result.median_speed = Median(std::move(speeds));
-  result.median_turn = Median(std::move(turns));
+  if (!speeds.empty()) {
+    result.median_speed = UpperMedian(speeds);
+    result.median_turn = UpperMedian(turns);
+  }
   if (pictures_ > 0) {
     result.plain_share = plain_ / pictures_;
     result.missing_depth = missing_ / pictures_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "alidade/base/median.h"
+
 namespace alidade {
 
 namespace {
@@ -12,12 +14,6 @@ constexpr double kMaxMove = 0.5;  // of the depth of what is seen
 // Of that depth, too: how far the camera may have gone since. What comes back after a longer way is
 // for the loop closer, before landmarks that have drifted apart are taken for one another.
 constexpr double kMaxWay = 10;
-
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Keyframes from whose place and direction much the same must be seen, best first.
 std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
@@ -79,7 +75,7 @@ LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const Landma
   };
   for (const Neighbour& n : sharing) take(n.id);
   for (const KeyFrameId id :
-       LookingTheSameWay(map, map.MapOf(local.reference), T_camera_world, Median(depths)))
+       LookingTheSameWay(map, map.MapOf(local.reference), T_camera_world, UpperMedian(depths)))
     take(id);
   const size_t direct = local.keyframes.size();
   for (size_t i = 0; i < direct; ++i) {

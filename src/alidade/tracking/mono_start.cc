@@ -1,10 +1,10 @@
 #include "alidade/tracking/mono_start.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/median.h"
 
 namespace alidade {
 
@@ -49,9 +49,7 @@ std::optional<MonoStartResult> MonoStart::Try(Reference& reference,
     pixels_b.push_back(b.pixel());
     motion.push_back((a.pixel() - b.pixel()).norm());
   }
-  const auto middle = motion.begin() + static_cast<std::ptrdiff_t>(motion.size() / 2);
-  std::nth_element(motion.begin(), middle, motion.end());
-  if (*middle < settings_.min_motion * camera_.width) {
+  if (UpperMedian(motion) < settings_.min_motion * camera_.width) {
     reason_ = "the camera hardly moves";
     return {};
   }
