@@ -21,11 +21,16 @@ bool HoldsWithoutMovers(const PlacedFrame& placed) {
   return tied == all || (tied >= kLeast && tied >= kShare * all);
 }
 
+WorldId WorldOf(KeyFrameId reference, const MapSnapshot& map) {
+  return {map.MapOf(reference), map.corrections()};
+}
+
 // Nothing is much nearer than the nearest of the landmarks in view.
-PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map) {
+PoseGuess GuessOf(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
   constexpr double kNearer = 0.4;
   PoseGuess guess;
   guess.T_camera_world = placed.T_camera_world;
+  guess.world = WorldOf(reference, map);
   std::vector<double> depths;
   for (LandmarkId id : placed.matches) {
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;

@@ -12,8 +12,11 @@ namespace alidade {
 // Whether a frame is tied to the map by what stands still for certain: only that enters keyframes.
 bool HoldsWithoutMovers(const PlacedFrame& placed);
 
-// Where the camera is, before movers are told apart; without the world's name.
-PoseGuess GuessOf(const PlacedFrame& placed, const MapSnapshot& map);
+// Whose world the poses that hang on a keyframe are in.
+WorldId WorldOf(KeyFrameId reference, const MapSnapshot& map);
+
+// Where the camera is, before movers are told apart.
+PoseGuess GuessOf(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
 
 // Keypoints that may enter the map, in order.
 std::vector<int> MappableKeypoints(const Frame& frame);

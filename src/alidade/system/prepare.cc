@@ -69,4 +69,13 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
   return prepared;
 }
 
+std::shared_ptr<const Picture> PictureOf(const FrameInput& input) {
+  return std::make_shared<Picture>(Picture{input.image, input.color, input.depth});
+}
+
+std::shared_ptr<const Picture> Copied(const Picture& picture) {
+  return std::make_shared<Picture>(Picture{picture.gray.clone(), picture.color.clone(),
+                                           picture.depth.clone(), picture.mask.clone()});
+}
+
 }  // namespace alidade

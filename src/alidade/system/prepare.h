@@ -1,6 +1,9 @@
 // Input of one frame, checked, and turned into what the tracker takes.
 #pragma once
 
+#include <memory>
+
+#include "alidade/features/picture.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/system/slam.h"
 
@@ -14,5 +17,10 @@ Camera CameraInUse(Camera camera, const SlamSettings& settings);
 // (input) on images that are not of the size of `given`, or of a type that cannot be.
 FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& used,
                    const SlamSettings& settings);
+
+// Refers to the images of `input`, which are the caller's.
+std::shared_ptr<const Picture> PictureOf(const FrameInput& input);
+// With images of its own.
+std::shared_ptr<const Picture> Copied(const Picture& picture);
 
 }  // namespace alidade

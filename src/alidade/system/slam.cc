@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "alidade/base/error.h"
-#include "alidade/dynamics/dynamic_filter.h"
 #include "alidade/features/subset.h"
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
-#include "alidade/system/detection_feed.h"
+#include "alidade/system/mover_watch.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
 #include "alidade/system/workers.h"
@@ -19,12 +18,13 @@ namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
 
-// One seed for every random choice; with dynamics landmarks must earn their weight.
-SlamSettings Seeded(SlamSettings settings) {
+// Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
+SlamSettings InUse(SlamSettings settings) {
   if (settings.dynamics.mode != DynamicsMode::kOff && settings.dynamics.weigh)
     settings.mapper.young_static = 0.5f;
   settings.dynamics.seed = settings.tracker.seed = settings.start.two_view.seed =
       settings.loop.seed = settings.seed;
+  settings.Check();
   return settings;
 }
 
@@ -36,21 +36,12 @@ struct FrameRecord {
   Se3 T_world_camera_live;
 };
 
-// Refers to the images of `input`, which are the caller's.
-std::shared_ptr<const Picture> PictureOf(const FrameInput& input) {
-  return std::make_shared<Picture>(Picture{input.image, input.color, input.depth});
-}
-
-std::shared_ptr<const Picture> Copied(const Picture& picture) {
-  return std::make_shared<Picture>(Picture{picture.gray.clone(), picture.color.clone(),
-                                           picture.depth.clone(), picture.mask.clone()});
-}
-
 }  // namespace
 
 class Slam::Impl {
  public:
-  Impl(const Camera& given, const SlamSettings& settings, std::shared_ptr<Detector> detector);
+  Impl(const Camera& given, const SlamSettings& settings,
+       const std::shared_ptr<Detector>& detector);
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
 
@@ -60,9 +51,8 @@ class Slam::Impl {
   bool dense_;  // semi-dense mapping is asked for
   Workers workers_;
   Tracker tracker_;
-  DetectionFeed detections_;
-  std::optional<DynamicFilter> dynamics_;  // none: everything is taken to stand still
-  PlacedFrame last_;                       // the last frame, as it was tracked
+  MoverWatch movers_;
+  PlacedFrame last_;  // the last frame, as it was tracked
   MonoStart start_;
   TrackState state_ = TrackState::kInitialising;
   std::vector<FrameRecord> records_;
@@ -71,20 +61,15 @@ class Slam::Impl {
   int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
 
  private:
-  void BeginDynamics(const FrameInput& prepared, int number);
-  void JudgeFeatures(Frame& frame, const PoseGuess* guess);
-  void EndDynamics(const Frame& frame, const TrackResult& result);
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
   TrackResult FindBack(const std::shared_ptr<Frame>& frame);
-  std::vector<std::pair<LandmarkId, bool>> DoubtLandmarks(const TrackEstimate& estimate,
-                                                          const MapSnapshot& map);
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
-  void KeepPicture(KeyFrameId id, const Frame& frame);
+  void KeepPicture(KeyFrameId id, const Picture* picture);
   void GiveUpStart();
   void Lose();
   void LeaveMap();
@@ -95,32 +80,20 @@ class Slam::Impl {
   MapId trial_map_;
   KeyFrameId trial_keyframes_[2];
 
-  WorldId world_;           // of the last pose
-  double dynamics_ms_ = 0;  // of the present frame, so far
-  double lost_since_ = 0;   // time of the first frame without a pose, seconds
-  int lost_sighted_ = 0;    // frames since that showed something
+  double lost_since_ = 0;  // time of the first frame without a pose, seconds
+  int lost_sighted_ = 0;   // frames since that showed something
 };
 
 Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
-                 std::shared_ptr<Detector> detector)
+                 const std::shared_ptr<Detector>& detector)
     : given_(given),
-      settings_(Seeded(settings)),
+      settings_(InUse(settings)),
       camera_(CameraInUse(given, settings)),
       dense_(settings.semidense.enabled && !settings.localise),
       workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
-      detections_(settings.dynamics.mode == DynamicsMode::kFull ? detector : nullptr,
-                  settings_.dynamics, settings_.threaded, settings_.seed),
-      start_(camera_, settings_.start) {
-  settings_.Check();
-  const DynamicsMode mode = settings_.dynamics.mode;
-  if (mode == DynamicsMode::kFull && !detector) ThrowUsage("dynamics full needs a detector");
-  if (mode != DynamicsMode::kOff) {
-    const bool named = mode == DynamicsMode::kFull;
-    dynamics_.emplace(camera_, settings_.dynamics,
-                      named ? detector->ClassNames() : std::vector<std::string>());
-  }
-}
+      movers_(camera_, settings_, detector),
+      start_(camera_, settings_.start) {}
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
   const Stopwatch whole;
@@ -128,10 +101,10 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
     ThrowInput("the frame's time does not grow");
   const FrameInput prepared = Prepare(input, given_, camera_, settings_);
   const int number = first_number_ + static_cast<int>(records_.size());
-  BeginDynamics(prepared, number);
+  movers_.Begin(prepared, number);
   const Stopwatch extracting;
   const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
-                                      number, dynamics_ ? dynamics_->ExpectedMovers() : cv::Mat());
+                                      number, movers_.Expected());
   times_.extract.push_back(extracting.Milliseconds());
   records_.push_back({});
   records_.back().time = input.time;
@@ -142,42 +115,9 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
-  EndDynamics(*last_.frame, result);
+  movers_.End(*last_.frame, result);
   times_.frame.push_back(whole.Milliseconds());
   return result;
-}
-
-void Slam::Impl::BeginDynamics(const FrameInput& prepared, int number) {
-  dynamics_ms_ = 0;
-  if (!dynamics_) return;
-  const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
-  detections_.Offer(number, seen);
-  const Stopwatch advancing;
-  dynamics_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
-                     detections_.Take(number));
-  dynamics_ms_ += advancing.Milliseconds();
-}
-
-// What the features are worth, before the pose is made of them.
-void Slam::Impl::JudgeFeatures(Frame& frame, const PoseGuess* guess) {
-  if (!dynamics_) return;
-  const Stopwatch watch;
-  dynamics_->Judge(frame, guess);
-  if (dense_) {
-    Picture picture = *frame.picture;
-    picture.mask = dynamics_->Mask();
-    frame.picture = std::make_shared<Picture>(picture);
-  }
-  dynamics_ms_ += watch.Milliseconds();
-}
-
-void Slam::Impl::EndDynamics(const Frame& frame, const TrackResult& result) {
-  if (!dynamics_) return;
-  const Stopwatch watch;
-  const Se3 T_camera_world = result.T_world_camera.Inverse();
-  dynamics_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
-                      world_);
-  times_.dynamics.push_back(dynamics_ms_ + watch.Milliseconds());
 }
 
 // `map`: the one the pose is in.
@@ -186,7 +126,7 @@ void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const Ma
   record.tracked = true;
   record.anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   record.T_world_camera_live = placed.T_camera_world.Inverse();
-  world_ = {map.MapOf(reference), map.corrections()};
+  movers_.Place(WorldOf(reference, map));
   tracker_.Remember(placed, reference, map);
 }
 
@@ -200,18 +140,19 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
   placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(placed, id, map);
-  if (dense_) workers_.Keep(id, Copied(*picture));
+  KeepPicture(id, picture.get());
   workers_.Add(id);
 }
 
-void Slam::Impl::KeepPicture(KeyFrameId id, const Frame& frame) {
-  if (dense_) workers_.Keep(id, Copied(*frame.picture));
+// `picture`: null without semi-dense mapping.
+void Slam::Impl::KeepPicture(KeyFrameId id, const Picture* picture) {
+  if (picture) workers_.Keep(id, Copied(*picture));
 }
 
 // No pose: known places first; a new map only where none is known, or none was recognised for long.
 TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
   const MapSnapshot map = workers_.map().Snapshot();
-  JudgeFeatures(*frame, nullptr);
+  movers_.Judge(*frame, nullptr);
   if (map.keyframe_count() > 0) {
     const Stopwatch watch;
     std::vector<KeyFrameId> candidates;
@@ -273,7 +214,7 @@ void Slam::Impl::LeaveMap() {
 
 TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   TrackResult result;
-  if (dynamics_) {
+  if (movers_.on()) {
     last_.frame = std::make_shared<Frame>(*frame);
     *frame = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
   }
@@ -320,8 +261,8 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   trial_map_ = keyframe.map;
   trial_keyframes_[0] = keyframe.parent;
   trial_keyframes_[1] = id;
-  KeepPicture(keyframe.parent, *views->a);
-  KeepPicture(id, *two.b);
+  KeepPicture(keyframe.parent, views->a->picture.get());
+  KeepPicture(id, two.b->picture.get());
   trial_points_ =
       static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
                                      [](LandmarkId landmark) { return landmark.valid(); }));
@@ -351,9 +292,8 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const MapSnapshot map = workers_.map().Snapshot();
   PlacedFrame guess = tracker_.Predict(frame, map);
   const double predicting = watch.Milliseconds();
-  PoseGuess where = GuessOf(guess, map);
-  where.world = {map.MapOf(tracker_.reference()), map.corrections()};
-  JudgeFeatures(*frame, &where);
+  const PoseGuess where = GuessOf(guess, tracker_.reference(), map);
+  movers_.Judge(*frame, &where);
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
   times_.track.push_back(predicting + estimating.Milliseconds());
@@ -376,27 +316,6 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   return result;
 }
 
-// Tells the mapper what the frame says of each landmark; returns the sightings that nothing moving
-// hid.
-std::vector<std::pair<LandmarkId, bool>> Slam::Impl::DoubtLandmarks(const TrackEstimate& estimate,
-                                                                    const MapSnapshot& map) {
-  constexpr double kMostOnMovers = 0.5;  // more, and it is the movers that are not believed
-  std::vector<std::pair<LandmarkId, bool>> sightings;
-  std::vector<std::pair<LandmarkId, float>> evidence;
-  int on_movers = 0;
-  for (const SightingCount& s : estimate.sightings) {
-    const Landmark* landmark = map.Find(s.landmark);
-    if (!landmark) continue;
-    const Sight sight = dynamics_->Look(estimate.placed.T_camera_world * landmark->p_world);
-    on_movers += sight == Sight::kOnMover;
-    evidence.push_back({s.landmark, EvidenceOf(sight, s.found)});
-    if (s.found || sight == Sight::kClear) sightings.push_back({s.landmark, s.found});
-  }
-  if (on_movers <= kMostOnMovers * static_cast<double>(evidence.size()))
-    workers_.mapper().Doubt(evidence);
-  return sightings;
-}
-
 TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   state_ = TrackState::kTracking;
   TrackResult result;
@@ -407,10 +326,9 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert &&
                     !settings_.localise && HoldsWithoutMovers(estimate.placed);
   if (!settings_.localise) {
-    std::vector<std::pair<LandmarkId, bool>> sightings;
-    for (const SightingCount& s : estimate.sightings) sightings.push_back({s.landmark, s.found});
-    if (dynamics_) sightings = DoubtLandmarks(estimate, map);
-    workers_.mapper().Count(sightings);
+    const LandmarkNews news = movers_.NewsOf(estimate, map);
+    workers_.mapper().Doubt(news.evidence);
+    workers_.mapper().Count(news.sightings);
   }
   last_ = estimate.placed;
   if (result.keyframe) {
@@ -442,7 +360,7 @@ void Slam::Impl::Load(const SavedMap& saved) {
 }
 
 Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)
-    : impl_(std::make_unique<Impl>(camera, settings, std::move(detector))) {}
+    : impl_(std::make_unique<Impl>(camera, settings, detector)) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Finish() { impl_->workers_.Drain(); }
@@ -463,7 +381,7 @@ std::vector<FeatureUse> Slam::Features() const {
   return features;
 }
 
-cv::Mat Slam::MoverMask() const { return impl_->dynamics_ ? impl_->dynamics_->Mask() : cv::Mat(); }
+cv::Mat Slam::MoverMask() const { return impl_->movers_.Mask(); }
 
 SlamCounts Slam::Counts() const {
   return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges()};
@@ -481,7 +399,8 @@ StageTimes Slam::Times() const {
   times.map = impl_->workers_.MapMilliseconds();
   times.loop = impl_->workers_.LoopMilliseconds();
   times.semidense = impl_->workers_.SemiDenseMilliseconds();
-  times.detect = impl_->detections_.Milliseconds();
+  times.detect = impl_->movers_.DetectorMilliseconds();
+  times.dynamics = impl_->movers_.Milliseconds();
   return times;
 }
 

@@ -1,0 +1,78 @@
+#include "alidade/system/mover_watch.h"
+
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/base/timing.h"
+
+namespace alidade {
+
+MoverWatch::MoverWatch(const Camera& camera, const SlamSettings& settings,
+                       const std::shared_ptr<Detector>& detector)
+    : detections_(settings.dynamics.mode == DynamicsMode::kFull ? detector : nullptr,
+                  settings.dynamics, settings.threaded, settings.seed) {
+  const DynamicsMode mode = settings.dynamics.mode;
+  if (mode == DynamicsMode::kFull && !detector) ThrowUsage("dynamics full needs a detector");
+  if (mode == DynamicsMode::kOff) return;
+  const bool named = mode == DynamicsMode::kFull;
+  filter_.emplace(camera, settings.dynamics,
+                  named ? detector->ClassNames() : std::vector<std::string>());
+}
+
+void MoverWatch::Begin(const FrameInput& prepared, int number) {
+  present_ms_ = 0;
+  if (!filter_) return;
+  const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
+  detections_.Offer(number, seen);
+  const Stopwatch advancing;
+  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
+                   detections_.Take(number));
+  present_ms_ += advancing.Milliseconds();
+}
+
+cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }
+
+void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
+  if (!filter_) return;
+  const Stopwatch watch;
+  filter_->Judge(frame, guess);
+  if (frame.picture) {
+    Picture picture = *frame.picture;
+    picture.mask = filter_->Mask();
+    frame.picture = std::make_shared<Picture>(picture);
+  }
+  present_ms_ += watch.Milliseconds();
+}
+
+LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const {
+  constexpr double kMostOnMovers = 0.5;  // more, and it is the movers that are not believed
+  LandmarkNews news;
+  int on_movers = 0;
+  for (const SightingCount& s : estimate.sightings) {
+    if (!filter_) {
+      news.sightings.push_back({s.landmark, s.found});
+      continue;
+    }
+    const Landmark* landmark = map.Find(s.landmark);
+    if (!landmark) continue;
+    const Sight sight = filter_->Look(estimate.placed.T_camera_world * landmark->p_world);
+    on_movers += sight == Sight::kOnMover;
+    news.evidence.push_back({s.landmark, EvidenceOf(sight, s.found)});
+    if (s.found || sight == Sight::kClear) news.sightings.push_back({s.landmark, s.found});
+  }
+  if (on_movers > kMostOnMovers * static_cast<double>(news.evidence.size())) news.evidence.clear();
+  return news;
+}
+
+void MoverWatch::End(const Frame& frame, const TrackResult& result) {
+  if (!filter_) return;
+  const Stopwatch watch;
+  const Se3 T_camera_world = result.T_world_camera.Inverse();
+  filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
+                    world_);
+  milliseconds_.push_back(present_ms_ + watch.Milliseconds());
+}
+
+cv::Mat MoverWatch::Mask() const { return filter_ ? filter_->Mask() : cv::Mat(); }
+
+}  // namespace alidade

@@ -1,0 +1,56 @@
+// What moves, frame by frame: the detector and the dynamic filter, and what they say of frames and
+// landmarks. Without dynamics everything is taken to stand still.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "alidade/detect/detector.h"
+#include "alidade/dynamics/dynamic_filter.h"
+#include "alidade/map/map_store.h"
+#include "alidade/system/detection_feed.h"
+#include "alidade/system/slam.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+
+// What a frame tells the mapper of the landmarks that should have been seen.
+struct LandmarkNews {
+  std::vector<std::pair<LandmarkId, bool>> sightings;  // found or not, but for what movers hid
+  std::vector<std::pair<LandmarkId, float>> evidence;  // log-odds of standing still
+};
+
+// For every frame Begin, Judge, Place when it has a pose, and End.
+class MoverWatch {
+ public:
+  // Throws Error (usage) when settings.dynamics.mode is full and there is no detector.
+  MoverWatch(const Camera& camera, const SlamSettings& settings,
+             const std::shared_ptr<Detector>& detector);
+
+  bool on() const { return filter_.has_value(); }
+  void Begin(const FrameInput& prepared, int number);  // before there are features
+  cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers; empty: none
+  // What the features are worth, before the pose is made of them; the frame's picture, if it has
+  // one, gets the mask. `guess`: null when there is none.
+  void Judge(Frame& frame, const PoseGuess* guess);
+  // No evidence when half of what was expected lies on movers: it is those that are not believed.
+  LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
+  void Place(const WorldId& world) { world_ = world; }  // whose world the frame's pose is in
+  void End(const Frame& frame, const TrackResult& result);
+
+  cv::Mat Mask() const;  // as Slam::MoverMask
+  // One for each frame; one for each the detector was given.
+  const std::vector<double>& Milliseconds() const { return milliseconds_; }
+  std::vector<double> DetectorMilliseconds() const { return detections_.Milliseconds(); }
+
+ private:
+  DetectionFeed detections_;
+  std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
+  WorldId world_;                        // of the last pose
+  double present_ms_ = 0;                // of the present frame, so far
+  std::vector<double> milliseconds_;
+};
+
+}  // namespace alidade
