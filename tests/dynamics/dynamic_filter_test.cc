@@ -217,6 +217,16 @@ class FilterOfAStandingCamera : public testing::Test {
   FilterOfAStandingCamera() : room_(WalkRoom({.actors = 0, .frames = 1, .seed = 4})) {
     board_ = MakeTexture(where_.width, where_.height, 12);
   }
+  // Slats before the lower part of the board, with gaps too narrow for a cell to show.
+  void PutUpFence(RenderedFrame& seen) const {
+    const cv::Mat slats = MakeTexture(where_.width, 4, 5);
+    for (int y = where_.y + 85; y + 6 <= where_.br().y; y += 6) {
+      const cv::Rect slat(where_.x, y, where_.width, 4);
+      slats.copyTo(seen.image(slat));
+      seen.depth(slat) = static_cast<uint16_t>(0.6 * room_.camera.depth_factor);
+      seen.mask(slat) = 0;
+    }
+  }
   RenderedFrame Seen(int number, bool with_board) const {
     RenderedFrame seen = room_.frames[0];
     seen.time = number / 30.0;
@@ -228,6 +238,7 @@ class FilterOfAStandingCamera : public testing::Test {
       seen.depth(where_) = static_cast<uint16_t>(0.9 * room_.camera.depth_factor);
       seen.mask(where_) = 255;
     }
+    if (fence_) PutUpFence(seen);
     AddNoise(seen.image, 2, static_cast<uint64_t>(number));
     return seen;
   }
@@ -248,6 +259,7 @@ class FilterOfAStandingCamera : public testing::Test {
   WalkedRoom room_;
   cv::Rect where_{120, 60, 70, 110};
   cv::Mat board_;
+  bool fence_ = false;
   int number_ = 0;
 };
 
@@ -293,6 +305,28 @@ TEST_F(FilterOfAStandingCamera, WhatADetectorKnowsToMoveIsLeftOutThoughItRests) 
   See(watcher, 60, false);
   EXPECT_TRUE(watcher.filter().objects().empty());
   EXPECT_LT(ShareOfMask(watcher.Mask()), 0.03);
+}
+
+TEST_F(FilterOfAStandingCamera, WhatIsSeenThroughAFenceIsJudgedAsWhatIsBesideIt) {
+  DynamicsSettings settings = Geometry();
+  settings.mode = DynamicsMode::kFull;
+  Watcher watcher(room_.camera, settings);
+  fence_ = true;
+  See(watcher, 40, false);
+  InUse in_use;
+  for (int i = 0; i < 20; ++i) {
+    See(watcher, 1, true, [&](int number) { return BoardAs(0, number); });
+    for (size_t k = 0; k < watcher.frame().keypoints.size(); ++k) {
+      const Keypoint& keypoint = watcher.frame().keypoints[k];
+      if (keypoint.raw_y < static_cast<float>(where_.y) + 87 || keypoint.depth < 0.85f ||
+          keypoint.depth > 0.95f)
+        continue;
+      ++in_use.all_people;
+      in_use.people += watcher.frame().static_probability[k] >= Frame::kMappable;
+    }
+  }
+  ASSERT_GT(in_use.all_people, 20);
+  EXPECT_LT(in_use.people, 0.3 * in_use.all_people);
 }
 
 TEST_F(FilterOfAStandingCamera, WhatIsOnlyCarriedAlongIsUsedWhileItRests) {

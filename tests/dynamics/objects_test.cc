@@ -228,6 +228,20 @@ TEST_F(ForegroundTest, IsNotWhatIsKnownToStandInFront) {
   EXPECT_GT(ShareFound(seen, found), 0.95);
 }
 
+TEST_F(ForegroundTest, IsThePersonBelowATableTopAsWell) {
+  const auto legs = CellsWhere([&](cv::Point2f p) { return p.y > 330 && InPerson(p); });
+  for (int i : legs) depth_[i] += 0.3f;  // a camera that looks down
+  const auto top = CellsWhere([](cv::Point2f p) { return p.y > 290 && p.y < 330; });
+  for (int i : top) {
+    depth_[i] = 1.6f;
+    static_[i] = 5;
+  }
+  const std::vector<int> found = FindForeground(cells_, depth_, static_, box_);
+  EXPECT_LT(ShareFound(top, found), 0.02);
+  EXPECT_GT(ShareFound(legs, found), 0.9);
+  EXPECT_GT(ShareFound(found, person_), 0.97);
+}
+
 TEST_F(ForegroundTest, IsThePersonThoughItStoodStillUntilNow) {
   for (int i : person_) static_[i] = 5;
   const std::vector<int> found = FindForeground(cells_, depth_, static_, box_);

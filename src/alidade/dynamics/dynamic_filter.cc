@@ -152,14 +152,24 @@ float DynamicFilter::DepthAt(int x, int y) const {
   return DepthImage(now_.depth, camera_).At(x, y);
 }
 
-// Log-odds of the surface around a cell that has depth z; `otherwise` where none has.
+// Log-odds of the surface that has depth z at a cell: of the cells around the one nearest in depth;
+// where all of them show something else (a chair's back, with someone behind it), the worst of
+// those farther off that have it. `otherwise` where none has.
 float DynamicFilter::BeliefOfSurface(int cell, float z, float otherwise) const {
   constexpr float kSurface = 0.08f;  // of the depth
+  constexpr int kFar = 6;            // cells
   float belief = otherwise, least = kSurface * z;
   cells_.VisitAround(cell, 1, [&](int n) {
     if (!(depth_[n] > 0) || std::abs(depth_[n] - z) >= least) return;
     least = std::abs(depth_[n] - z);
     belief = belief_[n];
+  });
+  if (least < kSurface * z) return belief;
+  bool known = false;
+  cells_.VisitAround(cell, kFar, [&](int n) {
+    if (!(depth_[n] > 0) || std::abs(depth_[n] - z) >= kSurface * z) return;
+    belief = known ? std::min(belief, belief_[n]) : belief_[n];
+    known = true;
   });
   return belief;
 }
@@ -172,25 +182,25 @@ float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
   if (depth_.empty()) return belief_[cell];
   float lowest = belief_[cell];
   cells_.VisitAround(cell, 1, [&](int n) { lowest = std::min(lowest, belief_[n]); });
-  if (lowest >= 0) return belief_[cell];
-  if (keypoint.has_depth()) return BeliefOfSurface(cell, keypoint.depth, lowest);
-  if (now_.depth.empty()) return lowest;
+  const float otherwise = lowest >= 0 ? belief_[cell] : lowest;
+  if (keypoint.has_depth()) return BeliefOfSurface(cell, keypoint.depth, otherwise);
+  if (now_.depth.empty()) return otherwise;
   const int x = static_cast<int>(std::lround(keypoint.raw_x));
   const int y = static_cast<int>(std::lround(keypoint.raw_y));
   const float here = DepthAt(x, y);
-  if (here > 0) return BeliefOfSurface(cell, here, lowest);
+  if (here > 0) return BeliefOfSurface(cell, here, otherwise);
   float belief = 0;
   bool known = false;
   for (int dy = -kReach; dy <= kReach; ++dy) {
     for (int dx = -kReach; dx <= kReach; ++dx) {
       const float z = DepthAt(x + dx, y + dy);
       if (!(z > 0)) continue;
-      const float of_it = BeliefOfSurface(cell, z, lowest);
+      const float of_it = BeliefOfSurface(cell, z, otherwise);
       belief = known ? std::min(belief, of_it) : of_it;
       known = true;
     }
   }
-  return known ? belief : lowest;
+  return known ? belief : otherwise;
 }
 
 void DynamicFilter::Enter(const WorldId& world) {

@@ -19,6 +19,7 @@ constexpr float kMinReach =
     0.45f;                       // … at least so many metres before and behind the middle: an arm
 constexpr float kStep = 0.04f;   // of the depth, from one cell of a surface to the next
 constexpr float kStatic = 3.5f;  // log-odds: known to stand still
+constexpr float kIslandNear = -0.06f, kIslandFar = 0.3f;  // of the depth, behind the middle
 constexpr float kMiddle = 0.3f, kMostStill = 0.7f;
 constexpr float kRim = 0.4f;   // of the oval: outside it background may be seen
 constexpr float kOval = 2.6f;  // exponent of the oval: between an ellipse and the box
@@ -122,6 +123,13 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
       front.push_back(n);
     });
   }
+  // What something else cuts off from the middle, such as legs by a chair's back.
+  VisitBox(cells, box, [&](int i) {
+    if (state[i] != 1) return;
+    const float off = (depth[i] - core) / core;
+    if (off > kIslandNear && off < kIslandFar && Inside(box, cells.Centre(i), kOval) < 1)
+      state[i] = 2;
+  });
   // Cells without a reading belong to what is around them.
   VisitBox(cells, wide, [&](int i) {
     bool taken = state[i] == 2;
