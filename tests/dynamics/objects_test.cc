@@ -172,6 +172,22 @@ TEST_F(ObjectTracksTest, TwoThingsApartAreTwo) {
   EXPECT_EQ(objects_.objects().size(), 2u);
 }
 
+TEST_F(ObjectTracksTest, WhatIsSeenToRestIsBelievedALittleUntilItMoves) {
+  Detect({Person(0)}, 0);
+  MovingObject& person = objects_.objects()[0];
+  person.cells = CellsInBox(cells_, person.box);
+  const std::vector<FlowTrack> tracks = Flow();
+  const auto judge = [&](int8_t vote, int frames) {
+    const std::vector<int8_t> votes(tracks.size(), vote);
+    for (int i = 0; i < frames; ++i) objects_.JudgeRest(tracks, votes, cells_);
+    return person.static_log_odds;
+  };
+  EXPECT_FLOAT_EQ(judge(0, 100), kObjectStatic);  // nobody can tell
+  EXPECT_LT(judge(1, 10), kRestingStatic);
+  EXPECT_FLOAT_EQ(judge(1, 100), kRestingStatic);
+  EXPECT_FLOAT_EQ(judge(-1, 4), kObjectStatic);
+}
+
 // --- What of a box is the thing ---
 
 class ForegroundTest : public testing::Test {

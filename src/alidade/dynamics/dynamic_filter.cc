@@ -25,6 +25,7 @@ DynamicFilter::DynamicFilter(const Camera& camera, const DynamicsSettings& setti
       surfaces_(cells_),
       geometry_(cells_.count(), kUnknownStatic),
       object_(cells_.count(), 0),
+      resting_(cells_.count(), 0),
       belief_(geometry_) {}
 
 void DynamicFilter::Advance(const DynamicInput& input,
@@ -61,7 +62,11 @@ void DynamicFilter::FindObjects(std::span<const uint8_t> proven) {
                    : depth_.empty()      ? CellsInOval(cells_, object.box, proven)
                                          : FindForeground(cells_, depth_, geometry_, object.box);
     if (object.carried && !IsCarried(object)) continue;
-    for (int i : object.cells) object_[i] = 1;
+    for (int i : object.cells) {
+      resting_[i] =
+          object_[i] ? std::min(resting_[i], object.static_log_odds) : object.static_log_odds;
+      object_[i] = 1;
+    }
   }
 }
 
@@ -79,32 +84,33 @@ void DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
   for (int i = 0; i < cells_.count(); ++i) {
     if (from[i] >= 0) resting[i] = object_[from[i]];
   }
-  const std::vector<int8_t> votes = Consensus(
+  votes_ = Consensus(
       cells_, depth_, tracks_.tracks(),
       VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world, history_, guess.nearest));
   surfaces_.Update(now_.number, depth_, guess.T_camera_world, history_, resting, tracks_.tracks(),
-                   votes);
+                   votes_);
   geometry_ = surfaces_.log_odds();
 }
 
 void DynamicFilter::JudgeWithoutDepth(const PoseGuess* guess) {
   const std::vector<FlowTrack>& tracks = tracks_.tracks();
-  std::vector<int8_t> votes;
   if (guess) {
-    votes = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest);
+    votes_ = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest);
   } else {
     std::vector<uint8_t> on_object;
     for (const FlowTrack& track : tracks)
       on_object.push_back(object_[cells_.At(track.at().x, track.at().y)]);
-    votes = VoteByAgreement(camera_, tracks, on_object,
-                            settings_.seed + static_cast<uint64_t>(now_.number));
+    votes_ = VoteByAgreement(camera_, tracks, on_object,
+                             settings_.seed + static_cast<uint64_t>(now_.number));
   }
-  track_belief_.Update(tracks, Consensus(cells_, {}, tracks, votes));
+  votes_ = Consensus(cells_, {}, tracks, votes_);
+  track_belief_.Update(tracks, votes_);
   geometry_ = track_belief_.OfCells(cells_, tracks);
 }
 
 void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   std::vector<uint8_t> proven;
+  votes_.assign(tracks_.tracks().size(), 0);
   if (guess) Enter(guess->world);
   if (settings_.geometry) {
     if (!depth_.empty() && guess) JudgeWithDepth(*guess);
@@ -117,8 +123,11 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
     }
   }
   FindObjects(proven);
-  for (int i = 0; i < cells_.count(); ++i)
-    belief_[i] = object_[i] ? kObjectStatic : std::max(geometry_[i], kObjectStatic + 0.1f);
+  if (settings_.weigh) objects_.JudgeRest(tracks_.tracks(), votes_, cells_);
+  for (int i = 0; i < cells_.count(); ++i) {
+    belief_[i] = std::max(geometry_[i], kObjectStatic + 0.1f);
+    if (object_[i]) belief_[i] = std::min(geometry_[i], resting_[i]);
+  }
   frame.static_probability.resize(frame.keypoints.size());
   for (size_t k = 0; k < frame.keypoints.size(); ++k) {
     float p = ProbabilityOf(BeliefAt(frame.keypoints[k]));
@@ -218,6 +227,9 @@ void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, cons
     view->T_camera_world = *T_camera_world;
     view->depth = depth_;
     view->static_log_odds = belief_;
+    for (int i = 0; i < cells_.count(); ++i) {
+      if (object_[i]) view->static_log_odds[i] = kObjectStatic;  // what rests is no background
+    }
   }
   history_.Add(std::move(view));
 }

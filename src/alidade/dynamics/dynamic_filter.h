@@ -95,6 +95,8 @@ class DynamicFilter {
   std::vector<float> depth_;     // of each cell; empty: none is measured
   std::vector<float> geometry_;  // log-odds of standing still, of each cell, objects apart
   std::vector<uint8_t> object_;  // of each cell: nonzero = of one that moves by itself
+  std::vector<float> resting_;   // log-odds of each cell of an object
+  std::vector<int8_t> votes_;    // of each track: moved, unknown, stood still
   std::vector<float> belief_;    // of each cell, all together
   WorldId world_;
 };

@@ -124,4 +124,26 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
   }
 }
 
+void ObjectTracks::JudgeRest(std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
+                             const Cells& cells) {
+  constexpr int kEnough = 6;                     // tracks that can tell
+  constexpr double kMoves = 0.15, kRests = 0.7;  // share of them
+  constexpr float kMoved = -1, kRested = 0.07f;  // log-odds, per frame
+  for (MovingObject& object : objects_) {
+    int moved = 0, rested = 0;
+    for (size_t t = 0; t < tracks.size(); ++t) {
+      const int cell = cells.At(tracks[t].at().x, tracks[t].at().y);
+      if (!std::binary_search(object.cells.begin(), object.cells.end(), cell)) continue;
+      moved += votes[t] < 0;
+      rested += votes[t] > 0;
+    }
+    if (moved + rested < kEnough) continue;
+    if (moved > kMoves * (moved + rested))
+      object.static_log_odds += kMoved;
+    else if (rested > kRests * (moved + rested))
+      object.static_log_odds += kRested;
+    object.static_log_odds = std::clamp(object.static_log_odds, kObjectStatic, kRestingStatic);
+  }
+}
+
 }  // namespace alidade

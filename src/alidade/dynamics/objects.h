@@ -11,18 +11,20 @@
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
 #include "alidade/dynamics/settings.h"
+#include "alidade/dynamics/surface_belief.h"
 
 namespace alidade {
 
 struct MovingObject {
   int id = 0;
   int class_id = -1;
-  bool carried = false;         // moves only when someone moves it
-  cv::Rect2f box;               // in the present frame, raw pixels
-  std::deque<cv::Rect2f> past;  // in the frames before, the last one first
-  cv::Point2f velocity;         // of the box, pixels per frame
-  double seen = 0;              // time of the last frame it was detected in, seconds
-  std::vector<int> cells;       // what of the picture it covers, sorted; found anew in every frame
+  bool carried = false;                   // moves only when someone moves it
+  cv::Rect2f box;                         // in the present frame, raw pixels
+  std::deque<cv::Rect2f> past;            // in the frames before, the last one first
+  cv::Point2f velocity;                   // of the box, pixels per frame
+  double seen = 0;                        // time of the last frame it was detected in, seconds
+  float static_log_odds = kObjectStatic;  // rises while what it covers is seen to rest
+  std::vector<int> cells;  // what of the picture it covers, sorted; found anew in every frame
 };
 
 class ObjectTracks {
@@ -36,6 +38,10 @@ class ObjectTracks {
   // (seconds).
   void Update(std::span<const Detection> detections, int ago, double seen,
               std::span<const FlowTrack> tracks);
+  // Belief that an object rests, by the tracks on its cells. `votes`: -1, 0, 1 of each track:
+  // moved, unknown, stood still.
+  void JudgeRest(std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
+                 const Cells& cells);
   std::vector<MovingObject>& objects() { return objects_; }
   const std::vector<MovingObject>& objects() const { return objects_; }
 

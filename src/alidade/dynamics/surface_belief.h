@@ -11,9 +11,10 @@
 
 namespace alidade {
 
-inline constexpr float kUnknownStatic = 1.5f;  // log-odds of what nothing is known of: 0.82
-inline constexpr float kCertainStatic = 5;     // bound of all log-odds
-inline constexpr float kObjectStatic = -4;     // of what a detector knows to move
+inline constexpr float kUnknownStatic = 1.5f;    // log-odds of what nothing is known of: 0.82
+inline constexpr float kCertainStatic = 5;       // bound of all log-odds
+inline constexpr float kObjectStatic = -4;       // of what a detector knows to move …
+inline constexpr float kRestingStatic = -0.85f;  // … at most, while it is seen to rest: 0.3
 
 class SurfaceBelief {
  public:

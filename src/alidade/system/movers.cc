@@ -63,6 +63,7 @@ void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
   frame->picture = nullptr;  // the map keeps none
   placed.frame = std::move(frame);
   placed.matches = std::move(matches);
+  placed.passing.clear();
   placed.inliers =
       static_cast<int>(std::count_if(placed.matches.begin(), placed.matches.end(),
                                      [](LandmarkId landmark) { return landmark.valid(); }));

@@ -273,7 +273,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   }
   trial_left_ = settings_.start.trial_frames;
   tracker_.KeyFrameInserted(frame->number);
-  Place({frame, keyframe.T_camera_world, keyframe.landmarks, trial_points_}, id, map);
+  Place({frame, keyframe.T_camera_world, keyframe.landmarks, trial_points_, {}}, id, map);
   result.matches = trial_points_;
   return true;
 }

@@ -20,7 +20,8 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
       settings_(settings),
       has_depth_(camera.StereoBaseline() > 0),
       extractor_(settings.extractor),
-      right_extractor_(settings.extractor) {
+      right_extractor_(settings.extractor),
+      passing_(camera) {
   settings_.Check();
   settings_.noise.right_from_sensor = camera.baseline <= 0;
 }
@@ -169,6 +170,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     TrackEstimate estimate = Estimate(std::move(guess), map);
     estimate.tracked = estimate.tracked && IsCertain(estimate);
     if (estimate.tracked) return estimate;
+    passing_.Clear();  // of a pose that is not believed
   }
   return lost;
 }
@@ -208,9 +210,19 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     matches.push_back({landmark->p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right, trust});
     keypoints.push_back(static_cast<int>(i));
   }
+  const size_t landmarks = matches.size();
+  for (const PassingMatch& match : placed.passing) {
+    const Measurement m = Measure(placed.frame->keypoints[match.keypoint], settings_.noise);
+    matches.push_back({match.p_world, m.pixel, m.inv_sigma2, m.inv_sigma2_right,
+                       placed.frame->Static(match.keypoint)});
+  }
   PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
-  const double enough = settings_.good_agreement * static_cast<double>(matches.size());
-  if (result.inliers < enough && settings_.bad_frame_sigma > 1) {
+  const auto agreeing = [&] {  // of the landmarks
+    const auto end = result.inlier.begin() + static_cast<std::ptrdiff_t>(landmarks);
+    return static_cast<int>(std::count(result.inlier.begin(), end, true));
+  };
+  const double enough = settings_.good_agreement * static_cast<double>(landmarks);
+  if (agreeing() < enough && settings_.bad_frame_sigma > 1) {
     // Blur and a rolling shutter bend whole frames: with wider gates all of the picture has a say,
     // not just the part that happened to agree first.
     for (PoseMatch& match : matches)
@@ -218,13 +230,16 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     result = OptimizePose(camera_, placed.T_camera_world, matches);
   }
   placed.T_camera_world = result.T_camera_world;
-  placed.inliers = result.inliers;
+  placed.inliers = agreeing();
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (!result.inlier[i]) placed.matches[keypoints[i]] = {};
   }
-  return keypoints.empty()
-             ? 0
-             : static_cast<double>(result.inliers) / static_cast<double>(keypoints.size());
+  std::vector<PassingMatch> held;
+  for (size_t i = 0; i < placed.passing.size(); ++i) {
+    if (result.inlier[landmarks + i]) held.push_back(placed.passing[i]);
+  }
+  placed.passing = std::move(held);
+  return landmarks == 0 ? 0 : placed.inliers / static_cast<double>(landmarks);
 }
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
@@ -244,6 +259,8 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
   LocalMatches found = MatchLocalMap(guess, map, local, camera_, settings_);
   guess.matches = found.matches;
+  if (has_depth_)
+    guess.passing = passing_.Find(guess, settings_.local_radius_depth, settings_.max_distance);
   const double share = Optimise(guess, map);
 
   std::vector<uint8_t> counted(map.next_landmark(), 0);
@@ -268,6 +285,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   if (estimate.tracked) {
     most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
     estimate.wants_keyframe = WantsKeyFrame(estimate.placed, share);
+    if (has_depth_) passing_.Update(estimate.placed, map.corrections());
   }
   return estimate;
 }
@@ -301,6 +319,7 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
 }
 
 void Tracker::Forget() {
+  passing_.Clear();
   last_ = {};
   has_velocity_ = false;
 }

@@ -11,6 +11,7 @@
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/tracking/local_map.h"
+#include "alidade/tracking/passing_points.h"
 #include "alidade/tracking/placed_frame.h"
 #include "alidade/tracking/settings.h"
 
@@ -77,6 +78,7 @@ class Tracker {
   bool has_depth_;
   Extractor extractor_, right_extractor_;
   LocalMapGatherer gatherer_;
+  PassingPoints passing_;
 
   PlacedFrame last_;
   Anchor last_anchor_;  // where the last frame is, by its reference keyframe
