@@ -91,15 +91,17 @@ void SurfaceBelief::AddFlow(std::span<const float> depth, std::span<const FlowTr
 
 // What little is known of takes after the surface it is on.
 void SurfaceBelief::Spread(std::span<const float> depth) {
-  constexpr float kFade = 0.75f;  // from cell to cell
-  constexpr float kRate = 0.3f;   // share of the way, per frame
-  constexpr float kHeard = 20;    // by the weight of what is around
+  constexpr float kFade = 0.75f;   // from cell to cell
+  constexpr float kRate = 0.3f;    // share of the way, per frame
+  constexpr float kHeard = 20;     // by the weight of what is around
+  constexpr float kLeast = -0.5f;  // log-odds: hearsay makes a mover of nothing for long
   std::vector<float> values = log_odds_, weights(cells_.count());
   for (int i = 0; i < cells_.count(); ++i) weights[i] = certainty_[i] * certainty_[i];
   SpreadOverSurfaces(cells_, depth, kFade, values, weights);
   for (int i = 0; i < cells_.count(); ++i) {
     const float share = kRate * (1 - certainty_[i]) * std::min(1.0f, kHeard * weights[i]);
-    log_odds_[i] += share * (values[i] - log_odds_[i]);
+    const float heard = std::max(values[i], std::min(kLeast, log_odds_[i]));
+    log_odds_[i] += share * (heard - log_odds_[i]);
   }
 }
 
