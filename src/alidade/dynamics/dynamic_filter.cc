@@ -125,8 +125,8 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   FindObjects(proven);
   if (settings_.weigh) objects_.JudgeRest(tracks_.tracks(), votes_, cells_);
   for (int i = 0; i < cells_.count(); ++i) {
-    belief_[i] = std::max(geometry_[i], kObjectStatic + 0.1f);
-    if (object_[i]) belief_[i] = std::min(geometry_[i], resting_[i]);
+    belief_[i] = object_[i] ? std::min(geometry_[i], resting_[i])
+                            : std::max(geometry_[i], kObjectStatic + 0.1f);
   }
   frame.static_probability.resize(frame.keypoints.size());
   for (size_t k = 0; k < frame.keypoints.size(); ++k) {

@@ -1,5 +1,5 @@
-// Points on what rests for now, such as someone who sits: they help the pose for as long as they
-// hold, and never enter the map.
+// Points on what may stand still and is not certain to, such as someone who sits: they help the
+// pose for as long as they hold, by their probability, and never enter the map.
 #pragma once
 
 #include <Eigen/Core>
