@@ -95,6 +95,20 @@ TEST_F(DynamicsRun, PosesStayAtTheTruthAmongPeople) {
   EXPECT_LT(json::parse(result.out).value("rmse", 1e9), 0.04);  // 320 × 240 pixels
 }
 
+TEST_F(DynamicsRun, AMapThatBeganOnAPersonIsBegunAgain) {
+  // Someone walks ahead of the camera, large and full of corners.
+  const std::string out = folder_ / "again";
+  const ProgramResult run =
+      RunAlidade({"run", "synth:room?actors=3&seed=4", "--last", "79", "--sensor", "mono",
+                  "--dynamics", "geometry", "--quiet", "--out", out});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_GT(DataLines(out + "/trajectory.txt").size(), 40u);
+  const ProgramResult result = RunAlidade({"evaluate", "ate", out + "/groundtruth.txt",
+                                           out + "/trajectory.txt", "--align", "sim3", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_LT(json::parse(result.out).value("rmse", 1e9), 0.06);  // of the person: 0.25
+}
+
 TEST_F(DynamicsRun, IsTheSameTwiceWithAnyNumberOfThreads) {
   const std::string one = Run("one", {"--dynamics", "geometry", "--write-masks", "--threads", "1"});
   const std::string two = Run("two", {"--dynamics", "geometry", "--write-masks", "--threads", "2"});

@@ -134,6 +134,68 @@ TEST(VotesByPoseAndDepth, FindWhatComesTowardsTheCamera) {
   EXPECT_EQ(ShareOf(made, votes, false, -1), 0);
 }
 
+class RivalMotion : public testing::Test {
+ protected:
+  RivalMotion() {
+    settings_.scattered = true;
+    settings_.moving = 200;
+    settings_.board = [](int frame) { return Eigen::Vector3d(-0.3, -0.2 + 0.02 * frame, 1.5); };
+  }
+  double Share(const FollowedPoints& made) const {
+    return ShareOfRivalMotion(made.camera, Cells(made.camera), made.tracks, ByPose(made), 3);
+  }
+  // The same with poses that take the board for the world.
+  FollowedPoints Following() const {
+    FollowedPoints made = FollowPoints(settings_);
+    const auto pose = [&](int frame) {
+      return settings_.T_camera_world(frame) *
+             Se3{Eigen::Matrix3d::Identity(), settings_.board(frame)};
+    };
+    made.history.Clear();
+    for (int frame = 0; frame + 1 < settings_.frames; ++frame) {
+      auto view = std::make_shared<PastView>();
+      view->number = frame;
+      view->T_camera_world = pose(frame);
+      made.history.Add(view);
+    }
+    made.T_camera_world = pose(settings_.frames - 1);
+    return made;
+  }
+  FollowedSettings settings_;
+};
+
+TEST_F(RivalMotion, IsTheRoomsWhenThePoseFollowsAMover) {
+  const FollowedPoints made = Following();
+  ASSERT_GT(ShareOf(made, ByPose(made), true, 1), 0.9);
+  ASSERT_GT(ShareOf(made, ByPose(made), false, -1), 0.9);
+  EXPECT_GT(Share(made), 0.6);
+}
+
+TEST_F(RivalMotion, IsLittleWhenOneMoverHasHalfOfTheCorners) {
+  const FollowedPoints made = FollowPoints(settings_);
+  ASSERT_GT(ShareOf(made, ByPose(made), true, -1), 0.9);
+  EXPECT_LT(Share(made), 0.4);
+}
+
+TEST_F(RivalMotion, IsNoneWhereAllElseMovesEachForItself) {
+  FollowedPoints made = Following();
+  Random random(5);
+  for (size_t i = 0; i < made.tracks.size(); ++i) {
+    if (made.moves[i]) continue;
+    const float angle = static_cast<float>(random.Uniform(-3.14, 3.14));
+    for (size_t frame = 0; frame < made.tracks[i].path.size(); ++frame)
+      made.tracks[i].path[frame] +=
+          static_cast<float>(frame) * cv::Point2f(3 * std::cos(angle), 3 * std::sin(angle));
+  }
+  EXPECT_EQ(Share(made), 0);
+}
+
+TEST_F(RivalMotion, IsNotToldOfAFewTracks) {
+  settings_.standing = 30;
+  settings_.moving = 30;
+  EXPECT_EQ(Share(Following()), 0);
+}
+
 class VotesByAgreement : public testing::Test {
  protected:
   VotesByAgreement() { settings_.scattered = true; }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -33,11 +34,14 @@ class SurfaceBeliefTest : public testing::Test {
     pose.t.x() = 0.05 * std::sin(0.1 * number_);
     const std::vector<float> depth = Look(pose);
     belief_.Carry(depth, pose, history_);
-    belief_.Update(number_, depth, pose, history_, resting_, {}, {});
+    belief_.Update(number_, depth, pose, history_, resting_, suspect_, {}, {});
     auto view = std::make_shared<PastView>();
     view->number = number_;
     view->T_camera_world = pose;
     view->depth = depth;
+    for (int i = 0; i < cells_.count() && blind_; ++i) {
+      if (cells_.Centre(i).x < kBlindTo) view->depth[i] = 0;
+    }
     view->static_log_odds = belief_.log_odds();
     history_.Add(view);
     ++number_;
@@ -49,6 +53,7 @@ class SurfaceBeliefTest : public testing::Test {
   void Frames(int count) {
     for (int i = 0; i < count; ++i) Frame();
   }
+  static constexpr float kBlindTo = 325;  // pixels
   // Share of the board's cells, or of the wall's, that are believed to move.
   double Moving(bool board) const {
     int all = 0, moving = 0;
@@ -64,8 +69,9 @@ class SurfaceBeliefTest : public testing::Test {
   SurfaceBelief belief_{cells_};
   History history_;
   std::vector<uint8_t> resting_ = std::vector<uint8_t>(cells_.count(), 0), on_board_;
-  bool board_ = false;
-  double board_x_ = 0, board_step_ = 0;  // metres, metres per frame
+  std::vector<uint8_t> suspect_ = resting_;  // cells in a box of the detector
+  bool board_ = false, blind_ = false;       // blind: on the left nothing is measured
+  double board_x_ = 0, board_step_ = 0;      // metres, metres per frame
   int number_ = 0;
 };
 
@@ -113,6 +119,44 @@ TEST_F(SurfaceBeliefTest, WhatComesAndStaysIsPartOfTheRoomInTime) {
   EXPECT_LT(frames, 600);  // 20 seconds
   EXPECT_GT(frames, 45);   // not while it is only standing a moment
   EXPECT_LT(Moving(false), 0.03);
+}
+
+// A board comes; nobody knows whether its left part has always been there.
+class SurfaceBeliefByHearsay : public SurfaceBeliefTest {
+ protected:
+  // Of the part that is only heard of: those doubted, and the lowest log-odds, over 25 frames.
+  void Come() {
+    blind_ = true;
+    Frames(60);
+    blind_ = false;
+    board_ = true;
+    for (int i = 0; i < 25; ++i) {
+      Frame();
+      for (int cell = 0; cell < cells_.count(); ++cell) {
+        if (!on_board_[cell]) continue;
+        proven_ += cells_.Centre(cell).x > kBlindTo && belief_.log_odds()[cell] < -2;
+        if (cells_.Centre(cell).x > kBlindTo - 45) continue;  // the camera sways
+        doubted_ += belief_.log_odds()[cell] < 0;
+        lowest_ = std::min(lowest_, belief_.log_odds()[cell]);
+      }
+    }
+  }
+  int proven_ = 0, doubted_ = 0;
+  float lowest_ = 0;
+};
+
+TEST_F(SurfaceBeliefByHearsay, IsDoubtedALittle) {
+  Come();
+  EXPECT_GT(proven_, 500);
+  EXPECT_GT(doubted_, 500);
+  EXPECT_GE(lowest_, -0.5f);
+}
+
+TEST_F(SurfaceBeliefByHearsay, IsBelievedToMoveWhereADetectorSeesSomeone) {
+  suspect_.assign(suspect_.size(), 1);
+  Come();
+  EXPECT_GT(doubted_, 500);
+  EXPECT_LT(lowest_, -2);
 }
 
 TEST_F(SurfaceBeliefTest, WhatMovesByItselfIsNotPartOfTheRoomForResting) {

@@ -80,15 +80,19 @@ bool DynamicFilter::IsCarried(const MovingObject& object) const {
 
 void DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
   const std::vector<int> from = surfaces_.Carry(depth_, guess.T_camera_world, history_);
-  std::vector<uint8_t> resting(cells_.count(), 0);
+  std::vector<uint8_t> resting(cells_.count(), 0), suspect(cells_.count(), 0);
   for (int i = 0; i < cells_.count(); ++i) {
     if (from[i] >= 0) resting[i] = object_[from[i]];
+  }
+  for (const MovingObject& object : objects_.objects()) {
+    if (object.carried) continue;
+    for (int i : CellsInBox(cells_, object.box)) suspect[i] = 1;
   }
   votes_ = Consensus(
       cells_, depth_, tracks_.tracks(),
       VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world, history_, guess.nearest));
-  surfaces_.Update(now_.number, depth_, guess.T_camera_world, history_, resting, tracks_.tracks(),
-                   votes_);
+  surfaces_.Update(now_.number, depth_, guess.T_camera_world, history_, resting, suspect,
+                   tracks_.tracks(), votes_);
   geometry_ = surfaces_.log_odds();
 }
 
@@ -210,6 +214,18 @@ float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
     }
   }
   return known ? belief : otherwise;
+}
+
+bool DynamicFilter::FollowsMover() const {
+  constexpr double kMost = 0.55;
+  const uint64_t seed = settings_.seed + static_cast<uint64_t>(now_.number);
+  return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), votes_, seed) > kMost;
+}
+
+void DynamicFilter::Forget() {
+  history_.Clear();
+  track_belief_ = {};
+  std::fill(geometry_.begin(), geometry_.end(), kUnknownStatic);
 }
 
 void DynamicFilter::Enter(const WorldId& world) {

@@ -63,6 +63,10 @@ class DynamicFilter {
   // Ends the frame. `T_camera_world`: its pose, in that world; null when lost.
   void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
 
+  // Whether most of the picture agrees on another motion than that of the pose just judged by.
+  bool FollowsMover() const;
+  void Forget();  // what was believed by poses that were wrong
+
   // What there is where a point of the camera's frame should be seen.
   Sight Look(const Eigen::Vector3d& p) const;
 

@@ -93,6 +93,27 @@ std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTr
   return votes;
 }
 
+double ShareOfRivalMotion(const Camera& camera, const Cells& cells,
+                          std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
+                          uint64_t seed) {
+  constexpr int kBlock = 4;    // cells: someone near has many corners, the room is wide
+  constexpr int kEnough = 10;  // blocks
+  std::vector<uint8_t> fits(tracks.size());
+  for (size_t i = 0; i < tracks.size(); ++i) fits[i] = votes[i] >= 0;
+  const std::vector<int8_t> rival = VoteByAgreement(camera, tracks, fits, seed);
+  const int columns = cells.columns() / kBlock + 1, rows = cells.rows() / kBlock + 1;
+  std::vector<int> sums(static_cast<size_t>(columns * rows), 0);
+  for (size_t i = 0; i < tracks.size(); ++i) {
+    const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
+    const int row = cell / cells.columns() / kBlock, column = cell % cells.columns() / kBlock;
+    sums[row * columns + column] += votes[i] > 0 ? 1 : rival[i] > 0 ? -1 : 0;
+  }
+  const auto rivals = std::count_if(sums.begin(), sums.end(), [](int sum) { return sum < 0; });
+  const auto fitting = std::count_if(sums.begin(), sums.end(), [](int sum) { return sum > 0; });
+  if (rivals + fitting < kEnough) return 0;
+  return static_cast<double>(rivals) / static_cast<double>(rivals + fitting);
+}
+
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
                               std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
   constexpr int kReach = 3;        // cells around

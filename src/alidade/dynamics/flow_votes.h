@@ -24,6 +24,13 @@ std::vector<int8_t> VoteByPose(const Camera& camera, const Cells& cells,
 std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTrack> tracks,
                                     std::span<const uint8_t> left_out, uint64_t seed);
 
+// Of the picture, by area: the share that agrees on another motion, of that and what stands still
+// by the votes of Consensus(), 0…1. Above one half the pose they were made by follows something
+// that moves: movers have a motion each, the room has one. 0 when too little can be told.
+double ShareOfRivalMotion(const Camera& camera, const Cells& cells,
+                          std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
+                          uint64_t seed);
+
 // One track may slip, a surface has several: the vote of those nearby, of like depth where it is
 // known (one value for each cell, or none), when most agree.
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,

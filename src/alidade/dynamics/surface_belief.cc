@@ -90,24 +90,26 @@ void SurfaceBelief::AddFlow(std::span<const float> depth, std::span<const FlowTr
 }
 
 // What little is known of takes after the surface it is on.
-void SurfaceBelief::Spread(std::span<const float> depth) {
+void SurfaceBelief::Spread(std::span<const float> depth, std::span<const uint8_t> suspect) {
   constexpr float kFade = 0.75f;   // from cell to cell
   constexpr float kRate = 0.3f;    // share of the way, per frame
   constexpr float kHeard = 20;     // by the weight of what is around
-  constexpr float kLeast = -0.5f;  // log-odds: hearsay makes a mover of nothing for long
+  constexpr float kLeast = -0.5f;  // log-odds: hearsay alone makes no mover for long
   std::vector<float> values = log_odds_, weights(cells_.count());
   for (int i = 0; i < cells_.count(); ++i) weights[i] = certainty_[i] * certainty_[i];
   SpreadOverSurfaces(cells_, depth, kFade, values, weights);
   for (int i = 0; i < cells_.count(); ++i) {
     const float share = kRate * (1 - certainty_[i]) * std::min(1.0f, kHeard * weights[i]);
-    const float heard = std::max(values[i], std::min(kLeast, log_odds_[i]));
+    const float heard =
+        suspect[i] ? values[i] : std::max(values[i], std::min(kLeast, log_odds_[i]));
     log_odds_[i] += share * (heard - log_odds_[i]);
   }
 }
 
 void SurfaceBelief::Update(int number, std::span<const float> depth, const Se3& T_camera_world,
                            const History& history, std::span<const uint8_t> resting,
-                           std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
+                           std::span<const uint8_t> suspect, std::span<const FlowTrack> tracks,
+                           std::span<const int8_t> votes) {
   number_ = number;
   Evidence evidence{std::vector<float>(cells_.count(), 0), std::vector<float>(cells_.count(), 0)};
   AddDepth(number, depth, T_camera_world, history, evidence);
@@ -117,7 +119,7 @@ void SurfaceBelief::Update(int number, std::span<const float> depth, const Se3& 
     log_odds_[i] = std::clamp(log_odds_[i] + evidence.log_odds[i], -kCertainStatic, kCertainStatic);
     certainty_[i] = std::min(1.0f, certainty_[i] + kLearn * evidence.weights[i]);
   }
-  Spread(depth);
+  Spread(depth, suspect);
 }
 
 }  // namespace alidade

@@ -28,10 +28,12 @@ class SurfaceBelief {
   std::vector<int> Carry(std::span<const float> depth, const Se3& T_camera_world,
                          const History& history);
   // Adds what this frame says. `resting`: cells (nonzero) of what moves by itself, which may rest
-  // but is not believed to be static for it. `votes`: Consensus() of the tracks.
+  // but is not believed to be static for it. `suspect`: cells (nonzero) where a detector sees a
+  // mover: what is only heard of them is believed. `votes`: Consensus() of the tracks.
   void Update(int number, std::span<const float> depth, const Se3& T_camera_world,
               const History& history, std::span<const uint8_t> resting,
-              std::span<const FlowTrack> tracks, std::span<const int8_t> votes);
+              std::span<const uint8_t> suspect, std::span<const FlowTrack> tracks,
+              std::span<const int8_t> votes);
   const std::vector<float>& log_odds() const { return log_odds_; }
   int number() const { return number_; }  // of the last frame with depth
 
@@ -43,7 +45,7 @@ class SurfaceBelief {
                 const History& history, Evidence& evidence) const;
   void AddFlow(std::span<const float> depth, std::span<const FlowTrack> tracks,
                std::span<const int8_t> votes, Evidence& evidence) const;
-  void Spread(std::span<const float> depth);
+  void Spread(std::span<const float> depth, std::span<const uint8_t> suspect);
 
   const Cells& cells_;
   int number_ = -1000;  // of the frame the belief is of

@@ -1,5 +1,6 @@
 #include "alidade/system/mover_watch.h"
 
+#include <algorithm>
 #include <string>
 
 #include "alidade/base/error.h"
@@ -25,12 +26,25 @@ void MoverWatch::Begin(const FrameInput& prepared, int number) {
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
   const Stopwatch advancing;
-  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
-                   detections_.Take(number));
+  const auto answer = detections_.Take(number);
+  answered_ |= answer.has_value();
+  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right}, answer);
   present_ms_ += advancing.Milliseconds();
 }
 
 cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }
+
+bool MoverWatch::MayStart() const {
+  constexpr size_t kLongest = 60;  // frames: a detector that takes longer is not waited for
+  return answered_ || !detections_.expected() || milliseconds_.size() >= kLongest;
+}
+
+bool MoverWatch::FollowsMover() {
+  constexpr int kEnough = 5;  // frames
+  if (!filter_) return false;
+  doubtful_ = std::max(0, doubtful_ + (filter_->FollowsMover() ? 1 : -1));
+  return doubtful_ >= kEnough;
+}
 
 void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!filter_) return;
@@ -62,6 +76,11 @@ LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot
   }
   if (on_movers > kMostOnMovers * static_cast<double>(news.evidence.size())) news.evidence.clear();
   return news;
+}
+
+void MoverWatch::Forget() {
+  doubtful_ = 0;
+  if (filter_) filter_->Forget();
 }
 
 void MoverWatch::End(const Frame& frame, const TrackResult& result) {

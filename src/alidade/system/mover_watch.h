@@ -32,9 +32,15 @@ class MoverWatch {
   bool on() const { return filter_.has_value(); }
   void Begin(const FrameInput& prepared, int number);  // before there are features
   cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers; empty: none
+  // Whether a map may be started from motion: a detector has answered, or will not.
+  bool MayStart() const;
   // What the features are worth, before the pose is made of them; the frame's picture, if it has
   // one, gets the mask. `guess`: null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
+  // Once for each frame judged with a guess: whether the poses of the last ones follow something
+  // that moves, while the room agrees on another motion.
+  bool FollowsMover();
+  void Forget();  // what was believed by such poses
   // No evidence when half of what was expected lies on movers: it is those that are not believed.
   LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
   void Place(const WorldId& world) { world_ = world; }  // whose world the frame's pose is in
@@ -49,6 +55,8 @@ class MoverWatch {
   DetectionFeed detections_;
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
   WorldId world_;                        // of the last pose
+  int doubtful_ = 0;                     // frames whose pose follows a mover, less the others
+  bool answered_ = false;                // the detector, at least once
   double present_ms_ = 0;                // of the present frame, so far
   std::vector<double> milliseconds_;
 };

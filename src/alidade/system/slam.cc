@@ -75,6 +75,8 @@ class Slam::Impl {
   void LeaveMap();
 
   // A young monocular map, until it is believed.
+  bool IsYoung(const Frame& frame, const MapSnapshot& map) const;
+  int started_ = -1;      // number of the frame it was started with
   int trial_left_ = 0;    // frames that have yet to confirm it
   int trial_points_ = 0;  // landmarks it started with
   MapId trial_map_;
@@ -243,6 +245,10 @@ bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult
 }
 
 bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
+  if (!movers_.MayStart()) {
+    result.reason = "watching what moves before a map is started";
+    return false;
+  }
   const auto views = start_.Add(frame);
   if (!views) {
     result.reason = start_.reason();
@@ -272,10 +278,18 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
     return false;
   }
   trial_left_ = settings_.start.trial_frames;
+  started_ = frame->number;
   tracker_.KeyFrameInserted(frame->number);
   Place({frame, keyframe.T_camera_world, keyframe.landmarks, trial_points_, {}}, id, map);
   result.matches = trial_points_;
   return true;
+}
+
+// So young that it had better be begun again than kept, if it is of something that moves.
+bool Slam::Impl::IsYoung(const Frame& frame, const MapSnapshot& map) const {
+  constexpr int kYoung = 40;  // frames
+  return started_ >= 0 && frame.number - started_ <= kYoung &&
+         map.MapOf(tracker_.reference()) == trial_map_;
 }
 
 // The frames placed in it lose their pose with it.
@@ -283,7 +297,9 @@ void Slam::Impl::GiveUpStart() {
   workers_.Drop(trial_map_);
   tracker_.Forget();
   start_.Reset();
+  movers_.Forget();
   trial_left_ = 0;
+  started_ = -1;
   state_ = TrackState::kInitialising;
 }
 
@@ -308,6 +324,11 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
     if (--trial_left_ == 0) {
       for (KeyFrameId id : trial_keyframes_) workers_.AddMapped(id);
     }
+  }
+  if (IsYoung(*frame, map) && movers_.FollowsMover()) {
+    GiveUpStart();
+    result.reason = "the first points moved";
+    return result;
   }
   if (estimate.tracked) return Accept(std::move(estimate), map);
   Lose();
