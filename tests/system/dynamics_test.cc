@@ -70,7 +70,6 @@ std::vector<Detection> TrueBoxes(const cv::Mat& image) {
 std::shared_ptr<Detector> Good() { return std::make_shared<ScriptedDetector>(TrueBoxes); }
 
 struct Played {
-  int first = -1;                       // frame with a pose
   int tracked = 0, tracked_at_end = 0;  // frames; of the last ten
   double worst = 0, worst_at_end = 0;   // metres from the truth
   int keypoints = 0, on_people = 0;     // of landmarks in keyframes
@@ -100,11 +99,11 @@ Played Play(const SlamSettings& settings, std::shared_ptr<Detector> detector = n
   }
   slam.Finish();
   Played played;
+  int first = -1;
   for (const FramePose& pose : slam.Trajectory()) {
     if (!pose.tracked) continue;
-    if (played.first < 0) played.first = pose.index;
-    const Se3 truth =
-        Room().T_camera_world[played.first] * Room().T_camera_world[pose.index].Inverse();
+    if (first < 0) first = pose.index;
+    const Se3 truth = Room().T_camera_world[first] * Room().T_camera_world[pose.index].Inverse();
     const double off = (pose.T_world_camera.t - truth.t).norm();
     ++played.tracked;
     played.worst = std::max(played.worst, off);
@@ -187,34 +186,6 @@ TEST(DynamicSlam, GoesOnWithGeometryWhenTheDetectorFails) {
   EXPECT_THAT(warnings.text(), testing::HasSubstr("geometry"));
   EXPECT_GE(played.tracked, kAll - 1);
   EXPECT_LT(played.worst, kNear);
-}
-
-TEST(DynamicSlam, WithOneCameraAMapIsStartedWhenTheDetectorHasAnswered) {
-  SlamSettings settings = Settings(DynamicsMode::kFull, Sensor::kMono);
-  settings.tracker.extractor.features = 1000;
-  settings.dynamics.detector_latency_frames = 30;
-  const Played waited = Play(settings, Good());
-  EXPECT_GE(waited.first, 30);
-  const auto failing = std::make_shared<ScriptedDetector>(
-      [](const cv::Mat&) -> std::vector<Detection> { ThrowInput("broken"); });
-  const WarningCatcher warnings;
-  const Played alone = Play(settings, failing);
-  EXPECT_GE(alone.first, 0);
-  EXPECT_LT(alone.first, 30);
-  EXPECT_EQ(Play(Settings(DynamicsMode::kFull, Sensor::kStereo), Good()).first, 0);
-}
-
-TEST(DynamicSlam, ADetectorThatNeverAnswersIsNotWaitedForLong) {
-  SlamSettings settings = Settings(DynamicsMode::kFull, Sensor::kMono);
-  settings.dynamics.drop_detections = 1;
-  Camera camera = Room().camera;
-  camera.baseline = 0;
-  Slam slam(camera, settings, Good());
-  int waited = 0;
-  for (const RenderedFrame& frame : Room().frames)
-    waited += std::string(slam.Track({frame.time, frame.image, {}, {}}).reason).find("watching") !=
-              std::string::npos;
-  EXPECT_EQ(waited, 60);
 }
 
 // Says in the frames from `begin` to `end` that this is a person.

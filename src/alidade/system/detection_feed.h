@@ -30,7 +30,6 @@ class DetectionFeed {
   void Offer(int number, const cv::Mat& image);
   // The answer that is due at frame `number`, if any: the newest.
   std::optional<FrameDetections> Take(int number);
-  bool expected() const { return detector_ && !failed_; }  // answers will come
   std::vector<double> Milliseconds() const;  // one for each frame the detector was given
 
  private:

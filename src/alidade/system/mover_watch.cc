@@ -26,18 +26,12 @@ void MoverWatch::Begin(const FrameInput& prepared, int number) {
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
   const Stopwatch advancing;
-  const auto answer = detections_.Take(number);
-  answered_ |= answer.has_value();
-  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right}, answer);
+  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
+                   detections_.Take(number));
   present_ms_ += advancing.Milliseconds();
 }
 
 cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }
-
-bool MoverWatch::MayStart() const {
-  constexpr size_t kLongest = 60;  // frames: a detector that takes longer is not waited for
-  return answered_ || !detections_.expected() || milliseconds_.size() >= kLongest;
-}
 
 bool MoverWatch::FollowsMover() {
   constexpr int kEnough = 5;  // frames
@@ -49,6 +43,7 @@ bool MoverWatch::FollowsMover() {
 void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!filter_) return;
   const Stopwatch watch;
+  if (!guess) doubtful_ = 0;
   filter_->Judge(frame, guess);
   if (frame.picture) {
     Picture picture = *frame.picture;

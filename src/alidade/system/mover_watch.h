@@ -32,8 +32,6 @@ class MoverWatch {
   bool on() const { return filter_.has_value(); }
   void Begin(const FrameInput& prepared, int number);  // before there are features
   cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers; empty: none
-  // Whether a map may be started from motion: a detector has answered, or will not.
-  bool MayStart() const;
   // What the features are worth, before the pose is made of them; the frame's picture, if it has
   // one, gets the mask. `guess`: null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
@@ -56,7 +54,6 @@ class MoverWatch {
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
   WorldId world_;                        // of the last pose
   int doubtful_ = 0;                     // frames whose pose follows a mover, less the others
-  bool answered_ = false;                // the detector, at least once
   double present_ms_ = 0;                // of the present frame, so far
   std::vector<double> milliseconds_;
 };

@@ -245,10 +245,6 @@ bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult
 }
 
 bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
-  if (!movers_.MayStart()) {
-    result.reason = "watching what moves before a map is started";
-    return false;
-  }
   const auto views = start_.Add(frame);
   if (!views) {
     result.reason = start_.reason();
