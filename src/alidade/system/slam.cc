@@ -11,6 +11,7 @@
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
 #include "alidade/system/workers.h"
+#include "alidade/system/young_map.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {
@@ -53,7 +54,7 @@ class Slam::Impl {
   Tracker tracker_;
   MoverWatch movers_;
   PlacedFrame last_;  // the last frame, as it was tracked
-  MonoStart start_;
+  YoungMap young_;    // of one camera
   TrackState state_ = TrackState::kInitialising;
   std::vector<FrameRecord> records_;
   StageTimes times_;
@@ -69,18 +70,9 @@ class Slam::Impl {
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
-  void KeepPicture(KeyFrameId id, const Picture* picture);
-  void GiveUpStart();
+  TrackResult GiveUpStart(const char* reason);
   void Lose();
   void LeaveMap();
-
-  // A young monocular map, until it is believed.
-  bool IsYoung(const Frame& frame, const MapSnapshot& map) const;
-  int started_ = -1;      // number of the frame it was started with
-  int trial_left_ = 0;    // frames that have yet to confirm it
-  int trial_points_ = 0;  // landmarks it started with
-  MapId trial_map_;
-  KeyFrameId trial_keyframes_[2];
 
   double lost_since_ = 0;  // time of the first frame without a pose, seconds
   int lost_sighted_ = 0;   // frames since that showed something
@@ -95,7 +87,7 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
       workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
       movers_(camera_, settings_, detector),
-      start_(camera_, settings_.start) {}
+      young_(camera_, settings_, workers_) {}
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
   const Stopwatch whole;
@@ -142,13 +134,8 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
   placed.matches = keyframe.landmarks;
   tracker_.KeyFrameInserted(placed.frame->number);
   Place(placed, id, map);
-  KeepPicture(id, picture.get());
+  workers_.Keep(id, picture.get());
   workers_.Add(id);
-}
-
-// `picture`: null without semi-dense mapping.
-void Slam::Impl::KeepPicture(KeyFrameId id, const Picture* picture) {
-  if (picture) workers_.Keep(id, Copied(*picture));
 }
 
 // No pose: known places first; a new map only where none is known, or none was recognised for long.
@@ -171,7 +158,7 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     times_.track.push_back(watch.Milliseconds());
     if (estimate.tracked) {
       ++relocalisations_;
-      start_.Reset();
+      young_.Reset();
       // A place just found again is confirmed by the frames after it before the map grows on it.
       tracker_.KeyFrameInserted(frame->number);
       estimate.wants_keyframe = false;
@@ -204,7 +191,7 @@ void Slam::Impl::Lose() {
 // A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
 void Slam::Impl::LeaveMap() {
   state_ = TrackState::kInitialising;
-  start_.Reset();
+  young_.Reset();
   const MapSnapshot map = workers_.map().Snapshot();
   const MapId left = map.MapOf(tracker_.reference());
   if (!left.valid()) return;
@@ -245,58 +232,29 @@ bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult
 }
 
 bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
-  const auto views = start_.Add(frame);
-  if (!views) {
-    result.reason = start_.reason();
+  const auto begun = young_.Begin(frame);
+  if (!begun) {
+    result.reason = young_.reason();
     return false;
   }
-  Mapper::TwoViewMap two;
-  const auto first = std::make_shared<Frame>(*views->a);  // the map keeps no pictures
-  first->picture = nullptr;
-  two.a = first;
-  two.b = views->b;
-  two.T_b_a = views->T_b_a;
-  for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
-  const KeyFrameId id = workers_.mapper().InsertTwoViews(two);
-  const MapSnapshot map = workers_.map().Snapshot();
-  const KeyFrame& keyframe = *map.Find(id);
-  trial_map_ = keyframe.map;
-  trial_keyframes_[0] = keyframe.parent;
-  trial_keyframes_[1] = id;
-  KeepPicture(keyframe.parent, views->a->picture.get());
-  KeepPicture(id, two.b->picture.get());
-  trial_points_ =
-      static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                                     [](LandmarkId landmark) { return landmark.valid(); }));
-  if (trial_points_ < settings_.start.two_view.min_triangulated) {
-    GiveUpStart();
-    result.reason = "the first points did not hold";
+  if (!begun->holds) {
+    result = GiveUpStart("the first points did not hold");
     return false;
   }
-  trial_left_ = settings_.start.trial_frames;
-  started_ = frame->number;
   tracker_.KeyFrameInserted(frame->number);
-  Place({frame, keyframe.T_camera_world, keyframe.landmarks, trial_points_, {}}, id, map);
-  result.matches = trial_points_;
+  Place(begun->placed, begun->id, begun->map);
+  result.matches = begun->placed.inliers;
   return true;
 }
 
-// So young that it had better be begun again than kept, if it is of something that moves.
-bool Slam::Impl::IsYoung(const Frame& frame, const MapSnapshot& map) const {
-  constexpr int kYoung = 40;  // frames
-  return started_ >= 0 && frame.number - started_ <= kYoung &&
-         map.MapOf(tracker_.reference()) == trial_map_;
-}
-
-// The frames placed in it lose their pose with it.
-void Slam::Impl::GiveUpStart() {
-  workers_.Drop(trial_map_);
+TrackResult Slam::Impl::GiveUpStart(const char* reason) {
+  young_.GiveUp();
   tracker_.Forget();
-  start_.Reset();
   movers_.Forget();
-  trial_left_ = 0;
-  started_ = -1;
   state_ = TrackState::kInitialising;
+  TrackResult result;
+  result.reason = reason;
+  return result;
 }
 
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
@@ -309,25 +267,13 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
   times_.track.push_back(predicting + estimating.Milliseconds());
-  TrackResult result;
-  if (trial_left_ > 0) {
-    if (!estimate.tracked ||
-        estimate.placed.inliers < settings_.start.trial_share * trial_points_) {
-      GiveUpStart();
-      result.reason = "the first points did not hold";
-      return result;
-    }
-    if (--trial_left_ == 0) {
-      for (KeyFrameId id : trial_keyframes_) workers_.AddMapped(id);
-    }
-  }
-  if (IsYoung(*frame, map) && movers_.FollowsMover()) {
-    GiveUpStart();
-    result.reason = "the first points moved";
-    return result;
-  }
+  if (young_.on_trial() && !young_.Confirm(estimate))
+    return GiveUpStart("the first points did not hold");
+  if (young_.IsYoung(*frame, tracker_.reference(), map) && movers_.FollowsMover())
+    return GiveUpStart("the first points moved");
   if (estimate.tracked) return Accept(std::move(estimate), map);
   Lose();
+  TrackResult result;
   result.state = state_;
   result.reason = "too few landmarks found";
   return result;
@@ -340,7 +286,7 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   // A busy mapper is not given more than it can chew; with depth the tracker lives on new
   // keyframes, so it may queue some.
   const bool may_insert = workers_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
-  result.keyframe = estimate.wants_keyframe && trial_left_ == 0 && may_insert &&
+  result.keyframe = estimate.wants_keyframe && !young_.on_trial() && may_insert &&
                     !settings_.localise && HoldsWithoutMovers(estimate.placed);
   if (!settings_.localise) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);

@@ -1,5 +1,7 @@
 #include "alidade/system/workers.h"
 
+#include "alidade/system/prepare.h"
+
 namespace alidade {
 namespace {
 
@@ -38,6 +40,10 @@ void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
 void Workers::AddMapped(KeyFrameId id) {
   looping_.Add(id);
   if (dense_) semidense_.Add(id);
+}
+
+void Workers::Keep(KeyFrameId id, const Picture* picture) {
+  if (picture) semidense_mapper_.Keep(id, Copied(*picture));
 }
 
 void Workers::Loop(KeyFrameId id) {

@@ -29,10 +29,8 @@ class Workers {
 
   void Add(KeyFrameId id) { mapping_.Add(id); }  // to be mapped, then looked for elsewhere
   void AddMapped(KeyFrameId id);                 // needs no mapping
-  // The keyframe's picture, before it is added: semi-dense mapping wants it.
-  void Keep(KeyFrameId id, std::shared_ptr<const Picture> picture) {
-    semidense_mapper_.Keep(id, std::move(picture));
-  }
+  // The keyframe's picture, before it is added: semi-dense mapping wants a copy. Null without it.
+  void Keep(KeyFrameId id, const Picture* picture);
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
   void Drain();  // until nothing is left to do; what grew is adjusted as a whole once more
   void Restore(const SavedMap& saved);  // before the first keyframe

@@ -1,0 +1,61 @@
+#include "alidade/system/young_map.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace alidade {
+
+YoungMap::YoungMap(const Camera& camera, const SlamSettings& settings, Workers& workers)
+    : settings_(settings), workers_(workers), start_(camera, settings.start) {}
+
+std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame>& frame) {
+  const auto views = start_.Add(frame);
+  if (!views) return {};
+  Mapper::TwoViewMap two;
+  const auto first = std::make_shared<Frame>(*views->a);  // the map keeps no pictures
+  first->picture = nullptr;
+  two.a = first;
+  two.b = views->b;
+  two.T_b_a = views->T_b_a;
+  for (const auto& p : views->points) two.points.push_back({p.p_a, p.keypoint_a, p.keypoint_b});
+  const KeyFrameId id = workers_.mapper().InsertTwoViews(two);
+  const MapSnapshot map = workers_.map().Snapshot();
+  const KeyFrame& keyframe = *map.Find(id);
+  map_ = keyframe.map;
+  keyframes_[0] = keyframe.parent;
+  keyframes_[1] = id;
+  workers_.Keep(keyframe.parent, views->a->picture.get());
+  workers_.Keep(id, two.b->picture.get());
+  begun_points_ =
+      static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                     [](LandmarkId landmark) { return landmark.valid(); }));
+  trial_left_ = settings_.start.trial_frames;
+  started_ = frame->number;
+  return Begun{{frame, keyframe.T_camera_world, keyframe.landmarks, begun_points_, {}},
+               id,
+               map,
+               begun_points_ >= settings_.start.two_view.min_triangulated};
+}
+
+bool YoungMap::Confirm(const TrackEstimate& estimate) {
+  if (!estimate.tracked || estimate.placed.inliers < settings_.start.trial_share * begun_points_)
+    return false;
+  if (--trial_left_ == 0) {
+    for (KeyFrameId id : keyframes_) workers_.AddMapped(id);
+  }
+  return true;
+}
+
+bool YoungMap::IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapshot& map) const {
+  constexpr int kYoung = 40;  // frames
+  return started_ >= 0 && frame.number - started_ <= kYoung && map.MapOf(reference) == map_;
+}
+
+void YoungMap::GiveUp() {
+  workers_.Drop(map_);
+  start_.Reset();
+  trial_left_ = 0;
+  started_ = -1;
+}
+
+}  // namespace alidade

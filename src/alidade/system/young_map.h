@@ -1,0 +1,51 @@
+// How a map of one camera begins: two views that tell where the points are, then frames that must
+// confirm them before the map is believed.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "alidade/map/map_store.h"
+#include "alidade/system/settings.h"
+#include "alidade/system/workers.h"
+#include "alidade/tracking/mono_start.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+
+class YoungMap {
+ public:
+  YoungMap(const Camera& camera, const SlamSettings& settings, Workers& workers);
+
+  // A map is sought: the next frame. What begins one is in the map when this returns.
+  struct Begun {
+    PlacedFrame placed;  // the frame, second of the two keyframes
+    KeyFrameId id;       // its
+    MapSnapshot map;
+    bool holds = false;  // enough points for a trial; otherwise it is to be given up
+  };
+  std::optional<Begun> Begin(const std::shared_ptr<const Frame>& frame);
+  const char* reason() const { return start_.reason(); }  // why the last frame began none
+  void Reset() { start_.Reset(); }  // the views kept so far are of no use any more
+
+  bool on_trial() const { return trial_left_ > 0; }
+  // One frame of the trial: whether it confirms the map. After the last its keyframes are handed to
+  // the workers.
+  bool Confirm(const TrackEstimate& estimate);
+  // So young that it had better be begun again than kept, if it is of something that moves.
+  // `reference`: the keyframe the tracker leans on.
+  bool IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapshot& map) const;
+  void GiveUp();  // out of the map, frames placed in it included; begins anew
+
+ private:
+  SlamSettings settings_;
+  Workers& workers_;
+  MonoStart start_;
+  int started_ = -1;      // number of the frame it was begun with
+  int trial_left_ = 0;    // frames that have yet to confirm it
+  int begun_points_ = 0;  // landmarks it began with
+  MapId map_;
+  KeyFrameId keyframes_[2];  // it began with
+};
+
+}  // namespace alidade
