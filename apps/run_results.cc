@@ -37,6 +37,7 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   results.times = slam.Times();
   results.counts = slam.Counts();
   results.semidense = slam.SemiDense();
+  results.tracked = results.counts.let_go.tracked;
   results.lost_spans = LostSpans(results.frames);
   const Eigen::Matrix3d& turn = results.R_camera_rectified = record.source.R_camera_rectified;
   for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}, {}});

@@ -23,4 +23,24 @@ inline Se3 PoseOf(const MapState& map, const Anchor& anchor) {
   return T_camera_keyframe * map.PoseOf(anchor.keyframe);
 }
 
+// The same place told by the living keyframe that a culled one follows; a living one's stays as it
+// is. With no keyframe when there is none: its map was dropped.
+//   T_camera_parent = T_camera_keyframe(lengths × s_keyframe) · T_keyframe_parent(lengths ×
+//   s_parent),
+// kept as of a parent of scale 1, so that no scale of the day enters it.
+inline Anchor Reanchored(const MapState& map, Anchor anchor) {
+  const KeyFrame* keyframe = map.keyframes.At(anchor.keyframe.value);
+  if (!keyframe) return {};
+  if (!keyframe->culled()) return anchor;
+  anchor.T_camera_keyframe.t /= anchor.scale;
+  anchor.scale = 1;
+  while (keyframe && keyframe->culled()) {
+    anchor.T_camera_keyframe.t *= keyframe->scale;
+    anchor.T_camera_keyframe = anchor.T_camera_keyframe * keyframe->T_camera_parent;
+    anchor.keyframe = keyframe->parent;
+    keyframe = map.keyframes.At(anchor.keyframe.value);
+  }
+  return keyframe ? anchor : Anchor{};
+}
+
 }  // namespace alidade

@@ -73,6 +73,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("new_map_seconds", s.new_map_seconds);
   visit("new_map_frames", s.new_map_frames);
   visit("min_map_keyframes", s.min_map_keyframes);
+  visit("trajectory.keep_seconds", s.trajectory.keep_seconds);
   auto& l = s.loop;
   visit("loop.enabled", l.enabled);
   visit("loop.sigma_px", l.noise.sigma_px);
@@ -236,6 +237,10 @@ void SlamSettings::ApplyProfile(const std::string& profile) {
   tracker.match_scale = mapper.match_scale = start.match_scale = loop.match_scale = 0.8;
 }
 
+void TrajectorySettings::Check() const {
+  if (!(keep_seconds >= 0)) ThrowUsage("trajectory.keep_seconds must not be negative");
+}
+
 void SlamSettings::Check() const {
   if (image_width != 0 && image_width < 100)
     ThrowUsage("image_width must be 0 or at least 100 pixels");
@@ -245,6 +250,7 @@ void SlamSettings::Check() const {
   places.Check();
   semidense.Check();
   dynamics.Check();
+  trajectory.Check();
   if (!(new_map_seconds >= 0) || new_map_frames < 1)
     ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");

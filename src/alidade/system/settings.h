@@ -17,6 +17,13 @@
 
 namespace alidade {
 
+struct TrajectorySettings {
+  // Frames older than this are let go, a few hundred at a time: what a program that runs for days
+  // has no use for. 0: every frame is kept, at 16 MB an hour (30 frames per second).
+  double keep_seconds = 0;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
+};
+
 struct SlamSettings {
   Sensor sensor = Sensor::kMono;
   bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
@@ -29,6 +36,7 @@ struct SlamSettings {
   LoopSettings loop;
   SemiDenseSettings semidense;
   DynamicsSettings dynamics;
+  TrajectorySettings trajectory;
   bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
   // When lost, a new map is started only after so long and so many frames that showed something:
   // with depth it could start at once, and would always be quicker than recognising a place.

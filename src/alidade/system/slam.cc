@@ -7,6 +7,7 @@
 #include "alidade/features/subset.h"
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
+#include "alidade/system/frame_log.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
@@ -18,6 +19,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
+constexpr int kReanchorFrames = 300;  // how often frames are tied to living keyframes: each 10 s
 
 // Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
 SlamSettings InUse(SlamSettings settings) {
@@ -28,14 +30,6 @@ SlamSettings InUse(SlamSettings settings) {
   settings.Check();
   return settings;
 }
-
-// Where a frame is, by the keyframe it was placed against.
-struct FrameRecord {
-  double time = 0;
-  bool tracked = false;
-  Anchor anchor;
-  Se3 T_world_camera_live;
-};
 
 }  // namespace
 
@@ -56,7 +50,7 @@ class Slam::Impl {
   PlacedFrame last_;  // the last frame, as it was tracked
   YoungMap young_;    // of one camera
   TrackState state_ = TrackState::kInitialising;
-  std::vector<FrameRecord> records_;
+  FrameLog log_;
   StageTimes times_;
   int relocalisations_ = 0;
   int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
@@ -72,6 +66,7 @@ class Slam::Impl {
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   TrackResult GiveUpStart(const char* reason);
   void Lose();
+  void Reanchor();
   void LeaveMap();
 
   double lost_since_ = 0;  // time of the first frame without a pose, seconds
@@ -87,21 +82,20 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
       workers_(camera_, settings_),
       tracker_(camera_, settings_.tracker),
       movers_(camera_, settings_, detector),
-      young_(camera_, settings_, workers_) {}
+      young_(camera_, settings_, workers_),
+      log_(settings_.trajectory) {}
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
   const Stopwatch whole;
-  if (!records_.empty() && input.time <= records_.back().time)
-    ThrowInput("the frame's time does not grow");
+  if (!log_.empty() && input.time <= log_.time()) ThrowInput("the frame's time does not grow");
   const FrameInput prepared = Prepare(input, given_, camera_, settings_);
-  const int number = first_number_ + static_cast<int>(records_.size());
+  const int number = first_number_ + log_.size();
   movers_.Begin(prepared, number);
   const Stopwatch extracting;
   const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
                                       number, movers_.Expected());
   times_.extract.push_back(extracting.Milliseconds());
-  records_.push_back({});
-  records_.back().time = input.time;
+  log_.Begin(input.time);
   if (dense_) frame->picture = PictureOf(prepared);
   last_ = {};
   last_.frame = frame;
@@ -110,16 +104,16 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
   movers_.End(*last_.frame, result);
+  log_.End();
+  if (log_.size() % kReanchorFrames == 0) Reanchor();
   times_.frame.push_back(whole.Milliseconds());
   return result;
 }
 
 // `map`: the one the pose is in.
 void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  FrameRecord& record = records_.back();
-  record.tracked = true;
-  record.anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
-  record.T_world_camera_live = placed.T_camera_world.Inverse();
+  log_.Place(AnchorTo(map.state(), reference, placed.T_camera_world),
+             placed.T_camera_world.Inverse());
   movers_.Place(WorldOf(reference, map));
   tracker_.Remember(placed, reference, map);
 }
@@ -181,10 +175,18 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
   return Start(frame);
 }
 
+// Between two frames: from then on none of what the tracker's thread remembers needs a keyframe
+// that was culled before.
+void Slam::Impl::Reanchor() {
+  const MapSnapshot map = workers_.map().Snapshot();
+  log_.Reanchor(map);
+  tracker_.Reanchor(map);
+}
+
 void Slam::Impl::Lose() {
   tracker_.Forget();
   state_ = TrackState::kLost;
-  lost_since_ = records_.back().time;
+  lost_since_ = log_.time();
   lost_sighted_ = 0;
 }
 
@@ -213,7 +215,7 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   state_ = TrackState::kTracking;
   result.state = state_;
   result.keyframe = true;
-  result.T_world_camera = records_.back().T_world_camera_live;
+  result.T_world_camera = log_.T_world_camera_live();
   return result;
 }
 
@@ -301,12 +303,12 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
     Place(estimate.placed, estimate.reference, map);
   }
   result.matches = estimate.placed.inliers;
-  result.T_world_camera = records_.back().T_world_camera_live;
+  result.T_world_camera = log_.T_world_camera_live();
   return result;
 }
 
 void Slam::Impl::Load(const SavedMap& saved) {
-  if (!records_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
+  if (!log_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
   CheckSameCamera(saved.camera, camera_);
   if (saved.sensor != NameOf(settings_.sensor)) {
     ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
@@ -347,7 +349,8 @@ std::vector<FeatureUse> Slam::Features() const {
 cv::Mat Slam::MoverMask() const { return impl_->movers_.Mask(); }
 
 SlamCounts Slam::Counts() const {
-  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges()};
+  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(),
+          impl_->log_.let_go()};
 }
 
 SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
@@ -367,23 +370,8 @@ StageTimes Slam::Times() const {
   return times;
 }
 
-std::vector<FramePose> Slam::Trajectory() const {
-  const MapSnapshot map = Snapshot();
-  std::vector<FramePose> trajectory;
-  for (size_t i = 0; i < impl_->records_.size(); ++i) {
-    const FrameRecord& record = impl_->records_[i];
-    FramePose pose;
-    pose.index = static_cast<int>(i);
-    pose.time = record.time;
-    if (record.tracked) pose.map = map.MapOf(record.anchor.keyframe);
-    pose.tracked = pose.map.valid();  // not when its map was given up
-    if (pose.tracked) {
-      pose.T_world_camera = PoseOf(map.state(), record.anchor).Inverse();
-      pose.T_world_camera_live = record.T_world_camera_live;
-    }
-    trajectory.push_back(pose);
-  }
-  return trajectory;
+std::vector<FramePose> Slam::Trajectory(int since) const {
+  return impl_->log_.Trajectory(impl_->workers_.map(), since);
 }
 
 }  // namespace alidade

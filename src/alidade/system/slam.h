@@ -58,8 +58,15 @@ struct StageTimes {
   std::vector<double> dynamics;  // flow, geometry and belief, not the detector
 };
 
+// Frames that Trajectory() has no longer (settings.trajectory.keep_seconds).
+struct LetGoFrames {
+  int frames = 0;
+  int tracked = 0;  // of those, as it was when they were done
+};
+
 struct SlamCounts {
   int relocalisations = 0, loops = 0, merges = 0;
+  LetGoFrames let_go;
 };
 
 class Slam {
@@ -86,8 +93,9 @@ class Slam {
   std::vector<FeatureUse> Features() const;
   cv::Mat MoverMask() const;
 
-  MapSnapshot Snapshot() const;               // cheap, consistent, safe to keep
-  std::vector<FramePose> Trajectory() const;  // every frame so far
+  MapSnapshot Snapshot() const;  // cheap, consistent, safe to keep
+  // Every frame so far that was not let go, from the `since`th call of Track() on.
+  std::vector<FramePose> Trajectory(int since = 0) const;
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   const Camera& camera() const;  // as used: scaled by the profile

@@ -318,6 +318,15 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   last_anchor_ = AnchorTo(map.state(), reference, placed.T_camera_world);
 }
 
+void Tracker::Reanchor(const MapSnapshot& map) {
+  if (!last_anchor_.keyframe.valid() || map.Find(last_anchor_.keyframe)) return;
+  const KeyFrameId heir = Reanchored(map.state(), last_anchor_).keyframe;
+  // In the scale of the day; AnchorTo() notes the heir's, which grows alike from here on.
+  velocity_.t *= map.ScaleOf(last_anchor_.keyframe) / last_anchor_.scale;
+  last_anchor_ =
+      heir.valid() ? AnchorTo(map.state(), heir, PoseOf(map.state(), last_anchor_)) : Anchor{};
+}
+
 void Tracker::Forget() {
   passing_.Clear();
   last_ = {};

@@ -53,6 +53,8 @@ class Tracker {
   // `map`: the one its pose is in.
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void Forget();  // the frame was lost: no velocity
+  // From now on the last frame hangs on no keyframe that is culled in `map`.
+  void Reanchor(const MapSnapshot& map);
 
   KeyFrameId reference() const {
     return last_anchor_.keyframe;
