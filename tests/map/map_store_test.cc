@@ -81,20 +81,15 @@ TEST_F(MapStoreTest, SnapshotsNeverChange) {
   EXPECT_EQ(store_.Snapshot().Find(b_), nullptr);
 }
 
-TEST_F(MapStoreTest, CopiesOnlyThePagesACommitTouches) {
+TEST_F(MapStoreTest, CopiesOnlyWhatACommitTouches) {
   store_.Commit([&](MapCommit& commit) {
     for (int i = 0; i < 300; ++i) commit.Add(SeenBy({{commit.Add(BareKeyFrame(1, a_)), 0}}));
   });
   const MapSnapshot before = store_.Snapshot();
   const MapSnapshot after =
       store_.Commit([&](MapCommit& commit) { commit.Edit(both_)->p_world.x() = 1; });
-  int copied = 0;
-  const auto &old_pages = before.state().landmarks.pages,
-             &new_pages = after.state().landmarks.pages;
-  ASSERT_EQ(old_pages.size(), new_pages.size());
-  for (size_t i = 0; i < old_pages.size(); ++i) copied += old_pages[i] != new_pages[i];
-  EXPECT_EQ(copied, 1);
-  EXPECT_EQ(before.state().keyframes.pages, after.state().keyframes.pages);
+  EXPECT_EQ(after.landmarks().tree().CountNodesNotIn(before.landmarks().tree()), 2);
+  EXPECT_EQ(after.keyframes().tree().CountNodesNotIn(before.keyframes().tree()), 0);
 }
 
 TEST_F(MapStoreTest, ACommitSeesItsOwnChanges) {
@@ -145,6 +140,54 @@ TEST_F(MapStoreTest, ForwardsTheIdsOfFusedLandmarks) {
   store_.Commit([&](MapCommit& commit) { commit.Remove(third); });
   EXPECT_FALSE(store_.Snapshot().Current(in_b_).valid());
   EXPECT_FALSE(store_.Snapshot().Current(LandmarkId{}).valid());
+}
+
+// The tracker may come with ids of the snapshot it had last; older ones nobody can hold.
+TEST_F(MapStoreTest, ForwardsGoWhenNobodyHoldsTheOldIds) {
+  LandmarkId third, fourth;
+  store_.Commit([&](MapCommit& commit) {
+    third = commit.Add(SeenBy({{a_, 1}}));
+    fourth = commit.Add(SeenBy({{a_, 2}}));
+  });
+  store_.Commit([&](MapCommit& commit) { commit.Replace(in_b_, both_); });
+  const MapSnapshot held = store_.Snapshot();
+  store_.Commit([&](MapCommit& commit) { commit.Replace(third, both_); });
+  store_.ReleaseIds(held.version());
+  const MapSnapshot after =
+      store_.Commit([&](MapCommit& commit) { commit.Replace(both_, fourth); });
+  EXPECT_EQ(held.Current(in_b_), both_);  // a snapshot never changes
+  EXPECT_EQ(after.Current(both_), fourth);
+  EXPECT_EQ(after.Current(third), fourth);
+  EXPECT_FALSE(after.Current(in_b_).valid());
+  EXPECT_EQ(after.state().forwards.size(), 2u);
+}
+
+// As many ids as in hours: what is left is as large as the map that lives, and so is a copy of it.
+TEST_F(MapStoreTest, TheMapIsAsLargeAsWhatLivesInIt) {
+  KeyFrameId last = b_;
+  MapSnapshot map;
+  for (int i = 0; i < 2000; ++i) {
+    map = store_.Commit([&](MapCommit& commit) {
+      const KeyFrameId now = commit.Add(BareKeyFrame(40, a_));
+      std::vector<LandmarkId> made;
+      for (int k = 0; k < 40; ++k) made.push_back(commit.Add(SeenBy({{now, k}})));
+      for (int k = 0; k < 20; ++k) commit.Replace(made[2 * k], made[2 * k + 1]);
+      if (last != b_) {
+        const std::vector<LandmarkId> old = commit.Find(last)->landmarks;
+        commit.Remove(last);
+        for (LandmarkId id : old) commit.Remove(id);
+      }
+      last = now;
+    });
+    store_.ReleaseIds(map.version());
+  }
+  EXPECT_EQ(map.next_landmark(), 2u + 2000 * 40);
+  EXPECT_EQ(map.landmark_count(), 22);
+  EXPECT_EQ(map.keyframe_count(), 3);
+  EXPECT_LE(map.landmarks().tree().CountNodes(), 6);
+  EXPECT_LE(map.keyframes().tree().CountNodes(), 4);
+  EXPECT_LE(map.state().forwards.size(), 20u);
+  ExpectConsistent(map);
 }
 
 TEST_F(MapStoreTest, ReplacingWhatIsGoneOrItselfDoesNothing) {

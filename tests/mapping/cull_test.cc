@@ -97,7 +97,6 @@ class WeakLandmarksTest : public testing::Test {
         one_ = id;
     }
     ASSERT_TRUE(one_.valid());
-    tallies_.resize(store_.Snapshot().next_landmark());
   }
   std::vector<LandmarkId> Weak(KeyFrameId newest, bool has_depth = false) {
     still_young_.clear();
@@ -115,15 +114,15 @@ class WeakLandmarksTest : public testing::Test {
   MapStore store_;
   SyntheticMap made_;
   LandmarkId one_;
-  std::vector<SightingTally> tallies_;
+  IdMap<LandmarkId, SightingTally> tallies_;
   std::vector<LandmarkId> still_young_;
 };
 
 TEST_F(WeakLandmarksTest, SeldomFoundIsWeak) {
-  tallies_[one_.value] = {9, 2};
+  tallies_[one_] = {9, 2};
   EXPECT_EQ(Weak(made_.keyframes[0]), std::vector<LandmarkId>{one_});
   EXPECT_TRUE(still_young_.empty());
-  tallies_[one_.value] = {8, 2};  // a quarter is enough
+  tallies_[one_] = {8, 2};  // a quarter is enough
   EXPECT_TRUE(Weak(made_.keyframes[0]).empty());
 }
 

@@ -217,7 +217,7 @@ TEST_F(SemiDenseMapperTest, ACulledKeyframeDropsItsDepth) {
   Look(WayBeforeTheWall(7, 0.08));
   MapAll();
   store_.Commit([&](MapCommit& commit) { commit.Remove(ids_[3]); });
-  EXPECT_EQ(store_.Snapshot().state().keyframes.At(ids_[3].value)->depth, nullptr);
+  EXPECT_EQ(store_.Snapshot().Find(ids_[3]), nullptr);
   MapAll();  // goes on without it
   EXPECT_GT(ScoreOf(2).pixels, EdgesOf(2) / 2);
 }

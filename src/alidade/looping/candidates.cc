@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "alidade/base/id_map.h"
+
 namespace alidade {
 namespace {
 
@@ -11,12 +13,12 @@ bool AreCovisible(const KeyFrame& keyframe, KeyFrameId other) {
 }
 
 // What mapping ties together anyway.
-std::vector<uint8_t> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe) {
-  std::vector<uint8_t> near(map.next_keyframe(), 0);
-  near[keyframe.id.value] = 1;
+IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe) {
+  IdSet<KeyFrameId> near;
+  near.Enter(keyframe.id);
   for (const Neighbour& n : keyframe.covisible) {
-    near[n.id.value] = 1;
-    for (const Neighbour& second : map.Find(n.id)->covisible) near[second.id.value] = 1;
+    near.Enter(n.id);
+    for (const Neighbour& second : map.Find(n.id)->covisible) near.Enter(second.id);
   }
   return near;
 }
@@ -26,16 +28,14 @@ std::vector<uint8_t> Surroundings(const MapSnapshot& map, const KeyFrame& keyfra
 std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIndex& places,
                                            KeyFrameId id, const LoopSettings& settings) {
   const KeyFrame& keyframe = *map.Find(id);
-  const std::vector<uint8_t> near = Surroundings(map, keyframe);
+  const IdSet<KeyFrameId> near = Surroundings(map, keyframe);
   std::vector<KeyFrameId> neighbours;
   for (const Neighbour& n : keyframe.covisible) neighbours.push_back(n.id);
   double likest = 0;
   for (double score : places.Scores(*keyframe.frame, neighbours)) likest = std::max(likest, score);
   std::vector<KeyFrameId> chosen;
   int in_this_map = 0, in_others = 0;
-  const auto may_be = [&](KeyFrameId other) {
-    return other.value < near.size() && !near[other.value] && map.Find(other);
-  };
+  const auto may_be = [&](KeyFrameId other) { return !near.Contains(other) && map.Find(other); };
   for (const PlaceMatch& match :
        places.Query(*keyframe.frame, may_be, static_cast<size_t>(settings.group))) {
     if (match.score < settings.score_share * likest) break;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "alidade/base/id_map.h"
 #include "alidade/looping/surroundings.h"
 
 namespace alidade {
@@ -38,25 +39,20 @@ class EssentialGraph {
   EssentialGraph(const MapSnapshot& map, const LoopCorrection& loop,
                  const std::vector<Placed>& window, const Camera& camera,
                  const LoopSettings& settings)
-      : map_(map),
-        settings_(settings),
-        depth_(std::max(loop.match.depth, 0.0)),
-        node_(map.next_keyframe(), -1) {
+      : map_(map), settings_(settings), depth_(std::max(loop.match.depth, 0.0)) {
     graph_.with_scale = camera.StereoBaseline() <= 0;
     const MapId within = map.Find(loop.match.keyframe)->map;
     for (KeyFrameId id : map.KeyFramesOf(within)) {
       const KeyFrame& keyframe = *map.Find(id);
-      node_[id.value] = static_cast<int>(ids_.size());
+      node_[id] = static_cast<int>(ids_.size());
       ids_.push_back(id);
       before_.push_back(NodeOf(keyframe.T_camera_world));
       graph_.fixed.push_back(!keyframe.parent.valid());  // holds the world's frame
     }
     graph_.T_camera_world = before_;
-    in_window_.assign(map.next_keyframe(), 0);
     for (const Placed& placed : window) {
-      graph_.T_camera_world[node_[placed.id.value]] =
-          NodeOf(placed.T_camera_world, loop.match.growth);
-      in_window_[placed.id.value] = 1;
+      graph_.T_camera_world[node_[placed.id]] = NodeOf(placed.T_camera_world, loop.match.growth);
+      in_window_.Enter(placed.id);
     }
     for (KeyFrameId id : ids_) TieAsBefore(*map.Find(id));
     for (const Placed& placed : window) TieToThePlace(placed.id, loop.fused);
@@ -77,9 +73,9 @@ class EssentialGraph {
 
  private:
   void Tie(KeyFrameId a, KeyFrameId b, const std::vector<Sim3>& poses) {
-    const int i = node_[a.value], j = node_[b.value];
-    if (i < 0 || j < 0 || i == j) return;
-    graph_.edges.push_back({i, j, poses[i] * poses[j].Inverse(), 1.0});
+    const int *i = node_.Find(a), *j = node_.Find(b);
+    if (!i || !j || i == j) return;
+    graph_.edges.push_back({*i, *j, poses[*i] * poses[*j].Inverse(), 1.0});
   }
 
   // What keyframes knew of each other goes on to hold. Each pair once, by its younger one.
@@ -98,14 +94,17 @@ class EssentialGraph {
 
   // To the keyframes that see what was found in it, from where it is now.
   void TieToThePlace(KeyFrameId id, const std::vector<FusedSighting>& fused) {
-    std::vector<int> votes(map_.next_keyframe(), 0);
+    IdMap<KeyFrameId, int> votes;
     for (const FusedSighting& s : fused) {
       if (s.keyframe != id) continue;
-      for (const Observation& o : map_.Find(s.landmark)->observations) ++votes[o.keyframe.value];
+      for (const Observation& o : map_.Find(s.landmark)->observations) ++votes[o.keyframe];
     }
-    for (uint32_t i = 0; i < votes.size(); ++i) {
-      if (votes[i] >= kMinVotes && !in_window_[i]) Tie(id, {i}, graph_.T_camera_world);
+    std::vector<KeyFrameId> tied;
+    for (const auto& [other, count] : votes.entries()) {
+      if (count >= kMinVotes && !in_window_.Contains(other)) tied.push_back(other);
     }
+    std::sort(tied.begin(), tied.end());
+    for (KeyFrameId other : tied) Tie(id, other, graph_.T_camera_world);
   }
 
   void TieByLoop(KeyFrameId keyframe, KeyFrameId place) {
@@ -115,10 +114,10 @@ class EssentialGraph {
   const MapSnapshot& map_;
   const LoopSettings& settings_;
   double depth_;  // of what the cameras look at: errors of a turn and of a shift weigh alike there
-  std::vector<int> node_;  // by keyframe id; -1: of another map
+  IdMap<KeyFrameId, int> node_;  // of this map
   std::vector<KeyFrameId> ids_;
   std::vector<Sim3> before_;
-  std::vector<uint8_t> in_window_;  // by keyframe id
+  IdSet<KeyFrameId> in_window_;
   PoseGraph graph_;
 };
 

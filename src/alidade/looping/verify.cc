@@ -222,14 +222,15 @@ class Verifier {
     if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
       return false;
     double way = 0;
-    const KeyFrame* before = nullptr;
+    const KeyFrame* after = nullptr;
     const KeyFrameId first = std::min(a_.id, b_.id), last = std::max(a_.id, b_.id);
-    for (uint32_t i = first.value; i <= last.value; ++i) {
-      const KeyFrame* here = map_.Find(KeyFrameId{i});
-      if (!here || here->map != a_.map) continue;
-      if (before) way += (here->Centre() - before->Centre()).norm();
-      before = here;
-    }
+    map_.keyframes().ForEachFromLast([&](const KeyFrame& here) {
+      if (here.id > last || here.map != a_.map) return true;
+      if (here.id < first) return false;
+      if (after) way += (after->Centre() - here.Centre()).norm();
+      after = &here;
+      return true;
+    });
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
     return shift < (broken ? kBrokenDrift : settings_.max_drift) * way +
                        settings_.max_drift_floor * MedianDepth(map_, a_).value_or(0);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "alidade/base/id_map.h"
+
 namespace alidade {
 namespace {
 
@@ -16,11 +18,11 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
                            const AdjustSettings& settings, const std::atomic<bool>* stop) {
   BundleProblem problem;
   problem.camera = camera;
-  std::vector<int> camera_index(map.next_keyframe(), -1);
+  IdMap<KeyFrameId, int> camera_index;
   std::vector<KeyFrameId> cameras;
   for (const auto* set : {&free, &fixed}) {
     for (KeyFrameId id : *set) {
-      camera_index[id.value] = static_cast<int>(problem.T_camera_world.size());
+      camera_index[id] = static_cast<int>(problem.T_camera_world.size());
       problem.T_camera_world.push_back(map.Find(id)->T_camera_world);
       problem.fixed.push_back(set == &fixed);
       cameras.push_back(id);
@@ -41,12 +43,12 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     if (!landmark) continue;
     const int point = static_cast<int>(points.size());
     for (const Observation& o : landmark->observations) {
-      const int index = camera_index[o.keyframe.value];
-      if (index < 0) continue;
+      const int* index = camera_index.Find(o.keyframe);
+      if (!index) continue;
       const Measurement m =
           Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
       problem.observations.push_back(
-          {index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right, landmark->static_probability});
+          {*index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right, landmark->static_probability});
     }
     points.push_back(id);
     problem.points.push_back(landmark->p_world);

@@ -1,7 +1,8 @@
 #include "alidade/map/correction.h"
 
-#include <algorithm>
-#include <optional>
+#include <utility>
+
+#include "alidade/base/id_map.h"
 
 namespace alidade {
 namespace {
@@ -15,31 +16,31 @@ struct Move {
 }  // namespace
 
 void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>& corrections) {
-  std::vector<std::optional<Move>> moves(commit.next_keyframe());
+  IdMap<KeyFrameId, Move> moves;
   auto next = corrections.begin();
-  for (uint32_t i = 0; i < commit.next_keyframe(); ++i) {  // parents come before their children
-    while (next != corrections.end() && next->id.value < i) ++next;
-    const KeyFrame* keyframe = commit.Find(KeyFrameId{i});
-    if (!keyframe) continue;
-    if (next != corrections.end() && next->id.value == i) {
-      moves[i] = Move{keyframe->T_camera_world, next->T_camera_world, next->growth};
-    } else if (keyframe->parent.valid() && moves[keyframe->parent.value]) {
-      const Move& parent = *moves[keyframe->parent.value];
-      Se3 T_here_parent = keyframe->T_camera_world * parent.T_old.Inverse();
-      T_here_parent.t *= parent.growth;
-      moves[i] = Move{keyframe->T_camera_world, T_here_parent * parent.T_new, parent.growth};
+  commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {  // parents before their children
+    while (next != corrections.end() && next->id < keyframe.id) ++next;
+    if (next != corrections.end() && next->id == keyframe.id) {
+      moves[keyframe.id] = {keyframe.T_camera_world, next->T_camera_world, next->growth};
+    } else if (const Move* parent = moves.Find(keyframe.parent)) {
+      Se3 T_here_parent = keyframe.T_camera_world * parent->T_old.Inverse();
+      T_here_parent.t *= parent->growth;
+      const Move move{keyframe.T_camera_world, T_here_parent * parent->T_new, parent->growth};
+      moves[keyframe.id] = move;
     }
-    if (!moves[i]) continue;
-    KeyFrame* edited = commit.Edit(KeyFrameId{i});
-    edited->T_camera_world = moves[i]->T_new.Normalised();
-    edited->scale *= moves[i]->growth;
+  });
+  for (const auto& [id, move] : moves.entries()) {
+    KeyFrame* edited = commit.Edit(id);
+    edited->T_camera_world = move.T_new.Normalised();
+    edited->scale *= move.growth;
   }
-  for (uint32_t i = 0; i < commit.next_landmark(); ++i) {
-    const Landmark* landmark = commit.Find(LandmarkId{i});
-    if (!landmark || !moves[landmark->reference.value]) continue;
-    const Move& move = *moves[landmark->reference.value];
+  std::vector<std::pair<LandmarkId, Move>> moved;
+  commit.state().landmarks.ForEach([&](const Landmark& landmark) {
+    if (const Move* move = moves.Find(landmark.reference)) moved.push_back({landmark.id, *move});
+  });
+  for (const auto& [id, move] : moved) {
     const Se3 T_world_camera = move.T_new.Inverse();
-    Landmark* edited = commit.Edit(LandmarkId{i});
+    Landmark* edited = commit.Edit(id);
     edited->p_world = T_world_camera * (move.growth * (move.T_old * edited->p_world));
     edited->normal = (T_world_camera.R * move.T_old.R).cast<float>() * edited->normal;
     edited->min_distance *= static_cast<float>(move.growth);
@@ -51,14 +52,13 @@ void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>&
 void CommitMerge(MapCommit& commit, MapId younger, MapId older, const Sim3& T_older_younger,
                  KeyFrameId anchor) {
   std::vector<KeyFrameCorrection> corrections;
-  for (uint32_t i = 0; i < commit.next_keyframe(); ++i) {
-    const KeyFrame* keyframe = commit.Find(KeyFrameId{i});
-    if (!keyframe || keyframe->map != younger) continue;
+  commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {
+    if (keyframe.map != younger) return;
     Se3 T;  // the camera stays where it is among its points
-    T.R = keyframe->T_camera_world.R * T_older_younger.R.transpose();
-    T.t = T_older_younger.s * keyframe->T_camera_world.t - T.R * T_older_younger.t;
-    corrections.push_back({{i}, T, T_older_younger.s});
-  }
+    T.R = keyframe.T_camera_world.R * T_older_younger.R.transpose();
+    T.t = T_older_younger.s * keyframe.T_camera_world.t - T.R * T_older_younger.t;
+    corrections.push_back({keyframe.id, T, T_older_younger.s});
+  });
   CommitCorrections(commit, corrections);
   for (const KeyFrameCorrection& moved : corrections) {
     KeyFrame* keyframe = commit.Edit(moved.id);

@@ -18,22 +18,19 @@ struct Neighbour {
 
 struct KeyFrame {
   KeyFrameId id;
-  std::shared_ptr<const Frame>
-      frame;  // null once culled: then only the pose is kept, for the trajectory
+  std::shared_ptr<const Frame> frame;  // never null in a map
   Se3 T_camera_world;
   MapId map;          // whose world the pose is in
   KeyFrameId parent;  // spanning tree; none for the first of a map. Always the older of the two
-  // What lengths around it were multiplied by since its birth (loops of a monocular map correct
-  // the scale); once culled: relative to the parent's.
+  // What lengths around it were multiplied by since its birth: loops of a monocular map correct the
+  // scale.
   double scale = 1;
-  Se3 T_camera_parent;            // once culled: its place relative to the parent, had that scale 1
-  std::vector<KeyFrameId> loops;  // keyframes a closed loop ties it to, sorted
+  std::vector<KeyFrameId> loops;          // keyframes a closed loop ties it to, sorted
   std::vector<LandmarkId> landmarks;      // one for each keypoint; none where nothing is known
   std::vector<Neighbour> covisible;       // most shared landmarks first, then by id
   std::shared_ptr<const DepthMap> depth;  // semi-dense; null: not (yet) known
   uint64_t version = 0;                   // commit that wrote it
 
-  bool culled() const { return frame == nullptr; }
   Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }  // in the world
 };
 

@@ -18,9 +18,8 @@ struct Landmark {
   LandmarkId id;
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  // metres (mono: map units)
   std::vector<Observation> observations;              // sorted by keyframe
-  KeyFrameId reference;    // keyframe it was made in; it moves with that one
-  LandmarkId replaced_by;  // set once fused into another: then the rest is empty
-  uint64_t version = 0;    // commit that wrote it
+  KeyFrameId reference;  // keyframe it was made in; it moves with that one
+  uint64_t version = 0;  // commit that wrote it
 
   // What tracking needs to look for it (ORB-SLAM §III-C); kept by RefreshLandmark().
   Descriptor descriptor;  // the observation nearest to all others

@@ -12,29 +12,42 @@
 #include "alidade/map/map_decode_parts.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_generated.h"
-#include "alidade/map/map_table_filler.h"
 
 namespace alidade {
 namespace {
 
-// Ids are places in tables: more than this many come from no recording.
-constexpr uint32_t kMaxKeyFrameIds = 1u << 22, kMaxLandmarkIds = 1u << 26;
-
+// Objects that come with their ids, until they are put into a table.
 template <typename Object>
-Object& AddTo(MapTableFiller<Object>& table, uint32_t id, const char* complaint) {
-  Object* object = table.Add(id);
-  Require(object, complaint);
-  return *object;
-}
+class Objects {
+ public:
+  // A new one; complains when there is one of that id.
+  Object& Add(uint32_t id, uint32_t next, const char* complaint) {
+    Require(id < next, "an id was never given");
+    const auto [place, is_new] = by_id_.try_emplace(id);
+    Require(is_new, complaint);
+    place->second = std::make_shared<Object>();
+    place->second->id = {id};
+    return *place->second;
+  }
+  Object* Find(uint32_t id) const {
+    const auto it = by_id_.find(id);
+    return it == by_id_.end() ? nullptr : it->second.get();
+  }
+  IdTable<Object> Table() const {
+    IdTable<Object> table;
+    for (const auto& [id, object] : by_id_) table.Set(id, object, /*version=*/0);
+    return table;
+  }
+  const auto& by_id() const { return by_id_; }
+
+ private:
+  std::map<uint32_t, std::shared_ptr<Object>> by_id_;
+};
 
 class Decoder {
  public:
   Decoder(const fb::Map& file, size_t file_size)
-      : file_(file),
-        budget_(file_size),
-        camera_(DecodeCamera(*file.camera())),
-        keyframes_(file.next_keyframe()),
-        landmarks_(file.next_landmark()) {
+      : file_(file), budget_(file_size), camera_(DecodeCamera(*file.camera())) {
     // Each keyframe gets a grid over the image and the margin around it, of some bytes for each
     // cell.
     constexpr size_t kSlack = 1 << 24, kCellsPerByte = 16, kMargins = 512;  // pixels
@@ -49,16 +62,13 @@ class Decoder {
     for (uint32_t i = 0; i < SizeOf(file_.keyframes()); ++i) {
       ReadKeyFrame(*file_.keyframes()->Get(i));
     }
-    for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) ReadCulled(*file_.culled()->Get(i));
     CheckTree();
-    CheckCulled();
     for (uint32_t i = 0; i < SizeOf(file_.keyframes()); ++i) {
       CheckTies(*keyframes_.Find(file_.keyframes()->Get(i)->id()));
     }
     for (uint32_t i = 0; i < SizeOf(file_.landmarks()); ++i) {
       ReadLandmark(*file_.landmarks()->Get(i));
     }
-    for (uint32_t i = 0; i < SizeOf(file_.forwards()); ++i) ReadForward(*file_.forwards()->Get(i));
 
     SavedMap saved;
     saved.version = file_.version();
@@ -75,8 +85,10 @@ class Decoder {
     Require(saved.places.grown_at <= file_.next_keyframe(),
             "its vocabulary was grown from keyframes that never were");
     auto state = std::make_shared<MapState>();
-    state->keyframes = keyframes_.Finish(static_cast<int>(SizeOf(file_.keyframes())));
-    state->landmarks = landmarks_.Finish(static_cast<int>(SizeOf(file_.landmarks())));
+    state->keyframes = keyframes_.Table();
+    state->landmarks = landmarks_.Table();
+    state->next_keyframe = file_.next_keyframe();
+    state->next_landmark = file_.next_landmark();
     state->next_map = NextMap();
     saved.map = MapSnapshot(std::move(state));
     return saved;
@@ -89,7 +101,8 @@ class Decoder {
   }
 
   void ReadKeyFrame(const fb::KeyFrame& from) {
-    KeyFrame& keyframe = AddTo(keyframes_, from.id(), "two keyframes have one id");
+    KeyFrame& keyframe =
+        keyframes_.Add(from.id(), file_.next_keyframe(), "two keyframes have one id");
     keyframe.frame = DecodeFrame(from, camera_, budget_);
     keyframe.T_camera_world = DecodePose(from.t_camera_world());
     keyframe.map = {from.map()};
@@ -110,21 +123,10 @@ class Decoder {
     }
   }
 
-  void ReadCulled(const fb::CulledKeyFrame& from) {
-    KeyFrame& keyframe = AddTo(keyframes_, from.id(), "two keyframes have one id");
-    keyframe.parent = {from.parent()};
-    keyframe.T_camera_parent = DecodePose(from.t_camera_parent());
-    keyframe.scale = DecodeScale(from.scale());
-    Require(keyframe.parent.valid(), "a culled keyframe has no parent");
-  }
-
-  // Parents come first, so that there are no rings; the living do not hang on the culled, and each
-  // map is one tree.
+  // Parents come first, so that there are no rings, and each map is one tree.
   void CheckTree() {
     std::set<MapId> rooted;
-    for (uint32_t id = 0; id < file_.next_keyframe(); ++id) {
-      KeyFrame* keyframe = keyframes_.Find(id);
-      if (!keyframe) continue;
+    for (const auto& [id, keyframe] : keyframes_.by_id()) {
       if (!keyframe->parent.valid()) {
         Require(rooted.insert(keyframe->map).second, "a map has two first keyframes");
         continue;
@@ -132,51 +134,29 @@ class Decoder {
       const KeyFrame* parent =
           keyframe->parent.value < id ? keyframes_.Find(keyframe->parent.value) : nullptr;
       Require(parent, "a keyframe's parent is not there");
-      if (keyframe->culled()) {
-        keyframe->map = parent->map;
-      } else {
-        Require(!parent->culled(), "a keyframe's parent is not there");
-        Require(parent->map == keyframe->map, "a keyframe's parent is in another map");
-      }
-    }
-  }
-
-  // Their places are products along the way to the next living ancestor: those must stay numbers.
-  void CheckCulled() {
-    std::map<uint32_t, std::pair<double, double>> reach;  // scale, and distance from that ancestor
-    for (uint32_t i = 0; i < SizeOf(file_.culled()); ++i) {
-      const uint32_t id = file_.culled()->Get(i)->id();
-      Require(i == 0 || file_.culled()->Get(i - 1)->id() < id, "culled keyframes are out of order");
-      const KeyFrame* keyframe = keyframes_.Find(id);
-      const KeyFrame* parent = keyframe ? keyframes_.Find(keyframe->parent.value) : nullptr;
-      Require(parent, "a culled keyframe's parent is not there");
-      const auto [parent_scale, parent_distance] =
-          parent->culled() ? reach[parent->id.value] : std::pair(parent->scale, 0.0);
-      const double scale = DecodeScale(parent_scale * keyframe->scale);
-      const double distance = parent_distance + parent_scale * keyframe->T_camera_parent.t.norm();
-      Require(distance <= kFarthest, "a culled keyframe is farther away than can be");
-      reach[id] = {scale, distance};
+      Require(parent->map == keyframe->map, "a keyframe's parent is in another map");
     }
   }
 
   void CheckTies(const KeyFrame& keyframe) {
     for (const Neighbour& neighbour : keyframe.covisible) {
       const KeyFrame* other = keyframes_.Find(neighbour.id.value);
-      Require(other && !other->culled() && other != &keyframe && neighbour.shared > 0,
+      Require(other && other != &keyframe && neighbour.shared > 0,
               "a keyframe's neighbour is not there");
     }
     for (KeyFrameId id : keyframe.loops) {
       const KeyFrame* other = keyframes_.Find(id.value);
-      Require(other && !other->culled() && other != &keyframe && other->map == keyframe.map &&
+      Require(other && other != &keyframe && other->map == keyframe.map &&
                   std::binary_search(other->loops.begin(), other->loops.end(), keyframe.id),
               "a loop leads to what is not there");
     }
   }
 
   void ReadLandmark(const fb::Landmark& from) {
-    Landmark& landmark = AddTo(landmarks_, from.id(), "two landmarks have one id");
+    Landmark& landmark =
+        landmarks_.Add(from.id(), file_.next_landmark(), "two landmarks have one id");
     Require(from.p_world() && from.descriptor() && from.normal(), "a landmark is incomplete");
-    landmark.p_world = DecodePoint(*from.p_world());
+    landmark.p_world = PointOf(*from.p_world());
     landmark.descriptor = DecodeDescriptor(*from.descriptor());
     landmark.normal = {from.normal()->x(), from.normal()->y(), from.normal()->z()};
     landmark.min_distance = from.min_distance();
@@ -184,12 +164,7 @@ class Decoder {
     landmark.static_probability = from.static_probability();
     landmark.born = {from.born()};
     landmark.reference = {from.reference()};
-    Require(landmark.normal.norm() <= 1.001f, "a landmark's normal is no direction");
-    Require(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
-                landmark.max_distance <= kFarthest,
-            "a landmark can be seen from nowhere");
-    Require(landmark.static_probability >= 0 && landmark.static_probability <= 1,
-            "a landmark's probability of standing still is none");
+    if (const char* complaint = ComplaintOf(landmark)) Require(false, complaint);
     Require(landmark.born.value < file_.next_keyframe(),
             "a landmark was born in a keyframe that never was");
     bool reference_sees_it = false;
@@ -209,17 +184,11 @@ class Decoder {
     Require(reference_sees_it, "a landmark's reference keyframe does not see it");
   }
 
-  void ReadForward(const fb::Forward& from) {
-    const Landmark* by = landmarks_.Find(from.by());
-    Require(by && !by->replaced_by.valid(), "a landmark was fused into one that is not there");
-    AddTo(landmarks_, from.old(), "two landmarks have one id").replaced_by = by->id;
-  }
-
   const fb::Map& file_;
   ByteBudget budget_;
   Camera camera_;
-  MapTableFiller<KeyFrame> keyframes_;
-  MapTableFiller<Landmark> landmarks_;
+  Objects<KeyFrame> keyframes_;
+  Objects<Landmark> landmarks_;
 };
 
 }  // namespace
@@ -252,9 +221,7 @@ SavedMap DecodeMap(std::string_view bytes) {
   if (MapChecksum(data, bytes.size(), place) != file.checksum()->fnv1a()) {
     ThrowInput("the map is damaged: its checksum does not match");
   }
-  Require(file.next_keyframe() <= kMaxKeyFrameIds && file.next_landmark() <= kMaxLandmarkIds &&
-              file.next_map() <= file.next_keyframe(),
-          "it has too many ids");
+  Require(file.next_map() <= file.next_keyframe(), "it has more maps than keyframes");
   return Decoder(file, bytes.size()).Run();
 }
 

@@ -31,18 +31,36 @@ Keypoint DecodeKeypoint(const fb::Keypoint& from) {
   return keypoint;
 }
 
+constexpr const char* kFarPoint = "a point is not a number, or farther away than can be";
+
+bool IsNear(const Eigen::Vector3d& p) {  // NaN is not
+  return p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest;
+}
+
+Eigen::Vector3d DecodePoint(const fb::Vec3& from) {
+  const Eigen::Vector3d p = PointOf(from);
+  Require(IsNear(p), kFarPoint);
+  return p;
+}
+
 }  // namespace
 
 void Require(bool holds, const char* what) {
   if (!holds) ThrowInput(std::string("the map contradicts itself: ") + what);
 }
 
-Eigen::Vector3d DecodePoint(const fb::Vec3& from) {
-  Eigen::Vector3d p(from.x(), from.y(), from.z());
-  // Written so that NaN falls through.
-  Require(p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest,
-          "a point is not a number, or farther away than can be");
-  return p;
+Eigen::Vector3d PointOf(const fb::Vec3& from) { return {from.x(), from.y(), from.z()}; }
+
+const char* ComplaintOf(const Landmark& landmark) {
+  // Written so that NaN is complained of.
+  if (!IsNear(landmark.p_world)) return kFarPoint;
+  if (!(landmark.normal.norm() <= 1.001f)) return "a landmark's normal is no direction";
+  if (!(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
+        landmark.max_distance <= kFarthest))
+    return "a landmark can be seen from nowhere";
+  if (!(landmark.static_probability >= 0 && landmark.static_probability <= 1))
+    return "a landmark's probability of standing still is none";
+  return nullptr;
 }
 
 Se3 DecodePose(const fb::Pose* from) {

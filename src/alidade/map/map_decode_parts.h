@@ -1,4 +1,5 @@
-// Parts of a saved map, checked one by one. For map_decode.cc only.
+// Parts of a saved map, checked one by one. For map_decode.cc, and for map_encode.cc to write only
+// what can be read.
 #pragma once
 
 #include <memory>
@@ -6,6 +7,7 @@
 
 #include "alidade/features/frame.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/map/landmark.h"
 #include "alidade/place/place_index.h"
 
 namespace alidade {
@@ -45,9 +47,11 @@ size_t SizeOf(const Vector* vector) {
   return vector ? vector->size() : 0;
 }
 
-Eigen::Vector3d DecodePoint(const fb::Vec3& from);
+Eigen::Vector3d PointOf(const fb::Vec3& from);  // whatever it says
 Se3 DecodePose(const fb::Pose* from);
 double DecodeScale(double from);
+// What is wrong with its numbers; null when nothing is.
+const char* ComplaintOf(const Landmark& landmark);
 Descriptor DecodeDescriptor(const fb::Descriptor& from);
 Camera DecodeCamera(const fb::Camera& from);
 std::shared_ptr<const Frame> DecodeFrame(const fb::KeyFrame& from, const Camera& camera,

@@ -1,4 +1,8 @@
+#include <stdexcept>
+
+#include "alidade/base/error.h"
 #include "alidade/map/map_checksum.h"
+#include "alidade/map/map_decode_parts.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_generated.h"
 
@@ -56,12 +60,6 @@ Offset<fb::KeyFrame> EncodeKeyFrame(FlatBufferBuilder& builder, const KeyFrame& 
                             descriptors, covisible, keyframe.map.value, keyframe.scale, loops);
 }
 
-Offset<fb::CulledKeyFrame> EncodeCulled(FlatBufferBuilder& builder, const KeyFrame& keyframe) {
-  const fb::Pose pose = Encode(keyframe.T_camera_parent);
-  return fb::CreateCulledKeyFrame(builder, keyframe.id.value, keyframe.parent.value, &pose,
-                                  keyframe.scale);
-}
-
 Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& landmark) {
   const auto observations = EncodeList<fb::Observation>(builder, landmark.observations);
   const fb::Vec3 p_world = Encode(landmark.p_world);
@@ -79,30 +77,39 @@ Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera
                           camera.cy, distortion, camera.fps, camera.depth_factor, camera.baseline);
 }
 
+// A FlatBuffer holds 2 GB at most, some 25,000 keyframes of 1000 keypoints; its builder does not
+// say when it is full.
+void CheckSize(const MapState& state) {
+  constexpr size_t kKeyFrame = 512, kLandmark = 256;  // bytes besides lists; generous
+  size_t bytes = 0;
+  state.keyframes.ForEach([&](const KeyFrame& keyframe) {
+    bytes += kKeyFrame + keyframe.loops.size() * sizeof(uint32_t) +
+             keyframe.frame->keypoints.size() * (sizeof(fb::Keypoint) + sizeof(fb::Descriptor)) +
+             keyframe.covisible.size() * sizeof(fb::Neighbour);
+  });
+  state.landmarks.ForEach([&](const Landmark& landmark) {
+    bytes += kLandmark + landmark.observations.size() * sizeof(fb::Observation);
+  });
+  if (bytes > FLATBUFFERS_MAX_BUFFER_SIZE) {
+    ThrowInput(
+        "the map is too large for one file (2 GB): " + std::to_string(state.keyframes.size()) +
+        " keyframes, " + std::to_string(state.landmarks.size()) + " landmarks");
+  }
+}
+
 }  // namespace
 
 std::string EncodeMap(const SavedMap& saved) {
   const MapState& state = saved.map.state();
+  CheckSize(state);
   FlatBufferBuilder builder(1 << 20);
   std::vector<Offset<fb::KeyFrame>> keyframes;
-  std::vector<Offset<fb::CulledKeyFrame>> culled;
-  for (uint32_t i = 0; i < state.keyframes.next; ++i) {
-    const KeyFrame* keyframe = state.keyframes.At(i);
-    if (keyframe && keyframe->culled()) culled.push_back(EncodeCulled(builder, *keyframe));
-    if (keyframe && !keyframe->culled()) keyframes.push_back(EncodeKeyFrame(builder, *keyframe));
-  }
+  state.keyframes.ForEach(
+      [&](const KeyFrame& keyframe) { keyframes.push_back(EncodeKeyFrame(builder, keyframe)); });
   std::vector<Offset<fb::Landmark>> landmarks;
-  std::vector<fb::Forward> forwards;
-  for (uint32_t i = 0; i < state.landmarks.next; ++i) {
-    const Landmark* landmark = state.landmarks.At(i);
-    if (!landmark) continue;
-    if (!landmark->replaced_by.valid()) {
-      landmarks.push_back(EncodeLandmark(builder, *landmark));
-    } else if (const LandmarkId by = saved.map.Current({i});
-               by.valid()) {  // straight to where a chain ends
-      forwards.push_back({i, by.value});
-    }
-  }
+  state.landmarks.ForEach([&](const Landmark& landmark) {
+    if (!ComplaintOf(landmark)) landmarks.push_back(EncodeLandmark(builder, landmark));
+  });
   std::vector<Offset<fb::Setting>> settings;
   for (const auto& [name, value] : saved.settings) {
     settings.push_back(fb::CreateSettingDirect(builder, name.c_str(), value.c_str()));
@@ -110,10 +117,10 @@ std::string EncodeMap(const SavedMap& saved) {
   const auto nodes = EncodeList<fb::PlaceNode>(builder, saved.places.nodes);
   const auto places = fb::CreatePlaces(builder, nodes, saved.places.grown_at);
   const fb::Checksum unknown(0);
-  const auto root = fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
-                                        EncodeCamera(builder, saved.camera), &settings,
-                                        state.keyframes.next, state.landmarks.next, &keyframes,
-                                        &culled, &landmarks, &forwards, state.next_map, places);
+  const auto root =
+      fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
+                          EncodeCamera(builder, saved.camera), &settings, state.next_keyframe,
+                          state.next_landmark, &keyframes, &landmarks, state.next_map, places);
   fb::FinishMapBuffer(builder, root);
 
   uint8_t* bytes = builder.GetBufferPointer();
@@ -121,7 +128,14 @@ std::string EncodeMap(const SavedMap& saved) {
   fb::Checksum* checksum = fb::GetMutableMap(bytes)->mutable_checksum();
   const auto place = static_cast<size_t>(reinterpret_cast<const uint8_t*>(checksum) - bytes);
   checksum->mutate_fnv1a(MapChecksum(bytes, size, place));
-  return {reinterpret_cast<const char*>(bytes), size};
+  std::string written(reinterpret_cast<const char*>(bytes), size);
+  builder.Clear();
+  try {
+    DecodeMap(written);
+  } catch (const Error& error) {
+    throw std::logic_error(std::string("the map would not load again: ") + error.what());
+  }
+  return written;
 }
 
 }  // namespace alidade

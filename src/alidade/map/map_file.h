@@ -23,6 +23,9 @@ struct SavedMap {
   uint32_t version = 0;     // of the format it was read from; it is always written in the newest
 };
 
+// Only what is alive: keyframes that were culled and landmarks that were fused are not in it. What
+// is written was read again before it is returned. Throws Error (input) when it is larger than a
+// file can be (2 GB), std::logic_error when it could not be read (a bug of ours).
 std::string EncodeMap(const SavedMap& saved);
 
 // Throws Error (input) that says what is wrong when these are not the bytes of a map, when they are

@@ -1,46 +1,48 @@
 // The map: read through snapshots that never change, written through commits, one at a time.
-// Objects sit behind shared pointers in pages of 64; a commit copies what it touches and publishes
-// a new table, so that readers never wait and never see half a change.
+// Objects sit behind shared pointers in trees (id_table.h); a commit copies what it touches and
+// publishes new trees, so that readers never wait and never see half a change.
 #pragma once
 
-#include <array>
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
+#include "alidade/map/id_table.h"
 #include "alidade/map/keyframe.h"
 #include "alidade/map/landmark.h"
 
 namespace alidade {
 
-template <typename Object>
-struct MapPage {
-  static constexpr uint32_t kSize = 64;
-  std::array<std::shared_ptr<const Object>, kSize> slots;
-  uint64_t version = 0;
+// What is left of a keyframe the map can do without: where it was, told by its parent, for those
+// who were placed against it.
+struct CulledKeyFrame {
+  KeyFrameId id;
+  KeyFrameId parent;     // living or culled itself
+  Se3 T_camera_parent;   // had the parent scale 1
+  double scale = 1;      // relative to the parent's, see KeyFrame::scale
+  uint64_t version = 0;  // commit that removed it
 };
 
-template <typename Object>
-struct MapTable {
-  std::vector<std::shared_ptr<const MapPage<Object>>> pages;
-  uint32_t next = 0;  // id the next object gets
-  int alive = 0;
-
-  const Object* At(uint32_t index) const {
-    if (index >= next) return nullptr;
-    return pages[index / MapPage<Object>::kSize]->slots[index % MapPage<Object>::kSize].get();
-  }
+// A landmark that was fused into another.
+struct Forward {
+  LandmarkId old, by;
+  uint64_t version = 0;  // commit that fused them
 };
 
+// All there is. Ids are given forever, the tables hold what lives: their memory, and what a commit
+// costs, does not depend on the past.
 struct MapState {
-  MapTable<KeyFrame> keyframes;
-  MapTable<Landmark> landmarks;
-  uint32_t next_map = 0;     // id the next map gets
+  IdTable<KeyFrame> keyframes;  // alive
+  IdTable<Landmark> landmarks;
+  IdTable<CulledKeyFrame> culled;
+  std::vector<Forward> forwards;  // by old id; until nobody holds that, see MapStore::ReleaseIds()
+  uint32_t next_keyframe = 0, next_landmark = 0, next_map = 0;  // ids the next ones get
   uint64_t corrections = 0;  // how often loops, merges and full adjustments moved large parts
   uint64_t version = 0;
 
-  // Of any keyframe that ever was; a culled one's follow its parent.
+  // Of any keyframe that is or was culled; a culled one's follow its parent.
   Se3 PoseOf(KeyFrameId id) const;      // identity when its map was dropped
   double ScaleOf(KeyFrameId id) const;  // see KeyFrame::scale
   MapId MapOf(KeyFrameId id) const;     // none when its map was dropped
@@ -52,16 +54,11 @@ class MapSnapshot {
   MapSnapshot() : state_(std::make_shared<const MapState>()) {}
   explicit MapSnapshot(std::shared_ptr<const MapState> state) : state_(std::move(state)) {}
 
-  const KeyFrame* Find(KeyFrameId id) const {  // null when there is none or it was culled
-    const KeyFrame* keyframe = state_->keyframes.At(id.value);
-    return keyframe && !keyframe->culled() ? keyframe : nullptr;
-  }
-  const Landmark* Find(
-      LandmarkId id) const {  // null when there is none, it was culled or fused away
-    const Landmark* landmark = state_->landmarks.At(id.value);
-    return landmark && !landmark->replaced_by.valid() ? landmark : nullptr;
-  }
-  // The landmark it was fused into, itself, or none when culled.
+  // Null when there is none, or it was culled or fused away.
+  const KeyFrame* Find(KeyFrameId id) const { return state_->keyframes.At(id.value); }
+  const Landmark* Find(LandmarkId id) const { return state_->landmarks.At(id.value); }
+  // The landmark it was fused into, itself, or none when culled. Ids older than what
+  // MapStore::ReleaseIds() was told are forwarded no more.
   LandmarkId Current(LandmarkId id) const;
   Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // as in MapState
   double ScaleOf(KeyFrameId id) const { return state_->ScaleOf(id); }
@@ -71,15 +68,15 @@ class MapSnapshot {
   std::vector<KeyFrameId> KeyFramesOf(MapId map) const;  // alive, in order of id
   std::vector<KeyFrameId> KeyFrames() const;             // alive, in order of id
   std::vector<LandmarkId> Landmarks() const;             // alive, in order of id
-  int keyframe_count() const { return state_->keyframes.alive; }
-  int landmark_count() const { return state_->landmarks.alive; }
-  uint32_t next_keyframe() const { return state_->keyframes.next; }
-  uint32_t next_landmark() const { return state_->landmarks.next; }
+  int keyframe_count() const { return state_->keyframes.size(); }
+  int landmark_count() const { return state_->landmarks.size(); }
+  const IdTable<KeyFrame>& keyframes() const { return state_->keyframes; }  // to walk through
+  const IdTable<Landmark>& landmarks() const { return state_->landmarks; }
+  uint32_t next_keyframe() const { return state_->next_keyframe; }
+  uint32_t next_landmark() const { return state_->next_landmark; }
   uint64_t version() const { return state_->version; }
   uint64_t corrections() const { return state_->corrections; }
-  const MapState& state() const {
-    return *state_;
-  }  // all there is, the culled and fused included: for saving
+  const MapState& state() const { return *state_; }
 
  private:
   friend class MapStore;
@@ -90,10 +87,10 @@ class MapSnapshot {
 class MapCommit {
  public:
   // As in MapSnapshot, but with the changes made so far.
-  const KeyFrame* Find(KeyFrameId id) const;
-  const Landmark* Find(LandmarkId id) const;
-  uint32_t next_keyframe() const { return state_.keyframes.next; }
-  uint32_t next_landmark() const { return state_.landmarks.next; }
+  const KeyFrame* Find(KeyFrameId id) const { return state_.keyframes.At(id.value); }
+  const Landmark* Find(LandmarkId id) const { return state_.landmarks.At(id.value); }
+  uint32_t next_keyframe() const { return state_.next_keyframe; }
+  uint32_t next_landmark() const { return state_.next_landmark; }
 
   KeyFrame* Edit(KeyFrameId id);  // null when it is not alive
   Landmark* Edit(LandmarkId id);
@@ -125,15 +122,9 @@ class MapCommit {
 
  private:
   friend class MapStore;
-  explicit MapCommit(const MapState& base) : state_(base) { ++state_.version; }
+  MapCommit(const MapState& base, uint64_t released);
   template <typename Object>
-  MapPage<Object>& EditPage(MapTable<Object>& table, uint32_t index);
-  template <typename Object>
-  Object* EditObject(MapTable<Object>& table, uint32_t index);
-  template <typename Object>
-  void SetSlot(MapTable<Object>& table, uint32_t index, std::shared_ptr<const Object> object);
-  template <typename Object>
-  uint32_t Append(MapTable<Object>& table, Object object);
+  Object* EditIn(IdTable<Object>& table, uint32_t id);
 
   MapState state_;
 };
@@ -152,7 +143,7 @@ class MapStore {
   template <typename Change>
   MapSnapshot Commit(Change&& change) {
     std::lock_guard<std::mutex> writer(writer_mutex_);
-    MapCommit commit(*Snapshot().state_);
+    MapCommit commit(*Snapshot().state_, released_);
     change(commit);
     return Publish(std::move(commit.state_));
   }
@@ -162,15 +153,18 @@ class MapStore {
   MapSnapshot CommitAside(Change&& change) {
     for (int attempt = 0; attempt < 3; ++attempt) {
       const MapSnapshot base = Snapshot();
-      MapCommit commit(*base.state_);
+      MapCommit commit(*base.state_, released_);
       change(commit);
       std::lock_guard<std::mutex> writer(writer_mutex_);
       if (Snapshot().version() == base.version()) return Publish(std::move(commit.state_));
     }
     return Commit(change);
   }
-  void Restore(const MapSnapshot&
-                   saved);  // makes `saved` the map; its ids go on, versions of this store too
+  // Makes `saved` the map; its ids go on, versions of this store too.
+  void Restore(const MapSnapshot& saved);
+  // Nobody holds landmark ids of snapshots before `version` any more: forwards made up to then go
+  // with the next commit. Never told, they stay for good.
+  void ReleaseIds(uint64_t version) { released_ = version; }
 
  private:
   MapSnapshot Publish(MapState&& state);
@@ -178,6 +172,7 @@ class MapStore {
   mutable std::mutex publish_mutex_;
   std::mutex writer_mutex_;
   std::shared_ptr<const MapState> current_;
+  std::atomic<uint64_t> released_{0};
 };
 
 }  // namespace alidade

@@ -6,7 +6,7 @@ namespace alidade {
 
 std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
                                           const std::vector<LandmarkId>& young,
-                                          const std::vector<SightingTally>& tallies,
+                                          const IdMap<LandmarkId, SightingTally>& tallies,
                                           KeyFrameId newest, bool has_depth,
                                           const MapperSettings& settings,
                                           std::vector<LandmarkId>& still_young) {
@@ -16,7 +16,8 @@ std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
   for (LandmarkId id : young) {
     const Landmark* landmark = map.Find(id);
     if (!landmark) continue;
-    const SightingTally tally = id.value < tallies.size() ? tallies[id.value] : SightingTally{};
+    const SightingTally* known = tallies.Find(id);
+    const SightingTally tally = known ? *known : SightingTally{};
     const int age = static_cast<int>(newest.value - landmark->born.value);
     if (tally.expected > 0 && tally.found < settings.min_found_share * tally.expected) {
       weak.push_back(id);

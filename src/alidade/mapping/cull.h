@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "alidade/base/id_map.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
 #include "alidade/mapping/settings.h"
@@ -17,10 +18,10 @@ struct SightingTally {
 };
 
 // Landmarks on trial that failed: seldom found, or seen by too few keyframes since (ORB-SLAM
-// §VI-B). `tallies` by landmark id; `still_young` gets those whose trial goes on.
+// §VI-B). `still_young` gets those whose trial goes on.
 std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
                                           const std::vector<LandmarkId>& young,
-                                          const std::vector<SightingTally>& tallies,
+                                          const IdMap<LandmarkId, SightingTally>& tallies,
                                           KeyFrameId newest, bool has_depth,
                                           const MapperSettings& settings,
                                           std::vector<LandmarkId>& still_young);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "alidade/base/id_map.h"
+
 namespace alidade {
 
 Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
@@ -15,21 +17,20 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
   std::sort(free.begin(), free.end());
 
   // Votes for the fixed ones: landmarks of the window each outsider sees.
-  std::vector<int> votes(map.next_keyframe(), 0);
-  std::vector<uint8_t> counted(map.next_landmark(), 0);
+  IdMap<KeyFrameId, int> votes;
+  IdSet<LandmarkId> counted;
   for (KeyFrameId keyframe : free) {
     for (LandmarkId landmark_id : map.Find(keyframe)->landmarks) {
-      if (!landmark_id.valid() || counted[landmark_id.value]) continue;
-      counted[landmark_id.value] = 1;
+      if (!landmark_id.valid() || !counted.Enter(landmark_id)) continue;
       if (const Landmark* landmark = map.Find(landmark_id)) {
-        for (const Observation& o : landmark->observations) ++votes[o.keyframe.value];
+        for (const Observation& o : landmark->observations) ++votes[o.keyframe];
       }
     }
   }
-  for (KeyFrameId keyframe : free) votes[keyframe.value] = 0;
   std::vector<Neighbour> outside;
-  for (uint32_t i = 0; i < votes.size(); ++i) {
-    if (votes[i] > 0) outside.push_back({{i}, votes[i]});
+  for (const auto& [keyframe, count] : votes.entries()) {
+    if (!std::binary_search(free.begin(), free.end(), keyframe))
+      outside.push_back({keyframe, count});
   }
   std::sort(outside.begin(), outside.end(), [](const Neighbour& a, const Neighbour& b) {
     return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;

@@ -9,6 +9,19 @@
 #include "alidade/mapping/triangulate.h"
 
 namespace alidade {
+namespace {
+
+// Keyframes of `within`, counted no further than `most`.
+size_t CountUpTo(size_t most, const MapSnapshot& map, MapId within) {
+  size_t count = 0;
+  map.keyframes().ForEachFromLast([&](const KeyFrame& keyframe) {
+    count += keyframe.map == within;
+    return count < most;
+  });
+  return count;
+}
+
+}  // namespace
 
 Mapper::Mapper(MapStore& map, const Camera& camera, MapperSettings settings)
     : map_(map), camera_(camera), settings_(settings), has_depth_(camera.StereoBaseline() > 0) {
@@ -98,9 +111,9 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
 void Mapper::Count(std::span<const std::pair<LandmarkId, bool>> sightings) {
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   for (const auto& [id, found] : sightings) {
-    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
-    ++tallies_[id.value].expected;
-    tallies_[id.value].found += found;
+    SightingTally& tally = tallies_[id];
+    ++tally.expected;
+    tally.found += found;
   }
 }
 
@@ -109,8 +122,7 @@ void Mapper::Restore(const MapSnapshot& map) {
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   for (LandmarkId id : map.Landmarks()) {
     const float p = std::clamp(map.Find(id)->static_probability, kLeast, 1 - kLeast);
-    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
-    tallies_[id.value].static_log_odds = LogOddsOf(p);
+    tallies_[id].static_log_odds = LogOddsOf(p);
   }
 }
 
@@ -118,11 +130,10 @@ void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
   constexpr float kBound = 4;  // what was believed for long can be unlearnt in a second
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   for (const auto& [id, log_odds] : evidence) {
-    if (id.value >= tallies_.size()) tallies_.resize(id.value + 1024);
-    float& sum = tallies_[id.value].static_log_odds;
-    sum = std::clamp(sum + log_odds, -kBound, kBound);
-    if (!tallies_[id.value].doubted) doubted_.push_back(id);
-    tallies_[id.value].doubted = true;
+    SightingTally& tally = tallies_[id];
+    tally.static_log_odds = std::clamp(tally.static_log_odds + log_odds, -kBound, kBound);
+    if (!tally.doubted) doubted_.push_back(id);
+    tally.doubted = true;
   }
 }
 
@@ -132,7 +143,7 @@ std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   std::sort(doubted_.begin(), doubted_.end());
   std::vector<std::pair<LandmarkId, float>> belief;
   for (LandmarkId id : doubted_) {
-    SightingTally& tally = tallies_[id.value];
+    SightingTally& tally = tallies_[id];
     tally.doubted = false;
     belief.push_back({id, ProbabilityOf(tally.static_log_odds)});
   }
@@ -140,11 +151,23 @@ std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   return belief;
 }
 
+// When most are of landmarks that are no more, so that each is looked at a few times on average.
+void Mapper::ForgetTalliesOfTheGone(const MapSnapshot& map) {
+  constexpr size_t kSpare = 1024;
+  std::lock_guard<std::mutex> lock(tallies_mutex_);
+  if (tallies_.size() < 2 * static_cast<size_t>(map.landmark_count()) + kSpare) return;
+  // What was counted since `map` was taken may be of younger landmarks; what waits is read soon.
+  tallies_.EraseIf([&](LandmarkId id, const SightingTally& tally) {
+    return !map.Find(id) && id.value < map.next_landmark() && !tally.doubted;
+  });
+}
+
 MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   MapperReport report;
   MapSnapshot map = map_.Snapshot();
   if (!map.Find(id)) return report;
 
+  ForgetTalliesOfTheGone(map);
   // Those the keyframe itself brought are on trial too.
   for (LandmarkId landmark : map.Find(id)->landmarks) {
     if (landmark.valid() && map.Find(landmark)->born == id) young_.push_back(landmark);
@@ -201,7 +224,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     commit.RefreshCovisibility(id);
   });
 
-  const size_t keyframes = map.KeyFramesOf(map.Find(id)->map).size();
+  const size_t keyframes = CountUpTo(3, map, map.Find(id)->map);
   if (keyframes < 2) return report;
   if (keyframes > 2 || has_depth_) {
     const Adjustment adjusted = AdjustWindow(map, id, camera_, settings_, stop);

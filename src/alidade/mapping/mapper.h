@@ -56,6 +56,7 @@ class Mapper {
 
  private:
   std::vector<std::pair<LandmarkId, float>> TakeBelief();
+  void ForgetTalliesOfTheGone(const MapSnapshot& map);
 
   MapStore& map_;
   Camera camera_;
@@ -63,8 +64,8 @@ class Mapper {
   bool has_depth_;
   std::vector<LandmarkId> young_;  // on trial
   std::mutex tallies_mutex_;
-  std::vector<SightingTally> tallies_;  // by landmark id
-  std::vector<LandmarkId> doubted_;     // since the last Process()
+  IdMap<LandmarkId, SightingTally> tallies_;
+  std::vector<LandmarkId> doubted_;  // since the last Process()
 };
 
 }  // namespace alidade

@@ -23,16 +23,16 @@ std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
   std::vector<std::pair<double, KeyFrameId>> scored;
   Eigen::Vector3d after = centre;
   double way = 0;
-  for (uint32_t i = map.next_keyframe(); i-- > 0 && way < kMaxWay * depth;) {
-    const KeyFrame* keyframe = map.Find(KeyFrameId{i});
-    if (!keyframe || keyframe->map != within) continue;
-    way += (keyframe->Centre() - after).norm();
-    after = keyframe->Centre();
-    const double turn = axis.dot(keyframe->T_camera_world.R.row(2).transpose());
-    const double move = (keyframe->Centre() - centre).norm() / depth;
+  map.keyframes().ForEachFromLast([&](const KeyFrame& keyframe) {
+    if (keyframe.map != within) return true;
+    way += (keyframe.Centre() - after).norm();
+    after = keyframe.Centre();
+    const double turn = axis.dot(keyframe.T_camera_world.R.row(2).transpose());
+    const double move = (keyframe.Centre() - centre).norm() / depth;
     if (turn > kMaxTurn && move < kMaxMove)
-      scored.push_back({(1 - turn) / (1 - kMaxTurn) + move / kMaxMove, {i}});
-  }
+      scored.push_back({(1 - turn) / (1 - kMaxTurn) + move / kMaxMove, keyframe.id});
+    return way < kMaxWay * depth;
+  });
   std::sort(scored.begin(), scored.end());
   std::vector<KeyFrameId> ids;
   for (const auto& entry : scored) ids.push_back(entry.second);
@@ -43,23 +43,20 @@ std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
 
 LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
                                   const Se3& T_camera_world, int max_keyframes) {
-  ++mark_;
-  landmark_mark_.resize(map.next_landmark(), 0);
-  keyframe_mark_.resize(map.next_keyframe(), 0);
-  std::vector<int> votes(map.next_keyframe(), 0);
+  landmarks_taken_.Clear();
+  keyframes_taken_.Clear();
+  votes_.Clear();
   std::vector<double> depths;
   for (LandmarkId id : matches) {
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
     if (!landmark) continue;
-    for (const Observation& seen : landmark->observations) ++votes[seen.keyframe.value];
+    for (const Observation& seen : landmark->observations) ++votes_[seen.keyframe];
     depths.push_back((T_camera_world * landmark->p_world).z());
   }
 
   LocalMap local;
   std::vector<Neighbour> sharing;
-  for (uint32_t i = 0; i < votes.size(); ++i) {
-    if (votes[i] > 0) sharing.push_back({{i}, votes[i]});
-  }
+  for (const auto& [id, count] : votes_.entries()) sharing.push_back({id, count});
   std::sort(sharing.begin(), sharing.end(), [](const Neighbour& a, const Neighbour& b) {
     return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
   });
@@ -68,8 +65,7 @@ LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const Landma
 
   const auto take = [&](KeyFrameId id) {
     if (static_cast<int>(local.keyframes.size()) >= max_keyframes) return false;
-    if (!map.Find(id) || keyframe_mark_[id.value] == mark_) return false;
-    keyframe_mark_[id.value] = mark_;
+    if (!map.Find(id) || !keyframes_taken_.Enter(id)) return false;
     local.keyframes.push_back(id);
     return true;
   };
@@ -89,8 +85,7 @@ LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const Landma
 
   for (KeyFrameId id : local.keyframes) {
     for (LandmarkId landmark_id : map.Find(id)->landmarks) {
-      if (!landmark_id.valid() || landmark_mark_[landmark_id.value] == mark_) continue;
-      landmark_mark_[landmark_id.value] = mark_;
+      if (!landmark_id.valid() || !landmarks_taken_.Enter(landmark_id)) continue;
       if (const Landmark* landmark = map.Find(landmark_id)) local.landmarks.push_back(landmark);
     }
   }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/id_map.h"
 #include "alidade/map/map_store.h"
 
 namespace alidade {
@@ -16,7 +17,7 @@ struct LocalMap {
   KeyFrameId reference;                    // the one that shares most
 };
 
-// Keeps its marks between frames so that gathering allocates little.
+// Keeps the memory of its marks between frames.
 class LocalMapGatherer {
  public:
   // `matches`: the frame's landmarks so far (invalid and stale ids are passed over).
@@ -24,9 +25,9 @@ class LocalMapGatherer {
                   const Se3& T_camera_world, int max_keyframes);
 
  private:
-  std::vector<uint32_t> landmark_mark_,
-      keyframe_mark_;  // by id; equal to mark_ = seen in this call
-  uint32_t mark_ = 0;
+  IdSet<LandmarkId> landmarks_taken_;
+  IdSet<KeyFrameId> keyframes_taken_;
+  IdMap<KeyFrameId, int> votes_;  // landmarks of the frame each sees
 };
 
 }  // namespace alidade

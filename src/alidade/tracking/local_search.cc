@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "alidade/base/id_map.h"
 #include "alidade/base/parallel.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/map/view.h"
@@ -39,17 +40,17 @@ void LookFor(Candidate& candidate, const PlacedFrame& placed, const Camera& came
 
 }  // namespace
 
-LocalMatches MatchLocalMap(const PlacedFrame& placed, const MapSnapshot& map, const LocalMap& local,
-                           const Camera& camera, const TrackerSettings& settings) {
+LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, const Camera& camera,
+                           const TrackerSettings& settings) {
   LocalMatches found{placed.matches, {}};
-  std::vector<uint8_t> known(map.next_landmark(), 0);
+  IdSet<LandmarkId> known;
   for (LandmarkId id : placed.matches) {
-    if (id.valid()) known[id.value] = 1;
+    if (id.valid()) known.Enter(id);
   }
   std::vector<Candidate> candidates;
   candidates.reserve(local.landmarks.size());
   for (const Landmark* landmark : local.landmarks) {
-    if (!known[landmark->id.value]) candidates.push_back({landmark, {}, false});
+    if (!known.Contains(landmark->id)) candidates.push_back({landmark, {}, false});
   }
   // Side by side; conflicts are settled afterwards, in order.
   const float radius =

@@ -18,7 +18,7 @@ struct LocalMatches {
 
 // Projects the landmarks the frame does not have yet and matches them near where they should be
 // seen. A keypoint goes to the landmark most like it. The same with any number of threads.
-LocalMatches MatchLocalMap(const PlacedFrame& placed, const MapSnapshot& map, const LocalMap& local,
-                           const Camera& camera, const TrackerSettings& settings);
+LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, const Camera& camera,
+                           const TrackerSettings& settings);
 
 }  // namespace alidade

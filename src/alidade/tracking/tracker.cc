@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alidade/base/id_map.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/pnp.h"
@@ -165,7 +166,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     if (guess.inliers < Scaled(settings_.min_after_prediction)) continue;
     const LocalMap local =
         gatherer_.Gather(map, guess.matches, guess.T_camera_world, kRelocaliseKeyFrames);
-    guess.matches = MatchLocalMap(guess, map, local, camera_, wide).matches;
+    guess.matches = MatchLocalMap(guess, local, camera_, wide).matches;
     Optimise(guess, map);
     TrackEstimate estimate = Estimate(std::move(guess), map);
     estimate.tracked = estimate.tracked && IsCertain(estimate);
@@ -257,20 +258,20 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   }
   const LocalMap local =
       gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
-  LocalMatches found = MatchLocalMap(guess, map, local, camera_, settings_);
+  LocalMatches found = MatchLocalMap(guess, local, camera_, settings_);
   guess.matches = found.matches;
   if (has_depth_)
     guess.passing = passing_.Find(guess, settings_.local_radius_depth, settings_.max_distance);
   const double share = Optimise(guess, map);
 
-  std::vector<uint8_t> counted(map.next_landmark(), 0);
+  IdSet<LandmarkId> counted;
   for (size_t k = 0; k < found.matches.size(); ++k) {
     if (!found.matches[k].valid()) continue;
-    counted[found.matches[k].value] = 1;
+    counted.Enter(found.matches[k]);
     estimate.sightings.push_back({found.matches[k], guess.matches[k].valid()});
   }
   for (LandmarkId id : found.visible) {
-    if (!counted[id.value]) estimate.sightings.push_back({id, false});
+    if (!counted.Contains(id)) estimate.sightings.push_back({id, false});
   }
   estimate.reference = local.reference;
   // What agrees with a wrong pose is little of what that pose should see.

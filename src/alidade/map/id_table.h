@@ -1,0 +1,111 @@
+// Objects by id, in a tree of nodes with 64 branches that versions of the map share: changing one
+// object copies the nodes on the way to it, nodes without objects are let go. So memory and the
+// cost of a change depend on what is in the table, not on how many ids were ever given. (Path
+// copying: Driscoll, Sarnak, Sleator & Tarjan 1989.)
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace alidade {
+
+// The tree for objects of any type. Reading is thread-safe; a copy shares all nodes.
+class IdTree {
+ public:
+  const void* At(uint32_t id) const {
+    if (!root_ || (static_cast<uint64_t>(id) >> (kBits * levels_)) != 0) return nullptr;
+    const Node* node = root_.get();
+    for (int level = levels_ - 1; level > 0; --level) {
+      node = static_cast<const Node*>(node->slots[(id >> (kBits * level)) & kMask].get());
+      if (!node) return nullptr;
+    }
+    return node->slots[id & kMask].get();
+  }
+  int size() const { return size_; }
+
+  // Puts an object there, or takes away what is there (null). Nodes that `version` did not make are
+  // copied first; those it made belong to the caller alone until he gives the tree away.
+  void Set(uint32_t id, std::shared_ptr<const void> object, uint64_t version);
+
+  // visit(object) for all, in order of id; from the last to the first, until it returns false.
+  template <typename Visit>
+  void ForEach(Visit&& visit) const {
+    if (root_) Walk(*root_, levels_ - 1, visit);
+  }
+  template <typename Visit>
+  void ForEachFromLast(Visit&& visit) const {
+    if (root_) WalkBack(*root_, levels_ - 1, visit);
+  }
+
+  int CountNodes() const;                          // for tests
+  int CountNodesNotIn(const IdTree& other) const;  // that `other` does not share
+
+ private:
+  static constexpr int kBits = 6, kSlots = 1 << kBits;
+  static constexpr uint32_t kMask = kSlots - 1;
+  struct Node {
+    std::array<std::shared_ptr<const void>, kSlots> slots;  // nodes, on the lowest level objects
+    int used = 0;                                           // slots that are not empty
+    uint64_t version = 0;
+  };
+
+  static bool SetBelow(std::shared_ptr<const void>& slot, int level, uint32_t id,
+                       std::shared_ptr<const void> object, uint64_t version);
+  static void Gather(const Node& node, int level, std::vector<const Node*>& nodes);
+  template <typename Visit>
+  static void Walk(const Node& node, int level, Visit& visit) {
+    for (const auto& slot : node.slots) {
+      if (!slot) continue;
+      if (level == 0) {
+        visit(slot.get());
+      } else {
+        Walk(*static_cast<const Node*>(slot.get()), level - 1, visit);
+      }
+    }
+  }
+  template <typename Visit>
+  static bool WalkBack(const Node& node, int level, Visit& visit) {
+    for (int i = kSlots; i-- > 0;) {
+      const void* slot = node.slots[i].get();
+      if (!slot) continue;
+      const bool on =
+          level == 0 ? visit(slot) : WalkBack(*static_cast<const Node*>(slot), level - 1, visit);
+      if (!on) return false;
+    }
+    return true;
+  }
+
+  std::shared_ptr<const Node> root_;
+  int levels_ = 1;
+  int size_ = 0;
+};
+
+// The same for one type.
+template <typename Object>
+class IdTable {
+ public:
+  const Object* At(uint32_t id) const { return static_cast<const Object*>(tree_.At(id)); }
+  int size() const { return tree_.size(); }
+  void Set(uint32_t id, std::shared_ptr<const Object> object, uint64_t version) {
+    tree_.Set(id, std::move(object), version);
+  }
+  void Erase(uint32_t id, uint64_t version) { tree_.Set(id, nullptr, version); }
+  template <typename Visit>
+  void ForEach(Visit&& visit) const {
+    tree_.ForEach([&](const void* object) { visit(*static_cast<const Object*>(object)); });
+  }
+  template <typename Visit>
+  void ForEachFromLast(Visit&& visit) const {
+    tree_.ForEachFromLast(
+        [&](const void* object) { return visit(*static_cast<const Object*>(object)); });
+  }
+  const IdTree& tree() const { return tree_; }
+
+ private:
+  IdTree tree_;
+};
+
+}  // namespace alidade
