@@ -152,7 +152,7 @@ TEST_F(MapStoreTest, ForwardsGoWhenNobodyHoldsTheOldIds) {
   store_.Commit([&](MapCommit& commit) { commit.Replace(in_b_, both_); });
   const MapSnapshot held = store_.Snapshot();
   store_.Commit([&](MapCommit& commit) { commit.Replace(third, both_); });
-  store_.ReleaseIds(held.version());
+  store_.ReleaseLandmarkIds(held.version());
   const MapSnapshot after =
       store_.Commit([&](MapCommit& commit) { commit.Replace(both_, fourth); });
   EXPECT_EQ(held.Current(in_b_), both_);  // a snapshot never changes
@@ -179,15 +179,32 @@ TEST_F(MapStoreTest, TheMapIsAsLargeAsWhatLivesInIt) {
       }
       last = now;
     });
-    store_.ReleaseIds(map.version());
+    store_.ReleaseLandmarkIds(map.version());
+    store_.ReleaseCulledKeyFrames(map.version());
   }
   EXPECT_EQ(map.next_landmark(), 2u + 2000 * 40);
   EXPECT_EQ(map.landmark_count(), 22);
   EXPECT_EQ(map.keyframe_count(), 3);
   EXPECT_LE(map.landmarks().tree().CountNodes(), 6);
   EXPECT_LE(map.keyframes().tree().CountNodes(), 4);
+  EXPECT_LE(map.state().culled.size(), 1);
   EXPECT_LE(map.state().forwards.size(), 20u);
   ExpectConsistent(map);
+}
+
+TEST_F(MapStoreTest, CulledKeyframesGoWhenNobodyIsPlacedAgainstThem) {
+  KeyFrameId c;
+  store_.Commit([&](MapCommit& commit) { c = commit.Add(BareKeyFrame(1, b_, Sideways(-2))); });
+  const MapSnapshot before = store_.Commit([&](MapCommit& commit) { commit.Remove(c); });
+  const Anchor anchor = AnchorTo(before.state(), c, Sideways(-2.5));
+  const Anchor kept = Reanchored(before.state(), anchor);
+  EXPECT_EQ(kept.keyframe, b_);
+  store_.ReleaseCulledKeyFrames(before.version());
+  const MapSnapshot after = store_.Commit([&](MapCommit& commit) { commit.Remove(b_); });
+  EXPECT_FALSE(after.MapOf(c).valid());
+  EXPECT_TRUE(after.MapOf(b_).valid());  // culled since
+  EXPECT_NEAR(PoseOf(after.state(), kept).t.x(), -2.5, 1e-12);
+  EXPECT_EQ(after.state().culled.size(), 1);
 }
 
 TEST_F(MapStoreTest, ReplacingWhatIsGoneOrItselfDoesNothing) {

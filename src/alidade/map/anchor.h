@@ -29,18 +29,18 @@ inline Se3 PoseOf(const MapState& map, const Anchor& anchor) {
 //   s_parent),
 // kept as of a parent of scale 1, so that no scale of the day enters it.
 inline Anchor Reanchored(const MapState& map, Anchor anchor) {
-  const KeyFrame* keyframe = map.keyframes.At(anchor.keyframe.value);
-  if (!keyframe) return {};
-  if (!keyframe->culled()) return anchor;
-  anchor.T_camera_keyframe.t /= anchor.scale;
-  anchor.scale = 1;
-  while (keyframe && keyframe->culled()) {
-    anchor.T_camera_keyframe.t *= keyframe->scale;
-    anchor.T_camera_keyframe = anchor.T_camera_keyframe * keyframe->T_camera_parent;
-    anchor.keyframe = keyframe->parent;
-    keyframe = map.keyframes.At(anchor.keyframe.value);
+  const CulledKeyFrame* gone = map.culled.At(anchor.keyframe.value);
+  if (gone) {
+    anchor.T_camera_keyframe.t /= anchor.scale;
+    anchor.scale = 1;
   }
-  return keyframe ? anchor : Anchor{};
+  while (gone) {
+    anchor.T_camera_keyframe.t *= gone->scale;
+    anchor.T_camera_keyframe = anchor.T_camera_keyframe * gone->T_camera_parent;
+    anchor.keyframe = gone->parent;
+    gone = map.culled.At(anchor.keyframe.value);
+  }
+  return map.keyframes.At(anchor.keyframe.value) ? anchor : Anchor{};
 }
 
 }  // namespace alidade

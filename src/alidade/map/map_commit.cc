@@ -16,9 +16,15 @@ IdType Issue(uint32_t& next) {
 
 }  // namespace
 
-MapCommit::MapCommit(const MapState& base, uint64_t released) : state_(base) {
+MapCommit::MapCommit(const MapState& base, const ReleasedIds& released) : state_(base) {
   ++state_.version;
-  std::erase_if(state_.forwards, [&](const Forward& f) { return f.version <= released; });
+  std::erase_if(state_.forwards, [&](const Forward& f) { return f.version <= released.landmarks; });
+  if (released.keyframes == 0) return;
+  std::vector<KeyFrameId> forgotten;
+  state_.culled.ForEach([&](const CulledKeyFrame& gone) {
+    if (gone.version <= released.keyframes) forgotten.push_back(gone.id);
+  });
+  for (KeyFrameId id : forgotten) state_.culled.Erase(id.value, state_.version);
 }
 
 template <typename Object>

@@ -37,7 +37,7 @@ struct MapState {
   IdTable<KeyFrame> keyframes;  // alive
   IdTable<Landmark> landmarks;
   IdTable<CulledKeyFrame> culled;
-  std::vector<Forward> forwards;  // by old id; until nobody holds that, see MapStore::ReleaseIds()
+  std::vector<Forward> forwards;  // by old id; until nobody holds that, see MapStore
   uint32_t next_keyframe = 0, next_landmark = 0, next_map = 0;  // ids the next ones get
   uint64_t corrections = 0;  // how often loops, merges and full adjustments moved large parts
   uint64_t version = 0;
@@ -58,7 +58,7 @@ class MapSnapshot {
   const KeyFrame* Find(KeyFrameId id) const { return state_->keyframes.At(id.value); }
   const Landmark* Find(LandmarkId id) const { return state_->landmarks.At(id.value); }
   // The landmark it was fused into, itself, or none when culled. Ids older than what
-  // MapStore::ReleaseIds() was told are forwarded no more.
+  // MapStore::ReleaseLandmarkIds() was told are forwarded no more.
   LandmarkId Current(LandmarkId id) const;
   Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // as in MapState
   double ScaleOf(KeyFrameId id) const { return state_->ScaleOf(id); }
@@ -81,6 +81,11 @@ class MapSnapshot {
  private:
   friend class MapStore;
   std::shared_ptr<const MapState> state_;
+};
+
+// Up to which commits nobody holds ids any more, see MapStore.
+struct ReleasedIds {
+  std::atomic<uint64_t> landmarks{0}, keyframes{0};
 };
 
 // One change of the map, seen by others only as a whole. Made by MapStore::Commit.
@@ -122,7 +127,7 @@ class MapCommit {
 
  private:
   friend class MapStore;
-  MapCommit(const MapState& base, uint64_t released);
+  MapCommit(const MapState& base, const ReleasedIds& released);
   template <typename Object>
   Object* EditIn(IdTable<Object>& table, uint32_t id);
 
@@ -162,9 +167,10 @@ class MapStore {
   }
   // Makes `saved` the map; its ids go on, versions of this store too.
   void Restore(const MapSnapshot& saved);
-  // Nobody holds landmark ids of snapshots before `version` any more: forwards made up to then go
-  // with the next commit. Never told, they stay for good.
-  void ReleaseIds(uint64_t version) { released_ = version; }
+  // Nobody holds landmark ids (ids of culled keyframes) of snapshots before `version` any more:
+  // forwards (CulledKeyFrames) made up to then go with the next commit. Never told, they stay.
+  void ReleaseLandmarkIds(uint64_t version) { released_.landmarks = version; }
+  void ReleaseCulledKeyFrames(uint64_t version) { released_.keyframes = version; }
 
  private:
   MapSnapshot Publish(MapState&& state);
@@ -172,7 +178,7 @@ class MapStore {
   mutable std::mutex publish_mutex_;
   std::mutex writer_mutex_;
   std::shared_ptr<const MapState> current_;
-  std::atomic<uint64_t> released_{0};
+  ReleasedIds released_;
 };
 
 }  // namespace alidade

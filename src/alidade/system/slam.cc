@@ -116,7 +116,7 @@ void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const Ma
              placed.T_camera_world.Inverse());
   movers_.Place(WorldOf(reference, map));
   tracker_.Remember(placed, reference, map);
-  workers_.map().ReleaseIds(map.version());  // what was remembered before is forgotten
+  workers_.map().ReleaseLandmarkIds(map.version());  // what was remembered before is forgotten
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
@@ -182,6 +182,7 @@ void Slam::Impl::Reanchor() {
   const MapSnapshot map = workers_.map().Snapshot();
   log_.Reanchor(map);
   tracker_.Reanchor(map);
+  workers_.map().ReleaseCulledKeyFrames(map.version());
 }
 
 void Slam::Impl::Lose() {
