@@ -12,6 +12,7 @@
 #include "arguments.h"
 #include "bench/bench.h"
 #include "bench/dynamic.h"
+#include "bench/lasting.h"
 #include "bench/semidense.h"
 #include "commands.h"
 
@@ -148,12 +149,29 @@ int RunDynamic(const std::vector<std::string>& words, BenchArguments arguments) 
   return 0;
 }
 
+// `words`: recordings.
+int RunLasting(std::vector<std::string> words, const BenchArguments& arguments) {
+  if (!arguments.source.empty()) words.push_back(arguments.source);
+  if (words.empty()) words.emplace_back("synth:room");
+  const auto& sensors = arguments.dynamic.sensors;
+  ordered_json sections = ordered_json::array();
+  for (const std::string& source : words) {
+    const bench::Section section =
+        bench::BenchLasting(source, arguments.frames, sensors.empty() ? "" : sensors.front());
+    Print(section);
+    sections.push_back(ToJson(section));
+  }
+  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  return 0;
+}
+
 int Run(BenchArguments arguments) {
   cv::setNumThreads(1);
   SetThreadCount(0);
   const std::vector<std::string>& names = arguments.names;
   if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "dynamic") return RunDynamic({names.begin() + 1, names.end()}, arguments);
+  if (names[0] == "lasting") return RunLasting({names.begin() + 1, names.end()}, arguments);
   FillIn(arguments);
   std::vector<Bench> benches;
   for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
@@ -220,15 +238,16 @@ void AddBenchCommand(CLI::App& app, Action& action) {
       ->add_option("NAME", arguments->names,
                    "features, ransac, ba, frame, place: one or more; or semidense and recordings "
                    "with depth (synth:room, synth:desk, synth:wall); or dynamic and recordings of "
-                   "people (synth:room?actors=3)")
+                   "people (synth:room?actors=3); or lasting and recordings to be played forth and "
+                   "back for hours (--sensor; --frames 20000)")
       ->required();
   command->add_option("--source", arguments->source,
                       "Recording to take frames from (synth:room; place: synth:loop)");
   command
       ->add_option("--frames", arguments->frames,
                    "Frames of it, at most (150; semidense: 200, recorded ones 600; dynamic: 200, "
-                   "recorded ones all)")
-      ->check(CLI::Range(2, 100000));
+                   "recorded ones all; lasting: 20000)")
+      ->check(CLI::Range(2, 100000000));
   AddDynamicOptions(*command, arguments->dynamic);
   command->add_option("--out", arguments->out, "JSON file to write the numbers to");
   command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });
