@@ -80,6 +80,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"relocalisations", results.counts.relocalisations},
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},
+      {"cuts", results.counts.cuts},
       {"maps", results.map.Maps().size()},
       {"map_files", MapFiles(results)},
       {"keyframes", results.map.keyframe_count()},

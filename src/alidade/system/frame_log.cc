@@ -16,6 +16,11 @@ void FrameLog::Begin(double time) {
   begun_ = true;
 }
 
+void FrameLog::BeginRecording() {
+  std::lock_guard<std::mutex> lock(mutex_);
+  recordings_.push_back(size());
+}
+
 void FrameLog::Place(const Anchor& anchor, const Se3& T_world_camera_live) {
   anchor_ = anchor;
   live_ = T_world_camera_live;
@@ -145,6 +150,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
   std::shared_ptr<const std::vector<Chunk>> full;
   Chunk open;
   int first = 0, end = 0;
+  std::vector<int> recordings;
   MapSnapshot map;
   {
     // The map is taken with the lock held: what it may have forgotten was not an anchor any more.
@@ -153,6 +159,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     open = open_;
     first = first_chunk_ * kChunk;
     end = first_of_open_ + open_count_;
+    recordings = recordings_;
     map = store.Snapshot();
   }
   struct Place {  // of an anchor, now
@@ -186,6 +193,8 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     FramePose pose;
     pose.index = index;
     pose.time = record.time;
+    pose.recording = static_cast<int>(
+        std::upper_bound(recordings.begin(), recordings.end(), index) - recordings.begin());
     if (record.anchor >= 0) {
       const Place& place = places[static_cast<size_t>(record.anchor)];
       pose.map = place.map;

@@ -25,6 +25,7 @@ class FrameLog {
   // The writer's: Begin, Place when the frame has a pose, End. A frame that was begun is readable
   // once it has ended; Begin ends the one before.
   void Begin(double time);  // seconds
+  void BeginRecording();    // frames begun from now on are the next one's (FramePose::recording)
   void Place(const Anchor& anchor, const Se3& T_world_camera_live);
   void End();
   bool empty() const { return size() == 0; }
@@ -95,6 +96,7 @@ class FrameLog {
   Chunk open_;
   int first_of_open_ = 0, open_count_ = 0;  // frames
   LetGoFrames let_go_;
+  std::vector<int> recordings_;  // index of the first frame of each but the first
 };
 
 }  // namespace alidade

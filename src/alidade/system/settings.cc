@@ -49,6 +49,8 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.keyframe_share_depth", t.keyframe_share_depth);
   visit("tracker.keyframe_min_gap", t.keyframe_min_gap);
   visit("tracker.keyframe_max_gap", t.keyframe_max_gap);
+  visit("tracker.max_extrapolation", t.motion.max_extrapolation);
+  visit("tracker.time_jitter", t.motion.jitter);
   auto& m = s.mapper;
   visit("mapper.sigma_px", m.noise.sigma_px);
   visit("mapper.sigma_right_px", m.noise.sigma_right_px);
@@ -74,6 +76,9 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("new_map_frames", s.new_map_frames);
   visit("min_map_keyframes", s.min_map_keyframes);
   visit("trajectory.keep_seconds", s.trajectory.keep_seconds);
+  visit("time.gap_seconds", s.time.gap_seconds);
+  visit("time.gap_intervals", s.time.gap_intervals);
+  visit("time.agree_frames", s.time.agree_frames);
   auto& l = s.loop;
   visit("loop.enabled", l.enabled);
   visit("loop.sigma_px", l.noise.sigma_px);
@@ -251,6 +256,7 @@ void SlamSettings::Check() const {
   semidense.Check();
   dynamics.Check();
   trajectory.Check();
+  time.Check();
   if (!(new_map_seconds >= 0) || new_map_frames < 1)
     ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");

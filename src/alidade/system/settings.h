@@ -12,6 +12,7 @@
 #include "alidade/mapping/settings.h"
 #include "alidade/place/settings.h"
 #include "alidade/semidense/settings.h"
+#include "alidade/system/camera_clock.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 
@@ -37,6 +38,7 @@ struct SlamSettings {
   SemiDenseSettings semidense;
   DynamicsSettings dynamics;
   TrajectorySettings trajectory;
+  ClockSettings time;
   bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
   // When lost, a new map is started only after so long and so many frames that showed something:
   // with depth it could start at once, and would always be quicker than recognising a place.

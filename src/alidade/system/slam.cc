@@ -1,9 +1,12 @@
 #include "alidade/system/slam.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
 #include "alidade/features/subset.h"
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_file.h"
@@ -31,6 +34,15 @@ SlamSettings InUse(SlamSettings settings) {
   return settings;
 }
 
+// The first time; how often it happened is counted.
+void WarnOfJump(double seconds) {
+  char text[100];
+  std::snprintf(text, sizeof(text),
+                "the time jumps %s by %.1f s: taken as a cut (further ones are not told)",
+                seconds < 0 ? "back" : "ahead", std::abs(seconds));
+  LogWarning(text);
+}
+
 }  // namespace
 
 class Slam::Impl {
@@ -39,6 +51,7 @@ class Slam::Impl {
        const std::shared_ptr<Detector>& detector);
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
+  void Reset();
 
   Camera given_;
   SlamSettings settings_;
@@ -51,8 +64,9 @@ class Slam::Impl {
   YoungMap young_;    // of one camera
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
+  CameraClock clock_;
   StageTimes times_;
-  int relocalisations_ = 0;
+  int relocalisations_ = 0, cuts_ = 0;
   int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
 
  private:
@@ -65,12 +79,16 @@ class Slam::Impl {
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   TrackResult GiveUpStart(const char* reason);
+  const char* Tick(double time);
+  void Cut();
   void Lose();
   void Reanchor();
   void LeaveMap();
 
-  double lost_since_ = 0;  // time of the first frame without a pose, seconds
+  double lost_since_ = 0;  // when the first frame without a pose came, by the steady clock, seconds
   int lost_sighted_ = 0;   // frames since that showed something
+  bool jump_told_ = false;  // of the time, to the user
+  bool restarted_ = false;  // Reset() was called since the last frame
 };
 
 Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
@@ -83,23 +101,26 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
       tracker_(camera_, settings_.tracker),
       movers_(camera_, settings_, detector),
       young_(camera_, settings_, workers_),
-      log_(settings_.trajectory) {}
+      log_(settings_.trajectory),
+      clock_(settings_.time) {}
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
   const Stopwatch whole;
-  if (!log_.empty() && input.time <= log_.time()) ThrowInput("the frame's time does not grow");
-  const FrameInput prepared = Prepare(input, given_, camera_, settings_);
+  FrameInput prepared = Prepare(input, given_, camera_, settings_);
+  const char* cut = Tick(input.time);
   const int number = first_number_ + log_.size();
+  prepared.time = clock_.steady();
   movers_.Begin(prepared, number);
   const Stopwatch extracting;
-  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, prepared.time,
+  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, input.time,
                                       number, movers_.Expected());
   times_.extract.push_back(extracting.Milliseconds());
   log_.Begin(input.time);
   if (dense_) frame->picture = PictureOf(prepared);
   last_ = {};
   last_.frame = frame;
-  const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  result.cut = cut;
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
@@ -108,6 +129,48 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   if (log_.size() % kReanchorFrames == 0) Reanchor();
   times_.frame.push_back(whole.Milliseconds());
   return result;
+}
+
+// What the time of the next frame says: why it does not go on where the last one was; "" when it
+// does. Throws when it is not to be taken.
+const char* Slam::Impl::Tick(double time) {
+  const double before = log_.empty() ? time : log_.time();
+  switch (clock_.Take(time)) {
+    case ClockStep::kGoesOn:
+      return std::exchange(restarted_, false) ? "a new recording" : "";
+    case ClockStep::kLate:
+      ThrowInput("the frame's time does not grow");
+    case ClockStep::kGap:
+      Cut();
+      if (!std::exchange(jump_told_, true)) WarnOfJump(time - before);
+      return "after a gap in time";
+    case ClockStep::kBack:
+      Cut();
+      log_.BeginRecording();
+      if (!std::exchange(jump_told_, true)) WarnOfJump(time - before);
+      return "the clock was set back";
+  }
+  return "";
+}
+
+// The next frame may show anything: nothing is taken from the last one.
+void Slam::Impl::Cut() {
+  ++cuts_;
+  if (young_.on_trial()) {
+    GiveUpStart("");
+  } else if (state_ == TrackState::kTracking) {
+    Lose();
+  } else if (state_ == TrackState::kInitialising) {
+    young_.Reset();
+  }
+}
+
+void Slam::Impl::Reset() {
+  if (log_.empty() || restarted_) return;
+  Cut();
+  clock_.Restart();
+  log_.BeginRecording();
+  restarted_ = true;
 }
 
 // `map`: the one the pose is in.
@@ -163,7 +226,7 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
   if (state_ == TrackState::kLost) {
     const auto sighted = 100 * settings_.tracker.match_scale;  // corners
     lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
-    const bool long_lost = frame->time - lost_since_ >= settings_.new_map_seconds &&
+    const bool long_lost = clock_.steady() - lost_since_ >= settings_.new_map_seconds &&
                            lost_sighted_ >= settings_.new_map_frames;
     if (!long_lost || settings_.localise) {
       TrackResult result;
@@ -188,7 +251,7 @@ void Slam::Impl::Reanchor() {
 void Slam::Impl::Lose() {
   tracker_.Forget();
   state_ = TrackState::kLost;
-  lost_since_ = log_.time();
+  lost_since_ = clock_.steady();
   lost_sighted_ = 0;
 }
 
@@ -331,6 +394,7 @@ Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<D
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Finish() { impl_->workers_.Drain(); }
+void Slam::Reset() { impl_->Reset(); }
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
 const Camera& Slam::camera() const { return impl_->camera_; }
@@ -351,7 +415,7 @@ std::vector<FeatureUse> Slam::Features() const {
 cv::Mat Slam::MoverMask() const { return impl_->movers_.Mask(); }
 
 SlamCounts Slam::Counts() const {
-  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(),
+  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(), impl_->cuts_,
           impl_->log_.let_go()};
 }
 

@@ -32,12 +32,14 @@ struct TrackResult {
   int matches = 0;          // landmarks the pose agrees with
   bool keyframe = false;    // this frame became one
   const char* reason = "";  // why there is no pose
+  const char* cut = "";     // why the frame does not go on where the one before was
 };
 
 // One frame of the finished trajectory.
 struct FramePose {
-  int index = 0;    // call of Track() it came from, from 0
-  double time = 0;  // seconds
+  int index = 0;      // call of Track() it came from, from 0
+  double time = 0;    // seconds
+  int recording = 0;  // Reset() and clocks set back begin the next: times grow within each
   bool tracked = false;
   MapId map;                // whose world the pose is in: none when not tracked
   Se3 T_world_camera;       // corrected by all that was learnt since
@@ -66,6 +68,7 @@ struct LetGoFrames {
 
 struct SlamCounts {
   int relocalisations = 0, loops = 0, merges = 0;
+  int cuts = 0;  // gaps and jumps of the time, and calls of Reset()
   LetGoFrames let_go;
 };
 
@@ -84,8 +87,13 @@ class Slam {
   void Load(const SavedMap& saved);
 
   // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a
-  // time that does not grow; the system stays as it was then.
+  // time that does not grow; the system stays as it was then. A time that has jumped is told
+  // (TrackResult::cut) and taken as a cut: known places are tried before the last one is believed.
+  // Ahead: a gap (settings.time). Back: when as many frames as settings.time.agree_frames agree.
   TrackResult Track(const FrameInput& input);
+  // The next frame begins a new recording, its time may be any; the maps are kept and gone on with.
+  // Where Track() is called.
+  void Reset();
   void Finish();  // waits until the workers have nothing left to do
 
   // Of the last frame: its features, and what was left out as moving (CV_8U, 255, of the camera's

@@ -11,6 +11,7 @@ void TrackerSettings::Check() const {
     if (!holds) ThrowUsage(std::string("tracker.") + what);
   };
   extractor.Check();
+  motion.Check();
   require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
   require(min_predicted > 0, "min_predicted must be positive");
   require(min_after_prediction >= 4, "min_after_prediction must be at least 4");

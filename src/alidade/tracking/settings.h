@@ -3,6 +3,7 @@
 
 #include "alidade/features/extractor.h"
 #include "alidade/map/measurement.h"
+#include "alidade/tracking/motion.h"
 
 namespace alidade {
 
@@ -42,6 +43,7 @@ struct TrackerSettings {
   double keyframe_share_depth = 0.8;
   int keyframe_min_gap = 1;   // … but not sooner after the last than this many frames,
   int keyframe_max_gap = 30;  // and at the latest after this many
+  MotionSettings motion;      // how the camera is taken to move on
   uint64_t seed = 1;          // of the random samples when a frame is placed anew
   void Check() const;         // throws Error (usage) naming the field that cannot be
 };

@@ -22,7 +22,8 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
       has_depth_(camera.StereoBaseline() > 0),
       extractor_(settings.extractor),
       right_extractor_(settings.extractor),
-      passing_(camera) {
+      passing_(camera),
+      motion_(settings.motion) {
   settings_.Check();
   settings_.noise.right_from_sensor = camera.baseline <= 0;
 }
@@ -44,13 +45,13 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
   guess.frame = std::move(frame);
   const Se3 T_last_world = PoseOf(map.state(), last_anchor_);
   last_.T_camera_world = T_last_world;
-  Se3 velocity = velocity_;
-  velocity.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  Se3 motion = last_.frame ? motion_.After(guess.frame->time - last_.frame->time) : Se3();
+  motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
 
   const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
   PlacedFrame best;
   for (float widen : {1.0f, 2.0f, 4.0f}) {
-    guess.T_camera_world = has_velocity_ ? velocity * T_last_world : T_last_world;
+    guess.T_camera_world = motion_.known() ? motion * T_last_world : T_last_world;
     MatchLastFrame(guess, map, widen * radius);
     const double share = Optimise(guess, map);
     // A window that misses the true places still finds something in them: then few agree on one
@@ -280,7 +281,7 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
       guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
   // Where the view is suddenly another, chance finds as much as the hardest frame shows: then the
   // pose must prove itself like one that was found anew.
-  const bool torn = has_velocity_ && guess.inliers < settings_.torn_share * last_.inliers;
+  const bool torn = motion_.known() && guess.inliers < settings_.torn_share * last_.inliers;
   estimate.placed = std::move(guess);
   if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
   if (estimate.tracked) {
@@ -312,9 +313,12 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  has_velocity_ = last_.frame && placed.frame->number > last_.frame->number;
-  if (has_velocity_)
-    velocity_ = placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse();
+  if (last_.frame && placed.frame->number > last_.frame->number) {
+    motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
+                placed.frame->time - last_.frame->time);
+  } else {
+    motion_.Clear();
+  }
   last_ = placed;
   last_anchor_ = AnchorTo(map.state(), reference, placed.T_camera_world);
 }
@@ -323,7 +327,7 @@ void Tracker::Reanchor(const MapSnapshot& map) {
   if (!last_anchor_.keyframe.valid() || map.Find(last_anchor_.keyframe)) return;
   const KeyFrameId heir = Reanchored(map.state(), last_anchor_).keyframe;
   // In the scale of the day; AnchorTo() notes the heir's, which grows alike from here on.
-  velocity_.t *= map.ScaleOf(last_anchor_.keyframe) / last_anchor_.scale;
+  motion_.Scale(map.ScaleOf(last_anchor_.keyframe) / last_anchor_.scale);
   last_anchor_ =
       heir.valid() ? AnchorTo(map.state(), heir, PoseOf(map.state(), last_anchor_)) : Anchor{};
 }
@@ -331,7 +335,7 @@ void Tracker::Reanchor(const MapSnapshot& map) {
 void Tracker::Forget() {
   passing_.Clear();
   last_ = {};
-  has_velocity_ = false;
+  motion_.Clear();
 }
 
 }  // namespace alidade

@@ -11,6 +11,7 @@
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/tracking/local_map.h"
+#include "alidade/tracking/motion.h"
 #include "alidade/tracking/passing_points.h"
 #include "alidade/tracking/placed_frame.h"
 #include "alidade/tracking/settings.h"
@@ -38,7 +39,7 @@ class Tracker {
   // Turns images into a frame. `right` and `depth` may be empty. `avoid`: see Extractor.
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number, const cv::Mat& avoid = {});
-  // First guess of the pose: constant velocity and the last frame's landmarks, or the reference
+  // First guess of the pose: an even motion and the last frame's landmarks, or the reference
   // keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // Pose from the local map, starting at the guess.
@@ -52,7 +53,7 @@ class Tracker {
   // or a loss.
   // `map`: the one its pose is in.
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
-  void Forget();  // the frame was lost: no velocity
+  void Forget();  // the frame was lost: no motion is known
   // From now on the last frame hangs on no keyframe that is culled in `map`.
   void Reanchor(const MapSnapshot& map);
 
@@ -84,8 +85,7 @@ class Tracker {
 
   PlacedFrame last_;
   Anchor last_anchor_;  // where the last frame is, by its reference keyframe
-  Se3 velocity_;        // T_now_last of one frame, in the scale of the anchor
-  bool has_velocity_ = false;
+  Motion motion_;       // up to the last frame, in the scale of the anchor
   int last_keyframe_number_ = 0;
   int most_inliers_ = 0;  // of a frame since the last keyframe: what it could show at best
 };

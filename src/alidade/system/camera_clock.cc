@@ -1,0 +1,56 @@
+#include "alidade/system/camera_clock.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/median.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kIntervals = 9;  // whose median is the usual one: four may be of dropped frames
+constexpr size_t kFewestIntervals = 3;  // to call any usual
+
+}  // namespace
+
+void ClockSettings::Check() const {
+  if (!(gap_seconds > 0)) ThrowUsage("time.gap_seconds must be positive");
+  if (!(gap_intervals >= 1)) ThrowUsage("time.gap_intervals must be at least 1");
+  if (agree_frames < 1) ThrowUsage("time.agree_frames must be at least 1");
+}
+
+double CameraClock::UsualInterval() const {
+  if (intervals_.size() < kFewestIntervals) return 0;
+  std::vector<double> sorted(intervals_.begin(), intervals_.end());
+  return UpperMedian(sorted);
+}
+
+ClockStep CameraClock::Take(double time) {
+  const double usual = UsualInterval();
+  ClockStep step = ClockStep::kGoesOn;
+  if (!started_) {
+    if (ever_) offset_ += last_ - time + usual;
+    started_ = ever_ = true;
+  } else if (time > last_) {
+    jump_ = time - last_;
+    if (usual > 0 && jump_ > std::max(settings_.gap_seconds, settings_.gap_intervals * usual)) {
+      step = ClockStep::kGap;
+    } else {
+      intervals_.push_back(jump_);
+      if (intervals_.size() > kIntervals) intervals_.pop_front();
+    }
+  } else {
+    late_ = late_ > 0 && time > last_late_ ? late_ + 1 : 1;
+    last_late_ = time;
+    if (late_ < settings_.agree_frames) return ClockStep::kLate;
+    jump_ = time - last_;
+    offset_ += usual - jump_;
+    step = ClockStep::kBack;
+  }
+  late_ = 0;
+  last_ = time;
+  return step;
+}
+
+}  // namespace alidade

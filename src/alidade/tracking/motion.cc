@@ -1,0 +1,42 @@
+#include "alidade/tracking/motion.h"
+
+#include <algorithm>
+
+#include "alidade/base/error.h"
+
+namespace alidade {
+
+void MotionSettings::Check() const {
+  if (!(max_extrapolation > 0)) ThrowUsage("tracker.max_extrapolation must be positive");
+  if (!(jitter >= 0)) ThrowUsage("tracker.time_jitter must not be negative");
+}
+
+void Motion::Add(const Se3& T_now_last, double seconds) {
+  steps_.push_front({T_now_last, seconds});
+  double known = 0;
+  size_t needed = 0;
+  while (needed < steps_.size() && known < settings_.max_extrapolation)
+    known += steps_[needed++].seconds;
+  steps_.resize(std::max<size_t>(needed, 1));
+}
+
+void Motion::Scale(double factor) {
+  for (Step& step : steps_) step.T_after_before.t *= factor;
+}
+
+Se3 Motion::After(double seconds) const {
+  if (steps_.empty()) return {};
+  const Step& last = steps_.front();
+  if (!(seconds > 0 && last.seconds > 0)) return last.T_after_before;
+  seconds = std::min(seconds, std::max(last.seconds, settings_.max_extrapolation));
+  if (std::max(seconds / last.seconds, last.seconds / seconds) <= 1 + settings_.jitter)
+    return last.T_after_before;
+  Step all = last;
+  for (size_t i = 1; i < steps_.size() && all.seconds < seconds; ++i) {
+    all.T_after_before = all.T_after_before * steps_[i].T_after_before;
+    all.seconds += steps_[i].seconds;
+  }
+  return Se3::Exp(seconds / all.seconds * all.T_after_before.Log());
+}
+
+}  // namespace alidade
