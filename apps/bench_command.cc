@@ -12,6 +12,7 @@
 #include "arguments.h"
 #include "bench/bench.h"
 #include "bench/dynamic.h"
+#include "bench/large_map.h"
 #include "bench/lasting.h"
 #include "bench/semidense.h"
 #include "commands.h"
@@ -172,6 +173,12 @@ int Run(BenchArguments arguments) {
   if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "dynamic") return RunDynamic({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "lasting") return RunLasting({names.begin() + 1, names.end()}, arguments);
+  if (names[0] == "large-map") {
+    const bench::Section section = bench::BenchLargeMap(arguments.frames);
+    Print(section);
+    Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, {ToJson(section)});
+    return 0;
+  }
   FillIn(arguments);
   std::vector<Bench> benches;
   for (const std::string& name : arguments.names) benches.push_back(BenchNamed(name));
@@ -239,7 +246,8 @@ void AddBenchCommand(CLI::App& app, Action& action) {
                    "features, ransac, ba, frame, place: one or more; or semidense and recordings "
                    "with depth (synth:room, synth:desk, synth:wall); or dynamic and recordings of "
                    "people (synth:room?actors=3); or lasting and recordings to be played forth and "
-                   "back for hours (--sensor; --frames 20000)")
+                   "back for hours (--sensor; --frames 20000); or large-map (--frames 10000: "
+                   "keyframes)")
       ->required();
   command->add_option("--source", arguments->source,
                       "Recording to take frames from (synth:room; place: synth:loop)");
