@@ -105,16 +105,16 @@ ordered_json ToJson(const bench::Section& section) {
                     {"count", s.count},
                     {"note", row.note}});
   }
-  ordered_json json = {
+  ordered_json made = {
       {"name", section.name}, {"u_ms", u.median}, {"u_count", u.count}, {"rows", rows}};
   for (const bench::Table& table : section.tables) {
-    json["tables"].push_back({{"name", table.name},
+    made["tables"].push_back({{"name", table.name},
                               {"columns", table.columns},
                               {"rows", table.rows},
                               {"note", table.note}});
-    if (!table.labels.empty()) json["tables"].back()["labels"] = table.labels;
+    if (!table.labels.empty()) made["tables"].back()["labels"] = table.labels;
   }
-  return json;
+  return made;
 }
 
 // `all`: what holds for all benches.

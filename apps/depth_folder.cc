@@ -19,7 +19,7 @@ namespace {
 constexpr double kDepthPerUnit = 5000;
 constexpr int kMostMaps = 100000;  // no run leaves more: a file of a higher number is not ours
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 // stats.json as far as it can be read; null else.
 json ReadStats(const std::string& path) {

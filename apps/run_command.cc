@@ -26,8 +26,6 @@
 namespace alidade {
 namespace {
 
-constexpr int kInterruptedStatus = 130;
-
 void Say(const RunSummary& summary, const RunRecord& record, const std::string& folder) {
   std::string shape;
   if (summary.shape_points > 0) {

@@ -17,7 +17,6 @@
 namespace alidade {
 namespace {
 
-constexpr int kInterruptedStatus = 130;
 constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
 constexpr double kBlack = 10;      // mean grey level
 

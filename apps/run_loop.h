@@ -12,6 +12,7 @@ namespace alidade {
 // From now on Ctrl-C (or a TERM signal) lets RunFrames() return; a second one ends the program.
 void CatchInterrupts();
 bool Interrupted();
+inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
 
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
 // that cannot be used are warned about, counted and left out. `masks` may be null.

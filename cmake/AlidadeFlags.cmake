@@ -31,7 +31,13 @@ if(ALIDADE_SANITIZE)
   target_link_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE})
 endif()
 
+# Most of the time a compiler takes here goes into the headers of Eigen and OpenCV and into what is instantiated from
+# them: eight files in one go take little longer than one. Who changes the same file over and over may switch it off.
+option(CMAKE_UNITY_BUILD "Compile several files in one go" ON)
+
 find_program(CCACHE_PROGRAM ccache)
-if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # Paths are told relative to the sources: another clone of them finds what this one has compiled.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+      ${CCACHE_PROGRAM})
 endif()

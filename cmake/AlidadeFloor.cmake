@@ -1,15 +1,16 @@
-# alidade_floor(NAME LINKS ...): the folder src/alidade/NAME as the static library alidade_NAME.
+# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are compiled
+# several at a time (see AlidadeFlags); those named APART one by one: long ones, or with names their neighbours have too.
 # Its link list is the floor plan of docs/architecture.md; tests/architecture_test holds the includes to it.
 function(alidade_floor NAME)
-  cmake_parse_arguments(ARG "" "" "LINKS;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)
-  foreach(EXCLUDED ${ARG_EXCLUDE})
-    list(REMOVE_ITEM SOURCES ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/${EXCLUDED})
-  endforeach()
   if(NOT SOURCES)
     return()
   endif()
   add_library(alidade_${NAME} STATIC ${SOURCES})
+  foreach(FILE ${ARG_APART})
+    set_source_files_properties(${NAME}/${FILE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endforeach()
   target_include_directories(alidade_${NAME} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
                              $<INSTALL_INTERFACE:include>)
   target_include_directories(alidade_${NAME} SYSTEM PUBLIC ${OpenCV_INCLUDE_DIRS})
@@ -17,7 +18,8 @@ function(alidade_floor NAME)
   set_property(GLOBAL APPEND PROPERTY ALIDADE_FLOORS alidade_${NAME})
 endfunction()
 
-# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest.
+# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest and, but for
+# end-to-end tests, labelled with its folder. Tests are compiled several files at a time: each has a namespace of its own, alidade::FILE.
 # Problem generators shared with the benchmarks are in bench/support.
 # With END_TO_END the tests get that label, and are no part of the target unit_tests.
 function(alidade_test FOLDER)
@@ -33,7 +35,7 @@ function(alidade_test FOLDER)
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end
                          FIXTURES_REQUIRED recordings)
   else()
-    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600)
+    gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS ${FOLDER})
     add_dependencies(unit_tests test_${FOLDER})
   endif()
 endfunction()

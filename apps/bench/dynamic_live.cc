@@ -40,20 +40,20 @@ LiveRun Play(const DynamicScene& scene, SlamSettings settings, DynamicsMode mode
   return run;
 }
 
-double Median(const std::vector<double>& samples) {
+double MedianOfSamples(const std::vector<double>& samples) {
   return samples.empty() ? std::numeric_limits<double>::quiet_NaN() : Summarise(samples).median;
 }
 
 std::vector<double> RowOf(const LiveRun& run, double off, double u) {
   const StageTimes& times = run.times;
-  const double frame = Median(times.frame);
+  const double frame = MedianOfSamples(times.frame);
   return {frame,
           frame / u,
           frame / off,
-          Median(times.extract),
-          Median(times.track),
-          Median(times.dynamics),
-          Median(times.detect),
+          MedianOfSamples(times.extract),
+          MedianOfSamples(times.track),
+          MedianOfSamples(times.dynamics),
+          MedianOfSamples(times.detect),
           static_cast<double>(times.detect.size()) / run.seconds,
           static_cast<double>(run.tracked)};
 }
@@ -82,7 +82,7 @@ Table BenchDynamicLive(const DynamicScene& scene, const std::string& label,
       const size_t turn = (i + static_cast<size_t>(round)) % modes.size();
       runs[turn] = Play(scene, settings, modes[turn], detector);
     }
-    const double off = Median(runs[0].times.frame);
+    const double off = MedianOfSamples(runs[0].times.frame);
     for (size_t i = 0; i < modes.size(); ++i)
       rows[i].push_back(RowOf(runs[i], off, Summarise(u_now).median));
   }
@@ -91,7 +91,7 @@ Table BenchDynamicLive(const DynamicScene& scene, const std::string& label,
     for (size_t column = 0; column < table.columns.size(); ++column) {
       std::vector<double> values;
       for (const auto& of_round : rows[i]) values.push_back(of_round[column]);
-      row.push_back(Median(values));
+      row.push_back(MedianOfSamples(values));
     }
     table.labels.emplace_back(NameOf(modes[i]));
     table.rows.push_back(std::move(row));

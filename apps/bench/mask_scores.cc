@@ -7,7 +7,7 @@
 namespace alidade::bench {
 namespace {
 
-constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
 // Whether a mask is set at a pixel of an image `scale` times smaller.
 bool At(const cv::Mat& mask, double x, double y, double scale) {
@@ -20,9 +20,9 @@ bool At(const cv::Mat& mask, double x, double y, double scale) {
 
 }  // namespace
 
-double Overlap::mean() const { return frames > 0 ? sum / frames : kNothing; }
+double Overlap::mean() const { return frames > 0 ? sum / frames : kUndefined; }
 double Share::percent() const {
-  return all > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(all) : kNothing;
+  return all > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(all) : kUndefined;
 }
 
 double IntersectionOverUnion(const cv::Mat& a, const cv::Mat& b) {

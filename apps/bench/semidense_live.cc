@@ -12,7 +12,7 @@
 namespace alidade::bench {
 namespace {
 
-struct LiveRun {
+struct DenseRun {
   double frame = 0;   // milliseconds Track() took, median of the frames that were tracked
   double share = 0;   // of the frames tracked
   double cpu = 0;     // milliseconds of all threads, to the end of Finish()
@@ -35,7 +35,7 @@ Recording LoadImages(const std::string& source, int count) {
   return recording;
 }
 
-LiveRun Play(const Recording& recording, bool dense) {
+DenseRun Play(const Recording& recording, bool dense) {
   SlamSettings settings;
   settings.sensor = Sensor::kMono;
   settings.threaded = true;
@@ -53,7 +53,7 @@ LiveRun Play(const Recording& recording, bool dense) {
     if (result.state == TrackState::kTracking) times.push_back(watch.Milliseconds());
   }
   slam.Finish();
-  LiveRun run;
+  DenseRun run;
   run.cpu = (ProcessCpuSeconds() - cpu_start) * 1e3;
   run.frame = Summarise(times).median;
   run.share = static_cast<double>(times.size()) / static_cast<double>(recording.frames.size());
@@ -77,7 +77,7 @@ Table BenchSemiDenseLive(const std::string& source, int frames, std::vector<doub
     for (size_t i = 0; i < kTurns; ++i)
       u.push_back(reference.Run(recording.frames[i % recording.frames.size()].image));
     // Who goes first changes: the machine may be busier at one time than at another.
-    LiveRun without, with;
+    DenseRun without, with;
     if (round % 2 == 1) without = Play(recording, false);
     with = Play(recording, true);
     if (round % 2 == 0) without = Play(recording, false);

@@ -11,7 +11,7 @@
 #include "alidade/io/files/image_file.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::bad_input_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ TEST_F(BadInput, InterruptedInTheMiddleKeepsTheResultsSoFar) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bad_input_test

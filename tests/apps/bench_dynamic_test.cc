@@ -14,7 +14,7 @@
 #include "support/program.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::bench_dynamic_test {
 namespace {
 
 using nlohmann::json;
@@ -166,4 +166,4 @@ TEST_F(BenchDynamic, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bench_dynamic_test

@@ -10,7 +10,7 @@
 #include "support/program.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::bench_semidense_test {
 namespace {
 
 using nlohmann::json;
@@ -80,4 +80,4 @@ TEST_F(BenchSemiDense, SaysWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bench_semidense_test

@@ -6,7 +6,7 @@
 
 #include "support/saved_map_command.h"
 
-namespace alidade {
+namespace alidade::colmap_export_test {
 namespace {
 
 // The text model, read as COLMAP's documentation says and projected by OpenCV.
@@ -157,4 +157,4 @@ TEST_F(RealColmap, AdjustsTheModel) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::colmap_export_test

@@ -4,7 +4,7 @@
 
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::command_line_test {
 namespace {
 
 using testing::HasSubstr;
@@ -56,4 +56,4 @@ TEST(CommandLine, SaysItsVersion) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::command_line_test

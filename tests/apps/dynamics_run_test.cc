@@ -13,7 +13,7 @@
 #include "alidade/io/files/image_file.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::dynamics_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -119,4 +119,4 @@ TEST_F(DynamicsRun, IsTheSameTwiceWithAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::dynamics_run_test

@@ -8,7 +8,7 @@
 
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::evaluate_command_test {
 namespace {
 
 using nlohmann::json;
@@ -115,4 +115,4 @@ TEST_F(EvaluateCommand, OptionsThatCannotBeAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::evaluate_command_test

@@ -13,7 +13,7 @@
 #include "support/rendered.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::evaluate_depth_test {
 namespace {
 
 using nlohmann::json;
@@ -252,4 +252,4 @@ TEST_F(EvaluateDepth, OptionsThatCannotBeAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::evaluate_depth_test

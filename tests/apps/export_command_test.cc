@@ -13,7 +13,7 @@
 #include "support/saved_map.h"
 #include "support/saved_map_command.h"
 
-namespace alidade {
+namespace alidade::export_command_test {
 namespace {
 
 TEST_F(SavedMapCommand, InfoSaysWhatTheRunSaid) {
@@ -238,4 +238,4 @@ TEST_F(SavedMapCommand, MapsThatAreNoneAreOneLineAndStatusThree) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::export_command_test

@@ -12,7 +12,7 @@
 #include "support/saved_map.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::killed_save_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -68,4 +68,4 @@ TEST(KilledSave, LeavesTheOldMapOrTheNewOne) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::killed_save_test

@@ -7,7 +7,7 @@
 #include "alidade/io/files/trajectory_file.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::long_test {
 namespace {
 
 using nlohmann::json;
@@ -87,4 +87,4 @@ INSTANTIATE_TEST_SUITE_P(DeskAndWall, LongStart,
                                           testing::Values("1", "2", "3", "4", "5")));
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::long_test

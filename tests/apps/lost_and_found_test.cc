@@ -7,7 +7,7 @@
 #include "alidade/io/files/image_file.h"
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::lost_and_found_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -108,4 +108,4 @@ TEST_P(LostAndFound, LaterFramesAreFoundInASavedMapThatStaysAsItIs) {
 INSTANTIATE_TEST_SUITE_P(Kitchen, LostAndFound, testing::Values("rgbd", "mono"));
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::lost_and_found_test

@@ -15,7 +15,7 @@
 #include "support/rendered.h"
 #include "support/small_disk.h"
 
-namespace alidade {
+namespace alidade::mask_outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -233,4 +233,4 @@ TEST_F(MaskRun, FramesThatAreSkippedHaveNone) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::mask_outputs_test

@@ -7,7 +7,7 @@
 
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::run_command_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -197,4 +197,4 @@ TEST_F(RealRecording, PhoneProfileKeepsUpWithTheDesktopsCoverage) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::run_command_test

@@ -11,7 +11,7 @@
 #include "support/program.h"
 #include "support/sliding_recording.h"
 
-namespace alidade {
+namespace alidade::run_loop_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +100,4 @@ TEST_F(RunLoop, InterruptDoesNotWaitForTheNextFrame) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::run_loop_test

@@ -8,7 +8,7 @@
 #include "support/program.h"
 #include "support/sliding_recording.h"
 
-namespace alidade {
+namespace alidade::run_options_test {
 namespace {
 
 using testing::HasSubstr;
@@ -121,4 +121,4 @@ TEST_F(RunOptions, LaterOnesHold) {
 TEST_F(RunOptions, DynamicsOffIsTheDefault) { EXPECT_EQ(Run({"--dynamics", "off"}).status, 0); }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::run_options_test

@@ -13,7 +13,7 @@
 #include "support/sliding_recording.h"
 #include "support/small_disk.h"
 
-namespace alidade {
+namespace alidade::run_outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ TEST_F(RunOutputs, FullDiskLeavesNoPartOfAFile) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::run_outputs_test

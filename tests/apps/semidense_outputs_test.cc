@@ -11,7 +11,7 @@
 #include "alidade/io/files/image_file.h"
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::semidense_outputs_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST_F(SemiDenseOutputs, AFailureLeavesNoPictureWithoutAList) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::semidense_outputs_test

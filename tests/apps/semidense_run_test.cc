@@ -10,7 +10,7 @@
 #include "alidade/io/files/image_file.h"
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::semidense_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -121,4 +121,4 @@ TEST_F(SemiDenseRun, VoxelsThinTheCloudOut) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::semidense_run_test

@@ -7,7 +7,7 @@
 
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::semidense_truth_test {
 namespace {
 
 using nlohmann::json;
@@ -48,4 +48,4 @@ TEST_F(SemiDenseTruth, ARealRoomIsAsItsDepthCameraSawIt) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::semidense_truth_test

@@ -7,7 +7,7 @@
 #include "alidade/base/ids.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::id_map_test {
 namespace {
 
 TEST(IdMap, DoesWhatStdMapDoes) {
@@ -52,4 +52,4 @@ TEST(IdMap, IsEmptyAfterClearing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::id_map_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alidade {
+namespace alidade::log_odds_test {
 namespace {
 
 TEST(LogOdds, AreZeroForEvenChances) {
@@ -22,4 +22,4 @@ TEST(LogOdds, HoweverLargeAreNeverMoreThanCertain) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::log_odds_test

@@ -8,7 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/ids.h"
 
-namespace alidade {
+namespace alidade::log_test {
 namespace {
 
 TEST(LogWarning, GoesToTheListenerOrStderr) {
@@ -42,4 +42,4 @@ TEST(Id, IsNothingUntilGiven) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::log_test

@@ -8,7 +8,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::median_test {
 namespace {
 
 TEST(UpperMedian, HasAsManyBelowAsAbove) {
@@ -34,4 +34,4 @@ TEST(UpperMedian, IsOfThePartThatIsGiven) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::median_test

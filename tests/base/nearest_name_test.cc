@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace alidade {
+namespace alidade::nearest_name_test {
 namespace {
 
 TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
@@ -30,4 +30,4 @@ TEST(NearestName, SaysNothingWhenNothingIsNear) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::nearest_name_test

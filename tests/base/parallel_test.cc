@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-namespace alidade {
+namespace alidade::parallel_test {
 namespace {
 
 class ParallelForTest : public testing::TestWithParam<int> {
@@ -110,4 +110,4 @@ TEST(ThreadCount, IsAtLeastOne) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::parallel_test

@@ -7,7 +7,7 @@
 #include <set>
 #include <vector>
 
-namespace alidade {
+namespace alidade::random_test {
 namespace {
 
 TEST(Random, IsPcg32) {
@@ -101,4 +101,4 @@ TEST(Random, SamplesWithoutRepetition) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::random_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace alidade {
+namespace alidade::timing_test {
 namespace {
 
 TEST(Summarise, GivesNearestRankStatistics) {
@@ -54,4 +54,4 @@ TEST(PeakMegabytes, SeesAnAllocation) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::timing_test

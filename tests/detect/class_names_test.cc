@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alidade {
+namespace alidade::class_names_test {
 namespace {
 
 using Names = std::vector<std::string>;
@@ -48,4 +48,4 @@ TEST(ClassNames, AreListedWhole) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::class_names_test

@@ -8,7 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/detect/network_input.h"
 
-namespace alidade {
+namespace alidade::letterbox_test {
 namespace {
 
 cv::Mat Noise(cv::Size size, int type) {
@@ -89,4 +89,4 @@ TEST(NetworkInput, AgreesWithOpenCv) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::letterbox_test

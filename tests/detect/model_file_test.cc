@@ -8,7 +8,7 @@
 #include "detect/tiny_network.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::model_file_test {
 namespace {
 
 using Shape = std::vector<int64_t>;
@@ -131,4 +131,4 @@ TEST(Protobuf, ReadsRepeatedIntegersEitherWay) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::model_file_test

@@ -11,7 +11,7 @@
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::open_detector_test {
 namespace {
 
 using testing::HasSubstr;
@@ -368,4 +368,4 @@ TEST_F(OpenDetectorTest, ChecksItsSettings) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::open_detector_test

@@ -13,7 +13,7 @@
 #include "alidade/detect/suppress.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::real_models_test {
 namespace {
 
 constexpr float kSameThing = 0.5f;  // overlap that counts as found
@@ -91,4 +91,4 @@ TEST_F(RealModels, YoloxFindsMostPeople) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::real_models_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alidade {
+namespace alidade::suppress_test {
 namespace {
 
 TEST(Overlap, IsTheSharedPartOfBoth) {
@@ -32,4 +32,4 @@ TEST(SuppressOverlaps, LeavesOutOnlyWhatAKeptOneCovers) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::suppress_test

@@ -11,7 +11,7 @@
 #include "alidade/base/random.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::yolo_output_test {
 namespace {
 
 using testing::HasSubstr;
@@ -223,4 +223,4 @@ TEST(YoloOutput, AShapeThatChangesIsAnError) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::yolo_output_test

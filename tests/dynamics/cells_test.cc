@@ -10,7 +10,7 @@
 
 #include "alidade/synth/recording.h"
 
-namespace alidade {
+namespace alidade::cells_test {
 namespace {
 
 Camera MakeCamera(int width, int height, bool distorted) {
@@ -207,4 +207,4 @@ TEST(StereoDepthOfCells, IsUnknownWhereThereIsNothingToMatch) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::cells_test

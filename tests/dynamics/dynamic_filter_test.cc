@@ -14,7 +14,7 @@
 #include "support/texture.h"
 #include "support/walked_room.h"
 
-namespace alidade {
+namespace alidade::dynamic_filter_test {
 namespace {
 
 const std::vector<std::string> kNames = {"person", "chair"};
@@ -367,4 +367,4 @@ TEST_F(FilterOfAStandingCamera, ADetectionOfTheWholePictureIsOfNoHarm) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::dynamic_filter_test

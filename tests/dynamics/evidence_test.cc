@@ -10,7 +10,7 @@
 #include "alidade/base/random.h"
 #include "support/vga_camera.h"
 
-namespace alidade {
+namespace alidade::evidence_test {
 namespace {
 
 Se3 Motion(const Eigen::Vector3d& t, const Eigen::Vector3d& turn) {
@@ -333,4 +333,4 @@ TEST_F(SpreadTest, ItIsAnAverageAndNeverBeyondWhatWasSaid) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::evidence_test

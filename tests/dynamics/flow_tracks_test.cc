@@ -12,7 +12,7 @@
 #include "alidade/base/random.h"
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::flow_tracks_test {
 namespace {
 
 const cv::Size kSize(640, 480);
@@ -201,4 +201,4 @@ TEST(FlowTracksOfOddPictures, StayInThem) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::flow_tracks_test

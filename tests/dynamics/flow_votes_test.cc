@@ -7,7 +7,7 @@
 
 #include "support/followed_points.h"
 
-namespace alidade {
+namespace alidade::flow_votes_test {
 namespace {
 
 constexpr double kNearest = 0.5;  // metres
@@ -312,4 +312,4 @@ TEST(Consensus, SurfacesAtOtherDepthsAreNotAsked) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::flow_votes_test

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace alidade {
+namespace alidade::history_test {
 namespace {
 
 std::shared_ptr<const PastView> View(int number) {
@@ -72,4 +72,4 @@ TEST(History, ForgetsEarlierPosesButGoesOnCountingFrames) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::history_test

@@ -11,7 +11,7 @@
 
 #include "support/vga_camera.h"
 
-namespace alidade {
+namespace alidade::objects_test {
 namespace {
 
 const std::vector<std::string> kNames = {"person", "chair", "toaster", "chairlift"};
@@ -318,4 +318,4 @@ TEST_F(ForegroundTest, WhatIsProvenToStandIsLeftOutAtTheRimOfTheOvalOnly) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::objects_test

@@ -7,7 +7,7 @@
 
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::settings_test {
 namespace {
 
 using testing::HasSubstr;
@@ -60,4 +60,4 @@ TEST(DynamicsSettings, TheLatencyCanBeStudiedUpToTenFramesAndMore) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::settings_test

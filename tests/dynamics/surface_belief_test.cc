@@ -10,7 +10,7 @@
 
 #include "support/vga_camera.h"
 
-namespace alidade {
+namespace alidade::surface_belief_test {
 namespace {
 
 class SurfaceBeliefTest : public testing::Test {
@@ -198,4 +198,4 @@ TEST_F(SurfaceBeliefTest, LogOddsAreBounded) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::surface_belief_test

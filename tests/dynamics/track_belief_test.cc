@@ -9,7 +9,7 @@
 #include "alidade/dynamics/surface_belief.h"
 #include "support/vga_camera.h"
 
-namespace alidade {
+namespace alidade::track_belief_test {
 namespace {
 
 class TrackBeliefTest : public testing::Test {
@@ -93,4 +93,4 @@ TEST_F(TrackBeliefTest, NoTracksAreNoTrouble) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::track_belief_test

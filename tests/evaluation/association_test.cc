@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace alidade {
+namespace alidade::association_test {
 namespace {
 
 TEST(TumAssociation, GivesTheClosestPairItsWayFirst) {
@@ -61,4 +61,4 @@ TEST(NearestStamp, TakesTheEarlierOfTwoEquallyNear) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::association_test

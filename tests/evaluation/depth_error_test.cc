@@ -15,7 +15,7 @@
 #include "alidade/evaluation/image_edges.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::depth_error_test {
 namespace {
 
 using testing::HasSubstr;
@@ -305,4 +305,4 @@ TEST(DepthError, ImagesThatDoNotBelongTogetherAreRefused) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::depth_error_test

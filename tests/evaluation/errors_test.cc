@@ -12,7 +12,7 @@
 #include "alidade/evaluation/ate.h"
 #include "alidade/evaluation/rpe.h"
 
-namespace alidade {
+namespace alidade::errors_test {
 namespace {
 
 using testing::HasSubstr;
@@ -224,4 +224,4 @@ TEST(DegenerateInput, SettingsThatCannotBeAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::errors_test

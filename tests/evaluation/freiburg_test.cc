@@ -9,7 +9,7 @@
 #include "alidade/evaluation/ate.h"
 #include "alidade/evaluation/rpe.h"
 
-namespace alidade {
+namespace alidade::freiburg_test {
 namespace {
 
 class Freiburg1Xyz : public testing::Test {
@@ -88,4 +88,4 @@ TEST_F(Freiburg1Xyz, CoverageCountsTheTruthOfTheRecordingsSpan) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::freiburg_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alidade {
+namespace alidade::depth_image_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -58,4 +58,4 @@ TEST(DepthImage, IsZeroOutside) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::depth_image_test

@@ -5,7 +5,7 @@
 #include "alidade/base/error.h"
 #include "alidade/features/extractor.h"
 
-namespace alidade {
+namespace alidade::depth_test {
 namespace {
 
 Camera DepthCamera() {
@@ -77,4 +77,4 @@ TEST(AttachDepth, RefusesImagesOfAnotherSizeOrKind) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::depth_test

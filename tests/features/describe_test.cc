@@ -8,7 +8,7 @@
 
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::describe_test {
 namespace {
 
 TEST(PatchAngle, PointsToTheCentroidOfTheDisc) {
@@ -88,4 +88,4 @@ TEST(Describe, HasNoTwoBitsAlikeAndBalancedOnes) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::describe_test

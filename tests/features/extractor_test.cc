@@ -14,7 +14,7 @@
 #include "alidade/features/pyramid.h"
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::extractor_test {
 namespace {
 
 Camera CameraOf(const cv::Mat& image) {
@@ -245,4 +245,4 @@ TEST(Extractor, RefusesWhatItCannotTake) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::extractor_test

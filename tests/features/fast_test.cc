@@ -9,7 +9,7 @@
 
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::fast_test {
 namespace {
 
 using Scores = std::map<std::pair<int, int>, int>;  // by row, column
@@ -151,4 +151,4 @@ TEST(RefineCorner, FollowsACornerBetweenThePixels) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::fast_test

@@ -7,7 +7,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::frame_test {
 namespace {
 
 std::vector<Keypoint> RandomKeypoints(int count, int width, int height, double outside) {
@@ -69,4 +69,4 @@ TEST(KeypointGrid, HoldsNothingWhenThereIsNothing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::frame_test

@@ -11,7 +11,7 @@
 #include "alidade/base/parallel.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::matching_test {
 namespace {
 
 // b has noisy copies of a's descriptors in another order, and some of its own.
@@ -163,4 +163,4 @@ TEST(ConsistentTurns, KeepsThePeaksAlsoAcrossTheEndsOfTheCircle) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::matching_test

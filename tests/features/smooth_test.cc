@@ -6,7 +6,7 @@
 
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::smooth_test {
 namespace {
 
 TEST(SmoothBinomial, IsOpenCvsFilterWithWeights121) {
@@ -51,4 +51,4 @@ TEST(Smooth, OfABandIsThatPartOfTheWhole) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::smooth_test

@@ -7,7 +7,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::spread_test {
 namespace {
 
 // Strong corners crowd at the left; everywhere else they are weak.
@@ -93,4 +93,4 @@ TEST(StrongPerCell, KeepsWeakCornersOnlyWhereThereIsNothingBetter) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::spread_test

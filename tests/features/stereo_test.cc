@@ -9,7 +9,7 @@
 #include "alidade/features/extractor.h"
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::stereo_test {
 namespace {
 
 // A surface whose disparity varies across the picture, seen by both cameras of a rectified pair.
@@ -133,4 +133,4 @@ TEST(MatchStereo, NeedsBothPyramidsAndEqualSizes) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::stereo_test

@@ -9,7 +9,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::subset_test {
 namespace {
 
 class SubsetTest : public testing::Test {
@@ -89,4 +89,4 @@ TEST_F(SubsetTest, MayBeEmpty) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::subset_test

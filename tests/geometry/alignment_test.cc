@@ -11,7 +11,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::alignment_test {
 namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
@@ -145,4 +145,4 @@ TEST(AlignPoints, SaysWhatIsWrongWithPointsThatCannotBeAligned) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::alignment_test

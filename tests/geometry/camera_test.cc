@@ -10,7 +10,7 @@
 
 #include "alidade/base/error.h"
 
-namespace alidade {
+namespace alidade::camera_test {
 namespace {
 
 Camera Make(int width, int height, double fx, double fy, double cx, double cy,
@@ -123,4 +123,4 @@ TEST(Camera, CheckNamesTheFieldThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::camera_test

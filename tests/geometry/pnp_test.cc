@@ -12,7 +12,7 @@
 #include "alidade/base/error.h"
 #include "support/pnp_problem.h"
 
-namespace alidade {
+namespace alidade::pnp_test {
 namespace {
 
 struct ThreePoints {
@@ -195,4 +195,4 @@ TEST(SolvePnpRansac, SaysNoWhenThereIsNothingToFind) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::pnp_test

@@ -8,7 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::rectify_test {
 namespace {
 
 RawCamera EurocLeft() {
@@ -197,4 +197,4 @@ TEST(RectifyMap, NearestRoundsAndNeverBlends) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::rectify_test

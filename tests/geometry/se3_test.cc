@@ -9,7 +9,7 @@
 #include "alidade/base/random.h"
 #include "support/two_view_problem.h"
 
-namespace alidade {
+namespace alidade::se3_test {
 namespace {
 
 // The exponential by its power series, of a matrix scaled down and squared up again.
@@ -122,4 +122,4 @@ TEST(Sim3, ComposesAndInverts) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::se3_test

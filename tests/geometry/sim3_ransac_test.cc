@@ -9,7 +9,7 @@
 #include "support/expect_error.h"
 #include "support/sim3_problem.h"
 
-namespace alidade {
+namespace alidade::sim3_ransac_test {
 namespace {
 
 double Angle(const Sim3& a, const Sim3& b) { return LogSo3(a.R.transpose() * b.R).norm(); }
@@ -118,4 +118,4 @@ TEST(SolveSim3Ransac, SettingsThatCannotBeAreNamed) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::sim3_ransac_test

@@ -8,7 +8,7 @@
 #include "alidade/base/random.h"
 #include "support/two_view_problem.h"
 
-namespace alidade {
+namespace alidade::sim3_test {
 namespace {
 
 Eigen::Matrix4d Matrix(const Sim3& T) {
@@ -124,4 +124,4 @@ TEST(Sim3, InverseJacobianIsTheDerivativeOfTheLogarithm) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::sim3_test

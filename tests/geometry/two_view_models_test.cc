@@ -12,7 +12,7 @@
 #include "alidade/geometry/smallest_eigenvector.h"
 #include "support/two_view_problem.h"
 
-namespace alidade {
+namespace alidade::two_view_models_test {
 namespace {
 
 std::vector<cv::Point2d> ToCv(const std::vector<Eigen::Vector2d>& points) {
@@ -155,4 +155,4 @@ TEST(MotionsFromHomography, HasNoneForARotation) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::two_view_models_test

@@ -10,7 +10,7 @@
 #include "alidade/base/error.h"
 #include "support/two_view_problem.h"
 
-namespace alidade {
+namespace alidade::two_view_test {
 namespace {
 
 double DirectionError(const Se3& found, const Se3& truth) {
@@ -224,4 +224,4 @@ TEST(Triangulate, SaysNoToPointsBehindOrWithoutBaseline) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::two_view_test

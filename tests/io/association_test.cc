@@ -7,7 +7,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::association_test {
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
@@ -57,4 +57,4 @@ TEST(AssociateByTime, NothingMatchesNanOrNothing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::association_test

@@ -6,7 +6,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::camera_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -113,4 +113,4 @@ TEST(CameraFile, WithNeitherBaselineNorRightMakesNoStereo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::camera_file_test

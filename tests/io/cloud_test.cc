@@ -7,7 +7,7 @@
 
 #include "alidade/base/error.h"
 
-namespace alidade {
+namespace alidade::cloud_test {
 namespace {
 
 const Cloud kCloud{{{1.5f, -2, 0.1f}, {1e-7f, 3e8f, -0.f}}, {{255, 0, 7}, {1, 2, 3}}};
@@ -118,4 +118,4 @@ TEST(Ply, ListsOfDifferentLengthsAreRefused) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::cloud_test

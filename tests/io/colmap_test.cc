@@ -8,7 +8,7 @@
 
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::colmap_test {
 namespace {
 
 ColmapModel SomeModel() {
@@ -192,4 +192,4 @@ TEST(Colmap, RefusesWhatLeadsNowhere) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::colmap_test

@@ -12,7 +12,7 @@
 #include "support/mp4.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::color_test {
 namespace {
 
 double MaxDifference(const cv::Mat& a, const cv::Mat& b) {
@@ -151,4 +151,4 @@ TEST_F(ColorOfASource, OfAVideoStandsUprightToo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::color_test

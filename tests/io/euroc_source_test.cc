@@ -6,7 +6,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::euroc_source_test {
 namespace {
 
 using testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST(EurocSource, RowsOfTheRealPairAgree) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::euroc_source_test

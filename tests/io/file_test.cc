@@ -11,7 +11,7 @@
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::file_test {
 namespace {
 
 int FilesIn(const std::string& folder) {
@@ -105,4 +105,4 @@ TEST(File, ATemporaryOfTheSameNameIsNoObstacle) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::file_test

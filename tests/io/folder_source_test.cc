@@ -5,7 +5,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::folder_source_test {
 namespace {
 
 TEST(FolderSource, SortsNamesAsPeopleCount) {
@@ -42,4 +42,4 @@ TEST(FolderSource, OfFilesThatAreNoImagesIsAnError) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::folder_source_test

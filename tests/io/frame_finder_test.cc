@@ -10,7 +10,7 @@
 #include "alidade/base/random.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::frame_finder_test {
 namespace {
 
 // Frames at given times; counts how many were read.
@@ -126,4 +126,4 @@ TEST(FrameFinder, EmptyAndLiveSourcesAreNoRecordings) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::frame_finder_test

@@ -11,7 +11,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::image_file_test {
 namespace {
 
 double MaxDifference(const cv::Mat& a, const cv::Mat& b) {
@@ -151,4 +151,4 @@ TEST(ImageFile, NoiseIsNoImage) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::image_file_test

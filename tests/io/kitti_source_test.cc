@@ -4,7 +4,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::kitti_source_test {
 namespace {
 
 using testing::HasSubstr;
@@ -77,4 +77,4 @@ TEST(KittiSource, BadCalibrationsAreNamed) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::kitti_source_test

@@ -6,7 +6,7 @@
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::trajectory_test {
 namespace {
 
 using testing::HasSubstr;
@@ -126,4 +126,4 @@ TEST(Trajectory, FilesThatHoldNoneSaySo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::trajectory_test

@@ -5,7 +5,7 @@
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::tum_source_test {
 namespace {
 
 std::vector<SourceFrame> AllFrames(FrameSource& source) {
@@ -204,4 +204,4 @@ TEST(TumSource, ReadsTheRealRecordings) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::tum_source_test

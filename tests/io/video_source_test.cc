@@ -10,7 +10,7 @@
 #include "support/mp4.h"
 #include "support/tiny_recording.h"
 
-namespace alidade {
+namespace alidade::video_source_test {
 namespace {
 
 // Pictures that survive compression: eight stripes say the number in binary; the top left quarter
@@ -178,4 +178,4 @@ TEST(MediaModule, ReadsTheOtherImageFormats) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::video_source_test

@@ -6,7 +6,7 @@
 #include "alidade/io/read_ahead.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::wrappers_test {
 namespace {
 
 // Frames at uneven times; counts what was asked of it.
@@ -131,4 +131,4 @@ TEST(ReadAhead, CanBeDroppedInTheMiddle) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::wrappers_test

@@ -6,7 +6,7 @@
 #include "looping/old_place.h"
 #include "support/check_map.h"
 
-namespace alidade {
+namespace alidade::close_test {
 namespace {
 
 constexpr int kView = 32, kPlace = 1;
@@ -196,4 +196,4 @@ TEST(MergeMaps, WhenTheOlderComesToThePlaceOfTheYounger) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::close_test

@@ -10,7 +10,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::loop_closer_test {
 namespace {
 
 void AtOnce(const std::function<void()>& commit) { commit(); }
@@ -292,4 +292,4 @@ TEST(AdjustAll, OfAKeyFrameThatIsGoneDoesNothing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::loop_closer_test

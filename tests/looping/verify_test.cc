@@ -5,7 +5,7 @@
 
 #include "looping/old_place.h"
 
-namespace alidade {
+namespace alidade::verify_test {
 namespace {
 
 constexpr int kView = 32, kPlace = 1;  // two steps of the ring lie between what they see
@@ -158,4 +158,4 @@ TEST(VerifyLoop, WhatIsGoneIsNone) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::verify_test

@@ -7,7 +7,7 @@
 #include "support/check_map.h"
 #include "support/drifted_map.h"
 
-namespace alidade {
+namespace alidade::correction_test {
 namespace {
 
 const Sim3 kMove{1.4, ExpSo3({0.3, -0.5, 0.2}), {2, -1, 0.5}};
@@ -213,4 +213,4 @@ TEST(CommitMerge, OfTwoThatWereMergedAlready) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::correction_test

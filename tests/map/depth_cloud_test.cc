@@ -6,7 +6,7 @@
 #include <map>
 #include <tuple>
 
-namespace alidade {
+namespace alidade::depth_cloud_test {
 namespace {
 
 Camera TestCamera() { return Camera::FromFieldOfView(64, 48, 60); }
@@ -164,4 +164,4 @@ TEST(DepthPicture, TheNearerHoldsAndTheFarIsLeftOut) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::depth_cloud_test

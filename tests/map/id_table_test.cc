@@ -7,7 +7,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::id_table_test {
 namespace {
 
 struct Thing {
@@ -86,4 +86,4 @@ TEST(IdTable, ForgetsThePast) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::id_table_test

@@ -13,7 +13,7 @@
 #include "support/map_bytes.h"
 #include "support/saved_map.h"
 
-namespace alidade {
+namespace alidade::map_file_test {
 namespace {
 
 bool SamePose(const Se3& a, const Se3& b) { return a.R == b.R && a.t == b.t; }  // to the last bit
@@ -275,4 +275,4 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::map_file_test

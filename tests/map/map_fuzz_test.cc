@@ -14,7 +14,7 @@
 #include "support/map_bytes.h"
 #include "support/saved_map.h"
 
-namespace alidade {
+namespace alidade::map_fuzz_test {
 namespace {
 
 bool Long() { return std::getenv("ALIDADE_LONG_TESTS") != nullptr; }
@@ -141,4 +141,4 @@ TEST(MapFuzz, ExtremeNumbersDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::map_fuzz_test

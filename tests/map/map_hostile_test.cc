@@ -10,7 +10,7 @@
 #include "support/map_bytes.h"
 #include "support/saved_map.h"
 
-namespace alidade {
+namespace alidade::map_hostile_test {
 namespace {
 
 using flatbuffers::FlatBufferBuilder;
@@ -142,4 +142,4 @@ TEST(HostileMap, VocabularyThatIsNoTree) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::map_hostile_test

@@ -10,7 +10,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::map_store_test {
 namespace {
 
 // A keyframe with `keypoints` keypoints that show nothing yet.
@@ -431,4 +431,4 @@ TEST(MapStore, StaysConsistentUnderRandomChanges) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::map_store_test

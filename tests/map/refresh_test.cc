@@ -8,7 +8,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::refresh_test {
 namespace {
 
 int SharedLandmarks(const KeyFrame& a, const KeyFrame& b) {
@@ -150,4 +150,4 @@ TEST(RefreshLandmark, RemovesOneThatNobodySees) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::refresh_test

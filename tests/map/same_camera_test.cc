@@ -5,7 +5,7 @@
 #include "alidade/map/map_file.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::same_camera_test {
 namespace {
 
 Camera Saved() {
@@ -43,4 +43,4 @@ TEST(SameCamera, NamesWhatDiffers) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::same_camera_test

@@ -6,7 +6,7 @@
 
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::cull_test {
 namespace {
 
 bool Contains(const std::vector<KeyFrameId>& ids, KeyFrameId id) {
@@ -150,4 +150,4 @@ TEST_F(WeakLandmarksTest, OnesThatAreGoneAreForgotten) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::cull_test

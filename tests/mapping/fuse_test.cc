@@ -7,7 +7,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::fuse_test {
 namespace {
 
 constexpr SyntheticWorldSettings kWorld{
@@ -116,4 +116,4 @@ TEST(CommitFusion, PassesOverWhatIsGoneSince) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::fuse_test

@@ -8,7 +8,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::local_window_test {
 namespace {
 
 double Distance(const Se3& a, const Se3& b) { return (a * b.Inverse()).Log().norm(); }
@@ -230,4 +230,4 @@ TEST(AdjustWindow, StopsWhenTold) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::local_window_test

@@ -10,7 +10,7 @@
 #include "support/check_map.h"
 #include "support/synthetic_world.h"
 
-namespace alidade {
+namespace alidade::mapper_test {
 namespace {
 
 constexpr SyntheticWorldSettings kWorld{
@@ -157,4 +157,4 @@ TEST(Mapper, ProcessingAKeyframeThatIsGoneDoesNothing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::mapper_test

@@ -8,7 +8,7 @@
 
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::triangulate_test {
 namespace {
 
 struct Judgement {
@@ -123,4 +123,4 @@ TEST(TriangulateNew, RefusesWhatHasTooLittleParallax) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::triangulate_test

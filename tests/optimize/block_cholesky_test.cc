@@ -8,7 +8,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::block_cholesky_test {
 namespace {
 
 template <int kSize>
@@ -120,4 +120,4 @@ TEST(BlockCholesky, AClosedChainFillsNoMoreThanOneFurtherRow) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::block_cholesky_test

@@ -9,7 +9,7 @@
 #include "alidade/base/parallel.h"
 #include "support/bundle_problem.h"
 
-namespace alidade {
+namespace alidade::bundle_adjustment_test {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -414,4 +414,4 @@ TEST(ChiSquared, IsTheSquaredErrorInStandardDeviations) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bundle_adjustment_test

@@ -5,7 +5,7 @@
 #include "ceres_bundle.h"
 #include "support/bundle_problem.h"
 
-namespace alidade {
+namespace alidade::bundle_ceres_test {
 namespace {
 
 constexpr BundleSettings kToTheEnd{.max_iterations = 400, .min_relative_decrease = 1e-15};
@@ -139,4 +139,4 @@ TEST(BundleAgainstCeres, SameOptimumWhenOnlyPointsMove) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bundle_ceres_test

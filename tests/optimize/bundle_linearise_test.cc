@@ -5,7 +5,7 @@
 #include "ceres_reprojection.h"
 #include "support/bundle_problem.h"
 
-namespace alidade {
+namespace alidade::bundle_linearise_test {
 namespace {
 
 // ρ θ of the camera, then the point, as in bundle_linearise.h.
@@ -94,4 +94,4 @@ TEST(LineariseBundle, AgreesWithAutomaticDerivatives) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bundle_linearise_test

@@ -6,7 +6,7 @@
 
 #include "support/bundle_problem.h"
 
-namespace alidade {
+namespace alidade::bundle_schur_test {
 namespace {
 
 Eigen::Matrix3d Full(const Symmetric3& s) {
@@ -86,4 +86,4 @@ TEST(SchurSolver, ChoosesSparseOnALongPathAndDenseInOneRoom) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bundle_schur_test

@@ -11,7 +11,7 @@
 #include "support/expect_error.h"
 #include "support/pose_graph_problem.h"
 
-namespace alidade {
+namespace alidade::pose_graph_test {
 namespace {
 
 constexpr PoseGraphSettings kToTheEnd{
@@ -287,4 +287,4 @@ TEST(OptimizePoseGraph, SettingsThatCannotBeAreNamed) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::pose_graph_test

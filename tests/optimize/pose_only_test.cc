@@ -9,7 +9,7 @@
 #include "support/expect_error.h"
 #include "support/pose_problem.h"
 
-namespace alidade {
+namespace alidade::pose_only_test {
 namespace {
 
 constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -186,4 +186,4 @@ TEST(OptimizePose, SettingsThatCannotBeAreNamed) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::pose_only_test

@@ -9,7 +9,7 @@
 #include "support/expect_error.h"
 #include "support/sim3_problem.h"
 
-namespace alidade {
+namespace alidade::sim3_refine_test {
 namespace {
 
 // Both residuals of one match, by (rotation, translation, log scale).
@@ -176,4 +176,4 @@ TEST(RefineSim3, SettingsThatCannotBeAreNamed) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::sim3_refine_test

@@ -10,7 +10,7 @@
 #include "place/rendered_places.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::place_index_test {
 namespace {
 
 // Views of a made-up world, quick to have: 100 keypoints each, half of them shared with the next
@@ -258,4 +258,4 @@ TEST(PlaceIndex, IsAskedWhileItGrows) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::place_index_test

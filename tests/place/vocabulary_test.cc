@@ -8,7 +8,7 @@
 #include "place/random_descriptors.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::vocabulary_test {
 namespace {
 
 using Nodes = std::vector<Vocabulary::Node>;
@@ -216,4 +216,4 @@ TEST(Vocabulary, MadeOfSpoiltNodesIsRefusedOrWhole) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::vocabulary_test

@@ -6,7 +6,7 @@
 #include "place/random_descriptors.h"
 #include "support/expect_error.h"
 
-namespace alidade {
+namespace alidade::word_matching_test {
 namespace {
 
 struct Pair {
@@ -110,4 +110,4 @@ TEST(WordMatchSettings, AreChecked) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::word_matching_test

@@ -8,7 +8,7 @@
 #include "alidade/base/random.h"
 #include "support/dense_world.h"
 
-namespace alidade {
+namespace alidade::cross_check_test {
 namespace {
 
 // Views of the world whose depth is the truth with noise, at every second pixel.
@@ -85,4 +85,4 @@ TEST_F(CrossCheckTest, TwoWitnessesAreNotEnoughWhenThreeAreAskedFor) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::cross_check_test

@@ -12,7 +12,7 @@
 #include "support/dense_world.h"
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::epipolar_search_test {
 namespace {
 
 struct Errors {
@@ -219,4 +219,4 @@ TEST(WithExposure, IsGainAndOffsetOfEveryPixel) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::epipolar_search_test

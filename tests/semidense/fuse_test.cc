@@ -8,7 +8,7 @@
 #include "alidade/base/random.h"
 #include "alidade/semidense/candidates.h"
 
-namespace alidade {
+namespace alidade::fuse_test {
 namespace {
 
 constexpr float kChi2 = 5.99f;
@@ -80,4 +80,4 @@ TEST(Candidates, AreSearchedWithinTheRange) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::fuse_test

@@ -8,7 +8,7 @@
 
 #include "support/texture.h"
 
-namespace alidade {
+namespace alidade::gradient_image_test {
 namespace {
 
 Camera SmallCamera() {
@@ -98,4 +98,4 @@ TEST(GradientImage, CarriesColours) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::gradient_image_test

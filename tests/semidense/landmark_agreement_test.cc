@@ -9,7 +9,7 @@
 
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::landmark_agreement_test {
 namespace {
 
 // A keyframe with depth one pixel beside each of its landmarks' keypoints.
@@ -68,4 +68,4 @@ TEST_F(LandmarkAgreement, DoesNotHoldByTooFewLandmarks) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::landmark_agreement_test

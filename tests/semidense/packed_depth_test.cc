@@ -6,7 +6,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::packed_depth_test {
 namespace {
 
 TEST(PackedDepth, LosesLittle) {
@@ -40,4 +40,4 @@ TEST(PackedDepth, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::packed_depth_test

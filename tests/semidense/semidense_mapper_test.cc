@@ -12,7 +12,7 @@
 #include "alidade/map/correction.h"
 #include "support/dense_world.h"
 
-namespace alidade {
+namespace alidade::semidense_mapper_test {
 namespace {
 
 struct Score {
@@ -296,4 +296,4 @@ TEST_F(SemiDenseMapperTest, ASensorsDepthIsFusedForComparison) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::semidense_mapper_test

@@ -7,7 +7,7 @@
 #include "alidade/base/parallel.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::smooth_test {
 namespace {
 
 constexpr float kChi2 = 5.99f;
@@ -91,4 +91,4 @@ TEST(Smooth, TakesNoiseAwayWithOneThreadOrThree) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::smooth_test

@@ -8,7 +8,7 @@
 
 #include "alidade/synth/recording.h"
 
-namespace alidade {
+namespace alidade::geometry_test {
 namespace {
 
 SynthSettings Small(const std::string& scene) {
@@ -156,4 +156,4 @@ TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::geometry_test

@@ -13,7 +13,7 @@
 #include "alidade/synth/sensor.h"
 #include "alidade/synth/statistics.h"
 
-namespace alidade {
+namespace alidade::recording_test {
 namespace {
 
 bool Same(const cv::Mat& a, const cv::Mat& b) {
@@ -184,4 +184,4 @@ TEST(SynthSettings, SayWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::recording_test

@@ -12,7 +12,7 @@
 #include "alidade/synth/recording.h"
 #include "alidade/synth/statistics.h"
 
-namespace alidade {
+namespace alidade::scenes_test {
 namespace {
 
 class Scenes : public testing::TestWithParam<std::string> {};
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(All, Scenes, testing::ValuesIn(SceneNames()),
                          [](const auto& tested) { return tested.param; });
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::scenes_test

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace alidade {
+namespace alidade::camera_clock_test {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(CameraClock, AfterARestartAnyTimeWillDo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::camera_clock_test

@@ -12,7 +12,7 @@
 #include "support/expect_error.h"
 #include "support/scripted_detector.h"
 
-namespace alidade {
+namespace alidade::detection_feed_test {
 namespace {
 
 using testing::HasSubstr;
@@ -256,4 +256,4 @@ TEST_F(ThreadedFeed, EndsWhileFramesAreOfferedAndWhileItRests) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::detection_feed_test

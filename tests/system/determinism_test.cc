@@ -8,7 +8,7 @@
 #include "alidade/synth/recording.h"
 #include "support/check_map.h"
 
-namespace alidade {
+namespace alidade::determinism_test {
 namespace {
 
 // Small pictures of a furnished room, rendered once for all tests.
@@ -114,4 +114,4 @@ TEST(ThreadedSchedule, FinishesAndTracks) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::determinism_test

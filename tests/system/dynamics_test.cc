@@ -17,7 +17,7 @@
 #include "support/scripted_detector.h"
 #include "support/walked_room.h"
 
-namespace alidade {
+namespace alidade::dynamics_test {
 namespace {
 
 constexpr int kAll = 80;        // frames; the first may have too few corners with depth
@@ -274,4 +274,4 @@ TEST(DynamicSlam, TimesAreToldForEachFrame) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::dynamics_test

@@ -8,7 +8,7 @@
 
 #include "alidade/io/trajectory.h"
 
-namespace alidade {
+namespace alidade::frame_log_test {
 namespace {
 
 class Dice {
@@ -288,4 +288,4 @@ TEST(FrameLog, AnotherThreadReadsWholeTrajectoriesBesideTheWriter) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::frame_log_test

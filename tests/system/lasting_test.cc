@@ -8,7 +8,7 @@
 #include "support/check_map.h"
 #include "support/walked_room.h"
 
-namespace alidade {
+namespace alidade::lasting_test {
 namespace {
 
 struct Held {
@@ -70,4 +70,4 @@ TEST(Lasting, WhatIsHeldFollowsWhatLives) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::lasting_test

@@ -10,7 +10,7 @@
 #include "alidade/synth/recording.h"
 #include "support/check_map.h"
 
-namespace alidade {
+namespace alidade::maps_test {
 namespace {
 
 // Frames of the path around the room, rendered when they are first asked for.
@@ -253,4 +253,4 @@ TEST(SavedMaps, LocalisingLeavesThemAsTheyAre) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::maps_test

@@ -5,7 +5,7 @@
 
 #include <stdexcept>
 
-namespace alidade {
+namespace alidade::stage_test {
 namespace {
 
 constexpr Schedule kAll[] = {Schedule::kInline, Schedule::kThread, Schedule::kBackground};
@@ -247,4 +247,4 @@ TEST(Stage, ThreeStagesThatMakeEachOtherRestComeToAnEnd) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::stage_test

@@ -11,7 +11,7 @@
 #include "alidade/slam.h"
 #include "alidade/synth/recording.h"
 
-namespace alidade {
+namespace alidade::time_test {
 namespace {
 
 // Frames of a furnished room at phone size, rendered when they are first asked for.
@@ -211,4 +211,4 @@ TEST_F(Time, DroppedFramesAreTrackedOn) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::time_test

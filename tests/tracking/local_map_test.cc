@@ -7,7 +7,7 @@
 
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::local_map_test {
 namespace {
 
 class LocalMapTest : public testing::Test {
@@ -108,4 +108,4 @@ TEST_F(LocalMapTest, DoesNotRememberTheCallBefore) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::local_map_test

@@ -7,7 +7,7 @@
 
 #include "support/synthetic_world.h"
 
-namespace alidade {
+namespace alidade::mono_start_test {
 namespace {
 
 constexpr SyntheticWorldSettings kWorld{.points = 900,
@@ -122,4 +122,4 @@ TEST(MonoStart, StartsTheSameWayTwice) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::mono_start_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace alidade {
+namespace alidade::motion_test {
 namespace {
 
 Se3 Turning() {  // along a bow
@@ -71,4 +71,4 @@ TEST(Motion, FollowsTheScaleOfTheMap) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::motion_test

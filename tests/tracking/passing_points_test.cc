@@ -9,7 +9,7 @@
 
 #include "support/vga_camera.h"
 
-namespace alidade {
+namespace alidade::passing_points_test {
 namespace {
 
 class PassingPointsTest : public testing::Test {
@@ -99,4 +99,4 @@ TEST_F(PassingPointsTest, AreTakenAnewWhenTheyDidNotAgreeAndWhenTheWorldMoved) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::passing_points_test

@@ -6,7 +6,7 @@
 
 #include "support/synthetic_map.h"
 
-namespace alidade {
+namespace alidade::tracker_test {
 namespace {
 
 double Metres(const Se3& a, const Se3& b) { return (a.Inverse().t - b.Inverse().t).norm(); }
@@ -228,4 +228,4 @@ INSTANTIATE_TEST_SUITE_P(Sensors, TrackerTest, testing::Bool(), [](const auto& s
 });
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::tracker_test

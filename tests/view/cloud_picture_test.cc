@@ -6,7 +6,7 @@
 
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace alidade::cloud_picture_test {
 namespace {
 
 const std::array<uint8_t, 3> kRed = {255, 0, 0}, kBlue = {0, 0, 255};  // red green blue
@@ -117,4 +117,4 @@ TEST(CloudPicture, OfNothingIsEmpty) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::cloud_picture_test

@@ -9,7 +9,7 @@
 
 #include "alidade/view/report.h"
 
-namespace alidade {
+namespace alidade::drawings_test {
 namespace {
 
 using testing::HasSubstr;
@@ -125,4 +125,4 @@ TEST(Base64, EncodesAsTheStandardsExamples) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::drawings_test

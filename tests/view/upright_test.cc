@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace alidade {
+namespace alidade::upright_test {
 namespace {
 
 constexpr double kDegree = 3.141592653589793 / 180;
@@ -45,4 +45,4 @@ TEST(Upright, WithoutAPathIsTheWorldsOwnCamera) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::upright_test

@@ -13,7 +13,7 @@ namespace alidade {
 namespace {
 
 constexpr int kNone = std::numeric_limits<int>::max();
-constexpr int kChunk = 128;  // rows of the distance matrix one thread does at a time
+constexpr int kRows = 128;  // of the distance matrix one thread does at a time
 
 struct Best {
   int index = -1, distance = kNone, second = kNone;
@@ -82,13 +82,13 @@ std::vector<IndexMatch> MatchSubsets(const Frame& a, std::span<const int> of_a, 
   for (int j = 0; j < count_b; ++j) packed_b[j] = b.descriptors[of_b[j]];
 
   std::vector<Best> best_a(of_a.size());
-  const int chunks = (count_a + kChunk - 1) / kChunk;
+  const int chunks = (count_a + kRows - 1) / kRows;
   std::vector<std::vector<Best>> best_b(chunks);
   const bool cross_check = settings.cross_check;
   ParallelFor(chunks, [&](int chunk) {
     std::vector<Best>& best_here = best_b[chunk];
     if (cross_check) best_here.resize(of_b.size());
-    for (int i = chunk * kChunk; i < std::min(count_a, (chunk + 1) * kChunk); ++i) {
+    for (int i = chunk * kRows; i < std::min(count_a, (chunk + 1) * kRows); ++i) {
       const Descriptor descriptor = a.descriptors[of_a[i]];
       Best best;
       for (int j = 0; j < count_b; ++j) {

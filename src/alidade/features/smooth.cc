@@ -8,18 +8,18 @@
 namespace alidade {
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kColumns = 16;
 
 // Calls step(x) for x = 0, 16, 32 ... so that all of [0, width) is covered and no block ends past
 // `width`; rest(x) for each column when the row is shorter than a block.
 template <typename Block, typename One>
 void ForEachBlock(int width, const Block& block, const One& one) {
-  if (width < kLanes) {
+  if (width < kColumns) {
     for (int x = 0; x < width; ++x) one(x);
     return;
   }
-  for (int x = 0; x < width - kLanes; x += kLanes) block(x);
-  block(width - kLanes);
+  for (int x = 0; x < width - kColumns; x += kColumns) block(x);
+  block(width - kColumns);
 }
 
 struct Wide {  // sixteen 16 bit numbers

@@ -21,7 +21,7 @@ constexpr int kWindow = 5;              // half side of the compared windows, pi
 constexpr int kSlide = 5;               // pixels of the level each way
 constexpr double kMinDisparity = 0.1;   // pixels: farther than bf / this is no measurement
 constexpr double kOutlier = 1.5 * 1.4;  // medians of the SAD
-constexpr int kChunk = 64;
+constexpr int kPairedAtATime = 64;
 
 // Right keypoints by the row they stand on, widened by the tolerance.
 std::vector<std::vector<int>> RowTable(const Frame& right, int rows) {
@@ -151,8 +151,8 @@ void MatchStereo(const Frame& right, const Camera& camera, Frame& left) {
   const double max_disparity = camera.fx;  // nothing nearer than the baseline is seen by both
   const int count = static_cast<int>(left.keypoints.size());
   std::vector<Disparity> found(left.keypoints.size());
-  ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
-    for (int i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
+  ParallelFor((count + kPairedAtATime - 1) / kPairedAtATime, [&](int chunk) {
+    for (int i = chunk * kPairedAtATime; i < std::min(count, (chunk + 1) * kPairedAtATime); ++i) {
       const Keypoint& k = left.keypoints[i];
       const int row = static_cast<int>(std::lround(k.y));
       if (row < 0 || row >= left.image.rows) continue;

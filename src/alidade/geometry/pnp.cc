@@ -6,11 +6,12 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
+#include "alidade/geometry/samples_needed.h"
 
 namespace alidade {
 namespace {
 
-struct Match {
+struct PointMatch {
   Eigen::Vector3d p_world;
   Eigen::Vector2d pixel;
   double inverse_squared;  // 1 / largest squared error, 1/px²
@@ -18,19 +19,11 @@ struct Match {
 };
 
 // 1 for a perfect match, down to 0 at the largest error and beyond, and behind the camera.
-double Gain(const Camera& camera, const Se3& T_camera_world, const Match& match) {
+double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& match) {
   const Eigen::Vector3d p = T_camera_world * match.p_world;
   if (!(p.z() > 0)) return 0;
   const double squared = (camera.Project(p) - match.pixel).squaredNorm() * match.inverse_squared;
   return squared < 1 ? 1 - squared : 0;
-}
-
-// Samples of three until one is free of outliers with this confidence (Fischler & Bolles 1981).
-double SamplesNeeded(double inlier_share, double confidence) {
-  const double good = inlier_share * inlier_share * inlier_share;
-  if (good <= 0) return INFINITY;
-  if (good >= 1) return 1;
-  return std::log(1 - confidence) / std::log1p(-good);
 }
 
 }  // namespace
@@ -55,7 +48,7 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
   }
   PnpResult result;
   result.inlier.assign(pixels.size(), false);
-  std::vector<Match> matches;
+  std::vector<PointMatch> matches;
   for (size_t i = 0; i < pixels.size(); ++i) {
     const double max_error = settings.max_error * (sigma_scale.empty() ? 1 : sigma_scale[i]);
     if (!p_world[i].allFinite() || !pixels[i].allFinite() || !(max_error > 0)) continue;
@@ -79,7 +72,7 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
     for (const Se3& pose : SolveP3p(points, rays)) {
       double score = 0;
       int inliers = 0;
-      for (const Match& match : matches) {
+      for (const PointMatch& match : matches) {
         const double gain = Gain(camera, pose, match);
         score += gain;
         inliers += gain > 0;
@@ -91,7 +84,7 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
       needed = SamplesNeeded(static_cast<double>(inliers) / count, settings.confidence);
     }
   }
-  for (const Match& match : matches) {
+  for (const PointMatch& match : matches) {
     result.inlier[match.index] = best_score > 0 && Gain(camera, result.T_camera_world, match) > 0;
   }
   result.success = result.inliers >= settings.min_inliers;

@@ -7,6 +7,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
 #include "alidade/geometry/alignment.h"
+#include "alidade/geometry/samples_needed.h"
 
 namespace alidade {
 namespace {
@@ -66,14 +67,6 @@ bool Align(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vecto
   } catch (const Error&) {
     return false;
   }
-}
-
-// Samples of three until one is free of outliers with this confidence (Fischler & Bolles 1981).
-double SamplesNeeded(double inlier_share, double confidence) {
-  const double good = inlier_share * inlier_share * inlier_share;
-  if (good <= 0) return INFINITY;
-  if (good >= 1) return 1;
-  return std::log(1 - confidence) / std::log1p(-good);
 }
 
 std::vector<Match> Usable(std::span<const Sim3Match> matches, double max_error) {

@@ -18,12 +18,12 @@
 namespace alidade {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kOneDegree = std::numbers::pi / 180;
 // Of the matches a motion explains, so many must be beyond what a camera that only turned explains.
 // On made-up scenes a turning camera leaves up to 0.08 for noise, moving ones 0.4 and more.
 constexpr double kMinShareBeyondRotation = 0.2;
 constexpr double kMaxDirectionSigma =
-    3 * kDegree;  // of the direction of motion, as left by the noise
+    3 * kOneDegree;  // of the direction of motion, as left by the noise
 
 // The 50th largest, or the smallest when there are fewer.
 double FiftiethLargest(std::vector<double> values) {
@@ -54,7 +54,7 @@ void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
     result.inlier[i] = true;
     result.p_a[i] = *p;
   }
-  result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kDegree;
+  result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kOneDegree;
 }
 
 // Whether a camera that only turned explains nearly all of the matches that `explained` picks.

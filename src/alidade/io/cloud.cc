@@ -19,7 +19,7 @@ void AppendLittleEndian(std::string& out, const Eigen::Vector3f& p) {
   for (float value : {p.x(), p.y(), p.z()}) AppendLittleEndian(out, std::bit_cast<uint32_t>(value));
 }
 
-std::ostringstream Text() {
+std::ostringstream FloatText() {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out.precision(9);  // enough to bring each float back
@@ -107,7 +107,7 @@ std::string BinaryPoints(const Cloud& cloud, Channels channels) {
 }
 
 std::string TextPoints(const Cloud& cloud, Channels channels) {
-  std::ostringstream out = Text();
+  std::ostringstream out = FloatText();
   std::array<float, 4> floats{};
   for (size_t i = 0; i < cloud.points.size(); ++i) {
     const Eigen::Vector3f& p = cloud.points[i];

@@ -55,7 +55,7 @@ void Check(const ColmapModel& model) {
   }
 }
 
-std::ostringstream Text() {
+std::ostringstream DoubleText() {
   std::ostringstream out;
   out.imbue(std::locale::classic());
   out.precision(17);  // enough to bring each double back
@@ -63,7 +63,7 @@ std::ostringstream Text() {
 }
 
 std::string CamerasText(const ColmapModel& model) {
-  std::ostringstream out = Text();
+  std::ostringstream out = DoubleText();
   const CameraModel camera = ModelOf(model.camera);
   out << "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
   out << "1 " << camera.name << ' ' << model.camera.width << ' ' << model.camera.height;
@@ -73,7 +73,7 @@ std::string CamerasText(const ColmapModel& model) {
 }
 
 std::string ImagesText(const ColmapModel& model) {
-  std::ostringstream out = Text();
+  std::ostringstream out = DoubleText();
   out << "# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
          "# POINTS2D[] as (X, Y, POINT3D_ID)\n";
   for (size_t i = 0; i < model.images.size(); ++i) {
@@ -95,7 +95,7 @@ std::string ImagesText(const ColmapModel& model) {
 }
 
 std::string PointsText(const ColmapModel& model) {
-  std::ostringstream out = Text();
+  std::ostringstream out = DoubleText();
   out << "# POINT3D_ID, X, Y, Z, R, G, B, ERROR, TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
   for (size_t i = 0; i < model.points.size(); ++i) {
     const ColmapModel::Point& point = model.points[i];

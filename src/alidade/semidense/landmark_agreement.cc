@@ -11,7 +11,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kFewest = 10;  // landmarks that are a verdict
-constexpr int kRadius = 2;      // pixels: a corner need not lie on the edge itself
+constexpr int kNear = 2;        // pixels: a corner need not lie on the edge itself
 
 }  // namespace
 
@@ -35,8 +35,8 @@ bool AgreesWithLandmarks(const MapSnapshot& map, const KeyFrame& keyframe,
     const int x = static_cast<int>(std::lround(keypoint.x));
     const int y = static_cast<int>(std::lround(keypoint.y));
     double least = -1;
-    for (int v = std::max(0, y - kRadius); v <= std::min(camera.height - 1, y + kRadius); ++v) {
-      for (int u = std::max(0, x - kRadius); u <= std::min(camera.width - 1, x + kRadius); ++u) {
+    for (int v = std::max(0, y - kNear); v <= std::min(camera.height - 1, y + kNear); ++v) {
+      for (int u = std::max(0, x - kNear); u <= std::min(camera.width - 1, x + kNear); ++u) {
         if (inverse(v, u) <= 0) continue;
         const double difference = std::abs(inverse(v, u) - 1 / z);
         if (least < 0 || difference < least) least = difference;

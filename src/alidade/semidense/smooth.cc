@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-constexpr int kEnough = 2;  // neighbours that agree
+constexpr int kEnoughAgree = 2;  // neighbours that agree
 
 // The neighbours in the 3x3 window that are known.
 class Neighbours {
@@ -40,7 +40,7 @@ class Neighbours {
     }
     // Neighbours share much of what they were made of: together they are not more certain than
     // the best of them.
-    return agree < kEnough ? Hypothesis{} : Hypothesis{sum / weight, sigma};
+    return agree < kEnoughAgree ? Hypothesis{} : Hypothesis{sum / weight, sigma};
   }
   Hypothesis Grown(float chi2) const {
     Hypothesis best;
