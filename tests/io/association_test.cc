@@ -49,6 +49,29 @@ TEST(AssociateByTime, AgreesWithItsDefinitionOnRandomLists) {
   }
 }
 
+// Times of few values: many pairs are equally close, and of those the first comes first.
+TEST(AssociateByTime, AgreesWithItsDefinitionWhereTimesAreEqual) {
+  Random random(4);
+  for (int round = 0; round < 50; ++round) {
+    std::vector<double> a(30), b(40);
+    for (double& t : a) t = random.Below(20);
+    for (double& t : b) t = random.Below(20);
+    for (const double max_dt : {0.0, 1.0, 2.5, 100.0})
+      EXPECT_EQ(AssociateByTime(a, b, max_dt), AssociateSlowly(a, b, max_dt)) << max_dt;
+  }
+}
+
+// Every one of the first list is near every one of the second: all pairs would be 10^11.
+TEST(AssociateByTime, ManyTimesThatLieCloseTogetherNeedNoMoreThanTheirNumber) {
+  constexpr int kMany = 300000;
+  std::vector<double> a(kMany), b(kMany);
+  for (int i = 0; i < kMany; ++i) {
+    a[static_cast<size_t>(i)] = 1e-9 * i;
+    b[static_cast<size_t>(i)] = 0.01 + 1e-9 * (i / 3);
+  }
+  EXPECT_EQ(AssociateByTime(a, b, 0.02).size(), static_cast<size_t>(kMany));
+}
+
 TEST(AssociateByTime, NothingMatchesNanOrNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> a = {nan, 1.0}, b = {nan, 1.0};

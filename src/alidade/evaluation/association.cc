@@ -4,35 +4,15 @@
 #include <cmath>
 #include <tuple>
 
+#include "alidade/io/association.h"
+
 namespace alidade {
 namespace {
 
 std::vector<StampPair> BestFirst(std::span<const double> truth, std::span<const double> estimate,
                                  double max_dt) {
-  struct Candidate {
-    double difference;
-    int truth, estimate;
-  };
-  std::vector<Candidate> candidates;
-  for (int e = 0; e < static_cast<int>(estimate.size()); ++e) {
-    const auto first = std::lower_bound(truth.begin(), truth.end(), estimate[e] - max_dt);
-    for (int t = static_cast<int>(first - truth.begin()); t < static_cast<int>(truth.size()); ++t) {
-      if (truth[t] > estimate[e] + max_dt) break;
-      const double difference = std::abs(truth[t] - estimate[e]);
-      if (difference < max_dt) candidates.push_back({difference, t, e});
-    }
-  }
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.difference, a.truth, a.estimate) <
-           std::tie(b.difference, b.truth, b.estimate);
-  });
-  std::vector<bool> truth_taken(truth.size()), estimate_taken(estimate.size());
   std::vector<StampPair> pairs;
-  for (const Candidate& c : candidates) {
-    if (truth_taken[c.truth] || estimate_taken[c.estimate]) continue;
-    truth_taken[c.truth] = estimate_taken[c.estimate] = true;
-    pairs.push_back({c.truth, c.estimate});
-  }
+  for (const auto& [t, e] : AssociateByTime(truth, estimate, max_dt)) pairs.push_back({t, e});
   return pairs;
 }
 
