@@ -19,6 +19,12 @@ namespace alidade {
 // from the slip.
 void CheckNames(const CLI::App& app, const std::vector<std::string>& arguments);
 
+// More threads than cores only wait for each other, and each has 8 MB of stack to its name; no
+// machine this is meant for has as many cores.
+inline constexpr int kMostThreads = 256;
+// Of --threads: throws Error (usage) for a number that cannot be.
+void CheckThreads(int threads);
+
 // The value a word stands for, e.g. Choice("--align", word, {{"se3", kSe3}, {"sim3", kSim3}}).
 template <typename T>
 T Choice(const std::string& option, const std::string& word,

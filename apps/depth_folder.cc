@@ -23,7 +23,7 @@ using json = nlohmann::ordered_json;
 
 // stats.json as far as it can be read; null else.
 json ReadStats(const std::string& path) {
-  if (!std::filesystem::is_regular_file(path)) return nullptr;
+  if (!IsFile(path)) return nullptr;
   return json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
 }
 

@@ -3,14 +3,15 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "alidade/evaluation/ate.h"
 #include "alidade/evaluation/rpe.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "arguments.h"
 #include "commands.h"
@@ -36,9 +37,9 @@ Alignment ParseAlignment(const std::string& word) {
 
 // The span of the recording as `run` noted it beside the trajectory it wrote.
 std::optional<TimeSpan> SpanFromStats(const std::filesystem::path& stats_path) {
-  std::ifstream file(stats_path);
-  if (!file) return std::nullopt;
-  const json stats = json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!IsFile(stats_path.string())) return std::nullopt;
+  const json stats =
+      json::parse(ReadFile(stats_path.string()), nullptr, /*allow_exceptions=*/false);
   if (!stats.is_object() || !stats.contains("span")) return std::nullopt;
   const json& span = stats["span"];
   if (!span.is_array() || span.size() != 2 || !span[0].is_number() || !span[1].is_number()) {
@@ -49,7 +50,8 @@ std::optional<TimeSpan> SpanFromStats(const std::filesystem::path& stats_path) {
 
 // The span of the images listed beside the truth, in a TUM folder.
 std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path) {
-  std::ifstream file(list_path);
+  if (!IsFile(list_path.string())) return std::nullopt;
+  std::istringstream file(ReadFile(list_path.string()));
   std::optional<TimeSpan> span;
   for (std::string line; std::getline(file, line);) {
     char* end = nullptr;
@@ -66,7 +68,7 @@ std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path
 std::optional<TimeSpan> SourceSpan(const EvaluateOptions& options) {
   const auto beside = [](const std::string& path, const char* name) {
     const std::filesystem::path folder(path);
-    return (std::filesystem::is_directory(folder) ? folder : folder.parent_path()) / name;
+    return (IsFolder(path) ? folder : folder.parent_path()) / name;
   };
   if (const auto span = SpanFromStats(beside(options.estimate, "stats.json"))) return span;
   return SpanFromImageList(beside(options.truth, "rgb.txt"));

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ constexpr int kBugStatus = 70;  // EX_SOFTWARE
 
 int Complain(std::string message, int status) {
   for (char& c : message) {
-    if (c == '\n' || c == '\r') c = ' ';
+    // One line, and nothing in it that a terminal obeys: names and values are quoted as found.
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';
   }
   std::fprintf(stderr, "alidade: %s\n", message.c_str());
   return status;
@@ -98,6 +100,8 @@ int main(int argc, char** argv) {
     return Run(argc, argv);
   } catch (const alidade::Error& error) {
     return Complain(error.what(), static_cast<int>(error.kind()));
+  } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
+    return Complain(error.what(), static_cast<int>(alidade::ErrorKind::kInput));
   } catch (const std::exception& error) {
     return Complain(std::string("a bug of ours, please report it: ") + error.what(), kBugStatus);
   } catch (...) {

@@ -107,7 +107,7 @@ void CheckRunOptions(const RunOptions& options) {
   }
   Refuse(options.viewer.has_value(), "--viewer");
   Refuse(options.host.has_value(), "--host");
-  if (options.threads < 0) ThrowUsage("--threads must not be negative");
+  CheckThreads(options.threads);
   if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
   if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
 }
@@ -168,8 +168,10 @@ Rate RateFrom(const RunOptions& options, bool threaded) {
   if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
   if (*options.rate == "max") return {};
   const std::optional<double> fps = ParseNumber(*options.rate);
-  if (!fps || !(*fps > 0 && *fps <= 1e6)) {
-    ThrowUsage("--rate is realtime, max or frames per second, not '" + *options.rate + "'");
+  constexpr double kSlowest = 1e-3;  // a frame in 17 minutes; a slip of the keys, below
+  if (!fps || !(*fps >= kSlowest && *fps <= 1e6)) {
+    ThrowUsage("--rate is realtime, max or frames per second (0.001 to 1000000), not '" +
+               *options.rate + "'");
   }
   return {Rate::Kind::kFixed, *fps};
 }

@@ -18,7 +18,7 @@ std::string SavedMapPath(const std::string& path) {
 
 SavedMap ReadSavedMap(const std::string& path) {
   const std::string file = SavedMapPath(path);
-  const std::string bytes = ReadFile(file);
+  const std::string bytes = ReadFile(file, kMostMapBytes);
   try {
     return DecodeMap(bytes);
   } catch (const Error& error) {

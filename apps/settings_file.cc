@@ -34,9 +34,11 @@ void Apply(const std::string& path, const YAML::Node& map, const std::string& pr
 }  // namespace
 
 void ApplySettingsFile(const std::string& path, SlamSettings& settings) {
-  const std::string text = ReadFile(path);
-  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return;
-  Apply(path, YamlFile(path).root(), "", settings);
+  ApplySettingsText(ReadFile(path, kMostConfigBytes), path, settings);
+}
+
+void ApplySettingsText(const std::string& text, const std::string& name, SlamSettings& settings) {
+  Apply(name, YamlFile(text, name).root(), "", settings);
 }
 
 }  // namespace alidade

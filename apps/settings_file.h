@@ -11,5 +11,7 @@ namespace alidade {
 // (`tracker.min_tracked: 30`). Throws Error with file:line: kInput when it cannot be read or is no
 // YAML, kUsage for a name or value that cannot be.
 void ApplySettingsFile(const std::string& path, SlamSettings& settings);
+// The same of a file's text; `name` is what it is called in errors.
+void ApplySettingsText(const std::string& text, const std::string& name, SlamSettings& settings);
 
 }  // namespace alidade

@@ -85,6 +85,7 @@ int RenderAll(SynthArguments arguments) {
   else
     settings.frames = natural;
   settings.Check();
+  CheckThreads(arguments.threads);
   SetThreadCount(arguments.threads);
   if (format == SynthFormat::kKitti && settings.distortion) {
     ThrowUsage(

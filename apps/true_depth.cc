@@ -40,7 +40,7 @@ std::string SynthSourceOf(const std::string& marker) {
 TrueDepthSource::TrueDepthSource(const std::string& sequence, std::optional<Sensor> sensor,
                                  const std::optional<std::string>& camera_file) {
   const std::string marker = sequence + "/" + kSynthMarker;
-  const bool on_disk = fs::is_regular_file(marker);
+  const bool on_disk = IsFile(marker);
   rendered_ = on_disk || IsSynthSource(sequence);
   SourceOptions options;
   options.camera_file = camera_file;
@@ -49,7 +49,7 @@ TrueDepthSource::TrueDepthSource(const std::string& sequence, std::optional<Sens
   source_ = OpenAnySource(on_disk ? SynthSourceOf(marker) : sequence, options);
   if (!rendered_ && source_->Info().sensor != Sensor::kRgbd)
     ThrowInput(sequence + " has no depth to compare with");
-  if (on_disk && fs::is_directory(sequence + "/mav0")) time_offset_ = -kSynthEurocStart;
+  if (on_disk && IsFolder(sequence + "/mav0")) time_offset_ = -kSynthEurocStart;
   finder_ = std::make_unique<FrameFinder>(*source_);
 }
 

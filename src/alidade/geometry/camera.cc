@@ -6,14 +6,16 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 
 namespace alidade {
 
 void Camera::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowInput(std::string("camera: ") + what);
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) ThrowInput("camera: " + what);
   };
   require(width > 0 && height > 0, "width and height must be positive");
+  require(IsPictureSize(width, height), TooLargeText(width, height));
   require(std::isfinite(fx) && std::isfinite(fy) && fx > 0 && fy > 0,
           "fx and fy must be positive numbers");
   require(std::isfinite(cx) && std::isfinite(cy), "cx and cy must be numbers");

@@ -1,6 +1,7 @@
 #include "alidade/io/calibration.h"
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 
 namespace alidade {
 namespace {
@@ -18,6 +19,11 @@ Camera Unrectified(const Calibration& calibration) {
   return camera;
 }
 
+// Before there are maps of that size.
+void CheckSize(const RawCamera& raw) {
+  if (!IsPictureSize(raw.width, raw.height)) ThrowInput(TooLargeText(raw.width, raw.height));
+}
+
 bool Distorted(const RawCamera& raw) {
   return raw.lens == Lens::kFisheye || raw.distortion != std::array<double, 5>{};
 }
@@ -25,6 +31,8 @@ bool Distorted(const RawCamera& raw) {
 }  // namespace
 
 ImagePreparation::ImagePreparation(const Calibration& calibration, Sensor sensor) try {
+  CheckSize(calibration.left);
+  if (calibration.right) CheckSize(*calibration.right);
   if (sensor == Sensor::kStereo && (calibration.right || Distorted(calibration.left))) {
     // Only a baseline: two lenses of one kind, side by side.
     const RawCamera right = calibration.right.value_or(calibration.left);

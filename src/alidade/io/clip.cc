@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -65,8 +66,10 @@ std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first
     if (!pending)
       ThrowInput("--first " + std::to_string(first) + " lies past the end of the recording");
   }
-  return std::make_unique<ClippedSource>(std::move(source), first, last < 0 ? -1 : last - first + 1,
-                                         std::move(pending));
+  // The last number there is, as good as the end, has none after it.
+  const bool to_the_end = last < 0 || last == std::numeric_limits<int>::max();
+  return std::make_unique<ClippedSource>(std::move(source), first,
+                                         to_the_end ? -1 : last - first + 1, std::move(pending));
 }
 
 }  // namespace alidade

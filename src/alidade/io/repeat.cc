@@ -1,5 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -93,6 +96,14 @@ class RepeatedSource : public FrameSource {
 std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int times) {
   if (times < 0) ThrowUsage("--repeat must not be negative");
   if (times == 0) return source;
+  // Frames are numbered: 2 · times · frames must be a number. A video does not always say how many
+  // frames it has: then a day of it.
+  constexpr int64_t kUnknown = 30 * 86400;
+  const int64_t frames = source->Info().frames > 0 ? source->Info().frames : kUnknown;
+  const int64_t most = (std::numeric_limits<int>::max() - 1) / (2 * frames);
+  if (times > most)
+    ThrowUsage("--repeat " + std::to_string(times) + " of this recording is more frames than " +
+               "can be counted: at most " + std::to_string(most));
   return std::make_unique<RepeatedSource>(std::move(source), times);
 }
 

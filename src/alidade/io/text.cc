@@ -5,6 +5,8 @@
 
 #include <string>
 
+#include "alidade/base/error.h"
+
 namespace alidade {
 namespace {
 
@@ -17,6 +19,14 @@ std::string_view Trimmed(std::string_view text) {
 }
 
 }  // namespace
+
+void CheckIsText(std::string_view bytes, const std::string& name) {
+  const std::string_view mark = bytes.substr(0, 2);
+  if (mark == "\xff\xfe" || mark == "\xfe\xff")
+    ThrowInput(name + " is written in UTF-16: save it as UTF-8 or plain ASCII");
+  if (bytes.find('\0') != std::string_view::npos)
+    ThrowInput(name + " is no text: there are bytes of 0 in it");
+}
 
 std::vector<TextLine> ContentLines(std::string_view text) {
   if (text.substr(0, 3) == "\xef\xbb\xbf")

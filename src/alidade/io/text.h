@@ -2,10 +2,15 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace alidade {
+
+// Throws Error (input), naming the file, when the bytes are none of a text we can read: UTF-16 as
+// some editors write it, or no text at all (bytes of 0 in it).
+void CheckIsText(std::string_view bytes, const std::string& name);
 
 struct TextLine {
   int number;             // from 1, for errors that say file:line

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "alidade/base/log.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/yaml.h"
 
 namespace alidade {
@@ -45,6 +46,7 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
   raw.lens = name == "pinhole" ? Lens::kPinhole : Lens::kFisheye;
   raw.width = file.PositiveInteger(file.Need(node, "width"), "width");
   raw.height = file.PositiveInteger(file.Need(node, "height"), "height");
+  file.CheckSize(node["width"], raw.width, raw.height);
   raw.fx = Positive(file, node, "fx");
   raw.fy = Positive(file, node, "fy");
   raw.cx = file.Number(file.Need(node, "cx"), "cx");
@@ -65,11 +67,15 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
 }  // namespace
 
 Calibration ReadCameraFile(const std::string& path) {
-  const YamlFile file(path);
+  return ParseCameraFile(ReadFile(path, kMostConfigBytes), path);
+}
+
+Calibration ParseCameraFile(const std::string& text, const std::string& name) {
+  const YamlFile file(text, name);
   const YAML::Node& root = file.root();
   WarnOfUnknownKeys(file, root, false);
   Calibration calibration;
-  calibration.origin = path;
+  calibration.origin = name;
   calibration.left = ReadRawCamera(file, root);
   if (root["fps"]) calibration.fps = Positive(file, root, "fps");
   if (const YAML::Node factor = root["depth_factor"]) {

@@ -16,6 +16,8 @@ inline constexpr double kDefaultFovDegrees =
 // `right: {width …, T_left_right: 4x4}`. Throws Error with file:line for what is missing, unknown
 // or impossible.
 Calibration ReadCameraFile(const std::string& path);
+// The same of a file's text; `name` is what it is called in errors.
+Calibration ParseCameraFile(const std::string& text, const std::string& name);
 
 // A pinhole of that field of view, and nothing else known.
 Calibration GuessedCalibration(int width, int height, double fov_degrees);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/yaml.h"
 
 namespace alidade {
@@ -34,7 +35,11 @@ Lens LensOf(const YamlFile& file) {
 }  // namespace
 
 EurocCamera ReadEurocCamera(const std::string& path) {
-  const YamlFile file(path);
+  return ParseEurocCamera(ReadFile(path, kMostConfigBytes), path);
+}
+
+EurocCamera ParseEurocCamera(const std::string& text, const std::string& name) {
+  const YamlFile file(text, name);
   EurocCamera camera;
   camera.raw.lens = LensOf(file);
   const YAML::Node resolution = file.Need(file.root(), "resolution");
@@ -42,6 +47,7 @@ EurocCamera ReadEurocCamera(const std::string& path) {
     file.Fail(resolution, "`resolution` must be [width, height]");
   camera.raw.width = file.PositiveInteger(resolution[0], "resolution");
   camera.raw.height = file.PositiveInteger(resolution[1], "resolution");
+  file.CheckSize(resolution, camera.raw.width, camera.raw.height);
   const auto intrinsics = ListOf(file, "intrinsics", 4, 4);
   camera.raw.fx = intrinsics[0];
   camera.raw.fy = intrinsics[1];

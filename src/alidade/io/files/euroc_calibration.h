@@ -17,5 +17,6 @@ struct EurocCamera {
 // Throws Error with file:line. distortion_model: radial-tangential (4 or 5 coefficients) or
 // equidistant (4).
 EurocCamera ReadEurocCamera(const std::string& path);
+EurocCamera ParseEurocCamera(const std::string& text, const std::string& name);
 
 }  // namespace alidade

@@ -1,21 +1,19 @@
 #include "alidade/io/files/euroc_recording.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "alidade/base/log.h"
 #include "alidade/io/files/euroc_calibration.h"
+#include "alidade/io/files/file.h"
 
 namespace alidade {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kMaxPairDelay =
     0.001;  // seconds: the cameras are triggered together, stamps may differ by microseconds
 
 std::string Mav0Of(const std::string& folder) {
-  return fs::is_directory(folder + "/mav0") ? folder + "/mav0" : folder;
+  return IsFolder(folder + "/mav0") ? folder + "/mav0" : folder;
 }
 
 std::vector<StampedName> ListOf(const std::string& camera) {
@@ -51,19 +49,17 @@ Calibration CalibrationOf(const std::string& mav0, bool stereo) {
 
 }  // namespace
 
-bool IsEurocFolder(const std::string& folder) {
-  return fs::is_regular_file(Mav0Of(folder) + "/cam0/data.csv");
-}
+bool IsEurocFolder(const std::string& folder) { return IsThere(Mav0Of(folder) + "/cam0/data.csv"); }
 
 Recording ReadEurocRecording(const std::string& folder) {
   const std::string mav0 = Mav0Of(folder);
   Recording recording;
   recording.kind = "euroc";
   recording.frames = FramesOf(ListOf(mav0 + "/cam0"), mav0 + "/cam0/data");
-  if (fs::is_regular_file(mav0 + "/cam1/data.csv")) AddRight(recording, mav0 + "/cam1");
-  if (fs::is_regular_file(mav0 + "/cam0/sensor.yaml")) {
+  if (IsThere(mav0 + "/cam1/data.csv")) AddRight(recording, mav0 + "/cam1");
+  if (IsThere(mav0 + "/cam0/sensor.yaml")) {
     recording.calibration =
-        CalibrationOf(mav0, recording.has_right && fs::is_regular_file(mav0 + "/cam1/sensor.yaml"));
+        CalibrationOf(mav0, recording.has_right && IsThere(mav0 + "/cam1/sensor.yaml"));
   }
   return recording;
 }

@@ -58,14 +58,40 @@ void SyncFolderOf(const std::string& path) {
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
+// A pipe that was open when the process began: somebody is at its other end.
+bool WasHandedOver(const std::string& path) {
+  return path.rfind("/dev/fd/", 0) == 0 || path.rfind("/proc/self/fd/", 0) == 0 ||
+         path == "/dev/stdin";
+}
+
+void CheckEnds(const std::string& path, const struct stat& status) {
+  const mode_t mode = status.st_mode;
+  if (S_ISREG(mode) || (S_ISFIFO(mode) && WasHandedOver(path))) return;
+  ThrowInput("cannot read " + path + ": it is " +
+             (S_ISDIR(mode)    ? "a folder"
+              : S_ISFIFO(mode) ? "a pipe"
+              : S_ISSOCK(mode) ? "a socket"
+                               : "a device") +
+             ", where a file is needed");
+}
+
 }  // namespace
 
-std::string ReadFile(const std::string& path) {
+std::string ReadFile(const std::string& path, size_t most_bytes) {
   const auto fail = [&path] { ThrowInput("cannot read " + path + ": " + std::strerror(errno)); };
-  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (fd.get() < 0) fail();
   struct stat status {};
-  if (::fstat(fd.get(), &status) != 0) fail();
+  if (::stat(path.c_str(), &status) != 0) fail();
+  CheckEnds(path, status);  // before it is opened: that alone waits for a pipe's writer
+  const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  if (fd.get() < 0 || ::fstat(fd.get(), &status) != 0) fail();
+  CheckEnds(path, status);                                      // it may be another by now
+  if (S_ISFIFO(status.st_mode)) ::fcntl(fd.get(), F_SETFL, 0);  // its writer may take his time
+  const auto check_size = [&](size_t size) {
+    if (size <= most_bytes) return;
+    ThrowInput(path + " is longer than " + std::to_string(most_bytes >> 20) +
+               " MB: it cannot be what it is taken for");
+  };
+  check_size(static_cast<size_t>(status.st_size));
   std::string bytes;
   // The size is a hint: pipes and /proc have none.
   bytes.resize(static_cast<size_t>(status.st_size > 0 ? status.st_size : 0) + 1);
@@ -77,9 +103,42 @@ std::string ReadFile(const std::string& path) {
     if (got < 0) fail();
     if (got == 0) break;
     used += static_cast<size_t>(got);
+    check_size(used);
   }
   bytes.resize(used);
   return bytes;
+}
+
+void CheckIsFile(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0)
+    ThrowInput("cannot read " + path + ": " + std::strerror(errno));
+  CheckEnds(path, status);
+}
+
+bool IsFile(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode);
+}
+
+bool IsFolder(const std::string& path) {
+  struct stat status {};
+  return ::stat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode);
+}
+
+bool IsThere(const std::string& path) {
+  struct stat status {};
+  return ::lstat(path.c_str(), &status) == 0;
+}
+
+std::vector<std::string> NamesIn(const std::string& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  std::filesystem::directory_iterator entry(folder, error);
+  for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  if (error) ThrowInput("cannot read the folder " + folder + ": " + error.message());
+  return names;
 }
 
 std::string TemporaryBeside(const std::string& path) {
@@ -112,10 +171,25 @@ std::vector<std::string> StaleTemporaries(const std::string& path) {
   return stale;
 }
 
+namespace {
+
+// Renaming onto a pipe or a device would take it away from everybody (root can do that to
+// /dev/null).
+void CheckReplaceable(const std::string& path) {
+  struct stat status {};
+  const bool stream =
+      ::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
+  if (stream || WasHandedOver(path) || path == "/dev/stdout" || path == "/dev/stderr")
+    ThrowInput("cannot write " + path + ": it is a pipe, a socket or a device, not a file");
+}
+
+}  // namespace
+
 void AtomicWriteFile(const std::string& path, std::string_view bytes, Sync sync) {
   if (sync == Sync::kYes) {
     for (const std::string& left : StaleTemporaries(path)) ::unlink(left.c_str());
   }
+  CheckReplaceable(path);
   std::string temporary = TemporaryBeside(path);
   const auto fail = [&path] {
     const int error = errno;

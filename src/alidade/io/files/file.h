@@ -1,14 +1,36 @@
 // Whole files in and out.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace alidade {
 
-// Throws Error (input) when it cannot be read.
-std::string ReadFile(const std::string& path);
+// Where a file ends at the latest, bytes: what is longer is no file of that kind, or was made to
+// eat memory, and is refused before it is read.
+inline constexpr size_t kMostFileBytes = size_t{1} << 29;    // a list of ten million frames; a
+                                                             // picture of kMostPixels, 8 bytes each
+inline constexpr size_t kMostConfigBytes = size_t{1} << 20;  // camera and settings: a few hundred
+inline constexpr size_t kMostMapBytes = (size_t{1} << 31) - 1;  // FlatBuffers holds no more
+
+// Throws Error (input) when it cannot be read, is longer than `most_bytes`, or is no file but a
+// folder, a pipe, a socket or a device (links are followed): those have no end, or none soon. Pipes
+// the process was started with are read all the same, as a shell's <(command) has them.
+std::string ReadFile(const std::string& path, size_t most_bytes = kMostFileBytes);
+
+// Throws Error (input) for what ReadFile() would not read because it is no file, or not there: for
+// those who hand a path to others.
+void CheckIsFile(const std::string& path);
+
+// What is there, links followed. False as well when that cannot be told: no permission on the way,
+// links in a circle, a name too long.
+bool IsFile(const std::string& path);
+bool IsFolder(const std::string& path);
+bool IsThere(const std::string& path);  // whatever it is, even a link that leads nowhere
+// What is in a folder, unsorted. Throws Error (input) when it cannot be read.
+std::vector<std::string> NamesIn(const std::string& folder);
 
 enum class Sync {
   kYes,  // on the disk before it gets its name: survives a power cut

@@ -1,8 +1,7 @@
 #include "alidade/io/files/folder_recording.h"
 
-#include <filesystem>
-
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/image_list.h"
 #include "alidade/io/trajectory.h"
 
@@ -14,7 +13,7 @@ Recording ReadFolderRecording(const std::string& folder, std::optional<double> f
   Recording recording;
   recording.kind = "images";
   const std::string camera = folder + "/camera.yaml";
-  if (std::filesystem::is_regular_file(camera)) recording.calibration = ReadCameraFile(camera);
+  if (IsThere(camera)) recording.calibration = ReadCameraFile(camera);
   const double rate = fps ? *fps : recording.calibration ? recording.calibration->fps : 30;
   const auto images = ImagesIn(folder);
   for (size_t i = 0; i < images.size(); ++i) {

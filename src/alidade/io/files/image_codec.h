@@ -9,9 +9,6 @@ namespace alidade {
 
 enum class ImageUse { kGray, kColor, kDepth, kGrayAndColor };
 
-// A damaged header may claim any size; no camera has more pixels than this.
-inline constexpr double kMostPixels = 2e8;
-
 struct DecodedImage {
   cv::Mat image;        // CV_8UC1, CV_8UC3 or, for depth, what is stored
   std::string problem;  // not empty: why there is no image

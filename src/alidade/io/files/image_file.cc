@@ -5,6 +5,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/io/files/media.h"
@@ -63,6 +64,8 @@ cv::Size ReadImageSize(const std::string& path) {
     size = decoded.image.size();
   }
   if (size.empty()) ThrowInput(path + " has a damaged header");
+  if (!IsPictureSize(size.width, size.height))
+    ThrowInput(path + " cannot be used: " + TooLargeText(size.width, size.height));
   return size;
 }
 

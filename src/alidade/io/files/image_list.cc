@@ -1,8 +1,8 @@
 #include "alidade/io/files/image_list.h"
 
 #include <algorithm>
-#include <filesystem>
 
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
 
 namespace alidade {
@@ -39,9 +39,9 @@ bool NaturallyBefore(const std::string& a, const std::string& b) {
 
 std::vector<std::string> ImagesIn(const std::string& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name.front() != '.' && HasImageEnding(name) && entry.is_regular_file())
+  // What is no file is told when it is its turn to be read.
+  for (const std::string& name : NamesIn(folder)) {
+    if (name.front() != '.' && HasImageEnding(name) && !IsFolder(folder + "/" + name))
       names.push_back(name);
   }
   std::sort(names.begin(), names.end(), NaturallyBefore);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/image_codec.h"
 
 namespace alidade {
@@ -123,8 +124,8 @@ DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
     return DecodedImage{{}, std::string("is a damaged JPEG: ") + decoder.errors.message};
   };
   if (!ReadHeader(decoder.info, decoder.errors, bytes)) return failed();
-  if (1.0 * decoder.info.image_width * decoder.info.image_height > kMostPixels)
-    return {{}, "is too large"};
+  const int64_t width = decoder.info.image_width, height = decoder.info.image_height;
+  if (!IsPictureSize(width, height)) return {{}, "cannot be used: " + TooLargeText(width, height)};
   const J_COLOR_SPACE stored = decoder.info.jpeg_color_space;
   const bool both = use == ImageUse::kGrayAndColor && stored != JCS_GRAYSCALE;
   if (both && stored != JCS_YCbCr) {  // rare: without luma of its own

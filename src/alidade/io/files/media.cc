@@ -1,7 +1,10 @@
 #include "alidade/io/files/media.h"
 
+#include <cstdlib>
+
 #include "alidade/base/error.h"
 #include "alidade/base/module/load_module.h"
+#include "alidade/geometry/picture_size.h"
 
 namespace alidade {
 namespace {
@@ -13,6 +16,8 @@ struct Module {
 };
 
 Module LoadMediaModule() {
+  // OpenCV's own limit is a thousand million pixels. It reads this while it is loaded.
+  setenv("OPENCV_IO_MAX_IMAGE_PIXELS", std::to_string(kMostPixels).c_str(), 0);
   const LoadedModule loaded =
       LoadModule(kMediaModuleFile, {"alidade_media_decode", "alidade_media_open"});
   if (loaded.symbols.empty()) return {nullptr, nullptr, loaded.problem};

@@ -8,6 +8,7 @@
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/euroc_recording.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/folder_recording.h"
 #include "alidade/io/files/kitti_recording.h"
 #include "alidade/io/files/recording.h"
@@ -30,7 +31,7 @@ Recording ReadRecording(const std::string& folder, const SourceOptions& options)
                                            ? std::optional(ReadCameraFile(*options.camera_file).fps)
                                            : std::nullopt);
   }
-  if (fs::is_empty(folder)) ThrowInput(folder + " is an empty folder");
+  if (NamesIn(folder).empty()) ThrowInput(folder + " is an empty folder");
   ThrowInput(folder +
              " is no recording: known are TUM RGB-D folders (rgb.txt), EuRoC (mav0/), KITTI "
              "odometry (image_0/ and "
@@ -54,7 +55,8 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
 
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
-  recording.name = fs::weakly_canonical(path).filename().string();
+  std::error_code error;
+  recording.name = fs::weakly_canonical(path, error).filename().string();
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed] = ChooseCalibration(recording.calibration, size, options);
@@ -89,10 +91,13 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
   std::unique_ptr<FrameSource> source;
   if (const auto number = LiveCameraNumber(path)) {
     source = OpenLiveCameraSource(*number, options);
-  } else if (!fs::exists(path)) {
+  } else if (IsFolder(path)) {
+    source = OpenRecording(path, options);
+  } else if (!IsThere(path)) {
     ThrowInput("there is no file or folder " + path);
   } else {
-    source = fs::is_directory(path) ? OpenRecording(path, options) : OpenVideoSource(path, options);
+    CheckIsFile(path);  // else FFmpeg would wait for a pipe's writer
+    source = OpenVideoSource(path, options);
   }
   return Clip(std::move(source), options.first, options.last);
 }

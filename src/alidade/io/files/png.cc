@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/image_codec.h"
 
 namespace alidade {
@@ -128,12 +129,12 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   const auto failed = [&] {
     return DecodedImage{{}, std::string("is a damaged PNG: ") + decoder.trouble.message};
   };
-  if (!ReadHeader(decoder) || !SetUp(decoder, use)) return failed();
-  if (1.0 * png_get_image_width(decoder.png, decoder.info) *
-          png_get_image_height(decoder.png, decoder.info) >
-      kMostPixels) {
-    return {{}, "is too large"};
-  }
+  if (!ReadHeader(decoder)) return failed();
+  // A damaged header may claim any size: told before there are rows to be filled.
+  const int64_t width = png_get_image_width(decoder.png, decoder.info);
+  const int64_t height = png_get_image_height(decoder.png, decoder.info);
+  if (!IsPictureSize(width, height)) return {{}, "cannot be used: " + TooLargeText(width, height)};
+  if (!SetUp(decoder, use)) return failed();
   const int channels = png_get_channels(decoder.png, decoder.info);
   const int depth = png_get_bit_depth(decoder.png, decoder.info) == 16 ? CV_16U : CV_8U;
   if (use == ImageUse::kDepth && channels != 1)

@@ -10,7 +10,12 @@
 namespace alidade {
 
 std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names) {
-  const std::string text = ReadFile(path);
+  return ParseStampedList(ReadFile(path), path, unit, with_names);
+}
+
+std::vector<StampedName> ParseStampedList(std::string_view text, const std::string& name,
+                                          StampUnit unit, bool with_names) {
+  CheckIsText(text, name);
   std::vector<StampedName> list;
   for (const TextLine& line : ContentLines(text)) {
     StampedName item;
@@ -20,7 +25,7 @@ std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit
     const size_t begin =
         end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
     if (begin != std::string_view::npos) item.name = line.text.substr(begin);
-    const std::string where = path + ":" + std::to_string(line.number) + ": ";
+    const std::string where = name + ":" + std::to_string(line.number) + ": ";
     const std::string written = item.stamp;
     if (unit == StampUnit::kNanoseconds) item.stamp = StampFromNanoseconds(item.stamp);
     const auto time = ParseNumber(item.stamp);
@@ -32,7 +37,7 @@ std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit
     item.time = time.value_or(0);
     list.push_back(std::move(item));
   }
-  if (list.empty()) ThrowInput(path + " lists nothing");
+  if (list.empty()) ThrowInput(name + " lists nothing");
   return list;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace alidade {
@@ -18,5 +19,8 @@ enum class StampUnit { kSeconds, kNanoseconds };
 // In the file's order. Lines whose stamp is no finite number, or without a name where one is
 // wanted, have a problem. Throws Error when the file cannot be read or holds no lines.
 std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names);
+// The same of a file's text; `name` is what it is called in errors.
+std::vector<StampedName> ParseStampedList(std::string_view text, const std::string& name,
+                                          StampUnit unit, bool with_names);
 
 }  // namespace alidade

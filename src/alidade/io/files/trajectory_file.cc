@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 std::string TruthIn(const std::string& folder) {
   for (const char* name : {"groundtruth.txt", "mav0/state_groundtruth_estimate0/data.csv",
                            "state_groundtruth_estimate0/data.csv", "poses.txt", "trajectory.txt"}) {
-    if (fs::is_regular_file(folder + "/" + name)) return folder + "/" + name;
+    if (IsThere(folder + "/" + name)) return folder + "/" + name;
   }
   ThrowInput(
       "there is no trajectory in " + folder +
@@ -27,7 +27,7 @@ std::string TruthIn(const std::string& folder) {
 Trajectory ReadEuroc(const std::string& path, const std::string& text) {
   const std::string sensor =
       (fs::absolute(path).parent_path().parent_path() / "cam0/sensor.yaml").string();
-  if (fs::is_regular_file(sensor))
+  if (IsThere(sensor))
     return ParseEurocTrajectory(text, path, ReadEurocCamera(sensor).T_body_camera);
   LogWarning(path + ": no cam0/sensor.yaml near it: these are the body's poses, not the camera's");
   return ParseEurocTrajectory(text, path, {});
@@ -37,7 +37,7 @@ Trajectory ReadKitti(const std::string& path, const std::string& text) {
   const fs::path folder = fs::absolute(path).parent_path();
   const fs::path sequence = folder.parent_path() / "sequences" / fs::path(path).stem();
   for (const fs::path& times : {folder / "times.txt", sequence / "times.txt"}) {
-    if (fs::is_regular_file(times))
+    if (IsThere(times.string()))
       return ParseKittiTrajectory(text, path, ReadFile(times.string()), times.string());
   }
   ThrowInput(path + " holds poses without times, and there is no times.txt beside it or in " +
@@ -47,8 +47,9 @@ Trajectory ReadKitti(const std::string& path, const std::string& text) {
 }  // namespace
 
 Trajectory ReadTrajectory(const std::string& path) {
-  if (fs::is_directory(path)) return ReadTrajectory(TruthIn(path));
+  if (IsFolder(path)) return ReadTrajectory(TruthIn(path));
   const std::string text = ReadFile(path);
+  CheckIsText(text, path);
   const auto lines = ContentLines(text);
   if (lines.empty()) ThrowInput(path + " holds no poses");
   const std::string_view first = lines.front().text;
@@ -60,7 +61,7 @@ Trajectory ReadTrajectory(const std::string& path) {
 
 Trajectory ReadEstimate(const std::string& path) {
   const std::string result = path + "/trajectory.txt";
-  return ReadTrajectory(fs::is_regular_file(result) ? result : path);
+  return ReadTrajectory(IsThere(result) ? result : path);
 }
 
 }  // namespace alidade

@@ -1,10 +1,10 @@
 #include "alidade/io/files/tum_recording.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "alidade/base/log.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/file.h"
 
 namespace alidade {
 namespace {
@@ -27,9 +27,7 @@ void AddDepth(Recording& recording, const std::string& folder) {
 
 }  // namespace
 
-bool IsTumFolder(const std::string& folder) {
-  return std::filesystem::is_regular_file(folder + "/rgb.txt");
-}
+bool IsTumFolder(const std::string& folder) { return IsThere(folder + "/rgb.txt"); }
 
 Recording ReadTumRecording(const std::string& folder) {
   Recording recording;
@@ -37,9 +35,9 @@ Recording ReadTumRecording(const std::string& folder) {
   recording.frames =
       FramesOf(ReadStampedList(folder + "/rgb.txt", StampUnit::kSeconds, true), folder);
   recording.default_depth_factor = 5000;
-  if (std::filesystem::is_regular_file(folder + "/depth.txt")) AddDepth(recording, folder);
+  if (IsThere(folder + "/depth.txt")) AddDepth(recording, folder);
   const std::string camera = folder + "/camera.yaml";
-  if (std::filesystem::is_regular_file(camera)) recording.calibration = ReadCameraFile(camera);
+  if (IsThere(camera)) recording.calibration = ReadCameraFile(camera);
   return recording;
 }
 

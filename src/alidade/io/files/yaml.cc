@@ -3,20 +3,35 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/yaml_check.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
 
-YamlFile::YamlFile(const std::string& path) : path_(path) {
-  std::string text = ReadFile(path);
+namespace {
+
+// For errors: a word of it, should it be a book.
+std::string Start(const std::string& text) {
+  constexpr size_t kEnough = 60;
+  return text.size() <= kEnough ? text : text.substr(0, kEnough) + "...";
+}
+
+}  // namespace
+
+YamlFile::YamlFile(const std::string& path) : YamlFile(ReadFile(path, kMostConfigBytes), path) {}
+
+YamlFile::YamlFile(std::string text, const std::string& name) : path_(name) {
   if (text.rfind("%YAML:", 0) == 0) text[0] = '#';  // a comment keeps the line numbers
+  CheckYaml(text, name);
   try {
     root_ = YAML::Load(text);
   } catch (const YAML::Exception& error) {
-    ThrowInput(path + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
+    ThrowInput(name + ":" + std::to_string(error.mark.line + 1) + ": " + error.msg);
   }
-  if (!root_.IsMap()) ThrowInput(path + ": expected `name: value` lines");
+  if (root_.IsNull()) root_ = YAML::Node(YAML::NodeType::Map);
+  if (!root_.IsMap()) ThrowInput(name + ": expected `name: value` lines");
 }
 
 void YamlFile::Fail(const YAML::Node& at, const std::string& what) const {
@@ -34,7 +49,7 @@ double YamlFile::Number(const YAML::Node& node, const std::string& key) const {
   const auto number = node.IsScalar() ? ParseNumber(node.Scalar()) : std::nullopt;
   if (!number || !std::isfinite(*number)) {
     Fail(node, "`" + key + "` must be a finite number" +
-                   (node.IsScalar() ? ", not `" + node.Scalar() + "`" : ""));
+                   (node.IsScalar() ? ", not `" + Start(node.Scalar()) + "`" : ""));
   }
   return *number;
 }
@@ -42,10 +57,14 @@ double YamlFile::Number(const YAML::Node& node, const std::string& key) const {
 int YamlFile::PositiveInteger(const YAML::Node& node, const std::string& key) const {
   const double number = Number(node, key);
   if (!(number >= 1 && number <= 100000) || number != std::floor(number)) {
-    Fail(node,
-         "`" + key + "` must be a whole number from 1 to 100000, not `" + node.Scalar() + "`");
+    Fail(node, "`" + key + "` must be a whole number from 1 to 100000, not `" +
+                   Start(node.Scalar()) + "`");
   }
   return static_cast<int>(number);
+}
+
+void YamlFile::CheckSize(const YAML::Node& at, int width, int height) const {
+  if (!IsPictureSize(width, height)) Fail(at, TooLargeText(width, height));
 }
 
 std::string YamlFile::Text(const YAML::Node& node, const std::string& key) const {

@@ -12,8 +12,11 @@ namespace alidade {
 
 class YamlFile {
  public:
-  // Takes OpenCV's `%YAML:1.0` first line too, which YAML itself does not know.
+  // Throws Error (input): see CheckYaml(). An empty file is an empty map.
   explicit YamlFile(const std::string& path);
+  // The same for text that is `name` in errors. Takes OpenCV's `%YAML:1.0` first line too, which
+  // YAML itself does not know.
+  YamlFile(std::string text, const std::string& name);
 
   const YAML::Node& root() const { return root_; }
   const std::string& path() const { return path_; }
@@ -23,6 +26,8 @@ class YamlFile {
   YAML::Node Need(const YAML::Node& parent, const std::string& key) const;
   double Number(const YAML::Node& node, const std::string& key) const;  // finite
   int PositiveInteger(const YAML::Node& node, const std::string& key) const;
+  // Throws when no picture can be that large (see kMostPixels in picture_size.h).
+  void CheckSize(const YAML::Node& at, int width, int height) const;
   std::string Text(const YAML::Node& node, const std::string& key) const;
   // A flat list, or a list of lists flattened row by row.
   std::vector<double> Numbers(const YAML::Node& node, const std::string& key) const;

@@ -1,0 +1,94 @@
+#include "alidade/io/files/yaml_check.h"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/yaml.h>
+
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "alidade/base/error.h"
+
+namespace alidade {
+namespace {
+
+// yaml-cpp's parser calls this for one piece after the other; only what is open at the moment is
+// kept.
+class Checker : public YAML::EventHandler {
+ public:
+  explicit Checker(const std::string& name) : name_(name) {}
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { Add(mark, nullptr); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { RefuseNames(mark); }
+  void OnAnchor(const YAML::Mark& mark, const std::string&) override { RefuseNames(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                const std::string& value) override {
+    Add(mark, &value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    Open(mark, false);
+  }
+  void OnSequenceEnd() override { open_.pop_back(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    Open(mark, true);
+  }
+  void OnMapEnd() override { open_.pop_back(); }
+
+  [[noreturn]] void Fail(const YAML::Mark& mark, const std::string& what) const {
+    ThrowInput(name_ + ":" + std::to_string(mark.line + 1) + ": " + what);
+  }
+
+ private:
+  struct Level {
+    bool is_map;
+    bool name_next = true;  // in a map, names and values take turns
+    std::set<std::string> names = {};
+  };
+
+  [[noreturn]] void RefuseNames(const YAML::Mark& mark) const {
+    Fail(mark, "anchors and aliases (& and *) are not for this file: write the value itself");
+  }
+
+  void Add(const YAML::Mark& mark, const std::string* text) {
+    if (++nodes_ > kMostYamlNodes)
+      Fail(mark, "more than " + std::to_string(kMostYamlNodes) +
+                     " names and values: this is no camera or settings file");
+    if (open_.empty() || !open_.back().is_map) return;
+    Level& map = open_.back();
+    if (map.name_next && text != nullptr && !map.names.insert(*text).second)
+      Fail(mark, "`" + text->substr(0, 60) + "` is given twice");
+    map.name_next = !map.name_next;
+  }
+
+  void Open(const YAML::Mark& mark, bool is_map) {
+    Add(mark, nullptr);
+    if (open_.size() == static_cast<size_t>(kMostYamlDepth))
+      Fail(mark, "lists or maps in one another, more than " + std::to_string(kMostYamlDepth) +
+                     " deep: this is no camera or settings file");
+    open_.push_back({is_map});
+  }
+
+  std::string name_;
+  std::vector<Level> open_;
+  int nodes_ = 0;
+};
+
+}  // namespace
+
+void CheckYaml(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  Checker checker(name);
+  try {
+    YAML::Parser parser(stream);
+    if (parser.HandleNextDocument(checker) && parser.HandleNextDocument(checker))
+      ThrowInput(name + ": holds a second document (after a line `---`), which nobody would read");
+  } catch (const YAML::Exception& error) {
+    checker.Fail(error.mark, error.msg);
+  }
+}
+
+}  // namespace alidade
