@@ -70,6 +70,7 @@ TEST(KittiSource, BadCalibrationsAreNamed) {
     return MessageOf(ErrorKind::kInput, [&] { OpenSource(folder.path()); });
   };
   EXPECT_THAT(message("P2: 1\n"), HasSubstr("`P0:` is missing"));
+  EXPECT_THAT(message(",\n"), HasSubstr("`P0:` is missing"));  // a line without fields
   EXPECT_THAT(message("P0: 1 2 3\n"), HasSubstr("calib.txt:1: P0 needs 12 numbers"));
   EXPECT_THAT(message("P0: nan 0 31.5 0 0 71.8 23.5 0 0 0 1 0\n"), HasSubstr("`nan`"));
   EXPECT_THAT(message("P0: -5 0 31.5 0 0 71.8 23.5 0 0 0 1 0\n"), HasSubstr("positive"));

@@ -18,7 +18,7 @@ std::optional<Projection> FindProjection(const std::string& text, const std::str
                                          const std::string& name) {
   for (const TextLine& line : ContentLines(text)) {
     const auto fields = Fields(line.text);
-    if (fields[0] != name + ":") continue;
+    if (fields.empty() || fields[0] != name + ":") continue;  // a line of commas has none
     const std::string where = path + ":" + std::to_string(line.number) + ": ";
     if (fields.size() != 13) ThrowInput(where + name + " needs 12 numbers");
     Projection projection{};
