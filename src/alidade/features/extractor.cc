@@ -86,11 +86,12 @@ void ExtractorSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
     if (!holds) ThrowUsage(std::string("extractor: ") + what);
   };
-  require(features >= 1, "features must be at least 1");
+  // There is room for 100 times the usual number; beyond, every pixel of a picture would be one.
+  require(features >= 1 && features <= 100000, "features must be from 1 to 100000");
   require(fast_minimum >= 1 && fast_minimum <= 255, "fast_minimum must be from 1 to 255");
   require(fast_threshold >= fast_minimum && fast_threshold <= 255,
           "fast_threshold must be from fast_minimum to 255");
-  require(cell >= 8, "cell must be at least 8 pixels");
+  require(cell >= 8 && cell <= 10000, "cell must be from 8 to 10000 pixels");
   require(border >= kPatternReach + 1, "border must be at least 19 pixels");
   require(evenness >= 0 && evenness <= 1, "evenness must be from 0 to 1");
 }

@@ -85,7 +85,7 @@ void TwoViewSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
     if (!holds) ThrowUsage(std::string("two-view settings: ") + what);
   };
-  require(iterations > 0, "iterations must be positive");
+  require(iterations > 0 && iterations <= 100000, "iterations must be from 1 to 100000");
   require(sigma > 0 && std::isfinite(sigma), "sigma must be positive");
   require(homography_share > 0 && homography_share < 1,
           "homography_share must lie between 0 and 1");
