@@ -9,7 +9,7 @@
 
 #include "support/rendered.h"
 
-namespace alidade {
+namespace alidade::bad_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST_F(BadFiles, NumbersNobodyCanMeanAreUsageErrors) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::bad_files_test

@@ -4,7 +4,7 @@
 
 #include "support/program.h"
 
-namespace alidade {
+namespace alidade::settings_limits_test {
 namespace {
 
 using testing::HasSubstr;
@@ -22,4 +22,4 @@ TEST(SettingsLimits, NumbersBeyondUseAreUsageErrorsThatNameTheSetting) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::settings_limits_test

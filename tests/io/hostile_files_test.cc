@@ -18,7 +18,7 @@
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::hostile_files_test {
 namespace {
 
 using testing::ElementsAre;
@@ -167,4 +167,4 @@ TEST(CheckYaml, EveryEditorsLineEndsAndEncodingsAreRead) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::hostile_files_test

@@ -12,7 +12,7 @@
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
-namespace alidade {
+namespace alidade::picture_size_test {
 namespace {
 
 using testing::HasSubstr;
@@ -104,4 +104,4 @@ TEST(PictureSize, ImagesOfOtherKindsAreRefusedToo) {
 }
 
 }  // namespace
-}  // namespace alidade
+}  // namespace alidade::picture_size_test
