@@ -43,6 +43,19 @@ TEST(AttachDepth, ReadsIntegersAndMetresAtTheRawPosition) {
   }
 }
 
+TEST(AttachDepth, WhatLiesBeyondTheSensorsRangeIsNoReading) {
+  const Camera camera = DepthCamera();
+  cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(7.9f));
+  depth(cv::Rect(32, 0, 32, 48)) = 8.1f;
+  Frame frame = FrameWith({{10, 10}, {50, 10}});
+  AttachDepth(depth, camera, frame, 8);
+  EXPECT_FLOAT_EQ(frame.keypoints[0].depth, 7.9f);
+  EXPECT_FALSE(frame.keypoints[1].has_depth());
+  EXPECT_EQ(frame.keypoints[1].right_x, Keypoint::kNoDepth);
+  AttachDepth(depth, camera, frame);  // no range: all of it
+  EXPECT_FLOAT_EQ(frame.keypoints[1].depth, 8.1f);
+}
+
 TEST(AttachDepth, LeavesOutEdgesHolesAndNonsense) {
   const Camera camera = DepthCamera();
   cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(2.f));

@@ -77,6 +77,42 @@ TEST(Mapper, MapsAWorldSeenWithDepth) {
   }
 }
 
+// sigma_z / z = z sigma_d / (f b) for a pair, 0.003 z for a depth camera: one share for all.
+TEST(Mapper, TrustsDepthAsFarAsTheSensorCanTell) {
+  struct Case {
+    double focal, baseline, depth_factor, share;
+    int level;
+    double trusted, too_far;  // metres
+  };
+  const std::vector<Case> cases = {
+      {707, 0.537, 0, 0.08, 0, 75, 77},     // KITTI: 0.08 * 707 * 0.537 / 0.4 = 75.9
+      {707, 0.537, 0, 0.08, 4, 36, 37.5},   // 1.2^4 times as uncertain
+      {525, 0.11, 0, 0.08, 0, 11.4, 11.7},  // a hand-held pair
+      {525, 0, 5000, 0.08, 0, 26, 27},      // a depth camera; its range is the tracker's to see to
+      {525, 0, 5000, 0.08, 7, 26, 27},      // whose noise is not the keypoint's
+      {707, 0.537, 0, 0.02, 0, 18.5, 19.5}};  // a stricter share
+  for (const Case& c : cases) {
+    Camera camera;
+    camera.width = 640;
+    camera.height = 480;
+    camera.fx = camera.fy = c.focal;
+    camera.baseline = c.baseline;
+    camera.depth_factor = c.depth_factor;
+    MapperSettings settings;
+    settings.max_depth_error = c.share;
+    MapStore store;
+    const Mapper mapper(store, camera, settings);
+    Keypoint keypoint;
+    keypoint.level = c.level;
+    keypoint.depth = static_cast<float>(c.trusted);
+    EXPECT_TRUE(mapper.MakesLandmark(keypoint)) << c.trusted;
+    keypoint.depth = static_cast<float>(c.too_far);
+    EXPECT_FALSE(mapper.MakesLandmark(keypoint)) << c.too_far;
+    keypoint.depth = Keypoint::kNoDepth;
+    EXPECT_FALSE(mapper.MakesLandmark(keypoint));
+  }
+}
+
 TEST(Mapper, GivesTheSameMapWithAnyNumberOfThreads) {
   SyntheticWorldSettings settings = kWorld;
   settings.depth = true;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <limits>
 
 #include "alidade/base/error.h"
@@ -110,6 +111,93 @@ TEST(OptimizePose, InformationIsThatOfAutomaticDerivatives) {
   }
   // It is that of the last but one step, a 1e-7th of the cost away.
   EXPECT_LT((result.information - expected).norm(), 1e-6 * expected.norm());
+}
+
+// Ceres' covariance of the same pose, in increments Exp(xi) on the left: xi = (translation;
+// rotation).
+Matrix6d CovarianceOfCeres(const Camera& camera, const PoseOnlyResult& result,
+                           const std::vector<PoseMatch>& matches) {
+  // The landmarks are moved into the camera's frame, so that the increment is the pose itself,
+  // around zero: rotation vector, translation.
+  Eigen::Matrix<double, 6, 1> pose = Eigen::Matrix<double, 6, 1>::Zero();
+  std::vector<Eigen::Vector3d> points;
+  for (const PoseMatch& m : matches) points.push_back(result.T_camera_world * m.p_world);
+  ceres::Problem problem;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (!result.inlier[i]) continue;
+    problem.AddResidualBlock(MakeCeresReprojection(camera, matches[i]), nullptr, pose.data(),
+                             points[i].data());
+    problem.SetParameterBlockConstant(points[i].data());
+  }
+  ceres::Covariance covariance({});
+  const std::vector<std::pair<const double*, const double*>> block = {{pose.data(), pose.data()}};
+  EXPECT_TRUE(covariance.Compute(block, &problem));
+  Eigen::Matrix<double, 6, 6, Eigen::RowMajor> found;
+  covariance.GetCovarianceBlock(pose.data(), pose.data(), found.data());
+  Matrix6d ordered;  // translation first
+  ordered << found.bottomRightCorner<3, 3>(), found.bottomLeftCorner<3, 3>(),
+      found.topRightCorner<3, 3>(), found.topLeftCorner<3, 3>();
+  return ordered;
+}
+
+TEST(OptimizePose, CovarianceIsCeresTimesTheResidualsVariance) {
+  for (uint64_t seed = 1; seed <= 5; ++seed) {
+    // Half the noise that is assumed: the gate cuts nothing off.
+    const PoseProblem problem =
+        MakePoseProblem({.matches = 150, .stereo = 0.5, .noise_px = 0.5, .seed = seed});
+    const PoseOnlyResult result = OptimizePose(problem.camera, problem.truth, problem.matches);
+    int measured = 0;
+    for (size_t i = 0; i < problem.matches.size(); ++i) {
+      if (result.inlier[i]) measured += std::isfinite(problem.matches[i].pixel.z()) ? 3 : 2;
+    }
+    EXPECT_EQ(result.measured, measured);
+    const double factor = 2 * result.cost / (measured - 6);
+    EXPECT_NEAR(factor, 0.25, 0.05);
+    const Matrix6d expected = factor * CovarianceOfCeres(problem.camera, result, problem.matches);
+    EXPECT_LT((result.covariance - expected).norm(), 1e-3 * expected.norm()) << seed;
+  }
+}
+
+// The spread of the errors themselves, over many draws of the noise: normalised by the covariance
+// each pose claims, their mean square is 1.
+TEST(OptimizePose, CovarianceIsTheSpreadOfTheErrors) {
+  for (const double noise : {0.3, 1.0}) {  // pixels; the latter fills the gate
+    for (const double outliers : {0.0, 0.2}) {
+      double sum = 0;
+      constexpr int kDraws = 400;
+      for (uint64_t seed = 1; seed <= kDraws; ++seed) {
+        const PoseProblem problem = MakePoseProblem(
+            {.matches = 100, .stereo = 0.5, .outliers = outliers, .noise_px = noise, .seed = seed});
+        const PoseOnlyResult result = OptimizePose(problem.camera, problem.truth, problem.matches);
+        const Vector6d xi = (problem.truth * result.T_camera_world.Inverse()).Log();
+        sum += xi.dot(result.covariance.inverse() * xi) / 6;
+      }
+      // The mean square of 2400 normal numbers is 1 ± 0.03; outliers that fall within the gate by
+      // chance make it a little more.
+      EXPECT_NEAR(std::sqrt(sum / kDraws), 1, 0.1) << noise << " px, outliers " << outliers;
+    }
+  }
+}
+
+// In the camera's own frame: along the optical axis, where all is far and nothing has a second
+// column, a pose is known worst.
+TEST(OptimizePose, CovarianceIsInTheCamerasFrame) {
+  const PoseProblem problem = MakePoseProblem(
+      {.matches = 200, .stereo = 0, .noise_px = 0.5, .min_depth = 20, .max_depth = 25, .seed = 4});
+  const Matrix6d covariance =
+      OptimizePose(problem.camera, problem.truth, problem.matches).covariance;
+  // Far points seen within 30° around the axis: x and turning about y are hard to tell apart.
+  EXPECT_GT(covariance(0, 0), 0);
+  EXPECT_GT(std::abs(covariance(0, 4)) / std::sqrt(covariance(0, 0) * covariance(4, 4)), 0.9);
+  EXPECT_LT(std::abs(covariance(0, 3)) / std::sqrt(covariance(0, 0) * covariance(3, 3)), 0.5);
+}
+
+TEST(OptimizePose, CovarianceIsZeroWhereMatchesDoNotTellAPose) {
+  PoseProblem problem = MakePoseProblem({.matches = 50, .stereo = 0, .seed = 8});
+  EXPECT_TRUE(OptimizePose(problem.camera, problem.truth, std::span(problem.matches).first(3))
+                  .covariance.isZero());  // six numbers: nothing left to judge them by
+  for (PoseMatch& m : problem.matches) m = problem.matches[0];
+  EXPECT_TRUE(OptimizePose(problem.camera, problem.truth, problem.matches).covariance.isZero());
 }
 
 TEST(OptimizePose, LooksPastMatchesThatAreNotNumbers) {

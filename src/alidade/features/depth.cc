@@ -29,7 +29,7 @@ float DepthAt(const DepthImage& depth, int x, int y) {
 
 }  // namespace
 
-void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame) {
+void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
   const bool integers = depth.type() == CV_16UC1;
   if (!integers && depth.type() != CV_32FC1) {
     ThrowInput("depth image: must have one channel of 16 bit integers or 32 bit floats");
@@ -45,6 +45,7 @@ void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame) {
   for (Keypoint& k : frame.keypoints) {
     k.depth = DepthAt(image, static_cast<int>(std::lround(k.raw_x)),
                       static_cast<int>(std::lround(k.raw_y)));
+    if (k.depth > range) k.depth = Keypoint::kNoDepth;
     k.right_x = k.has_depth() ? k.x - bf / k.depth : Keypoint::kNoDepth;
   }
 }

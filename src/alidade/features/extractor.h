@@ -55,8 +55,10 @@ class Extractor {
 // Gives every keypoint its depth from a registered depth image (CV_16U in depth_factor units per
 // metre or CV_32F in metres), read at its raw position, and right_x = x - bf / depth. Left without
 // depth: no reading, or a 3x3 neighbourhood that spreads more than 5 % (an edge: foreground and
-// background mix there).
-void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame);
+// background mix there), or farther than `range` (metres): there a depth camera measures nothing,
+// and may say so by a number.
+void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame,
+                 double range = std::numeric_limits<double>::infinity());
 
 // Finds every keypoint of the rectified left image along its row in the right one (extracted with
 // the same settings): Hamming distance, then sum of absolute differences, then an alignment by

@@ -45,7 +45,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     const Se3 T_world_camera = T_camera_world.Inverse();
     for (size_t i = 0; i < frame->keypoints.size(); ++i) {
       const Keypoint& keypoint = frame->keypoints[i];
-      if (!keypoint.has_depth() || keypoint.depth > settings_.max_depth) continue;
+      if (!MakesLandmark(keypoint)) continue;
       if (commit.Find(id)->landmarks[i].valid()) continue;
       Landmark landmark;
       landmark.static_probability = settings_.young_static;
@@ -57,6 +57,11 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     commit.RefreshCovisibility(id);
   });
   return id;
+}
+
+bool Mapper::MakesLandmark(const Keypoint& keypoint) const {
+  return keypoint.has_depth() &&
+         DepthErrorShare(keypoint, camera_, settings_.noise) <= settings_.max_depth_error;
 }
 
 KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {

@@ -28,6 +28,8 @@ class Mapper {
   // been corrected since; without a keyframe it begins a map.
   KeyFrameId Insert(std::shared_ptr<const Frame> frame, const Anchor& anchor,
                     std::span<const LandmarkId> matches);
+  // Whether a keypoint's depth is known well enough for Insert() to make a landmark of it.
+  bool MakesLandmark(const Keypoint& keypoint) const;
   // Enters two keyframes and the points between them: a monocular map begins.
   struct TwoViewMap {
     std::shared_ptr<const Frame> a, b;

@@ -12,7 +12,8 @@ void MapperSettings::Check() const {
   };
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
   require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
-  require(max_depth > 0, "max_depth must be positive");
+  require(max_depth_error > 0, "max_depth_error must be positive");
+  require(noise.sensor_noise > 0, "sensor_noise must be positive");
   require(triangulate_keyframes_mono > 0 && triangulate_keyframes_depth >= 0,
           "triangulate_keyframes_* cannot be negative");
   require(triangulate_ratio > 0 && triangulate_ratio <= 1, "triangulate_ratio must lie in (0, 1]");

@@ -21,6 +21,8 @@ struct MatchPair {
   Mask2 active;              // ones: counts in this round
 };
 
+constexpr double kMostCut = 2;  // times: with heavier noise the gate says nothing of its size
+
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
   Vector6d g = Vector6d::Zero();
@@ -217,7 +219,39 @@ bool Reclassify(const Intrinsics& k, const Se3& T, std::vector<MatchPair>& pairs
   return changed;
 }
 
+double Measured(const std::vector<MatchPair>& pairs) {
+  double sum = 0;
+  for (const MatchPair& m : pairs) {
+    for (int lane = 0; lane < 2; ++lane) {
+      if (m.active[lane] != 0) sum += m.trust[lane] * (m.weight_r[lane] > 0 ? 3 : 2);
+    }
+  }
+  return sum;
+}
+
 }  // namespace
+
+Matrix6d PoseCovariance(const Matrix6d& information, double cost, double measured, double gate) {
+  const double free = measured - 6;
+  if (!(free > 0)) return Matrix6d::Zero();
+  // Scaled to a diagonal of ones: metres and radians may differ by orders of magnitude.
+  const Vector6d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
+  const Eigen::LDLT<Matrix6d> solver(scaled);
+  constexpr double kSingular = 1e-10;  // of the largest: below, rounding is all there is
+  const Vector6d pivots = solver.vectorD();
+  if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return Matrix6d::Zero();
+  const double raw = 2 * cost / free;
+  double factor = raw;
+  for (int i = 0; i < 20; ++i) {  // fixed point; the cut grows with the noise
+    const double half = 0.5 * gate / factor;
+    const double kept = half < 500 ? 1 - half / std::expm1(half) : 1;
+    factor = std::min(raw / std::max(kept, 1e-3), kMostCut * raw);
+  }
+  const Matrix6d inverse = solver.solve(Matrix6d::Identity());
+  const Matrix6d covariance = factor * (scale.asDiagonal() * inverse * scale.asDiagonal());
+  return 0.5 * (covariance + covariance.transpose());
+}
 
 void PoseOnlySettings::Check() const {
   if (max_iterations < 1) ThrowUsage("max_iterations: must be at least 1");
@@ -255,6 +289,9 @@ PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
   result.T_camera_world = last.T.Normalised();
   result.information = last.at_end.H;
   result.cost = last.at_end.cost;
+  result.measured = Measured(pairs);
+  result.covariance = PoseCovariance(result.information, result.cost, result.measured,
+                                     settings.huber_mono * settings.huber_mono);
   for (size_t i = 0; i < matches.size(); ++i) result.inlier[i] = pairs[i / 2].active[i % 2] != 0;
   return result;
 }

@@ -34,7 +34,21 @@ struct PoseOnlyResult {
   int inliers = 0;
   double cost = 0;                          // ½ sum of chi² over inliers, unitless
   Matrix6d information = Matrix6d::Zero();  // of the left increment at the solution, inliers only
+  double measured =
+      0;  // numbers measured (2 or 3 a match), each counted by its trust, inliers only
+  // Of the left increment at the solution (metres, radians): the true T_camera_world is Exp(xi) *
+  // T_camera_world with xi ~ N(0, covariance). That is also an increment of T_world_camera in the
+  // camera's own frame: T_world_camera * Exp(-xi). See PoseCovariance(). Zero: not known.
+  Matrix6d covariance = Matrix6d::Zero();
 };
+
+// information⁻¹ times the variance factor s² of what was measured: whatever noise was assumed, the
+// residuals say what there was, that of the landmarks (taken as given) included. s² = 2 cost /
+// (measured - 6) (Förstner & Wrobel 2016, eq. 4.89), made larger by what the gate cut off: of
+// normal errors within the gate `gate` (chi² with 2 degrees of freedom) the mean of chi² / 2 is 1 -
+// (g / 2) / (exp(g / 2) - 1) with g = gate / s². Zero where the matches do not tell a pose: fewer
+// than 7 numbers, or a direction nothing was seen of.
+Matrix6d PoseCovariance(const Matrix6d& information, double cost, double measured, double gate);
 
 // Starts at `T_camera_world`. Fewer than 3 usable matches: returns the start with no inliers.
 // Matches that are not numbers are never inliers. Each round minimises Huber's loss over the

@@ -29,6 +29,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.min_tracked", t.min_tracked);
   visit("tracker.min_found_share", t.min_found_share);
   visit("tracker.torn_share", t.torn_share);
+  visit("tracker.unproven_frames", t.unproven_frames);
   visit("tracker.min_agreement", t.min_agreement);
   visit("tracker.good_agreement", t.good_agreement);
   visit("tracker.bad_frame_sigma", t.bad_frame_sigma);
@@ -45,6 +46,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("tracker.min_relocalised_spread", t.min_relocalised_spread);
   visit("tracker.sigma_px", t.noise.sigma_px);
   visit("tracker.sigma_right_px", t.noise.sigma_right_px);
+  visit("tracker.depth_range", t.depth_range);
   visit("tracker.keyframe_share_mono", t.keyframe_share_mono);
   visit("tracker.keyframe_share_depth", t.keyframe_share_depth);
   visit("tracker.keyframe_min_gap", t.keyframe_min_gap);
@@ -55,7 +57,8 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("mapper.sigma_px", m.noise.sigma_px);
   visit("mapper.sigma_right_px", m.noise.sigma_right_px);
   visit("mapper.match_scale", m.match_scale);
-  visit("mapper.max_depth", m.max_depth);
+  visit("mapper.sensor_noise", m.noise.sensor_noise);
+  visit("mapper.max_depth_error", m.max_depth_error);
   visit("mapper.triangulate_keyframes_mono", m.triangulate_keyframes_mono);
   visit("mapper.triangulate_keyframes_depth", m.triangulate_keyframes_depth);
   visit("mapper.triangulate_distance", m.triangulate_distance);
@@ -154,6 +157,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("dynamics.propagate", y.propagate);
   visit("dynamics.weigh", y.weigh);
   auto& i = s.start;
+  visit("start.min_depth_landmarks", i.min_depth_landmarks);
   visit("start.min_matches", i.min_matches);
   visit("start.match_scale", i.match_scale);
   visit("start.references", i.references);

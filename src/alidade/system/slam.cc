@@ -43,6 +43,16 @@ void WarnOfJump(double seconds) {
   LogWarning(text);
 }
 
+PoseQuality QualityOf(const TrackEstimate& estimate) {
+  PoseQuality quality;
+  quality.covariance = estimate.placed.covariance;
+  quality.expected = static_cast<int>(estimate.sightings.size());
+  quality.inliers = estimate.placed.inliers;
+  if (quality.expected > 0)
+    quality.found_share = static_cast<double>(quality.inliers) / quality.expected;
+  return quality;
+}
+
 }  // namespace
 
 class Slam::Impl {
@@ -281,13 +291,23 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   result.state = state_;
   result.keyframe = true;
   result.T_world_camera = log_.T_world_camera_live();
+  result.quality.expected = result.quality.inliers = result.matches;
+  result.quality.found_share = 1;
   return result;
 }
 
 bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result) {
-  for (const Keypoint& keypoint : frame->keypoints) result.matches += keypoint.has_depth();
-  if (result.matches < 200 * settings_.tracker.match_scale) {
-    result.reason = "too few corners with depth";
+  const Mapper& mapper = workers_.mapper();
+  int with_depth = 0;
+  for (const Keypoint& keypoint : frame->keypoints) {
+    with_depth += keypoint.has_depth();
+    result.matches += mapper.MakesLandmark(keypoint);
+  }
+  const double enough = settings_.start.min_depth_landmarks * settings_.start.match_scale;
+  if (result.matches < enough) {
+    result.reason = with_depth < enough ? "too few corners with depth in the sensor's range"
+                                        : "too few corners near enough for the sensor to place";
+    result.matches = 0;
     return false;
   }
   PlacedFrame placed;
@@ -361,6 +381,7 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
     workers_.mapper().Count(news.sightings);
   }
   last_ = estimate.placed;
+  result.quality = QualityOf(estimate);
   if (result.keyframe) {
     AddKeyFrame(estimate.placed,
                 AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));

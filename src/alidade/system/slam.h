@@ -26,6 +26,20 @@ struct FrameInput {
   cv::Mat color = {};  // `image` in colour (BGR) when it is grey, for clouds; empty = none
 };
 
+// How far a pose can be relied on.
+struct PoseQuality {
+  // Covariance of the pose's error, in the camera's own frame: T_world_camera * Exp(xi) is true
+  // with xi = (translation; rotation) ~ N(0, covariance); m², m rad, rad² (monocular: map units).
+  // From the normal equations of the pose, scaled by the residuals, so that noise of images and
+  // landmarks is in it. It is the error against the map as it stands around the camera; what the
+  // map itself is off by, in its world (drift, until a loop closes), is not in it. Zero: not known,
+  // or the first frame of a map, which is where it is by definition.
+  Matrix6d covariance = Matrix6d::Zero();
+  int expected = 0;        // landmarks that should be in view
+  int inliers = 0;         // of these, found where the pose says
+  double found_share = 0;  // inliers / expected, 0…1. A third is usual: some are hidden
+};
+
 struct TrackResult {
   TrackState state = TrackState::kInitialising;
   Se3 T_world_camera;       // only when tracking
@@ -33,6 +47,7 @@ struct TrackResult {
   bool keyframe = false;    // this frame became one
   const char* reason = "";  // why there is no pose
   const char* cut = "";     // why the frame does not go on where the one before was
+  PoseQuality quality;      // of the pose; only when tracking
 };
 
 // One frame of the finished trajectory.

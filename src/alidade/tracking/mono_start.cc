@@ -13,6 +13,7 @@ void MonoStartSettings::Check() const {
     if (!holds) ThrowUsage(std::string("start.") + what);
   };
   two_view.Check();
+  require(min_depth_landmarks >= 20, "min_depth_landmarks must be at least 20");
   require(min_matches >= 20, "min_matches must be at least 20");
   require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
   require(references >= 1 && reference_gap >= 1, "references and reference_gap must be positive");

@@ -14,6 +14,9 @@ namespace alidade {
 
 struct MonoStartSettings {
   TwoViewSettings two_view;
+  // With depth: landmarks the first frame must give, of 1000 features; ten times what a frame must
+  // find again (tracker.min_tracked).
+  int min_depth_landmarks = 200;
   int min_matches = 100;  // for 1000 features; with the reference frame, below which it is given up
   double match_scale = 1.0;  // multiplies counts of matches; phone 0.8
   int references = 4;        // kept at a time, at most

@@ -22,9 +22,10 @@ struct PassingMatch {
 struct PlacedFrame {
   std::shared_ptr<const Frame> frame;
   Se3 T_camera_world;
-  std::vector<LandmarkId> matches;    // one for each keypoint; none where nothing is known
-  int inliers = 0;                    // matches that agree with the pose
-  std::vector<PassingMatch> passing;  // what else has a say in the pose
+  std::vector<LandmarkId> matches;         // one for each keypoint; none where nothing is known
+  int inliers = 0;                         // matches that agree with the pose
+  std::vector<PassingMatch> passing;       // what else has a say in the pose
+  Matrix6d covariance = Matrix6d::Zero();  // of the pose (PoseOnlyResult); zero: not known
 };
 
 }  // namespace alidade

@@ -20,6 +20,7 @@ void TrackerSettings::Check() const {
   require(min_relocalised_spread >= 0 && min_relocalised_spread < 0.5,
           "min_relocalised_spread must lie in [0, 0.5)");
   require(torn_share >= 0 && torn_share < 1, "torn_share must lie in [0, 1)");
+  require(unproven_frames >= 0, "unproven_frames cannot be negative");
   require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
   require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");
   require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");
@@ -33,6 +34,7 @@ void TrackerSettings::Check() const {
   require(min_relocalised_share >= 0 && min_relocalised_share <= 1,
           "min_relocalised_share must lie in [0, 1]");
   require(local_keyframes > 0, "local_keyframes must be positive");
+  require(depth_range > 0, "depth_range must be positive");
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
   require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap,
           "keyframe_max_gap must exceed keyframe_min_gap");

@@ -18,6 +18,12 @@ struct TrackerSettings {
                                    // frame is lost: right poses show twice as many at the least
   double torn_share = 0.33;  // inliers, of the last frame's; below, the pose is only believed as
                              // one found when lost is: the recording may have been cut
+  // With depth: so many frames after a start, or after a place was found again, motion is not yet
+  // believed:
+  // nothing is known of speed, and near a wrong place much of what is far agrees with it. Then
+  // descriptors are compared over the whole picture, too, and the pose that more of the map agrees
+  // with is taken.
+  int unproven_frames = 5;
   double min_agreement =
       0.4;                 // share of a frame's matches that must fit one pose for it to be trusted
   int max_distance = 100;  // bits of 256; with a pose to guide the search
@@ -33,6 +39,10 @@ struct TrackerSettings {
   double min_relocalised_spread = 0.1;  // … and how far apart they are in the picture: root mean
                                         // square distance from their middle, of its diagonal
   int local_keyframes = 40;             // at most, in the local map
+  // A depth camera's own range, metres; what it says of farther places is no reading. 8 is what
+  // structured light and time of flight reach in rooms. Stereo pairs have none: their noise says
+  // how far (mapper.max_depth_error).
+  double depth_range = 8.0;
   MeasurementNoise noise{.sigma_px = 1.0};  // of keypoints
   double good_agreement =
       0.7;  // share of matches that fit one pose, below which a frame is taken as bent …

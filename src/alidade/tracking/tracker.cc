@@ -12,6 +12,8 @@
 namespace alidade {
 namespace {
 
+constexpr double kChiSquared2 = 5.991;  // 95 % with 2 degrees of freedom
+constexpr double kChiSquared3 = 7.815;
 constexpr int kRelocaliseKeyFrames = 10;  // whose landmarks are looked for before all around are
 
 }  // namespace
@@ -32,7 +34,7 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
                                         const cv::Mat& depth, double time, int number,
                                         const cv::Mat& avoid) {
   auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number, avoid));
-  if (!depth.empty()) AttachDepth(depth, camera_, *frame);
+  if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
   if (!right.empty())
     MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
   frame->pyramid.clear();  // only extraction and stereo matching need it
@@ -41,6 +43,45 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
 }
 
 PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  PlacedFrame guess = PredictByMotion(std::move(frame), map);
+  return has_depth_ && unproven_ > 0 ? BetterByLooks(std::move(guess), map) : guess;
+}
+
+PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
+  PlacedFrame other;
+  other.frame = guess.frame;
+  MatchKeyFrame(other, map, reference());
+  if (other.inliers < Scaled(settings_.min_after_prediction)) return guess;
+  return Agreement(other, map) > Agreement(guess, map) ? other : guess;
+}
+
+// How much of the local map is seen where a pose says, of all that looks alike near there: each
+// match counts from 1 (no error) to 0 (at the gate, 95 % of chi²), whatever the noise the pose was
+// found with.
+double Tracker::Agreement(PlacedFrame placed, const MapSnapshot& map) {
+  const LocalMap local =
+      gatherer_.Gather(map, placed.matches, placed.T_camera_world, settings_.local_keyframes);
+  placed.matches = MatchLocalMap(placed, local, camera_, settings_).matches;
+  Optimise(placed, map);
+  double sum = 0;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
+    if (!landmark) continue;
+    const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
+    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
+    double chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
+    double gate = kChiSquared2;
+    if (has_depth_ && std::isfinite(m.pixel.z())) {
+      const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());
+      chi2 += disparity * disparity * m.inv_sigma2_right;
+      gate = kChiSquared3;
+    }
+    sum += std::max(0.0, 1 - chi2 / gate);
+  }
+  return sum;
+}
+
+PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
   PlacedFrame guess;
   guess.frame = std::move(frame);
   const Se3 T_last_world = PoseOf(map.state(), last_anchor_);
@@ -232,6 +273,7 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
     result = OptimizePose(camera_, placed.T_camera_world, matches);
   }
   placed.T_camera_world = result.T_camera_world;
+  placed.covariance = result.covariance;
   placed.inliers = agreeing();
   for (size_t i = 0; i < keypoints.size(); ++i) {
     if (!result.inlier[i]) placed.matches[keypoints[i]] = {};
@@ -313,6 +355,7 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
+  unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unproven_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
     motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
                 placed.frame->time - last_.frame->time);

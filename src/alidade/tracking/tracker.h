@@ -67,6 +67,10 @@ class Tracker {
   }
 
  private:
+  PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
+  // By descriptors alone, wherever in the picture; what of the two more of the map agrees with.
+  PlacedFrame BetterByLooks(PlacedFrame guess, const MapSnapshot& map);
+  double Agreement(PlacedFrame placed, const MapSnapshot& map);
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
   // Returns the share of the matches that agree with the pose found; the others are dropped.
@@ -86,6 +90,7 @@ class Tracker {
   PlacedFrame last_;
   Anchor last_anchor_;  // where the last frame is, by its reference keyframe
   Motion motion_;       // up to the last frame, in the scale of the anchor
+  int unproven_ = 0;    // frames left in which motion is not yet believed (settings)
   int last_keyframe_number_ = 0;
   int most_inliers_ = 0;  // of a frame since the last keyframe: what it could show at best
 };

@@ -1,0 +1,145 @@
+// What a pose says of its own quality, held against the errors it has: on a rendered room, with
+// exact poses.
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <vector>
+
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+
+namespace alidade::quality_test {
+namespace {
+
+constexpr int kFrames = 60;
+constexpr int kSettled = 20;
+// Frames between the two of a pair: some third of a second. Neighbours lean on the same landmarks,
+// whose errors they share: between them the errors are a third smaller than claimed.
+constexpr int kGap = 10;
+
+struct Room {
+  Camera camera;
+  std::vector<RenderedFrame> frames;
+  std::vector<Se3> T_world_camera;
+};
+
+const Room& TheRoom() {
+  static const Room room = [] {
+    SynthSettings settings;
+    settings.frames = kFrames;
+    settings.width = 320;
+    settings.height = 240;
+    settings.stereo = true;
+    const SynthRecording recording(settings);
+    Room made;
+    made.camera = recording.camera();
+    for (int i = 0; i < kFrames; ++i) {
+      made.frames.push_back(recording.Render(i));
+      made.T_world_camera.push_back(recording.Pose(i));
+    }
+    return made;
+  }();
+  return room;
+}
+
+// d(left increment) of X Exp(xi) X⁻¹ = Exp(Ad xi), xi = (translation; rotation) (Solà et al. 2018,
+// example 6).
+Matrix6d Adjoint(const Se3& X) {
+  Matrix6d ad = Matrix6d::Zero();
+  ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = X.R;
+  ad.topRightCorner<3, 3>() = Skew(X.t) * X.R;
+  return ad;
+}
+
+class Quality : public testing::TestWithParam<Sensor> {};
+
+// What is checked: the motion between two frames, which is told by both of their poses against the
+// map (what the map as a whole is off by falls out), and whose covariance is the sum of theirs. Its
+// error, divided by its standard deviation as claimed, is 1 in the root mean square when what is
+// claimed is right. The six numbers of a pose count alike.
+TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
+  const Room& room = TheRoom();
+  SlamSettings settings;
+  settings.sensor = GetParam();
+  settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
+  Slam slam(room.camera, settings);
+  std::vector<TrackResult> results;
+  for (const RenderedFrame& frame : room.frames)
+    results.push_back(slam.Track({frame.time, frame.image, frame.right, frame.depth}));
+
+  double sum = 0;
+  int count = 0;
+  for (int i = kSettled; i < kFrames; ++i) {
+    const TrackResult &before = results[i - kGap], &now = results[i];
+    if (before.quality.covariance.isZero() || now.quality.covariance.isZero()) continue;
+    const Se3 found = before.T_world_camera.Inverse() * now.T_world_camera;
+    const Se3 truth = room.T_world_camera[i - kGap].Inverse() * room.T_world_camera[i];
+    const Matrix6d carried = Adjoint(found.Inverse());
+    const Matrix6d covariance =
+        now.quality.covariance + carried * before.quality.covariance * carried.transpose();
+    const Vector6d xi = (found.Inverse() * truth).Log();
+    sum += xi.dot(covariance.inverse() * xi);
+    count += 6;
+  }
+  ASSERT_GE(count, 6 * 30);
+  const double normalised = std::sqrt(sum / count);
+  RecordProperty("normalised_error", std::to_string(normalised));
+  EXPECT_GT(normalised, 0.7);
+  EXPECT_LT(normalised, 1.5);
+}
+
+TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
+  const Room& room = TheRoom();
+  SlamSettings settings;
+  settings.sensor = GetParam();
+  Slam slam(room.camera, settings);
+  int tracked = 0;
+  for (int i = 0; i < kSettled; ++i) {
+    const RenderedFrame& frame = room.frames[i];
+    const TrackResult result = slam.Track({frame.time, frame.image, frame.right, frame.depth});
+    const PoseQuality& quality = result.quality;
+    if (result.state != TrackState::kTracking) {
+      EXPECT_EQ(quality.expected, 0);
+      EXPECT_TRUE(quality.covariance.isZero());
+      continue;
+    }
+    ++tracked;
+    EXPECT_EQ(quality.inliers, result.matches);
+    EXPECT_GE(quality.expected, quality.inliers);
+    EXPECT_DOUBLE_EQ(quality.found_share, static_cast<double>(quality.inliers) / quality.expected);
+    if (result.keyframe && tracked == 1) continue;  // where it is by definition
+    EXPECT_TRUE(quality.covariance.isApprox(quality.covariance.transpose()));
+    EXPECT_GT(quality.covariance.diagonal().minCoeff(), 0);
+    EXPECT_GT(quality.covariance.determinant(), 0);
+  }
+  EXPECT_GT(tracked, 5);
+}
+
+// A wall of fog: the fewer landmarks are seen, the less is claimed.
+TEST(QualityOfAView, FewerLandmarksMakeItLarger) {
+  const Room& room = TheRoom();
+  SlamSettings settings;
+  settings.sensor = Sensor::kStereo;
+  Slam slam(room.camera, settings);
+  TrackResult clear, veiled;
+  for (int i = 0; i < 6; ++i) {
+    const RenderedFrame& frame = room.frames[i];
+    cv::Mat left = frame.image.clone(), right = frame.right.clone();
+    if (i == 5) {  // half of it gone
+      for (cv::Mat* image : {&left, &right})
+        (*image)(cv::Rect(0, 0, image->cols / 2, image->rows)).setTo(128);
+    }
+    (i == 5 ? veiled : clear) = slam.Track({frame.time, left, right, {}});
+  }
+  ASSERT_EQ(veiled.state, TrackState::kTracking) << veiled.reason;
+  EXPECT_LT(veiled.quality.inliers, 0.8 * clear.quality.inliers);
+  EXPECT_LT(veiled.quality.found_share, 0.8 * clear.quality.found_share);
+  EXPECT_GT(veiled.quality.covariance.trace(), 1.5 * clear.quality.covariance.trace());
+}
+
+INSTANTIATE_TEST_SUITE_P(Sensors, Quality, testing::Values(Sensor::kStereo, Sensor::kRgbd),
+                         [](const auto& sensor) { return std::string(NameOf(sensor.param)); });
+
+}  // namespace
+}  // namespace alidade::quality_test
