@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -20,20 +21,42 @@ namespace {
 constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
 constexpr double kBlack = 10;      // mean grey level
 
-volatile std::sig_atomic_t g_interrupted = 0;
+volatile std::sig_atomic_t g_interrupted = 0;  // signals so far
 
 void Interrupt(int) {
-  if (g_interrupted) _exit(kInterruptedStatus);
-  g_interrupted = 1;
+  if (g_interrupted == 2) _exit(kInterruptedStatus);
+  g_interrupted = g_interrupted + 1;
 }
+
+// Waits for the workers; a second signal gives up what is left.
+class Finisher {
+ public:
+  explicit Finisher(Slam& slam)
+      : thread_([this, &slam] {
+          while (!done_ && g_interrupted < 2)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          if (!done_) slam.CutFinishShort();
+        }) {}
+  ~Finisher() {
+    done_ = true;
+    thread_.join();
+  }
+  Finisher(const Finisher&) = delete;
+  Finisher& operator=(const Finisher&) = delete;
+
+ private:
+  std::atomic<bool> done_{false};
+  std::thread thread_;  // last: it uses the above
+};
 
 // Waits for the moment a frame is due.
 class Pacer {
  public:
   explicit Pacer(const Rate& rate) : rate_(rate) {}
 
-  void WaitFor(double frame_time) {
-    if (rate_.kind == Rate::Kind::kMax || !std::isfinite(frame_time)) return;
+  // Returns how late the frame is, seconds.
+  double WaitFor(double frame_time) {
+    if (rate_.kind == Rate::Kind::kMax || !std::isfinite(frame_time)) return 0;
     if (count_ == 0) {
       first_time_ = frame_time;
       clock_ = Stopwatch();
@@ -44,9 +67,10 @@ class Pacer {
     // In slices, so that Ctrl-C is not kept waiting.
     while (!Interrupted()) {
       const double left = due - clock_.Milliseconds() * 1e-3;
-      if (left <= 0) return;
+      if (left <= 0) return -left;
       std::this_thread::sleep_for(std::chrono::duration<double>(std::min(left, 0.05)));
     }
+    return 0;
   }
 
  private:
@@ -123,6 +147,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
   TrackState state = TrackState::kInitialising;
+  const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
       const std::optional<SourceFrame> frame = source.Next();
@@ -131,7 +156,11 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
         cpu.emplace(source);
         wall.emplace();
       }
-      pacer.WaitFor(frame->time);
+      const double late = pacer.WaitFor(frame->time);
+      if (may_drop && late > record.settings.time.max_latency && source.ready()) {
+        ++record.late;
+        continue;
+      }
       state = Feed(*frame, slam, record, masks, state);
       progress.Show(record.frames, state, slam);
     }
@@ -139,7 +168,10 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
     record.failure = std::current_exception();
   }
   progress.ShowFinishing(slam);
-  slam.Finish();
+  {
+    const Finisher finisher(slam);
+    slam.Finish();
+  }
   if (cpu) record.cpu_s = cpu->Seconds();
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
   record.interrupted = Interrupted();

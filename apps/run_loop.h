@@ -9,13 +9,16 @@
 
 namespace alidade {
 
-// From now on Ctrl-C (or a TERM signal) lets RunFrames() return; a second one ends the program.
+// From now on Ctrl-C (or a TERM signal) lets RunFrames() return, once the workers are done; a
+// second one does not wait for them, a third ends the program.
 void CatchInterrupts();
 bool Interrupted();
 inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
 
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
-// that cannot be used are warned about, counted and left out. `masks` may be null.
+// that cannot be used are warned about, counted and left out. In the threaded schedule a frame that
+// is late by more than settings.time.max_latency gives way to a newer one that is there already.
+// `masks` may be null.
 void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
                RunRecord& record, MaskWriter* masks);
 

@@ -24,8 +24,9 @@ struct RunRecord {
   std::vector<int> numbers;                     // their numbers in the recording
   int frames = 0;                               // all that came, bad ones included
   std::optional<double> first_time, last_time;  // of those, seconds
-  int dropped = 0;                              // bad ones
-  int dark = 0;                                 // black ones among those that were not tracked
+  int late = 0;     // that gave way to newer ones: not counted in `frames`
+  int dropped = 0;  // bad ones
+  int dark = 0;     // black ones among those that were not tracked
   std::map<std::string, int> untracked_reasons;
   std::string first_problem;  // of a bad frame
   Trajectory truth;           // of rendered recordings

@@ -99,6 +99,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"wall_s", record.wall_s},
       {"peak_mb", PeakMegabytes()},
       {"dropped_frames", record.dropped},
+      {"late_frames", record.late},
       {"warnings", record.warnings}};
   // A path may be in any encoding.
   return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

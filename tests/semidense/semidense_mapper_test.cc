@@ -8,6 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
 #include "alidade/map/correction.h"
 #include "support/dense_world.h"
@@ -293,6 +294,43 @@ TEST_F(SemiDenseMapperTest, ASensorsDepthIsFusedForComparison) {
   const Score score = ScoreOf(3);
   EXPECT_GT(score.pixels, EdgesOf(3) / 2);
   EXPECT_LT(score.median, 0.001);
+}
+
+TEST_F(SemiDenseMapperTest, LetsTheOldestGoWhenTooManyWait) {
+  std::vector<Se3> way;
+  for (int i = 0; i < 8; ++i) way.push_back({Eigen::Matrix3d::Identity(), {-0.04 * i, 0, 0}});
+  Look(way);
+  settings_.max_waiting = 5;
+  std::vector<std::string> warnings;
+  SetWarningListener([&](const std::string& warning) { warnings.push_back(warning); });
+  SemiDenseMapper mapper(store_, world_.camera(), settings_);
+  for (size_t i = 0; i < 4; ++i) mapper.Keep(ids_[i], PictureOf(i));
+  mapper.Process();  // the newest with two behind it: 0, 2 and 3 wait
+  for (size_t i = 4; i < 8; ++i) mapper.Keep(ids_[i], PictureOf(i));
+  mapper.Finish();
+  SetWarningListener(nullptr);
+  EXPECT_EQ(mapper.report().let_go, 2);  // 0 and 2
+  EXPECT_EQ(warnings.size(), 1u);
+  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(DepthOf(i) == nullptr, i == 0 || i == 2) << i;
+}
+
+TEST_F(SemiDenseMapperTest, TurnsPicturesAwayThatNobodyTakesIn) {
+  std::vector<Se3> way;
+  for (int i = 0; i < 8; ++i) way.push_back({Eigen::Matrix3d::Identity(), {-0.04 * i, 0, 0}});
+  Look(way);
+  settings_.max_waiting = 5;
+  std::vector<std::weak_ptr<const Picture>> pictures;
+  SetWarningListener([](const std::string&) {});
+  SemiDenseMapper mapper(store_, world_.camera(), settings_);
+  for (size_t i = 0; i < 8; ++i) {
+    const auto picture = PictureOf(i);
+    pictures.push_back(picture);
+    mapper.Keep(ids_[i], picture);
+  }
+  for (size_t i = 0; i < 8; ++i) EXPECT_EQ(pictures[i].expired(), i < 3) << i;
+  mapper.Finish();
+  SetWarningListener(nullptr);
+  EXPECT_EQ(mapper.report().let_go, 3);
 }
 
 }  // namespace

@@ -56,6 +56,11 @@ void ReadAhead::Run() {
   changed_.notify_all();
 }
 
+bool ReadAhead::ready() const {
+  const std::lock_guard lock(mutex_);
+  return !queue_.empty();
+}
+
 std::optional<SourceFrame> ReadAhead::Next() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [this] { return finished_ || !queue_.empty(); });

@@ -22,6 +22,7 @@ class ReadAhead : public FrameSource {
   const SourceInfo& Info() const override { return info_; }
   // Waits for the next frame. Rethrows, once, what the source threw; after that there are no more.
   std::optional<SourceFrame> Next() override;
+  bool ready() const;  // whether Next() would have a frame at once
   // CPU time of the reading thread so far, seconds: to be taken from the process's.
   double ReadCpuSeconds() const { return cpu_seconds_.load(); }
 
@@ -31,7 +32,7 @@ class ReadAhead : public FrameSource {
   std::unique_ptr<FrameSource> source_;  // the thread's alone, once it runs
   SourceInfo info_;
   const size_t capacity_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<SourceFrame> queue_;  // guarded by mutex_, as are the next three
   std::exception_ptr failure_;

@@ -5,6 +5,7 @@
 #include "alidade/base/log_odds.h"
 #include "alidade/base/median.h"
 #include "alidade/mapping/fuse.h"
+#include "alidade/mapping/limit.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/mapping/triangulate.h"
 
@@ -246,20 +247,34 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
 
   const std::vector<KeyFrameId> redundant = FindRedundantKeyFrames(map, id, has_depth_, settings_);
   report.keyframes_culled = static_cast<int>(redundant.size());
-  if (!redundant.empty()) {
-    map_.Commit([&](MapCommit& commit) {
-      for (KeyFrameId gone : redundant) {
-        const KeyFrame* keyframe = commit.Find(gone);
-        if (!keyframe) continue;
-        const std::vector<LandmarkId> seen = keyframe->landmarks;
-        commit.Remove(gone);
-        for (LandmarkId landmark : seen) {
-          if (landmark.valid()) commit.RefreshLandmark(landmark);
-        }
-      }
-    });
-  }
+  Remove(redundant);
   return report;
+}
+
+void Mapper::Remove(std::span<const KeyFrameId> keyframes) {
+  if (keyframes.empty()) return;
+  map_.Commit([&](MapCommit& commit) {
+    for (KeyFrameId gone : keyframes) {
+      const KeyFrame* keyframe = commit.Find(gone);
+      if (!keyframe) continue;
+      const std::vector<LandmarkId> seen = keyframe->landmarks;
+      commit.Remove(gone);
+      for (LandmarkId landmark : seen) {
+        if (landmark.valid()) commit.RefreshLandmark(landmark);
+      }
+    }
+  });
+}
+
+int Mapper::KeepWithinLimit(KeyFrameId newest) {
+  constexpr int kBatches = 20;  // of the limit
+  const MapSnapshot map = map_.Snapshot();
+  const int limit = settings_.max_keyframes;
+  if (limit == 0 || map.keyframe_count() <= limit) return 0;
+  const std::vector<KeyFrameId> gone =
+      FindLeastUseful(map, newest, map.keyframe_count() - limit + limit / kBatches);
+  Remove(gone);
+  return static_cast<int>(gone.size());
 }
 
 }  // namespace alidade

@@ -56,7 +56,12 @@ class Mapper {
   // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
 
+  // When there are more than settings.max_keyframes: removes the least useful, and returns how
+  // many. `newest`: the keyframe processed last.
+  int KeepWithinLimit(KeyFrameId newest);
+
  private:
+  void Remove(std::span<const KeyFrameId> keyframes);  // what they alone show goes with them
   std::vector<std::pair<LandmarkId, float>> TakeBelief();
   void ForgetTalliesOfTheGone(const MapSnapshot& map);
 

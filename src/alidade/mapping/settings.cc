@@ -23,6 +23,9 @@ void MapperSettings::Check() const {
   require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must lie in [0, 1]");
   require(redundant_share > 0, "redundant_share must be positive");
   require(window_keyframes >= 1 && window_fixed >= 1, "window_* must be positive");
+  require(max_keyframes >= 0, "max_keyframes cannot be negative");
+  require(max_keyframes == 0 || max_keyframes >= 10,
+          "max_keyframes must be 0 or at least 10: a camera needs some around it");
   bundle.Check();
 }
 

@@ -42,6 +42,11 @@ struct MapperSettings {
   double redundant_share =
       0.9;  // of a keyframe's landmarks seen in 3 others at the same or a finer scale
 
+  // Most keyframes alive, in all maps together; 0: no limit. Then the least useful go, a twentieth
+  // of the limit at a time, since to choose them costs a look at the whole map. Memory, and the
+  // time that loops take, follow the keyframes.
+  int max_keyframes = 0;
+
   // Local bundle adjustment (ORB-SLAM §VI-D).
   // Adjusted: the newest and its best covisible ones. With fewer, a monocular scale breaks where
   // the camera turns round on the spot.

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <functional>
 #include <optional>
+#include <string>
 
+#include "alidade/base/log.h"
 #include "alidade/map/view.h"
 #include "alidade/semidense/cross_check.h"
 #include "alidade/semidense/keyframe_depth.h"
@@ -47,13 +49,19 @@ void SemiDenseMapper::Keep(KeyFrameId id, std::shared_ptr<const Picture> picture
   // Of maps given up at their start nothing is ever processed.
   std::erase_if(inbox_, [&](const auto& kept) { return !map.Find(kept.first); });
   inbox_.push_back({id, std::move(picture)});
+  if (static_cast<int>(inbox_.size()) > settings_.max_waiting) {
+    inbox_.erase(inbox_.begin());
+    ++turned_away_;
+  }
 }
 
 MapSnapshot SemiDenseMapper::TakeIn() {
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> arrived;
+  int turned_away = 0;
   {
     std::lock_guard<std::mutex> lock(inbox_mutex_);
     arrived.swap(inbox_);
+    turned_away = std::exchange(turned_away_, 0);
   }
   const MapSnapshot map = map_.Snapshot();
   std::erase_if(entries_, [&](const auto& entry) { return !map.Find(entry->id); });
@@ -69,7 +77,26 @@ MapSnapshot SemiDenseMapper::TakeIn() {
   }
   std::sort(entries_.begin(), entries_.end(),
             [](const auto& a, const auto& b) { return a->id < b->id; });
+  LetGo(turned_away);
   return map;
+}
+
+void SemiDenseMapper::LetGo(int turned_away) {
+  int waiting = 0;
+  for (const auto& entry : entries_) waiting += !entry->estimated;
+  const int before = report_.let_go;
+  report_.let_go += turned_away;
+  std::erase_if(entries_, [&](const auto& entry) {
+    if (entry->estimated || waiting <= settings_.max_waiting) return false;
+    --waiting;
+    ++report_.let_go;
+    return true;
+  });
+  if (before == 0 && report_.let_go > 0) {
+    LogWarning("semi-dense mapping cannot keep up: more than " +
+               std::to_string(settings_.max_waiting) +
+               " keyframes wait (semidense.max_waiting), the oldest stay without depth");
+  }
 }
 
 SemiDenseMapper::Entry* SemiDenseMapper::Find(KeyFrameId id) {
@@ -229,19 +256,22 @@ void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
   }));
 }
 
-void SemiDenseMapper::Finish() {
+void SemiDenseMapper::Finish(const std::atomic<bool>* stop) {
+  const auto enough = [stop] { return stop && stop->load(); };
   const MapSnapshot map = TakeIn();
   for (const auto& entry : entries_) {
-    if (!entry->estimated) Estimate(map, *entry);
+    if (!entry->estimated && !enough()) Estimate(map, *entry);
   }
-  for (size_t i = entries_.size(); i-- > 0;) {
+  for (size_t i = entries_.size(); i-- > 0 && !enough();) {
     if (Moved(map, *entries_[i])) Estimate(map, *entries_[i]);
   }
-  std::vector<std::shared_ptr<const DepthMap>> checked;
-  for (const auto& entry : entries_) checked.push_back(Checked(map, *entry));
+  std::vector<std::pair<KeyFrameId, std::shared_ptr<const DepthMap>>> checked;
+  for (const auto& entry : entries_) {
+    if (entry->estimated && !enough()) checked.push_back({entry->id, Checked(map, *entry)});
+  }
   CountBytes(map_.Commit([&](MapCommit& commit) {
-    for (size_t i = 0; i < entries_.size(); ++i) {
-      if (KeyFrame* keyframe = commit.Edit(entries_[i]->id)) keyframe->depth = checked[i];
+    for (const auto& [id, depth] : checked) {
+      if (KeyFrame* keyframe = commit.Edit(id)) keyframe->depth = depth;
     }
   }));
 }

@@ -2,6 +2,7 @@
 // keyframes behind the mapper. One instance, one thread at a time, but for Keep().
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -23,6 +24,7 @@ struct SemiDenseReport {
   int64_t pixels = 0;  // with enough gradient, in those
   SearchCount search;
   int most_behind = 0;  // keyframes that waited at once, whose turn had come
+  int let_go = 0;       // keyframes that stay without depth: too many waited (max_waiting)
   size_t bytes = 0;     // that are held now, the finished depth in the map included
 };
 
@@ -40,13 +42,16 @@ class SemiDenseMapper {
 
   // Nothing will follow: works on all that wait or were moved, and checks every keyframe's depth
   // against its neighbours', of which only the older ones were known before.
-  void Finish();
+  // `stop` (may be null): turns true when it is enough; the map is sound then, and some keyframes
+  // stay without depth, or unchecked.
+  void Finish(const std::atomic<bool>* stop = nullptr);
 
   const SemiDenseReport& report() const { return report_; }  // when nothing is in work
 
  private:
   struct Entry;
-  MapSnapshot TakeIn();  // what was kept, and out what is not in the map (returned) any more
+  MapSnapshot TakeIn();         // what was kept, and out what is not in the map (returned) any more
+  void LetGo(int turned_away);  // of those that wait, the oldest beyond max_waiting
   Entry* Find(KeyFrameId id);
   Entry* NextDue(const MapSnapshot& map);
   Entry* NewestMoved(const MapSnapshot& map);
@@ -63,6 +68,7 @@ class SemiDenseMapper {
   GradientImageMaker maker_;
   std::mutex inbox_mutex_;
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> inbox_;
+  int turned_away_ = 0;                          // pictures, since the inbox was last emptied
   std::vector<std::unique_ptr<Entry>> entries_;  // by id
   uint64_t settled_corrections_ = 0;  // of the map, up to which all that moved was done again
   SemiDenseReport report_;

@@ -24,6 +24,8 @@ void SemiDenseSettings::Check() const {
           "keyframes must be at least min_compatible: else none could ever agree");
   require(max_landmark_difference > 0, "max_landmark_difference must be positive");
   require(delay >= 0, "delay must not be negative");
+  require(max_waiting > delay,
+          "max_waiting must be more than delay: none would ever have its turn");
   require(redo_baseline > 0, "redo_baseline must be positive");
   require(voxel == 0 || voxel >= 1e-6, "voxel must be 0 or at least 1e-6");
 }

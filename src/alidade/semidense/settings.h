@@ -36,6 +36,10 @@ struct SemiDenseSettings {
   double redo_baseline =
       0.02;  // a keyframe is worked on again when a baseline changed by this share
 
+  // Keyframes that wait for their depth, at most: on a machine that cannot keep up the oldest are
+  // let go and stay without. Each holds its picture, 1.2 MB at 640 × 480 in colour.
+  int max_waiting = 200;
+
   double voxel = 0.005;  // edge of the cubes that hold one point of semidense.ply each; metres or
                          // map units; 0 = all points
 

@@ -17,6 +17,7 @@ constexpr size_t kFewestIntervals = 3;  // to call any usual
 void ClockSettings::Check() const {
   if (!(gap_seconds > 0)) ThrowUsage("time.gap_seconds must be positive");
   if (!(gap_intervals >= 1)) ThrowUsage("time.gap_intervals must be at least 1");
+  if (!(max_latency >= 0)) ThrowUsage("time.max_latency must not be negative");
   if (agree_frames < 1) ThrowUsage("time.agree_frames must be at least 1");
 }
 

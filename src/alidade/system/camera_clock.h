@@ -14,6 +14,9 @@ struct ClockSettings {
   // Frames in a row that are not newer than the last one taken, but in order among themselves, for
   // the clock to be believed to have been set back. Fewer are late ones, or doubles.
   int agree_frames = 3;
+  // Seconds a frame may be late where a program plays frames at a rate or from a camera (threaded):
+  // then it gives way to a newer one. A quarter of a second still feels live. Slam knows no delay.
+  double max_latency = 0.25;
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 

@@ -71,6 +71,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("mapper.min_found_share", m.min_found_share);
   visit("mapper.trial_keyframes", m.trial_keyframes);
   visit("mapper.redundant_share", m.redundant_share);
+  visit("mapper.max_keyframes", m.max_keyframes);
   visit("mapper.window_keyframes", m.window_keyframes);
   visit("mapper.window_fixed", m.window_fixed);
   visit("mapper.bundle.max_iterations", m.bundle.max_iterations);
@@ -82,6 +83,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("time.gap_seconds", s.time.gap_seconds);
   visit("time.gap_intervals", s.time.gap_intervals);
   visit("time.agree_frames", s.time.agree_frames);
+  visit("time.max_latency", s.time.max_latency);
   auto& l = s.loop;
   visit("loop.enabled", l.enabled);
   visit("loop.sigma_px", l.noise.sigma_px);
@@ -140,6 +142,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   visit("semidense.cross_check", d.cross_check);
   visit("semidense.delay", d.delay);
   visit("semidense.redo_baseline", d.redo_baseline);
+  visit("semidense.max_waiting", d.max_waiting);
   visit("semidense.voxel", d.voxel);
   auto& y = s.dynamics;
   visit("dynamics.mode", y.mode);

@@ -414,7 +414,8 @@ Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<D
     : impl_(std::make_unique<Impl>(camera, settings, detector)) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
-void Slam::Finish() { impl_->workers_.Drain(); }
+void Slam::Finish(double limit) { impl_->workers_.Drain(limit); }
+void Slam::CutFinishShort() { impl_->workers_.CutShort(); }
 void Slam::Reset() { impl_->Reset(); }
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }

@@ -1,6 +1,7 @@
 // Visual SLAM behind one class: images in, poses and a map out.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -109,7 +110,11 @@ class Slam {
   // The next frame begins a new recording, its time may be any; the maps are kept and gone on with.
   // Where Track() is called.
   void Reset();
-  void Finish();  // waits until the workers have nothing left to do
+  // Waits until the workers have nothing left to do, `limit` seconds at most, and what it takes to
+  // end the step in work. The map is sound then; the next Finish() does what was left, but for
+  // keyframes that waited to be mapped: they stay as they were entered.
+  void Finish(double limit = std::numeric_limits<double>::infinity());
+  void CutFinishShort();  // any thread's: as if the limit of Finish() were reached
 
   // Of the last frame: its features, and what was left out as moving (CV_8U, 255, of the camera's
   // size; empty without dynamics).

@@ -46,6 +46,15 @@ int Stage::backlog() const {
   return static_cast<int>(queue_.size()) + working_;
 }
 
+void Stage::GiveUp() {
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    queue_.clear();
+    hurry_ = true;
+  }
+  changed_.notify_all();
+}
+
 void Stage::Drain() {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [&] { return failure_ || (queue_.empty() && !working_); });

@@ -30,6 +30,7 @@ class Stage {
 
   void Add(KeyFrameId id);
   int backlog() const;  // keyframes waiting or in work
+  void GiveUp();        // drops what is queued, and hurries what is in work; goes on afterwards
   void Drain();         // returns when nothing is waiting or in work; throws what the work threw
   std::vector<double> Milliseconds() const;  // one per keyframe done
 

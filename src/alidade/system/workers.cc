@@ -1,5 +1,12 @@
 #include "alidade/system/workers.h"
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "alidade/base/log.h"
 #include "alidade/system/prepare.h"
 
 namespace alidade {
@@ -8,6 +15,33 @@ namespace {
 Schedule Behind(const SlamSettings& settings) {
   return settings.threaded ? Schedule::kBackground : Schedule::kInline;
 }
+
+// Does something after a time, on a thread of its own, unless it is destroyed before.
+class Alarm {
+ public:
+  Alarm(double seconds, std::function<void()> action)
+      : thread_([this, seconds, action = std::move(action)] {
+          std::unique_lock<std::mutex> lock(mutex_);
+          const auto time = std::chrono::duration<double>(std::clamp(seconds, 0.0, 1e8));
+          if (!changed_.wait_for(lock, time, [this] { return cancelled_; })) action();
+        }) {}
+  ~Alarm() {
+    {
+      std::lock_guard<std::mutex> lock(mutex_);
+      cancelled_ = true;
+    }
+    changed_.notify_all();
+    thread_.join();
+  }
+  Alarm(const Alarm&) = delete;
+  Alarm& operator=(const Alarm&) = delete;
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool cancelled_ = false;
+  std::thread thread_;  // last: it uses all of the above
+};
 
 }  // namespace
 
@@ -34,6 +68,9 @@ Workers::~Workers() {  // who hands on stops before who is handed to
 
 void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
   mapper_.Process(id, stop);
+  if (mapper_.KeepWithinLimit(id) > 0 && !std::exchange(limit_told_, true))
+    LogWarning(
+        "the map has as many keyframes as it may have (mapper.max_keyframes): the least useful go");
   AddMapped(id);
 }
 
@@ -56,8 +93,10 @@ void Workers::Loop(KeyFrameId id) {
 }
 
 void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
+  if (cut_short_) return;
   loop_closer_.AdjustAll(
-      id, stop, [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
+      id, stop ? stop : &cut_short_,
+      [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
 }
 
 SemiDenseReport Workers::SemiDense() {
@@ -66,23 +105,38 @@ SemiDenseReport Workers::SemiDense() {
   return report;
 }
 
-void Workers::Drain() {
+void Workers::CutShort() {
+  cut_short_ = true;
+  for (Stage* stage : {&mapping_, &looping_, &adjusting_, &semidense_}) stage->GiveUp();
+}
+
+void Workers::Drain(double limit) {
+  // Nothing is timed where nothing is limited.
+  std::optional<Alarm> alarm;
+  if (std::isfinite(limit)) alarm.emplace(limit, [this] { CutShort(); });
+  DrainStages();
+  alarm.reset();
+  cut_short_ = false;
+}
+
+void Workers::DrainStages() {
   mapping_.Drain();
   looping_.Drain();
   adjusting_.Drain();
   // Local windows leave a slow drift of scale and shape that all observations together do not.
   const MapSnapshot map = map_.Snapshot();
   if (map.next_keyframe() != adjusted_up_to_) {
-    adjusted_up_to_ = map.next_keyframe();
     for (MapId id : map.Maps()) {
+      if (cut_short_) break;
       const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
       if (keyframes.size() <= 2) continue;
       adjusting_.Add(keyframes.back());
       adjusting_.Drain();  // one by one: what waits would hurry the one before
     }
+    if (!cut_short_) adjusted_up_to_ = map.next_keyframe();
   }
   semidense_.Drain();
-  if (dense_) semidense_mapper_.Finish();
+  if (dense_) semidense_mapper_.Finish(&cut_short_);
 }
 
 void Workers::WhileResting(const std::function<void()>& change) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <functional>
+#include <limits>
 
 #include "alidade/looping/loop_closer.h"
 #include "alidade/map/map_file.h"
@@ -32,7 +33,10 @@ class Workers {
   // The keyframe's picture, before it is added: semi-dense mapping wants a copy. Null without it.
   void Keep(KeyFrameId id, const Picture* picture);
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
-  void Drain();  // until nothing is left to do; what grew is adjusted as a whole once more
+  // Until nothing is left to do; what grew is adjusted as a whole once more. After `limit` seconds,
+  // or CutShort(), what is left is given up, as soon as what is in work can be brought to an end.
+  void Drain(double limit = std::numeric_limits<double>::infinity());
+  void CutShort();                      // any thread's: a Drain() that runs, or else the next
   void Restore(const SavedMap& saved);  // before the first keyframe
   void Drop(MapId id);                  // a map and its places, without a trace
 
@@ -47,6 +51,7 @@ class Workers {
   void WhileResting(const std::function<void()>& change);  // while no worker is at the map
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
+  void DrainStages();
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop);
 
   MapStore map_;
@@ -54,7 +59,9 @@ class Workers {
   Mapper mapper_;
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
-  bool dense_;                   // semi-dense mapping is asked for
+  bool dense_;  // semi-dense mapping is asked for
+  std::atomic<bool> cut_short_{false};
+  bool limit_told_ = false;      // that keyframes go because there are too many; mapping_'s
   uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
   Stage adjusting_, looping_, semidense_, mapping_;
 };

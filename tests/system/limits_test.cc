@@ -1,0 +1,137 @@
+// What may be limited: keyframes, and the time that Finish() takes.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "alidade/base/log.h"
+#include "alidade/base/parallel.h"
+#include "alidade/map/map_file.h"
+#include "alidade/semidense/semidense_mapper.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+#include "support/check_map.h"
+
+namespace alidade::limits_test {
+namespace {
+
+SynthRecording& TheRoom() {
+  static SynthRecording room([] {
+    SynthSettings settings;
+    settings.width = 400;
+    settings.height = 300;
+    return settings;
+  }());
+  return room;
+}
+
+const RenderedFrame& Frame(int number) {
+  static std::map<int, RenderedFrame> frames;
+  auto& frame = frames[number];
+  if (frame.image.empty()) frame = TheRoom().Render(number);
+  return frame;
+}
+
+SlamSettings Phone() {
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  settings.sensor = Sensor::kRgbd;
+  return settings;
+}
+
+TrackResult Show(Slam& slam, int number) {
+  return slam.Track({number / 30.0, Frame(number).image, {}, Frame(number).depth});
+}
+
+class Limits : public testing::Test {
+ protected:
+  Limits() {
+    SetWarningListener([this](const std::string& warning) { warnings_.push_back(warning); });
+  }
+  ~Limits() override {
+    SetWarningListener(nullptr);
+    SetThreadCount(0);
+  }
+  std::vector<std::string> warnings_;
+};
+
+TEST_F(Limits, KeyFramesStayWithinTheirsAndTrackingGoesOn) {
+  SlamSettings settings = Phone();
+  settings.mapper.max_keyframes = 12;
+  settings.mapper.redundant_share = 1;  // nothing else removes any
+  std::string first;
+  for (int threads : {1, 2}) {
+    SetThreadCount(threads);
+    warnings_.clear();
+    Slam slam(TheRoom().camera(), settings);
+    int untracked = 0;
+    for (int i = 0; i <= 160; i += 4) {
+      untracked += Show(slam, i).state != TrackState::kTracking;
+      EXPECT_LE(slam.Snapshot().keyframe_count(), 12);
+    }
+    EXPECT_EQ(untracked, 0);
+    ASSERT_EQ(warnings_.size(), 1u);
+    EXPECT_NE(warnings_[0].find("mapper.max_keyframes"), std::string::npos);
+    const MapSnapshot map = slam.Snapshot();
+    EXPECT_GE(map.keyframe_count(), 10);
+    EXPECT_GT(map.next_keyframe(), 15u);
+    EXPECT_NE(map.Find(KeyFrameId{0}), nullptr);
+    ExpectConsistent(map);
+    for (const FramePose& pose : slam.Trajectory()) {
+      const Se3 truth = TheRoom().Pose(0).Inverse() * TheRoom().Pose(4 * pose.index);
+      EXPECT_LT((pose.T_world_camera.t - truth.t).norm(), 0.1) << pose.index;
+    }
+    if (first.empty()) {
+      first = slam.SaveMap();
+    } else {
+      EXPECT_TRUE(first == slam.SaveMap());
+    }
+  }
+}
+
+std::string Poses(const Slam& slam) {
+  std::string poses;
+  for (const FramePose& pose : slam.Trajectory()) {
+    poses.append(reinterpret_cast<const char*>(pose.T_world_camera.t.data()), 3 * sizeof(double));
+  }
+  return poses;
+}
+
+TEST_F(Limits, AFinishThatIsCutShortLeavesTheMapSoundAndTheNextOneDoesTheRest) {
+  SlamSettings settings = Phone();
+  settings.semidense.enabled = true;
+  Slam whole(TheRoom().camera(), settings), cut(TheRoom().camera(), settings);
+  for (int i = 0; i <= 60; i += 4) {
+    Show(whole, i);
+    Show(cut, i);
+  }
+  whole.Finish();
+  const std::string before = Poses(cut);
+  const int estimated = cut.SemiDense().keyframes;
+  cut.CutFinishShort();
+  cut.Finish();
+  EXPECT_EQ(Poses(cut), before);  // nothing was adjusted
+  EXPECT_EQ(cut.SemiDense().keyframes, estimated);
+  ExpectConsistent(cut.Snapshot());
+  DecodeMap(cut.SaveMap());
+  EXPECT_NE(Poses(cut), Poses(whole));
+  cut.Finish();
+  EXPECT_EQ(Poses(cut), Poses(whole));
+  EXPECT_EQ(cut.SemiDense().keyframes, whole.SemiDense().keyframes);
+}
+
+TEST_F(Limits, AFinishWithoutTimeReturnsInTheThreadedSchedule) {
+  SlamSettings settings = Phone();
+  settings.threaded = true;
+  settings.semidense.enabled = true;
+  Slam slam(TheRoom().camera(), settings);
+  for (int i = 0; i <= 60; i += 4) Show(slam, i);
+  slam.Finish(0);
+  ExpectConsistent(slam.Snapshot());
+  slam.Finish();
+  ExpectConsistent(slam.Snapshot());
+}
+
+}  // namespace
+}  // namespace alidade::limits_test
