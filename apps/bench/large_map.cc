@@ -41,9 +41,13 @@ Point PointOf(int j) {
   Random random(7, static_cast<uint64_t>(j));
   Point point;
   const double along = (j - kSeen / 2) * kStep / kNew;
-  point.p_world = {along, 2.4 * random.Uniform() - 1.2, 2.6 + 1.4 * random.Uniform()};
-  for (uint64_t& word : point.descriptor.words)
-    word = static_cast<uint64_t>(random.Below(0xffffffff)) << 32 | random.Below(0xffffffff);
+  const double up = 2.4 * random.Uniform() - 1.2;
+  const double away = 2.6 + 1.4 * random.Uniform();
+  point.p_world = {along, up, away};
+  for (uint64_t& word : point.descriptor.words) {
+    const uint64_t high = random.Below(0xffffffff);
+    word = high << 32 | random.Below(0xffffffff);
+  }
   return point;
 }
 
@@ -58,16 +62,19 @@ std::shared_ptr<Frame> FrameAt(double where, const std::vector<Point>& points, i
   frame->time = number / 30.0;
   for (const Point& point : points) {
     const Eigen::Vector3d p = PoseAt(where) * point.p_world;
-    const Eigen::Vector2d pixel =
-        camera.Project(p) + kNoise * Eigen::Vector2d(random.Gaussian(), random.Gaussian());
+    const double noise_x = random.Gaussian();
+    const double noise_y = random.Gaussian();
+    const Eigen::Vector2d pixel = camera.Project(p) + kNoise * Eigen::Vector2d(noise_x, noise_y);
     Keypoint keypoint;
     keypoint.x = keypoint.raw_x = static_cast<float>(pixel.x());
     keypoint.y = keypoint.raw_y = static_cast<float>(pixel.y());
     keypoint.depth = static_cast<float>(p.z());
     keypoint.right_x = static_cast<float>(pixel.x() - camera.bf() / p.z());
     Descriptor descriptor = point.descriptor;
-    for (int flip = 0; flip < 12; ++flip)
-      descriptor.words[random.Below(4)] ^= uint64_t{1} << random.Below(64);
+    for (int flip = 0; flip < 12; ++flip) {
+      const uint32_t bit = random.Below(256);
+      descriptor.words[bit / 64] ^= uint64_t{1} << bit % 64;
+    }
     frame->keypoints.push_back(keypoint);
     frame->descriptors.push_back(descriptor);
   }

@@ -47,12 +47,12 @@ RayBounds ViewRenderer::Bounds(const cv::Rect& pixels) const {
 struct ViewRenderer::Picture {
   const Shutter& shutter;
   View view;
-  cv::Mat1i surfaces;           // what each pixel's centre meets
-  cv::Mat1f one_sample;         // grey levels there
-  std::vector<Stage> stages;    // one, or with a rolling shutter one for each band of tiles
-  std::vector<TileList> lists;  // one for each tile
+  cv::Mat1i surfaces;             // what each pixel's centre meets
+  cv::Mat1f one_sample;           // grey levels there
+  std::vector<StageView> stages;  // one, or with a rolling shutter one for each band of tiles
+  std::vector<TileList> lists;    // one for each tile
 
-  const Stage& StageOf(int band) const {
+  const StageView& StageOf(int band) const {
     return stages[stages.size() > 1 ? static_cast<size_t>(band) : 0];
   }
 };
@@ -82,7 +82,7 @@ View ViewRenderer::Render(const Shutter& shutter) const {
 
 // One ray through the middle of every pixel.
 void ViewRenderer::CastBand(int band, Picture& picture) const {
-  const Stage& stage = picture.StageOf(band);
+  const StageView& stage = picture.StageOf(band);
   View& view = picture.view;
   for (int column = 0; column < columns_; ++column) {
     const int left = column * kTile, right = std::min(left + kTile, camera_.width);

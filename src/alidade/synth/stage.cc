@@ -83,9 +83,10 @@ bool MakeForms(const RectPlane& plane, const Se3& T_world_camera, RectForms& for
   return true;
 }
 
-Stage PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes, const Shutter& shutter,
-                   double first_row, double last_row, RayBounds bounds) {
-  Stage stage;
+StageView PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes,
+                       const Shutter& shutter, double first_row, double last_row,
+                       RayBounds bounds) {
+  StageView stage;
   const double middle = (first_row + last_row) / 2;
   stage.T_world_camera = shutter.T_world_camera(middle);
   stage.actors = shutter.actors(middle);
@@ -124,7 +125,7 @@ Stage PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes, con
   return stage;
 }
 
-TileList ListTile(const Stage& stage, RayBounds tile) {
+TileList ListTile(const StageView& stage, RayBounds tile) {
   const RayBounds b = Widened(tile, stage.margin);
   TileList list;
   for (size_t i = 0; i < stage.items.size(); ++i) {

@@ -51,18 +51,18 @@ struct StageItem {
 };
 
 // Everything in front of the camera between two rows, seen from their middle's pose.
-struct Stage {
+struct StageView {
   std::vector<StageItem> items;
   std::vector<Quadric> actors;
   Se3 T_world_camera;
   int rects = 0;     // of the scene
   float margin = 0;  // by how much x/z and y/z may differ from this pose's between those rows
 };
-Stage PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes, const Shutter& shutter,
-                   double first_row, double last_row, RayBounds bounds);
+StageView PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes,
+                       const Shutter& shutter, double first_row, double last_row, RayBounds bounds);
 
 // A bound on 1/z within the tile, and the item; near ones first.
 using TileList = std::vector<std::pair<float, int>>;
-TileList ListTile(const Stage& stage, RayBounds tile);
+TileList ListTile(const StageView& stage, RayBounds tile);
 
 }  // namespace alidade

@@ -72,7 +72,7 @@ void MeetRound(const Quadric& quadric, const QuadricView& view, int which, const
 }  // namespace
 
 TileCaster::TileCaster(const Scene& scene, const std::vector<RectPlane>& planes,
-                       const Camera& camera, const Shutter& shutter, const Stage& stage,
+                       const Camera& camera, const Shutter& shutter, const StageView& stage,
                        const TileList& list)
     : scene_(scene),
       planes_(planes),

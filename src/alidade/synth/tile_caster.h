@@ -16,7 +16,7 @@ class TileCaster {
 
   // Keeps references to all.
   TileCaster(const Scene& scene, const std::vector<RectPlane>& planes, const Camera& camera,
-             const Shutter& shutter, const Stage& stage, const TileList& list);
+             const Shutter& shutter, const StageView& stage, const TileList& list);
 
   // To be called before a row's rays are cast.
   void SetRow(int row);
@@ -43,7 +43,7 @@ class TileCaster {
   const std::vector<RectPlane>& planes_;
   const Camera& camera_;
   const Shutter& shutter_;
-  const Stage& stage_;
+  const StageView& stage_;
   const TileList& list_;
   std::vector<char> is_rect_;       // one for each of the list
   std::vector<RectForms> forms_;    // likewise, for the row set
