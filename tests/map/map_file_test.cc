@@ -268,7 +268,7 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
   EXPECT_THAT(WhyNotWritten(saved), testing::HasSubstr("vocabulary"));
   saved = MakeSavedMap();
   saved.camera.width = 1 << 20;
-  EXPECT_THAT(WhyNotWritten(saved), testing::HasSubstr("image"));
+  EXPECT_THAT(WhyNotWritten(saved), testing::HasSubstr("too large"));
   saved = MakeSavedMap();
   saved.camera.fx = -1;
   EXPECT_THAT(WhyNotWritten(saved), testing::HasSubstr("fx"));

@@ -121,7 +121,7 @@ TEST(HostileMap, IdsWithoutObjects) {
 TEST(HostileMap, LargeImagesOfTinyKeyframes) {
   FlatBufferBuilder builder;
   Parts parts;
-  parts.width = 16384;
+  parts.width = 8192;
   parts.height = 8192;
   for (uint32_t id = 0; id < 900; ++id) parts.keyframes.push_back(AddKeyFrame(builder, id));
   EXPECT_THAT(Complaint(builder, parts), testing::HasSubstr("too large for so many keyframes"));

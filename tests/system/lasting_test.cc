@@ -31,7 +31,7 @@ TEST(Lasting, WhatIsHeldFollowsWhatLives) {
   SlamSettings settings;
   settings.sensor = Sensor::kRgbd;
   settings.tracker.extractor.features = 400;  // the picture is small
-  settings.tracker.match_scale = settings.mapper.match_scale = 0.5;
+  settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.5;
   Slam slam(room.camera, settings);
   cv::RNG noise(5);
   Held early, late;
