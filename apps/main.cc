@@ -5,6 +5,7 @@
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <new>
 #include <string>
 #include <vector>
 
@@ -102,6 +103,8 @@ int main(int argc, char** argv) {
     return Complain(error.what(), static_cast<int>(error.kind()));
   } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
     return Complain(error.what(), static_cast<int>(alidade::ErrorKind::kInput));
+  } catch (const std::bad_alloc&) {
+    return Complain("out of memory", kBugStatus);
   } catch (const std::exception& error) {
     return Complain(std::string("a bug of ours, please report it: ") + error.what(), kBugStatus);
   } catch (...) {

@@ -24,7 +24,7 @@ void MaskWriter::Write(const SourceFrame& frame, const cv::Mat& mask) {
           std::make_unique<DraftFolder>((fs::path(folder_.path()) / name).parent_path().string());
     // Flushing thousands of pictures one by one would hold up the frames.
     AtomicWriteFile(draft_->path() + "/" + stamp + ".png", EncodePng(picture), Sync::kNo);
-  } catch (const Error&) {
+  } catch (...) {
     Discard();
     throw;
   }
@@ -58,7 +58,7 @@ void MaskWriter::Finish() {
   try {
     Publish();
     folder_.Write("mask.txt", std::string(kMaskListHeader) + list_);
-  } catch (const Error&) {
+  } catch (...) {
     for (const std::string& name : written_) folder_.Discard(name);
     Discard();
     throw;

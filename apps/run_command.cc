@@ -4,6 +4,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -37,6 +38,16 @@ void Say(const RunSummary& summary, const RunRecord& record, const std::string& 
               summary.tracked, summary.frames, summary.keyframes, summary.landmarks, shape.c_str(),
               summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",
               record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+}
+
+// What went wrong by no fault of the recording's; empty: nothing.
+std::string BugOf(const RunRecord& record) {
+  std::string bugs;
+  for (const StageHealth& stage : record.health.stages) {
+    if (stage.bug) bugs += (bugs.empty() ? "" : "; ") + stage.name + " stopped: " + stage.failure;
+  }
+  if (record.bug) bugs += (bugs.empty() ? "" : "; ") + ("a frame failed: " + WhatOf(record.bug));
+  return bugs;
 }
 
 int Run(const RunOptions& options) {
@@ -90,6 +101,8 @@ int Run(const RunOptions& options) {
       WriteOutputs(folder, slam, record, !options.localise, masks ? &*masks : nullptr);
   if (!options.quiet) Say(summary, record, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
+  if (const std::string bugs = BugOf(record); !bugs.empty())
+    throw std::runtime_error(bugs + " (what could be done without is in " + folder.path() + ")");
   if (record.interrupted) return kInterruptedStatus;
   if (summary.tracked == 0) {
     throw Error(ErrorKind::kNothingMapped, "nothing could be mapped: " + WhyNothing(record));

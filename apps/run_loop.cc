@@ -8,7 +8,9 @@
 #include <cmath>
 #include <csignal>
 #include <optional>
+#include <string>
 #include <thread>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
@@ -99,6 +101,20 @@ void Drop(const SourceFrame& frame, const std::string& problem, RunRecord& recor
   }
 }
 
+// Once for each part; a detector that fails says so itself.
+void TellWhatStopped(const TrackResult& result, const Slam& slam, RunRecord& record) {
+  if (result.warning.empty()) return;
+  SlamHealth health = slam.Health();
+  for (const StageHealth& stage : health.stages) {
+    const auto told = std::find_if(record.health.stages.begin(), record.health.stages.end(),
+                                   [&](const StageHealth& s) { return s.name == stage.name; });
+    if (stage.running || stage.name == "detector") continue;
+    if (told != record.health.stages.end() && !told->running) continue;
+    LogWarning(stage.name + " stopped (" + stage.failure + "); going on without it");
+  }
+  record.health = std::move(health);
+}
+
 TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWriter* masks,
                 TrackState state) {
   ++record.frames;
@@ -114,16 +130,28 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWri
     return state;
   }
   TrackResult result;
-  try {
-    result = slam.Track({frame.time, frame.image, frame.right, frame.depth, frame.color});
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::kInput) throw;
-    Drop(frame, error.what(), record);
-    return state;
-  }
-  if (masks) masks->Write(frame, slam.MoverMask());
+  const int counted = slam.frames();
   record.stamps.push_back(frame.stamp);
   record.numbers.push_back(frame.number);
+  try {
+    result = slam.Track({frame.time, frame.image, frame.right, frame.depth, frame.color});
+  } catch (...) {
+    const std::exception_ptr failure = std::current_exception();
+    const std::string what = WhatOf(failure);
+    if (slam.frames() == counted) {
+      record.stamps.pop_back();
+      record.numbers.pop_back();
+      Drop(frame, what, record);
+      return state;
+    }
+    // The frame counts, without a pose; the next will do better.
+    if (!record.bug) record.bug = failure;
+    ++record.untracked_reasons[what];
+    LogWarning("frame " + std::to_string(frame.number) + " failed: " + what);
+    return state;
+  }
+  TellWhatStopped(result, slam, record);
+  if (masks) masks->Write(frame, slam.MoverMask());
   if (result.state != TrackState::kTracking) {
     ++record.untracked_reasons[result.reason];
     record.dark += cv::mean(frame.image)[0] < kBlack;
@@ -164,7 +192,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
       state = Feed(*frame, slam, record, masks, state);
       progress.Show(record.frames, state, slam);
     }
-  } catch (const Error&) {
+  } catch (...) {  // whatever it was: what was done until then is kept
     record.failure = std::current_exception();
   }
   progress.ShowFinishing(slam);
@@ -172,6 +200,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
     const Finisher finisher(slam);
     slam.Finish();
   }
+  record.health = slam.Health();
   if (cpu) record.cpu_s = cpu->Seconds();
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
   record.interrupted = Interrupted();

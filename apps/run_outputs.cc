@@ -1,5 +1,6 @@
 #include "run_outputs.h"
 
+#include <exception>
 #include <vector>
 
 #include "alidade/base/error.h"
@@ -26,11 +27,23 @@ std::string LandmarksPly(const RunResults& results) {
 
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map, MaskWriter* masks) {
-  const RunResults results = ResultsOf(slam, record);
+  RunResults results;
   Cloud shape;
   std::vector<ReportPicture> views;
   bool useful = false;
+  std::exception_ptr failure;  // the first that is neither the disk's fault nor the folder's
+  // What there is no memory for is left out, and the next is tried.
+  const auto attempt = [&](const auto& write) {
+    try {
+      write();
+    } catch (const Error&) {
+      throw;
+    } catch (...) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
   try {
+    results = ResultsOf(slam, record);
     for (size_t i = 0; i < results.maps.size(); ++i) {
       const MapResults& map = results.maps[i];
       if (i > 0 && map.trajectory.empty()) break;  // of a loaded map nothing was seen of
@@ -43,21 +56,27 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     }
     folder.Write("stats.json", StatsJson(record, results));
     useful = true;
-    if (with_map) folder.Write("map.alidade", slam.SaveMap());
-    folder.Write("landmarks.ply", LandmarksPly(results));
-    if (record.settings.semidense.enabled) {
+    attempt([&] {
+      if (with_map) folder.Write("map.alidade", slam.SaveMap());
+    });
+    attempt([&] { folder.Write("landmarks.ply", LandmarksPly(results)); });
+    attempt([&] {
+      if (!record.settings.semidense.enabled) return;
       const double voxel = record.settings.semidense.voxel;
       shape = WriteSemiDense(folder, results, slam.camera(), voxel);
       if (!shape.points.empty())
         views = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
-    }
-    folder.Write("report.html", ReportHtml(record, results, views));
-    if (masks) masks->Finish();
-  } catch (const Error&) {
+    });
+    attempt([&] { folder.Write("report.html", ReportHtml(record, results, views)); });
+    attempt([&] {
+      if (masks) masks->Finish();
+    });
+  } catch (...) {
     if (masks) masks->Discard();
     if (!useful) folder.Remove();
     throw;
   }
+  if (failure) std::rethrow_exception(failure);
   return {record.frames,
           results.tracked,
           results.map.keyframe_count(),

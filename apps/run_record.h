@@ -36,6 +36,8 @@ struct RunRecord {
   std::vector<std::string> warnings;
   bool interrupted = false;
   std::exception_ptr failure;  // the source's, that ended the run early
+  SlamHealth health;           // at the end
+  std::exception_ptr bug;      // what the first frame that failed by no fault of its own threw
 };
 
 // Why nothing could be mapped, to be said to the user.

@@ -43,6 +43,15 @@ ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& repor
           {"most_behind", report.most_behind}};
 }
 
+// Parts that failed and did nothing from then on.
+ordered_json StoppedJson(const SlamHealth& health) {
+  ordered_json stopped = ordered_json::array();
+  for (const StageHealth& stage : health.stages) {
+    if (!stage.running) stopped.push_back({{"part", stage.name}, {"failure", stage.failure}});
+  }
+  return stopped;
+}
+
 // Which frames are in which map, and where its poses are.
 ordered_json MapFiles(const RunResults& results) {
   ordered_json files = ordered_json::array();
@@ -100,7 +109,8 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"peak_mb", PeakMegabytes()},
       {"dropped_frames", record.dropped},
       {"late_frames", record.late},
-      {"warnings", record.warnings}};
+      {"warnings", record.warnings},
+      {"stopped", StoppedJson(record.health)}};
   // A path may be in any encoding.
   return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

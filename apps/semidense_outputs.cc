@@ -51,7 +51,7 @@ void WriteDepth(OutputFolder& folder, const RunResults& results, const Camera& c
       written.push_back(name);
       folder.Write(name, std::string(kDepthListHeader) + list);
     }
-  } catch (const Error&) {
+  } catch (...) {
     for (const std::string& name : written) folder.Discard(name);
     throw;
   }

@@ -30,6 +30,37 @@ TEST(Summarise, CopesWithFewSamples) {
   EXPECT_EQ(two.p95, 5);
 }
 
+TEST(SampleLog, KeepsAllUpToItsBoundAndThenAPartThatIsSpreadEvenly) {
+  SampleLog log(64);
+  for (int i = 0; i < 64; ++i) log.Add(i);
+  std::vector<double> kept = log.All();
+  ASSERT_EQ(kept.size(), 64u);
+  for (int i = 0; i < 64; ++i) EXPECT_EQ(kept[i], i);
+  for (int i = 64; i < 100000; ++i) {
+    log.Add(i);
+    if (i % 997 == 0) {
+      EXPECT_LE(log.All().size(), 64u);
+      EXPECT_GE(log.All().size(), 31u);
+    }
+  }
+  kept = log.All();
+  EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+  // Each of the 2048 samples that one stands for is as likely: neighbours are less than two such
+  // stretches apart, and the median is that of all, to within one.
+  for (size_t i = 1; i < kept.size(); ++i) EXPECT_LT(kept[i] - kept[i - 1], 2 * 2048);
+  EXPECT_NEAR(Summarise(kept).median, 50000, 2 * 2048);
+}
+
+// Every fourth sample is another, as where a detector is at work.
+TEST(SampleLog, DoesNotFallInStepWithWhatRepeats) {
+  SampleLog log(256);
+  for (int i = 0; i < 40000; ++i) log.Add(i % 4 == 0 ? 100 : 1);
+  const std::vector<double> kept = log.All();
+  const auto share = static_cast<double>(std::count(kept.begin(), kept.end(), 100.0)) /
+                     static_cast<double>(kept.size());
+  EXPECT_NEAR(share, 0.25, 0.12);  // four standard deviations of at least 128
+}
+
 TEST(Stopwatch, DoesNotRunBackwards) {
   const Stopwatch watch;
   const double first = watch.Milliseconds();

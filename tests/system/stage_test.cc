@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <new>
 #include <stdexcept>
+
+#include "alidade/system/health.h"
 
 namespace alidade::stage_test {
 namespace {
@@ -24,7 +27,7 @@ TEST(Stage, DoesEachKeyFrameOnceAndInOrder) {
     stage.Drain();
     ASSERT_EQ(done.size(), 50u);
     for (uint32_t i = 0; i < 50; ++i) EXPECT_EQ(done[i], i);
-    EXPECT_EQ(stage.Milliseconds().size(), 50u);
+    EXPECT_EQ(stage.milliseconds().All().size(), 50u);
     EXPECT_EQ(stage.backlog(), 0);
   }
 }
@@ -45,24 +48,78 @@ TEST(Stage, InlineItIsDoneBeforeAddReturnsAndNeverHurried) {
   EXPECT_FALSE(hurried);
 }
 
-TEST(Stage, InlineWhatWorkThrowsComesOutOfAdd) {
-  Stage stage([](KeyFrameId, const std::atomic<bool>*) { throw std::runtime_error("broken"); },
-              Schedule::kInline);
-  EXPECT_THROW(stage.Add({0}), std::runtime_error);
-}
-
-TEST(Stage, WhatTheThreadThrewComesOutOfDrainAndDoesNotHang) {
-  for (Schedule schedule : kThreaded) {
+TEST(Stage, WhatWorkThrowsEndsItInSilenceButForFailure) {
+  for (Schedule schedule : kAll) {
+    std::atomic<int> done{0};
     Stage stage(
-        [](KeyFrameId id, const std::atomic<bool>*) {
+        [&](KeyFrameId id, const std::atomic<bool>*) {
           if (id.value == 1) throw std::runtime_error("broken");
+          ++done;
         },
         schedule);
-    for (uint32_t i = 0; i < 5; ++i) stage.Add({i});
-    EXPECT_THROW(stage.Drain(), std::runtime_error);
+    EXPECT_EQ(stage.failure(), nullptr);
+    stage.WhileResting([&] {
+      if (schedule == Schedule::kInline) return;  // there nothing waits
+      for (uint32_t i = 0; i < 5; ++i) stage.Add({i});
+      EXPECT_TRUE(stage.AddErrand([&] { ++done; }));
+    });
+    for (uint32_t i = 0; i < 5 && schedule == Schedule::kInline; ++i) stage.Add({i});
+    stage.Drain();
+    EXPECT_EQ(done, 1);  // the first; what waited behind the second was dropped
+    EXPECT_EQ(WhatOf(stage.failure()), "broken");
+    EXPECT_EQ(stage.backlog(), 0);
+
+    stage.Add({7});
+    EXPECT_FALSE(stage.AddErrand([&] { ++done; }));
+    stage.Guard([&] { ++done; });
+    stage.Drain();
+    EXPECT_EQ(done, 1);
+    EXPECT_EQ(stage.backlog(), 0);
     bool ran = false;  // and those who wait for it to rest go on
     stage.WhileResting([&] { ran = true; });
     EXPECT_TRUE(ran);
+  }
+}
+
+TEST(Stage, ThrowsOfAnyTypeAreKept) {
+  for (Schedule schedule : kAll) {
+    Stage number([](KeyFrameId, const std::atomic<bool>*) { throw 42; }, schedule);
+    number.Add({0});
+    number.Drain();
+    EXPECT_EQ(WhatOf(number.failure()), "unknown exception");
+    Stage memory([](KeyFrameId, const std::atomic<bool>*) { throw std::bad_alloc(); }, schedule);
+    memory.Add({0});
+    memory.Drain();
+    EXPECT_EQ(WhatOf(memory.failure()), "out of memory");
+  }
+}
+
+TEST(Stage, AnErrandIsRunInTurnAndIsNoKeyFrame) {
+  for (Schedule schedule : kAll) {
+    std::vector<int> done;
+    Stage stage([&](KeyFrameId id,
+                    const std::atomic<bool>*) { done.push_back(static_cast<int>(id.value)); },
+                schedule);
+    stage.WhileResting([&] {
+      stage.Add({1});
+      stage.AddErrand([&] { done.push_back(-1); });
+      stage.Add({2});
+    });
+    stage.Drain();
+    EXPECT_EQ(done, (std::vector<int>{1, -1, 2}));
+    EXPECT_EQ(stage.milliseconds().All().size(), 2u);
+  }
+}
+
+TEST(Stage, WhatItsOwnersDoForItIsItsFailureToo) {
+  for (Schedule schedule : kAll) {
+    int done = 0;
+    Stage stage([&](KeyFrameId, const std::atomic<bool>*) { ++done; }, schedule);
+    stage.Guard([] { throw std::runtime_error("on the caller's thread"); });
+    EXPECT_EQ(WhatOf(stage.failure()), "on the caller's thread");
+    stage.Add({0});
+    stage.Drain();
+    EXPECT_EQ(done, 0);
   }
 }
 

@@ -11,6 +11,7 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -78,6 +79,8 @@ class Pool {
       for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Run(); });
     } catch (const std::system_error&) {
       // No more threads to be had: those there are will do.
+    } catch (const std::bad_alloc&) {
+      // Nor memory for them.
     }
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <new>
 #include <numeric>
 
 #if defined(__linux__)
@@ -26,6 +27,32 @@ Summary Summarise(std::vector<double> samples) {
   summary.mean =
       std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
   return summary;
+}
+
+void SampleLog::Add(double sample) noexcept {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const bool kept = place_ == pick_;
+  if (++place_ == stride_) {
+    place_ = 0;
+    pick_ = random_.Below(stride_);
+  }
+  if (!kept) return;
+  if (kept_.size() == most_) {
+    for (size_t i = 0; i < most_ / 2; ++i) kept_[i] = kept_[2 * i + random_.Below(2)];
+    kept_.resize(most_ / 2);
+    stride_ *= 2;
+    place_ = 0;
+    pick_ = random_.Below(stride_);
+  }
+  try {
+    kept_.push_back(static_cast<float>(sample));
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+std::vector<double> SampleLog::All() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return {kept_.begin(), kept_.end()};
 }
 
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

@@ -271,10 +271,18 @@ Sight DynamicFilter::Look(const Eigen::Vector3d& p) const {
   return behind == known ? Sight::kGone : Sight::kHidden;
 }
 
+cv::Mat DynamicFilter::BeliefOfCells() const {
+  return cv::Mat(cells_.rows(), cells_.columns(), CV_32F, const_cast<float*>(belief_.data()))
+      .clone();
+}
+
 cv::Mat DynamicFilter::Mask() const {
-  const cv::Mat small(cells_.rows(), cells_.columns(), CV_32F, const_cast<float*>(belief_.data()));
+  return MaskOf(BeliefOfCells(), {camera_.width, camera_.height});
+}
+
+cv::Mat MaskOf(const cv::Mat& belief_of_cells, cv::Size size) {
   cv::Mat large, mask;
-  cv::resize(small, large, {camera_.width, camera_.height}, 0, 0, cv::INTER_LINEAR);
+  cv::resize(belief_of_cells, large, size, 0, 0, cv::INTER_LINEAR);
   cv::compare(large, 0, mask, cv::CMP_LT);
   return mask;
 }

@@ -72,6 +72,8 @@ class DynamicFilter {
 
   // What is left out as moving, of the camera's size: CV_8U, 255 = moves. Raw pixels.
   cv::Mat Mask() const;
+  // What the mask is made of, a copy: log-odds of standing still, CV_32F, one pixel for each cell.
+  cv::Mat BeliefOfCells() const;
   const std::vector<MovingObject>& objects() const { return objects_.objects(); }
 
  private:
@@ -104,5 +106,8 @@ class DynamicFilter {
   std::vector<float> belief_;    // of each cell, all together
   WorldId world_;
 };
+
+// DynamicFilter::Mask() of BeliefOfCells(); `size`: the camera's.
+cv::Mat MaskOf(const cv::Mat& belief_of_cells, cv::Size size);
 
 }  // namespace alidade

@@ -103,16 +103,18 @@ void Extractor::PrepareBuffers(const std::vector<cv::Size>& sizes) {
   int rows = 0;
   for (const cv::Size& size : sizes) rows += size.height;
   const cv::Mat fine(rows, sizes[0].width, CV_8UC1), smooth(rows, sizes[0].width, CV_8UC1);
-  fine_.clear();
-  smooth_.clear();
+  std::vector<cv::Mat> fine_levels, smooth_levels;
   int first_row = 0;
   for (const cv::Size& size : sizes) {
     const cv::Rect place(0, first_row, size.width, size.height);
-    fine_.push_back(fine(place));
-    smooth_.push_back(smooth(place));
+    fine_levels.push_back(fine(place));
+    smooth_levels.push_back(smooth(place));
     first_row += size.height;
   }
   pattern_.emplace(static_cast<int>(smooth.step[0]));
+  // All of them or, where memory runs out, none.
+  fine_ = std::move(fine_levels);
+  smooth_ = std::move(smooth_levels);
 }
 
 std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& band) {

@@ -61,9 +61,9 @@ void WordIndex::Erase(KeyFrameId id) {
     const auto of_slot = [&](const Posting& posting) { return posting.slot == slot; };
     list.erase(std::find_if(list.begin(), list.end(), of_slot));
   });
-  entries_[slot] = {};
-  free_.push_back(slot);
   slots_.erase(found);
+  entries_[slot] = {};
+  free_.push_back(slot);  // last: where memory runs out a slot is lost, and nothing else
 }
 
 std::vector<PlaceKeyFrame> WordIndex::KeyFrames() const {

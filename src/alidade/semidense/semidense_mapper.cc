@@ -235,6 +235,16 @@ void SemiDenseMapper::CountBytes(const MapSnapshot& map) {
   }
 }
 
+SemiDenseReport SemiDenseMapper::report() const {
+  std::lock_guard<std::mutex> lock(told_mutex_);
+  return told_;
+}
+
+void SemiDenseMapper::Tell() {
+  std::lock_guard<std::mutex> lock(told_mutex_);
+  told_ = report_;
+}
+
 void SemiDenseMapper::Process() {
   const MapSnapshot map = TakeIn();
   Entry* due = NextDue(map);
@@ -246,6 +256,7 @@ void SemiDenseMapper::Process() {
   } else {
     settled_corrections_ = map.corrections();
   }
+  Tell();
 }
 
 void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
@@ -254,6 +265,7 @@ void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
   CountBytes(map_.Commit([&](MapCommit& commit) {
     if (KeyFrame* keyframe = commit.Edit(entry.id)) keyframe->depth = depth;
   }));
+  Tell();
 }
 
 void SemiDenseMapper::Finish(const std::atomic<bool>* stop) {
@@ -274,6 +286,7 @@ void SemiDenseMapper::Finish(const std::atomic<bool>* stop) {
       if (KeyFrame* keyframe = commit.Edit(id)) keyframe->depth = depth;
     }
   }));
+  Tell();
 }
 
 }  // namespace alidade

@@ -1,5 +1,5 @@
 // Inverse depth at the high-gradient pixels of each keyframe (Mur-Artal & Tardós, RSS 2015), a few
-// keyframes behind the mapper. One instance, one thread at a time, but for Keep().
+// keyframes behind the mapper. One instance, one thread at a time, but for Keep() and report().
 #pragma once
 
 #include <atomic>
@@ -46,7 +46,7 @@ class SemiDenseMapper {
   // stay without depth, or unchecked.
   void Finish(const std::atomic<bool>* stop = nullptr);
 
-  const SemiDenseReport& report() const { return report_; }  // when nothing is in work
+  SemiDenseReport report() const;  // of all that is done; any thread may ask
 
  private:
   struct Entry;
@@ -57,6 +57,7 @@ class SemiDenseMapper {
   Entry* NewestMoved(const MapSnapshot& map);
   bool Moved(const MapSnapshot& map, const Entry& entry) const;
   void CountBytes(const MapSnapshot& map);
+  void Tell();
   void WorkOn(const MapSnapshot& map, Entry& entry);
   void Estimate(const MapSnapshot& map, Entry& entry);
   std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
@@ -72,6 +73,8 @@ class SemiDenseMapper {
   std::vector<std::unique_ptr<Entry>> entries_;  // by id
   uint64_t settled_corrections_ = 0;  // of the map, up to which all that moved was done again
   SemiDenseReport report_;
+  mutable std::mutex told_mutex_;
+  SemiDenseReport told_;  // report_ as of the last keyframe that was done
 };
 
 }  // namespace alidade

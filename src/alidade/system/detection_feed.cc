@@ -6,6 +6,7 @@
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
+#include "alidade/system/health.h"
 
 namespace alidade {
 
@@ -24,18 +25,36 @@ DetectionFeed::~DetectionFeed() {
   if (thread_.joinable()) thread_.join();
 }
 
+void DetectionFeed::Fail(int number) noexcept {
+  failed_ = true;
+  const std::exception_ptr failure = std::current_exception();
+  {
+    std::lock_guard<std::mutex> lock(mutex_);
+    failure_ = failure;
+    offered_.release();
+  }
+  try {
+    LogWarning("the detector failed at frame " + std::to_string(number) + " (" + WhatOf(failure) +
+               "); going on with geometry alone");
+  } catch (...) {  // no memory for the warning: failure() still tells
+  }
+}
+
+std::exception_ptr DetectionFeed::failure() const {
+  std::lock_guard<std::mutex> lock(mutex_);
+  return failure_;
+}
+
 std::optional<FrameDetections> DetectionFeed::Detect(int number, const cv::Mat& image) {
   const Stopwatch watch;
   try {
     FrameDetections answer{number, detector_->Detect(image)};
+    milliseconds_.Add(watch.Milliseconds());
     std::lock_guard<std::mutex> lock(mutex_);
-    milliseconds_.push_back(watch.Milliseconds());
     if (random_.Uniform() < settings_.drop_detections) return {};
     return answer;
-  } catch (const std::exception& error) {
-    failed_ = true;
-    LogWarning("the detector failed at frame " + std::to_string(number) + " (" + error.what() +
-               "); going on with geometry alone");
+  } catch (...) {
+    Fail(number);
     return {};
   }
 }
@@ -43,9 +62,10 @@ std::optional<FrameDetections> DetectionFeed::Detect(int number, const cv::Mat& 
 void DetectionFeed::Offer(int number, const cv::Mat& image) {
   if (!detector_ || failed_) return;
   if (threaded_) {
+    cv::Mat copy = image.clone();
     {
       std::lock_guard<std::mutex> lock(mutex_);
-      image.copyTo(offered_);
+      std::swap(offered_, copy);
       offered_number_ = number;
     }
     changed_.notify_all();
@@ -65,11 +85,6 @@ std::optional<FrameDetections> DetectionFeed::Take(int number) {
   return newest;
 }
 
-std::vector<double> DetectionFeed::Milliseconds() const {
-  std::lock_guard<std::mutex> lock(mutex_);
-  return milliseconds_;
-}
-
 void DetectionFeed::Run() {
   KeepLoopsOnThisThread();
   LowerThreadPriority();
@@ -87,7 +102,12 @@ void DetectionFeed::Run() {
     const Stopwatch watch;
     auto answer = Detect(number, image);
     std::unique_lock<std::mutex> lock(mutex_);
-    if (answer) answers_.push_back(std::move(*answer));
+    try {
+      if (answer) answers_.push_back(std::move(*answer));
+    } catch (...) {
+      lock.unlock();
+      return Fail(number);
+    }
     const std::chrono::duration<double, std::milli> rest(watch.Milliseconds() *
                                                          settings_.detector_rest);
     if (changed_.wait_for(lock, rest, [&] { return stopping_; })) return;

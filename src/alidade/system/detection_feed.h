@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "alidade/base/random.h"
+#include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/dynamics/settings.h"
 
@@ -30,11 +32,17 @@ class DetectionFeed {
   void Offer(int number, const cv::Mat& image);
   // The answer that is due at frame `number`, if any: the newest.
   std::optional<FrameDetections> Take(int number);
-  std::vector<double> Milliseconds() const;  // one for each frame the detector was given
+  // Any thread may ask.
+  std::vector<double> Milliseconds() const {
+    return milliseconds_.All();
+  }                                    // one for each frame
+                                       // the detector was given
+  std::exception_ptr failure() const;  // what ended the detector; null: nothing did
 
  private:
   void Run();
   std::optional<FrameDetections> Detect(int number, const cv::Mat& image);
+  void Fail(int number) noexcept;  // by what is being handled
 
   std::shared_ptr<Detector> detector_;
   DynamicsSettings settings_;
@@ -47,8 +55,9 @@ class DetectionFeed {
   int offers_ = 0;  // inline: so far
   bool stopping_ = false;
   std::deque<FrameDetections> answers_;
-  std::vector<double> milliseconds_;
+  SampleLog milliseconds_;
   std::atomic<bool> failed_{false};
+  std::exception_ptr failure_;
   std::thread thread_;
 };
 

@@ -27,7 +27,7 @@ class FrameLog {
   void Begin(double time);  // seconds
   void BeginRecording();    // frames begun from now on are the next one's (FramePose::recording)
   void Place(const Anchor& anchor, const Se3& T_world_camera_live);
-  void End();
+  void End();  // where it throws, for want of memory, the next Begin ends the frame
   bool empty() const { return size() == 0; }
   int size() const { return first_of_open_ + open_count_ + (begun_ ? 1 : 0); }  // frames begun
   double time() const { return time_; }                     // of the frame begun last

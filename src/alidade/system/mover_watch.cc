@@ -11,13 +11,14 @@ namespace alidade {
 MoverWatch::MoverWatch(const Camera& camera, const SlamSettings& settings,
                        const std::shared_ptr<Detector>& detector)
     : detections_(settings.dynamics.mode == DynamicsMode::kFull ? detector : nullptr,
-                  settings.dynamics, settings.threaded, settings.seed) {
+                  settings.dynamics, settings.threaded, settings.seed),
+      camera_(camera),
+      settings_(settings.dynamics) {
   const DynamicsMode mode = settings.dynamics.mode;
   if (mode == DynamicsMode::kFull && !detector) ThrowUsage("dynamics full needs a detector");
   if (mode == DynamicsMode::kOff) return;
-  const bool named = mode == DynamicsMode::kFull;
-  filter_.emplace(camera, settings.dynamics,
-                  named ? detector->ClassNames() : std::vector<std::string>());
+  if (mode == DynamicsMode::kFull) class_names_ = detector->ClassNames();
+  filter_.emplace(camera_, settings_, class_names_);
 }
 
 void MoverWatch::Begin(const FrameInput& prepared, int number) {
@@ -84,9 +85,31 @@ void MoverWatch::End(const Frame& frame, const TrackResult& result) {
   const Se3 T_camera_world = result.T_world_camera.Inverse();
   filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
                     world_);
-  milliseconds_.push_back(present_ms_ + watch.Milliseconds());
+  milliseconds_.Add(present_ms_ + watch.Milliseconds());
 }
 
-cv::Mat MoverWatch::Mask() const { return filter_ ? filter_->Mask() : cv::Mat(); }
+void MoverWatch::Recover() noexcept {
+  doubtful_ = 0;
+  if (!filter_) return;
+  try {
+    filter_.emplace(camera_, settings_, class_names_);
+  } catch (...) {  // there is none now
+    const std::lock_guard<std::mutex> lock(failure_mutex_);
+    failure_ = std::current_exception();
+    filter_failed_ = true;
+  }
+}
+
+std::vector<StageHealth> MoverWatch::health() const {
+  std::vector<StageHealth> stages;
+  if (settings_.mode == DynamicsMode::kOff) return stages;
+  {
+    const std::lock_guard<std::mutex> lock(failure_mutex_);
+    stages.push_back(HealthOf("dynamics", failure_, 0));
+  }
+  if (settings_.mode == DynamicsMode::kFull)
+    stages.push_back(HealthOf("detector", detections_.failure(), 0));
+  return stages;
+}
 
 }  // namespace alidade

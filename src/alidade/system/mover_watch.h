@@ -2,8 +2,12 @@
 // landmarks. Without dynamics everything is taken to stand still.
 #pragma once
 
+#include <atomic>
+#include <exception>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +15,7 @@
 #include "alidade/dynamics/dynamic_filter.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/detection_feed.h"
+#include "alidade/system/health.h"
 #include "alidade/system/slam.h"
 #include "alidade/tracking/tracker.h"
 
@@ -43,11 +48,17 @@ class MoverWatch {
   LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
   void Place(const WorldId& world) { world_ = world; }  // whose world the frame's pose is in
   void End(const Frame& frame, const TrackResult& result);
+  // A frame ended in the middle, by what it threw: forgets all there was. What cannot be begun anew
+  // is off from now on, see health().
+  void Recover() noexcept;
 
-  cv::Mat Mask() const;  // as Slam::MoverMask
-  // One for each frame; one for each the detector was given.
-  const std::vector<double>& Milliseconds() const { return milliseconds_; }
+  // As DynamicFilter::BeliefOfCells, after End; empty when off.
+  cv::Mat BeliefOfCells() const { return filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
+  // Any thread may ask. One for each frame; one for each the detector was given.
+  std::vector<double> Milliseconds() const { return milliseconds_.All(); }
   std::vector<double> DetectorMilliseconds() const { return detections_.Milliseconds(); }
+  std::vector<StageHealth> health() const;
+  bool any_stopped() const { return filter_failed_ || detections_.failure(); }
 
  private:
   DetectionFeed detections_;
@@ -55,7 +66,14 @@ class MoverWatch {
   WorldId world_;                        // of the last pose
   int doubtful_ = 0;                     // frames whose pose follows a mover, less the others
   double present_ms_ = 0;                // of the present frame, so far
-  std::vector<double> milliseconds_;
+  SampleLog milliseconds_;
+
+  Camera camera_;
+  DynamicsSettings settings_;
+  std::vector<std::string> class_names_;  // the detector's
+  std::atomic<bool> filter_failed_{false};
+  mutable std::mutex failure_mutex_;
+  std::exception_ptr failure_;  // of the filter
 };
 
 }  // namespace alidade

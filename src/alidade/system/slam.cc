@@ -1,8 +1,10 @@
 #include "alidade/system/slam.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -62,6 +64,19 @@ class Slam::Impl {
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
   void Reset();
+  void Finish(double limit);
+  SlamHealth Health() const;
+
+  // The last frame that was done, for those who ask: never changed once it is shown.
+  struct Shown {
+    std::shared_ptr<const Frame> frame;
+    std::vector<LandmarkId> matches;
+    cv::Mat belief_of_cells;  // of standing still; empty without dynamics
+  };
+  std::shared_ptr<const Shown> shown() const {
+    const std::lock_guard<std::mutex> lock(shown_mutex_);
+    return shown_;
+  }
 
   Camera given_;
   SlamSettings settings_;
@@ -70,16 +85,21 @@ class Slam::Impl {
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;
-  PlacedFrame last_;  // the last frame, as it was tracked
+  PlacedFrame last_;  // the present frame, as it was tracked
   YoungMap young_;    // of one camera
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
   CameraClock clock_;
-  StageTimes times_;
-  int relocalisations_ = 0, cuts_ = 0;
-  int first_number_ = 0;  // of the next recording's frames, after those of a loaded map
+  SampleLog frame_ms_, extract_ms_, track_ms_;
+  std::atomic<int> relocalisations_{0}, cuts_{0};
+  std::atomic<int> frames_{0};        // counted so far
+  std::atomic<int> first_number_{0};  // of the next recording's frames, after a loaded map's
 
  private:
+  TrackResult TrackCounted(const FrameInput& prepared, double time);
+  void Show();
+  void Recover(TrackState before) noexcept;
+  void EndFrame() noexcept;
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
@@ -99,6 +119,10 @@ class Slam::Impl {
   int lost_sighted_ = 0;   // frames since that showed something
   bool jump_told_ = false;  // of the time, to the user
   bool restarted_ = false;  // Reset() was called since the last frame
+
+  std::mutex driving_;  // held by the driving call that is under way
+  mutable std::mutex shown_mutex_;
+  std::shared_ptr<const Shown> shown_;
 };
 
 Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
@@ -115,29 +139,58 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
       clock_(settings_.time) {}
 
 TrackResult Slam::Impl::Track(const FrameInput& input) {
+  const std::lock_guard<std::mutex> driving(driving_);
   const Stopwatch whole;
-  FrameInput prepared = Prepare(input, given_, camera_, settings_);
-  const char* cut = Tick(input.time);
-  const int number = first_number_ + log_.size();
+  const auto count = [&] {
+    log_.Begin(input.time);
+    frames_ = log_.size();
+  };
+  FrameInput prepared;
+  const char* cut = "";
+  try {
+    prepared = Prepare(input, given_, camera_, settings_);
+    cut = Tick(input.time);
+  } catch (const Error&) {  // refused
+    throw;
+  } catch (...) {
+    count();
+    EndFrame();
+    throw;
+  }
   prepared.time = clock_.steady();
+  const TrackState before = state_;
+  count();
+  try {
+    TrackResult result = TrackCounted(prepared, input.time);
+    result.cut = cut;
+    frame_ms_.Add(whole.Milliseconds());
+    if (workers_.any_stopped() || movers_.any_stopped()) result.warning = Health().Stopped();
+    return result;
+  } catch (...) {
+    Recover(before);
+    throw;
+  }
+}
+
+// `time`: as it was given; that of `prepared` never jumps.
+TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
+  const int number = first_number_ + log_.size() - 1;
   movers_.Begin(prepared, number);
   const Stopwatch extracting;
-  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, input.time,
-                                      number, movers_.Expected());
-  times_.extract.push_back(extracting.Milliseconds());
-  log_.Begin(input.time);
+  const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
+                                      movers_.Expected());
+  extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
   last_ = {};
   last_.frame = frame;
-  TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
-  result.cut = cut;
+  const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
   movers_.End(*last_.frame, result);
+  Show();
   log_.End();
   if (log_.size() % kReanchorFrames == 0) Reanchor();
-  times_.frame.push_back(whole.Milliseconds());
   return result;
 }
 
@@ -176,6 +229,7 @@ void Slam::Impl::Cut() {
 }
 
 void Slam::Impl::Reset() {
+  const std::lock_guard<std::mutex> driving(driving_);
   if (log_.empty() || restarted_) return;
   Cut();
   clock_.Restart();
@@ -183,13 +237,36 @@ void Slam::Impl::Reset() {
   restarted_ = true;
 }
 
+void Slam::Impl::Show() {
+  const auto shown =
+      std::make_shared<Shown>(Shown{last_.frame, last_.matches, movers_.BeliefOfCells()});
+  const std::lock_guard<std::mutex> lock(shown_mutex_);
+  shown_ = shown;
+}
+
+// A frame ended in the middle. The tracker remembers a frame as a whole or not at all, and goes on
+// from the last one; what else is carried from frame to frame is begun anew.
+void Slam::Impl::Recover(TrackState before) noexcept {
+  state_ = before;
+  movers_.Recover();
+  young_.Reset();
+  EndFrame();
+}
+
+void Slam::Impl::EndFrame() noexcept {
+  try {
+    log_.End();
+  } catch (...) {  // no memory: tried again with the next frame, and by Finish()
+  }
+}
+
 // `map`: the one the pose is in.
 void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  log_.Place(AnchorTo(map.state(), reference, placed.T_camera_world),
-             placed.T_camera_world.Inverse());
+  const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   movers_.Place(WorldOf(reference, map));
   tracker_.Remember(placed, reference, map);
   workers_.map().ReleaseLandmarkIds(map.version());  // what was remembered before is forgotten
+  log_.Place(anchor, placed.T_camera_world.Inverse());
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
@@ -215,15 +292,18 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     std::vector<KeyFrameId> candidates;
     if (state_ == TrackState::kLost && map.Find(tracker_.reference()))
       candidates.push_back(tracker_.reference());
+    const std::vector<MapId> dropped = workers_.dropped();
     const auto may_be = [&](KeyFrameId id) {
-      return map.Find(id) && (candidates.empty() || id != candidates[0]);
+      const KeyFrame* keyframe = map.Find(id);
+      return keyframe && (candidates.empty() || id != candidates[0]) &&
+             std::find(dropped.begin(), dropped.end(), keyframe->map) == dropped.end();
     };
     const Frame still = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
     for (const PlaceMatch& match : workers_.places().Query(still, may_be, kRelocaliseCandidates)) {
       candidates.push_back(match.id);
     }
     TrackEstimate estimate = tracker_.Relocalise(frame, map, candidates);
-    times_.track.push_back(watch.Milliseconds());
+    track_ms_.Add(watch.Milliseconds());
     if (estimate.tracked) {
       ++relocalisations_;
       young_.Reset();
@@ -238,7 +318,7 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
     const bool long_lost = clock_.steady() - lost_since_ >= settings_.new_map_seconds &&
                            lost_sighted_ >= settings_.new_map_frames;
-    if (!long_lost || settings_.localise) {
+    if (!long_lost || settings_.localise || workers_.mapping_stopped()) {
       TrackResult result;
       result.state = state_;
       result.reason = "the place was not recognised";
@@ -280,6 +360,10 @@ void Slam::Impl::LeaveMap() {
 
 TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   TrackResult result;
+  if (workers_.mapping_stopped()) {
+    result.reason = "mapping has stopped";
+    return result;
+  }
   if (movers_.on()) {
     last_.frame = std::make_shared<Frame>(*frame);
     *frame = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
@@ -353,7 +437,7 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   movers_.Judge(*frame, &where);
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
-  times_.track.push_back(predicting + estimating.Milliseconds());
+  track_ms_.Add(predicting + estimating.Milliseconds());
   if (young_.on_trial() && !young_.Confirm(estimate))
     return GiveUpStart("the first points did not hold");
   if (young_.IsYoung(*frame, tracker_.reference(), map) && movers_.FollowsMover())
@@ -374,7 +458,8 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   // keyframes, so it may queue some.
   const bool may_insert = workers_.backlog() < (settings_.sensor == Sensor::kMono ? 2 : 3);
   result.keyframe = estimate.wants_keyframe && !young_.on_trial() && may_insert &&
-                    !settings_.localise && HoldsWithoutMovers(estimate.placed);
+                    !settings_.localise && !workers_.mapping_stopped() &&
+                    HoldsWithoutMovers(estimate.placed);
   if (!settings_.localise) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);
     workers_.mapper().Doubt(news.evidence);
@@ -393,7 +478,20 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   return result;
 }
 
+void Slam::Impl::Finish(double limit) {
+  const std::lock_guard<std::mutex> driving(driving_);
+  EndFrame();
+  workers_.Drain(limit);
+}
+
+SlamHealth Slam::Impl::Health() const {
+  SlamHealth health{workers_.health()};
+  for (StageHealth& stage : movers_.health()) health.stages.push_back(std::move(stage));
+  return health;
+}
+
 void Slam::Impl::Load(const SavedMap& saved) {
+  const std::lock_guard<std::mutex> driving(driving_);
   if (!log_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
   CheckSameCamera(saved.camera, camera_);
   if (saved.sensor != NameOf(settings_.sensor)) {
@@ -403,7 +501,7 @@ void Slam::Impl::Load(const SavedMap& saved) {
   workers_.Restore(saved);
   const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
   for (KeyFrameId id : keyframes) {
-    first_number_ = std::max(first_number_, saved.map.Find(id)->frame->number + 1);
+    first_number_ = std::max(first_number_.load(), saved.map.Find(id)->frame->number + 1);
   }
   if (keyframes.empty()) return;
   state_ = TrackState::kLost;
@@ -414,27 +512,33 @@ Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<D
     : impl_(std::make_unique<Impl>(camera, settings, detector)) {}
 Slam::~Slam() = default;
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
-void Slam::Finish(double limit) { impl_->workers_.Drain(limit); }
-void Slam::CutFinishShort() { impl_->workers_.CutShort(); }
 void Slam::Reset() { impl_->Reset(); }
+void Slam::Finish(double limit) { impl_->Finish(limit); }
+void Slam::CutFinishShort() { impl_->workers_.CutShort(); }
+SlamHealth Slam::Health() const { return impl_->Health(); }
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
 const Camera& Slam::camera() const { return impl_->camera_; }
+int Slam::frames() const { return impl_->frames_; }
 int Slam::first_number() const { return impl_->first_number_; }
 
 std::vector<FeatureUse> Slam::Features() const {
   std::vector<FeatureUse> features;
-  const PlacedFrame& last = impl_->last_;
-  if (!last.frame) return features;
-  for (size_t k = 0; k < last.frame->keypoints.size(); ++k) {
-    const Keypoint& keypoint = last.frame->keypoints[k];
-    features.push_back({keypoint.raw_x, keypoint.raw_y, last.frame->Static(static_cast<int>(k)),
-                        k < last.matches.size() && last.matches[k].valid()});
+  const auto last = impl_->shown();
+  if (!last) return features;
+  for (size_t k = 0; k < last->frame->keypoints.size(); ++k) {
+    const Keypoint& keypoint = last->frame->keypoints[k];
+    features.push_back({keypoint.raw_x, keypoint.raw_y, last->frame->Static(static_cast<int>(k)),
+                        k < last->matches.size() && last->matches[k].valid()});
   }
   return features;
 }
 
-cv::Mat Slam::MoverMask() const { return impl_->movers_.Mask(); }
+cv::Mat Slam::MoverMask() const {
+  const auto last = impl_->shown();
+  if (!last || last->belief_of_cells.empty()) return {};
+  return MaskOf(last->belief_of_cells, {impl_->camera_.width, impl_->camera_.height});
+}
 
 SlamCounts Slam::Counts() const {
   return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(), impl_->cuts_,
@@ -444,12 +548,17 @@ SlamCounts Slam::Counts() const {
 SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
 
 std::string Slam::SaveMap() const {
+  // Places first: they are never ahead of the map then, which may grow meanwhile.
+  SavedPlaces places = impl_->workers_.places().Save();
   return EncodeMap({Snapshot(), impl_->camera_, NameOf(impl_->settings_.sensor),
-                    impl_->settings_.All(), impl_->workers_.places().Save()});
+                    impl_->settings_.All(), std::move(places)});
 }
 
 StageTimes Slam::Times() const {
-  StageTimes times = impl_->times_;
+  StageTimes times;
+  times.frame = impl_->frame_ms_.All();
+  times.extract = impl_->extract_ms_.All();
+  times.track = impl_->track_ms_.All();
   times.map = impl_->workers_.MapMilliseconds();
   times.loop = impl_->workers_.LoopMilliseconds();
   times.semidense = impl_->workers_.SemiDenseMilliseconds();

@@ -6,15 +6,16 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/error.h"
 #include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
+#include "alidade/semidense/semidense_mapper.h"
+#include "alidade/system/health.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {
-
-struct SemiDenseReport;  // alidade/semidense/semidense_mapper.h
 
 enum class TrackState { kInitialising, kTracking, kLost };
 
@@ -49,6 +50,7 @@ struct TrackResult {
   const char* reason = "";  // why there is no pose
   const char* cut = "";     // why the frame does not go on where the one before was
   PoseQuality quality;      // of the pose; only when tracking
+  std::string warning;      // what has stopped: SlamHealth::Stopped(), with every frame since
 };
 
 // One frame of the finished trajectory.
@@ -69,7 +71,8 @@ struct FeatureUse {
   bool matched = false;          // the pose agrees with the landmark it shows
 };
 
-// Milliseconds, one sample per frame (map, loop: per keyframe).
+// Milliseconds, one sample per frame (map, loop, semidense: per keyframe). Of more than 262,144
+// (2.4 hours at 30 frames a second) a part, drawn evenly: see SampleLog.
 struct StageTimes {
   std::vector<double> frame, extract, track, map, loop, semidense;
   std::vector<double> detect;    // per frame the detector was given
@@ -88,47 +91,68 @@ struct SlamCounts {
   LetGoFrames let_go;
 };
 
+// Threads. The driving calls, Load, Track, Reset and Finish, take turns: one waits for the one
+// before it, from whatever thread it comes. All others are questions. Any thread may ask them at
+// any time, beside a driving call, too; none of them makes Track() wait longer than it takes to
+// copy a few pointers (Times(): a megabyte), and none waits for a frame, a keyframe or a commit to
+// be done. Every answer is a value that belongs to the caller and never changes. Two answers may be
+// of different moments: what is of one frame comes out of one call.
+//
+// Failure. Track() throws Error (input) on what it is given; nothing has changed then. Anything
+// else it throws (std::bad_alloc, cv::Exception, …) has cost that one frame: it counts, unless
+// there was no memory even for that (see frames()), and the next one is tracked as ever. What a
+// part of the system beside the tracker throws (mapping, loop closing, full adjustment, semi-dense
+// mapping, dynamics, the detector; threaded or not) ends that part, drops what waits for it, and is
+// told by TrackResult::warning of the next Track() and all after it, and by Health(); it is thrown
+// nowhere. The tracker goes on in the map that stands, which is always whole: a change that was not
+// finished has not happened. Without mapping it grows no more.
 class Slam {
  public:
   // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo
   // camera.baseline, settings.dynamics.mode full a detector.
   Slam(const Camera& camera, const SlamSettings& settings,
        std::shared_ptr<Detector> detector = nullptr);
-  ~Slam();
+  ~Slam();  // when no other call is under way; what is in work is cut short
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
+
+  // Driving calls.
 
   // Goes on in a saved map (DecodeMap() of what SaveMap() gave). Before the first frame. Throws
   // Error (input) when it was made with another camera or sensor.
   void Load(const SavedMap& saved);
-
   // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a
-  // time that does not grow; the system stays as it was then. A time that has jumped is told
-  // (TrackResult::cut) and taken as a cut: known places are tried before the last one is believed.
-  // Ahead: a gap (settings.time). Back: when as many frames as settings.time.agree_frames agree.
+  // time that does not grow. A time that has jumped is told (TrackResult::cut) and taken as a cut:
+  // known places are tried before the last one is believed. Ahead: a gap (settings.time). Back:
+  // when as many frames as settings.time.agree_frames agree.
   TrackResult Track(const FrameInput& input);
   // The next frame begins a new recording, its time may be any; the maps are kept and gone on with.
-  // Where Track() is called.
   void Reset();
-  // Waits until the workers have nothing left to do, `limit` seconds at most, and what it takes to
-  // end the step in work. The map is sound then; the next Finish() does what was left, but for
-  // keyframes that waited to be mapped: they stay as they were entered.
+  // Waits until the workers have nothing left to do (those that failed have not), `limit` seconds
+  // at most, and what it takes to end the step in work. The map is sound then; the next Finish()
+  // does what was left, but for keyframes that waited to be mapped: they stay as they were entered.
   void Finish(double limit = std::numeric_limits<double>::infinity());
-  void CutFinishShort();  // any thread's: as if the limit of Finish() were reached
+  // Any thread's, beside a driving call: as if the limit of Finish() were reached.
+  void CutFinishShort();
 
-  // Of the last frame: its features, and what was left out as moving (CV_8U, 255, of the camera's
-  // size; empty without dynamics).
+  // Questions.
+
+  SlamHealth Health() const;     // which parts run, and why one does not any more
+  MapSnapshot Snapshot() const;  // cheap, consistent, safe to keep
+  // How many frames Track() has counted: all but those it refused with an Error. One that is in
+  // work counts; Trajectory() has it once it is done.
+  int frames() const;
+  // Every frame so far that was not let go, from the `since`th on: FramePose::index.
+  std::vector<FramePose> Trajectory(int since = 0) const;
+  // Of the last frame that was done: its features, and what was left out as moving (CV_8U, 255, of
+  // the camera's size; empty without dynamics).
   std::vector<FeatureUse> Features() const;
   cv::Mat MoverMask() const;
-
-  MapSnapshot Snapshot() const;  // cheap, consistent, safe to keep
-  // Every frame so far that was not let go, from the `since`th call of Track() on.
-  std::vector<FramePose> Trajectory(int since = 0) const;
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   const Camera& camera() const;  // as used: scaled by the profile
   SlamCounts Counts() const;
-  SemiDenseReport SemiDense() const;  // waits for the keyframe that is worked on
+  SemiDenseReport SemiDense() const;  // of the keyframes that are done
   // Frame::number of the first call of Track(): keyframes of a loaded map have smaller ones.
   int first_number() const;
 

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "alidade/base/parallel.h"
-#include "alidade/base/timing.h"
 
 namespace alidade {
 
@@ -24,21 +23,56 @@ void Stage::Stop() {
   if (thread_.joinable()) thread_.join();
 }
 
-void Stage::Process(KeyFrameId id) {
-  const Stopwatch watch;
-  work_(id, schedule_ == Schedule::kInline ? nullptr : &hurry_);
+std::exception_ptr Stage::failure() const {
   std::lock_guard<std::mutex> lock(mutex_);
-  milliseconds_.push_back(watch.Milliseconds());
+  return failure_;
 }
 
-void Stage::Add(KeyFrameId id) {
-  if (schedule_ == Schedule::kInline) return Process(id);
+// The first failure is the one that is kept: others may follow from it.
+void Stage::Fail(const std::exception_ptr& what) noexcept {
   {
     std::lock_guard<std::mutex> lock(mutex_);
-    queue_.push_back(id);
+    if (!failure_) failure_ = what;
+    queue_.clear();
     hurry_ = true;
   }
   changed_.notify_all();
+}
+
+void Stage::Process(Task& task) noexcept {
+  try {
+    if (task.errand) return task.errand();
+    const Stopwatch watch;
+    work_(task.id, schedule_ == Schedule::kInline ? nullptr : &hurry_);
+    milliseconds_.Add(watch.Milliseconds());
+  } catch (...) {
+    Fail(std::current_exception());
+  }
+}
+
+bool Stage::Enqueue(Task task) noexcept {
+  if (schedule_ == Schedule::kInline) {
+    if (failure()) return false;
+    Process(task);
+    return true;
+  }
+  try {
+    std::lock_guard<std::mutex> lock(mutex_);
+    if (failure_ || stopping_) return false;
+    queue_.push_back(std::move(task));
+    hurry_ = true;
+  } catch (...) {  // no memory for the queue
+    Fail(std::current_exception());
+    return false;
+  }
+  changed_.notify_all();
+  return true;
+}
+
+void Stage::Add(KeyFrameId id) noexcept { Enqueue({id, nullptr}); }
+
+bool Stage::AddErrand(std::function<void()> errand) noexcept {
+  return Enqueue({{}, std::move(errand)});
 }
 
 int Stage::backlog() const {
@@ -49,7 +83,7 @@ int Stage::backlog() const {
 void Stage::GiveUp() {
   {
     std::lock_guard<std::mutex> lock(mutex_);
-    queue_.clear();
+    std::erase_if(queue_, [](const Task& task) { return !task.errand; });
     hurry_ = true;
   }
   changed_.notify_all();
@@ -57,13 +91,7 @@ void Stage::GiveUp() {
 
 void Stage::Drain() {
   std::unique_lock<std::mutex> lock(mutex_);
-  changed_.wait(lock, [&] { return failure_ || (queue_.empty() && !working_); });
-  if (failure_) std::rethrow_exception(failure_);
-}
-
-std::vector<double> Stage::Milliseconds() const {
-  std::lock_guard<std::mutex> lock(mutex_);
-  return milliseconds_;
+  changed_.wait(lock, [&] { return queue_.empty() && !working_; });
 }
 
 void Stage::WhileResting(const std::function<void()>& action) {
@@ -94,29 +122,24 @@ void Stage::Run() {
     LowerThreadPriority();
   }
   while (true) {
-    KeyFrameId id;
+    Task task;
     {
       std::unique_lock<std::mutex> lock(mutex_);
-      changed_.wait(lock, [&] { return stopping_ || (!queue_.empty() && rests_ == 0); });
-      if (stopping_) return;
-      id = queue_.front();
+      changed_.wait(lock,
+                    [&] { return stopping_ || failure_ || (!queue_.empty() && rests_ == 0); });
+      if (stopping_ || failure_) return;
+      task = std::move(queue_.front());
       queue_.pop_front();
       working_ = true;
       hurry_ = !queue_.empty();
     }
-    std::exception_ptr failure;
-    try {
-      Process(id);
-    } catch (...) {
-      failure = std::current_exception();
-    }
+    Process(task);
+    task = {};
     {
       std::lock_guard<std::mutex> lock(mutex_);
       working_ = false;
-      if (failure) failure_ = failure;
     }
     changed_.notify_all();
-    if (failure) return;
   }
 }
 

@@ -80,7 +80,8 @@ void Workers::AddMapped(KeyFrameId id) {
 }
 
 void Workers::Keep(KeyFrameId id, const Picture* picture) {
-  if (picture) semidense_mapper_.Keep(id, Copied(*picture));
+  if (!picture) return;
+  semidense_.Guard([&] { semidense_mapper_.Keep(id, Copied(*picture)); });
 }
 
 void Workers::Loop(KeyFrameId id) {
@@ -97,12 +98,6 @@ void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
   loop_closer_.AdjustAll(
       id, stop ? stop : &cut_short_,
       [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
-}
-
-SemiDenseReport Workers::SemiDense() {
-  SemiDenseReport report;
-  semidense_.WhileResting([&] { report = semidense_mapper_.report(); });
-  return report;
 }
 
 void Workers::CutShort() {
@@ -123,9 +118,10 @@ void Workers::DrainStages() {
   mapping_.Drain();
   looping_.Drain();
   adjusting_.Drain();
-  // Local windows leave a slow drift of scale and shape that all observations together do not.
-  const MapSnapshot map = map_.Snapshot();
-  if (map.next_keyframe() != adjusted_up_to_) {
+  adjusting_.Guard([&] {
+    // Local windows leave a slow drift of scale and shape that all observations together do not.
+    const MapSnapshot map = map_.Snapshot();
+    if (map.next_keyframe() == adjusted_up_to_) return;
     for (MapId id : map.Maps()) {
       if (cut_short_) break;
       const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
@@ -134,32 +130,59 @@ void Workers::DrainStages() {
       adjusting_.Drain();  // one by one: what waits would hurry the one before
     }
     if (!cut_short_) adjusted_up_to_ = map.next_keyframe();
-  }
+  });
   semidense_.Drain();
-  if (dense_) semidense_mapper_.Finish(&cut_short_);
-}
-
-void Workers::WhileResting(const std::function<void()>& change) {
-  // The loop closer waits for the mapper, and so must come to rest first.
-  looping_.WhileResting([&] { mapping_.WhileResting(change); });
+  if (dense_) semidense_.Guard([&] { semidense_mapper_.Finish(&cut_short_); });
 }
 
 void Workers::Restore(const SavedMap& saved) {
-  map_.Restore(saved.map);
-  mapper_.Restore(saved.map);
   const std::vector<KeyFrameId> ids = saved.map.KeyFrames();
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Frame>>> keyframes;
   for (KeyFrameId id : ids) keyframes.push_back({id, saved.map.Find(id)->frame});
   places_.Restore(saved.places, keyframes);
   loop_closer_.SetEntered(ids);
+  mapper_.Restore(saved.map);
+  map_.Restore(saved.map);  // last: nobody sees a map that could be restored in part only
   adjusted_up_to_ = saved.map.next_keyframe();
 }
 
+// On the loop closer's thread, while the mapper rests: what either of them has in work was begun
+// with the map still there, and must be done with it.
 void Workers::Drop(MapId id) {
-  WhileResting([&] {
-    for (KeyFrameId keyframe : map_.Snapshot().KeyFramesOf(id)) places_.Remove(keyframe);
-    map_.Commit([&](MapCommit& commit) { commit.Remove(id); });
-  });
+  {
+    std::lock_guard<std::mutex> lock(dropped_mutex_);
+    dropped_.push_back(id);
+  }
+  const auto take_out = [this, id] {
+    mapping_.WhileResting([&] {
+      for (KeyFrameId keyframe : map_.Snapshot().KeyFramesOf(id)) places_.Remove(keyframe);
+      map_.Commit([&](MapCommit& commit) { commit.Remove(id); });
+    });
+    std::lock_guard<std::mutex> lock(dropped_mutex_);
+    std::erase(dropped_, id);
+  };
+  if (!looping_.AddErrand(take_out)) take_out();
+}
+
+std::vector<MapId> Workers::dropped() const {
+  std::lock_guard<std::mutex> lock(dropped_mutex_);
+  return dropped_;
+}
+
+std::vector<StageHealth> Workers::health() const {
+  std::vector<StageHealth> stages;
+  const auto add = [&](const char* name, const Stage& stage) {
+    stages.push_back(HealthOf(name, stage.failure(), stage.backlog()));
+  };
+  add("mapping", mapping_);
+  add("loop closing", looping_);
+  add("full adjustment", adjusting_);
+  if (dense_) add("semi-dense mapping", semidense_);
+  return stages;
+}
+
+bool Workers::any_stopped() const {
+  return mapping_.failure() || looping_.failure() || adjusting_.failure() || semidense_.failure();
 }
 
 }  // namespace alidade

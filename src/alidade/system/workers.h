@@ -5,6 +5,8 @@
 #include <atomic>
 #include <functional>
 #include <limits>
+#include <mutex>
+#include <vector>
 
 #include "alidade/looping/loop_closer.h"
 #include "alidade/map/map_file.h"
@@ -12,6 +14,7 @@
 #include "alidade/mapping/mapper.h"
 #include "alidade/place/place_index.h"
 #include "alidade/semidense/semidense_mapper.h"
+#include "alidade/system/health.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/stage.h"
 
@@ -35,20 +38,26 @@ class Workers {
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
   // Until nothing is left to do; what grew is adjusted as a whole once more. After `limit` seconds,
   // or CutShort(), what is left is given up, as soon as what is in work can be brought to an end.
+  // What a worker throws does not come out here: see health().
   void Drain(double limit = std::numeric_limits<double>::infinity());
   void CutShort();                      // any thread's: a Drain() that runs, or else the next
   void Restore(const SavedMap& saved);  // before the first keyframe
-  void Drop(MapId id);                  // a map and its places, without a trace
+  // A map and its places, without a trace. Not awaited when threaded.
+  void Drop(MapId id);
+  std::vector<MapId> dropped() const;  // and not out of the map yet
 
+  // Any thread may ask.
+  std::vector<StageHealth> health() const;
+  bool mapping_stopped() const { return mapping_.failure() != nullptr; }
+  bool any_stopped() const;
   int loops() const { return loop_closer_.loops(); }
   int merges() const { return loop_closer_.merges(); }
-  SemiDenseReport SemiDense();
-  std::vector<double> MapMilliseconds() const { return mapping_.Milliseconds(); }
-  std::vector<double> LoopMilliseconds() const { return looping_.Milliseconds(); }
-  std::vector<double> SemiDenseMilliseconds() const { return semidense_.Milliseconds(); }
+  SemiDenseReport SemiDense() const { return semidense_mapper_.report(); }
+  std::vector<double> MapMilliseconds() const { return mapping_.milliseconds().All(); }
+  std::vector<double> LoopMilliseconds() const { return looping_.milliseconds().All(); }
+  std::vector<double> SemiDenseMilliseconds() const { return semidense_.milliseconds().All(); }
 
  private:
-  void WhileResting(const std::function<void()>& change);  // while no worker is at the map
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
   void DrainStages();
@@ -63,6 +72,8 @@ class Workers {
   std::atomic<bool> cut_short_{false};
   bool limit_told_ = false;      // that keyframes go because there are too many; mapping_'s
   uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
+  mutable std::mutex dropped_mutex_;
+  std::vector<MapId> dropped_;  // given up, and not out of the map yet
   Stage adjusting_, looping_, semidense_, mapping_;
 };
 

@@ -355,6 +355,8 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
+  PlacedFrame copy = placed;  // what needs memory comes first: then all is told, or nothing
+  const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unproven_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
     motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
@@ -362,8 +364,8 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   } else {
     motion_.Clear();
   }
-  last_ = placed;
-  last_anchor_ = AnchorTo(map.state(), reference, placed.T_camera_world);
+  last_ = std::move(copy);
+  last_anchor_ = anchor;
 }
 
 void Tracker::Reanchor(const MapSnapshot& map) {

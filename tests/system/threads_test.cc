@@ -1,0 +1,200 @@
+// Any thread may ask while another tracks (system/slam.h, "Threads"). What is checked of the
+// answers is little: that nothing races is ThreadSanitizer's to say (scripts/sanitize tsan).
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <thread>
+#include <vector>
+
+#include "alidade/map/map_file.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+#include "support/check_map.h"
+#include "support/scripted_detector.h"
+
+namespace alidade::threads_test {
+namespace {
+
+// Some frames of the path around the room, small.
+struct Rendered {
+  Camera camera;
+  std::vector<RenderedFrame> frames;
+};
+
+// One part of the room, then another that shares nothing with it, from which the camera comes back:
+// two maps that become one.
+const Rendered& Recording() {
+  static const Rendered rendered = [] {
+    SynthSettings settings;
+    settings.width = 400;
+    settings.height = 300;
+    const SynthRecording recording(settings);
+    Rendered made{recording.camera(), {}};
+    const auto add = [&](int first, int last, int step) {
+      for (int i = first; i <= last; i += step) {
+        made.frames.push_back(recording.Render(i));
+        made.frames.back().time = 0.1 * static_cast<double>(made.frames.size());
+      }
+    };
+    add(0, 48, 3);
+    add(330, 640, 6);
+    return made;
+  }();
+  return rendered;
+}
+
+SlamSettings Everything() {
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  settings.image_width = 0;
+  settings.sensor = Sensor::kRgbd;
+  settings.threaded = true;
+  settings.new_map_frames = 8;
+  settings.semidense.enabled = true;
+  settings.dynamics.mode = DynamicsMode::kFull;
+  return settings;
+}
+
+// Asks all there is to be asked, over and over.
+class Asker {
+ public:
+  explicit Asker(const Slam& slam)
+      : slam_(slam), thread_([this] {
+          try {
+            Run();
+          } catch (const std::exception& error) {
+            ADD_FAILURE() << error.what();
+            rounds_ = 2;
+          }
+        }) {}
+  ~Asker() {
+    done_ = true;
+    thread_.join();
+  }
+  int rounds() const { return rounds_; }
+
+ private:
+  void Run() {
+    int seen = 0;  // frames
+    while (!done_) {
+      const int before = slam_.frames();
+      EXPECT_GE(before, seen);
+      const std::vector<FramePose> all = slam_.Trajectory(), late = slam_.Trajectory(before / 2);
+      EXPECT_GE(static_cast<int>(all.size()) + 1, before);  // one may be in work
+      for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].index, static_cast<int>(i));
+      if (!late.empty()) {
+        EXPECT_EQ(late.front().index, before / 2);
+      }
+      EXPECT_LE(slam_.Times().frame.size(), static_cast<size_t>(slam_.frames()));
+      for (const FeatureUse& feature : slam_.Features()) {
+        EXPECT_TRUE(feature.x >= 0 && feature.x < 400 && feature.y >= 0 && feature.y < 300);
+        EXPECT_TRUE(feature.static_probability >= 0 && feature.static_probability <= 1);
+      }
+      const cv::Mat mask = slam_.MoverMask();
+      if (!mask.empty()) {
+        EXPECT_EQ(mask.size(), cv::Size(400, 300));
+      }
+      EXPECT_TRUE(slam_.Health().ok()) << slam_.Health().Stopped();
+      EXPECT_GE(slam_.Counts().merges, 0);
+      EXPECT_GE(slam_.SemiDense().keyframes, 0);
+      EXPECT_EQ(slam_.camera().width, 400);
+      EXPECT_EQ(slam_.first_number(), 0);
+      const MapSnapshot map = slam_.Snapshot();
+      if (rounds_ % 8 == 0) {
+        ExpectConsistent(map);
+        ExpectConsistent(DecodeMap(slam_.SaveMap()).map);
+      }
+      seen = before;
+      ++rounds_;
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the tracker is to get on
+    }
+  }
+
+  const Slam& slam_;
+  std::atomic<bool> done_{false};
+  std::atomic<int> rounds_{0};
+  std::thread thread_;
+};
+
+TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
+  const Rendered& recording = Recording();
+  const auto detector = std::make_shared<ScriptedDetector>([](const cv::Mat&) {
+    return std::vector<Detection>{{0, 0.9f, cv::Rect2f(20, 10, 30, 60)}};
+  });
+  Slam slam(recording.camera, Everything(), detector);
+  int tracked = 0;
+  {
+    const Asker first(slam), second(slam);
+    for (size_t i = 0; i < recording.frames.size(); ++i) {
+      const RenderedFrame& frame = recording.frames[i];
+      const TrackResult result = slam.Track({frame.time, frame.image, {}, frame.depth});
+      tracked += result.state == TrackState::kTracking;
+      if (i % 3 == 2) slam.Finish();  // so that there is a place to come back to
+    }
+    slam.Finish();
+    while (first.rounds() < 2 || second.rounds() < 2) std::this_thread::yield();
+  }
+  EXPECT_GE(tracked, 30);
+  EXPECT_GT(slam.SemiDense().keyframes, 0);
+  EXPECT_GE(slam.Counts().merges + slam.Counts().loops, 1);
+  ExpectConsistent(slam.Snapshot());
+}
+
+// Several may drive, if they must: they take turns.
+TEST(Threads, DrivingCallsTakeTurns) {
+  const Rendered& recording = Recording();
+  SlamSettings settings = Everything();
+  settings.dynamics.mode = DynamicsMode::kOff;
+  settings.semidense.enabled = false;
+  Slam slam(recording.camera, settings);
+  std::atomic<bool> done{false};
+  std::thread finisher([&] {
+    while (!done) slam.Finish();
+  });
+  for (int i = 0; i < 8; ++i) {
+    const RenderedFrame& frame = recording.frames[static_cast<size_t>(i)];
+    EXPECT_EQ(slam.Track({frame.time, frame.image, {}, frame.depth}).state, TrackState::kTracking);
+  }
+  done = true;
+  finisher.join();
+  EXPECT_EQ(slam.frames(), 8);
+}
+
+// A detector that throws something that is no Error: told by the next frames, in both schedules.
+TEST(Failure, OfTheDetectorIsToldByTheFramesAndByHealth) {
+  const Rendered& recording = Recording();
+  for (bool threaded : {false, true}) {
+    SlamSettings settings = Everything();
+    settings.threaded = threaded;
+    settings.semidense.enabled = false;
+    std::atomic<bool> asked{false};
+    const auto detector =
+        std::make_shared<ScriptedDetector>([&](const cv::Mat&) -> std::vector<Detection> {
+          asked = true;
+          throw 42;
+        });
+    Slam slam(recording.camera, settings, detector);
+    TrackResult result;
+    for (int i = 0; i < 5; ++i) {
+      const RenderedFrame& frame = recording.frames[static_cast<size_t>(i)];
+      result = slam.Track({frame.time, frame.image, {}, frame.depth});
+      EXPECT_EQ(result.state, TrackState::kTracking);
+      while (slam.Health().ok()) std::this_thread::yield();  // it was given the frame
+    }
+    EXPECT_TRUE(asked);
+    EXPECT_EQ(result.warning, "detector stopped: unknown exception");
+    const SlamHealth health = slam.Health();
+    EXPECT_FALSE(health.ok());
+    for (const StageHealth& stage : health.stages) {
+      EXPECT_EQ(stage.running, stage.name != "detector") << stage.name;
+      EXPECT_EQ(stage.bug, stage.name == "detector") << stage.name;
+    }
+    slam.Finish();
+    EXPECT_GT(slam.Snapshot().keyframe_count(), 0);
+  }
+}
+
+}  // namespace
+}  // namespace alidade::threads_test
