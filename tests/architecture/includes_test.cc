@@ -136,6 +136,35 @@ TEST(Architecture, EachFolderHasAFloorAndSaysWhatItIsFor) {
   }
 }
 
+// What is installed: cmake/InstallHeaders.cmake takes the headers that mark their namespace.
+bool IsInstalled(const fs::path& header) {
+  const std::string name = header.filename().string();
+  if (name == "slam.h" || name == "version.h" || name == "api.h") return true;
+  std::ifstream stream(header);
+  for (std::string line; std::getline(stream, line);) {
+    if (StartsWith(line, "namespace ALIDADE_API alidade")) return true;
+  }
+  return false;
+}
+
+TEST(Architecture, InstalledHeadersIncludeInstalledHeadersOnly) {
+  const fs::path sources = fs::path(ALIDADE_SOURCE_DIR) / "src";
+  int installed = 0;
+  for (const std::string& path : SourcesUnder(sources / "alidade", sources)) {
+    if (fs::path(path).extension() != ".h" || !IsInstalled(sources / path)) continue;
+    ++installed;
+    for (const std::string& header : IncludesOf(sources / path)) {
+      if (!StartsWith(header, "alidade/")) {
+        EXPECT_FALSE(StartsWith(header, "yaml-cpp/") || StartsWith(header, "flatbuffers/"))
+            << path << " asks users for " << header;
+      } else {
+        EXPECT_TRUE(IsInstalled(sources / header)) << path << " includes " << header;
+      }
+    }
+  }
+  EXPECT_GT(installed, 30);
+}
+
 TEST(ArchitectureRules, SeeIncludesThatGoUpOrSideways) {
   EXPECT_FALSE(Violation("map/keyframe.h", "alidade/features/frame.h"));
   EXPECT_FALSE(Violation("map/keyframe.h", "alidade/map/landmark.h"));

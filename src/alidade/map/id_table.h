@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // The tree for objects of any type. Reading is thread-safe; a copy shares all nodes.
 class IdTree {

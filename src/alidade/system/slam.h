@@ -6,16 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/error.h"
 #include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
-#include "alidade/semidense/semidense_mapper.h"
+#include "alidade/semidense/report.h"
 #include "alidade/system/health.h"
 #include "alidade/system/settings.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class TrackState { kInitialising, kTracking, kLost };
 
