@@ -24,12 +24,6 @@ const CLI::App* FindSubcommand(const CLI::App& app, const std::string& name,
 
 }  // namespace
 
-void CheckThreads(int threads) {
-  if (threads >= 0 && threads <= kMostThreads) return;
-  ThrowUsage("--threads must be from 0 (one for each core) to " + std::to_string(kMostThreads) +
-             ", not " + std::to_string(threads));
-}
-
 void CheckNames(const CLI::App& app, const std::vector<std::string>& arguments) {
   const CLI::App* command = &app;
   std::string path = "alidade";

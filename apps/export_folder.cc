@@ -6,7 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
-#include "draft_folder.h"
+#include "alidade/run/draft_folder.h"
 
 namespace alidade {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "alidade/run/saved_map.h"
 #include "commands.h"
 #include "map_export.h"
-#include "saved_map.h"
 
 namespace alidade {
 namespace {

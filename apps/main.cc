@@ -27,26 +27,14 @@ int Complain(std::string message, int status) {
   return status;
 }
 
-void AddCommands([[maybe_unused]] CLI::App& app, [[maybe_unused]] alidade::Action& action) {
-#ifdef ALIDADE_COMMAND_RUN
+void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddRunCommand(app, action);
   alidade::AddLocalizeCommand(app, action);
-#endif
-#ifdef ALIDADE_COMMAND_EVALUATE
   alidade::AddEvaluateCommand(app, action);
-#endif
-#ifdef ALIDADE_COMMAND_SYNTH
   alidade::AddSynthCommand(app, action);
-#endif
-#ifdef ALIDADE_COMMAND_EXPORT
   alidade::AddExportCommand(app, action);
-#endif
-#ifdef ALIDADE_COMMAND_INFO
   alidade::AddInfoCommand(app, action);
-#endif
-#ifdef ALIDADE_COMMAND_BENCH
   alidade::AddBenchCommand(app, action);
-#endif
 }
 
 // Where to read on: the innermost subcommand that was named.

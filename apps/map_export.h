@@ -4,7 +4,7 @@
 #include "alidade/io/cloud.h"
 #include "alidade/io/colmap.h"
 #include "alidade/io/trajectory.h"
-#include "saved_map.h"
+#include "alidade/run/saved_map.h"
 
 namespace alidade {
 

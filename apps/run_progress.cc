@@ -34,32 +34,54 @@ std::string Clock(double seconds) {
 
 }  // namespace
 
-void RunProgress::Show(int frames, TrackState state, const Slam& slam) {
+void RunProgress::Begin(const Slam& slam, const RunRecord& record) {
+  slam_ = &slam;
+  record_ = &record;
+}
+
+void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
+  (void)frame;
   if (!terminal_.shows_progress()) return;
   const double now = clock_.Milliseconds();
   if (now - shown_at_ < kInterval) return;
+  const int frames = record_->frames, total = record_->source.frames;  // -1: unknown
   if (shown_at_ >= 0) {
     const double fps = 1e3 * (frames - shown_frames_) / (now - shown_at_);
     fps_ = fps_ == 0 ? fps : 0.8 * fps_ + 0.2 * fps;
   }
   shown_at_ = now;
   shown_frames_ = frames;
-  const MapSnapshot map = slam.Snapshot();
+  const MapSnapshot map = slam_->Snapshot();
   std::string line = "frame " + std::to_string(frames);
-  if (total_ > 0) line += "/" + std::to_string(total_);
+  if (total > 0) line += "/" + std::to_string(total);
   char rate[32];
   std::snprintf(rate, sizeof(rate), "  %.1f/s", fps_);
   if (fps_ > 0) line += rate;
-  line += std::string("  ") + NameOf(state) + "  " + std::to_string(map.keyframe_count()) +
+  line += std::string("  ") + NameOf(result.state) + "  " + std::to_string(map.keyframe_count()) +
           " keyframes  " + std::to_string(map.landmark_count()) + " landmarks";
-  if (total_ > 0 && fps_ > 0) line += "  " + Clock((total_ - frames) / fps_) + " left";
+  if (total > 0 && fps_ > 0) line += "  " + Clock((total - frames) / fps_) + " left";
   terminal_.SetProgress(line);
 }
 
-void RunProgress::ShowFinishing(const Slam& slam) {
+void RunProgress::Finishing() {
   if (!terminal_.shows_progress()) return;
-  terminal_.SetProgress("finishing: " + std::to_string(slam.Snapshot().keyframe_count()) +
+  terminal_.SetProgress("finishing: " + std::to_string(slam_->Snapshot().keyframe_count()) +
                         " keyframes are adjusted as a whole");
+}
+
+void RunProgress::End(const RunSummary& summary, const std::string& folder) {
+  if (quiet_) return;
+  const RunRecord& record = *record_;
+  std::string shape;
+  if (summary.shape_points > 0) {
+    shape = ", " + std::to_string(summary.shape_points) + " points of shape";
+  } else if (record.settings.semidense.enabled && !record.settings.localise) {
+    shape = ", no shape (too little was seen from new keyframes)";
+  }
+  std::printf("%d of %d frames tracked, %d keyframes, %d landmarks%s, path %.2f %s\n%s in %s\n",
+              summary.tracked, summary.frames, summary.keyframes, summary.landmarks, shape.c_str(),
+              summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",
+              record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
 }
 
 }  // namespace alidade

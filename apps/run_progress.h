@@ -1,25 +1,29 @@
-// The line that shows how far a run is.
+// What `alidade run` says of itself: the line that shows how far it is, warnings, and what came
+// out.
 #pragma once
 
 #include "alidade/base/timing.h"
-#include "alidade/system/slam.h"
+#include "alidade/run/watcher.h"
 #include "terminal.h"
 
 namespace alidade {
 
-class RunProgress {
+class RunProgress : public RunWatcher {
  public:
-  RunProgress(Terminal& terminal, int total) : terminal_(terminal), total_(total) {}  // -1: unknown
-  ~RunProgress() { terminal_.SetProgress(""); }
-  RunProgress(const RunProgress&) = delete;
-  RunProgress& operator=(const RunProgress&) = delete;
+  explicit RunProgress(bool quiet) : terminal_(quiet), quiet_(quiet) {}
 
-  void Show(int frames, TrackState state, const Slam& slam);
-  void ShowFinishing(const Slam& slam);  // the last frame is in, the workers are not done
+  void Begin(const Slam& slam, const RunRecord& record) override;
+  void Frame(const SourceFrame& frame, const TrackResult& result) override;
+  void Finishing() override;
+  void Finished() override { terminal_.SetProgress(""); }
+  void End(const RunSummary& summary, const std::string& folder) override;
+  void Warn(const std::string& message) override { terminal_.Warn(message); }
 
  private:
-  Terminal& terminal_;
-  const int total_;
+  Terminal terminal_;
+  const bool quiet_;
+  const Slam* slam_ = nullptr;
+  const RunRecord* record_ = nullptr;
   Stopwatch clock_;
   double shown_at_ = -1e9;  // ms
   int shown_frames_ = 0;

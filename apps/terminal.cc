@@ -7,8 +7,6 @@
 
 #include <cstdio>
 
-#include "alidade/base/log.h"
-
 namespace alidade {
 namespace {
 
@@ -26,13 +24,9 @@ Terminal::Terminal(bool quiet)
     : quiet_(quiet), shows_progress_(!quiet && isatty(STDERR_FILENO) != 0) {
   spdlog::drop(kLogger);
   spdlog::stderr_color_st(kLogger)->set_pattern("%n: %^%l%$: %v");
-  SetWarningListener([this](const std::string& message) { Warn(message); });
 }
 
-Terminal::~Terminal() {
-  SetWarningListener(nullptr);
-  SetProgress("");
-}
+Terminal::~Terminal() { SetProgress(""); }
 
 void Terminal::Erase() {
   if (!line_.empty()) std::fputs("\r\033[K", stderr);
@@ -49,7 +43,6 @@ void Terminal::SetProgress(const std::string& line) {
 
 void Terminal::Warn(const std::string& message) {
   const std::lock_guard lock(mutex_);
-  warnings_.push_back(message);
   if (quiet_) return;
   Erase();
   std::string one_line = message;
@@ -59,11 +52,6 @@ void Terminal::Warn(const std::string& message) {
   spdlog::get(kLogger)->warn("{}", one_line);
   std::fputs(line_.c_str(), stderr);
   std::fflush(stderr);
-}
-
-std::vector<std::string> Terminal::warnings() const {
-  const std::lock_guard lock(mutex_);
-  return warnings_;
 }
 
 }  // namespace alidade

@@ -3,11 +3,10 @@
 
 #include <mutex>
 #include <string>
-#include <vector>
 
 namespace alidade {
 
-// Takes the library's warnings while it lives. Any thread may warn.
+// Any thread may warn.
 class Terminal {
  public:
   explicit Terminal(bool quiet);
@@ -18,15 +17,13 @@ class Terminal {
   bool shows_progress() const { return shows_progress_; }  // stderr is a terminal, and not quiet
   void SetProgress(const std::string& line);               // replaces the line; empty: none
   void Warn(const std::string& message);
-  std::vector<std::string> warnings() const;  // all so far, printed or not
 
  private:
   void Erase();
 
   const bool quiet_, shows_progress_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::string line_;  // as it stands on the terminal
-  std::vector<std::string> warnings_;
 };
 
 }  // namespace alidade

@@ -6,8 +6,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/files/file.h"
-#include "any_source.h"
-#include "synth_source.h"
+#include "alidade/run/any_source.h"
+#include "alidade/run/synth_source.h"
 #include "synth_writer.h"
 
 namespace alidade {

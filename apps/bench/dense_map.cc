@@ -4,9 +4,9 @@
 #include <iterator>
 
 #include "alidade/map/depth_cloud.h"
+#include "alidade/run/any_source.h"
 #include "alidade/slam.h"
 #include "alidade/system/prepare.h"
-#include "any_source.h"
 
 namespace alidade::bench {
 namespace {

@@ -10,13 +10,13 @@
 #include "alidade/detect/class_names.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/files/image_file.h"
+#include "alidade/run/options.h"
+#include "alidade/run/synth_source.h"
 #include "bench/dynamic_live.h"
 #include "bench/dynamic_pictures.h"
 #include "bench/dynamic_tables.h"
 #include "bench/remembering_detector.h"
 #include "bench/semidense.h"
-#include "run_options.h"
-#include "synth_source.h"
 
 namespace alidade::bench {
 namespace {

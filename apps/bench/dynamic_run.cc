@@ -1,7 +1,7 @@
 #include "bench/dynamic_run.h"
 
 #include "alidade/base/error.h"
-#include "run_results.h"
+#include "alidade/run/results.h"
 
 namespace alidade::bench {
 namespace {

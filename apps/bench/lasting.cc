@@ -9,9 +9,9 @@
 #include "alidade/base/timing.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
+#include "alidade/run/any_source.h"
+#include "alidade/run/options.h"
 #include "alidade/slam.h"
-#include "any_source.h"
-#include "run_options.h"
 
 namespace alidade::bench {
 namespace {

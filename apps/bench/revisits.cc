@@ -9,8 +9,8 @@
 #include "alidade/features/extractor.h"
 #include "alidade/io/association.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/synth_source.h"
 #include "alidade/slam.h"
-#include "synth_source.h"
 
 namespace alidade::bench {
 namespace {

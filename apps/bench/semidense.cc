@@ -7,9 +7,9 @@
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
+#include "alidade/run/synth_source.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "bench/dense_map.h"
-#include "synth_source.h"
 
 namespace alidade::bench {
 namespace {

@@ -4,9 +4,9 @@
 #include <thread>
 
 #include "alidade/base/timing.h"
+#include "alidade/run/any_source.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/slam.h"
-#include "any_source.h"
 #include "bench/semidense.h"
 
 namespace alidade::bench {

@@ -4,8 +4,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
+#include "alidade/run/synth_source.h"
 #include "bench/bench.h"
-#include "synth_source.h"
 
 namespace alidade::bench {
 

@@ -57,14 +57,6 @@ TEST_F(RunOptions, UnknownOptionAndWordNameTheNearest) {
   ExpectError(2, {"--rate", "-3"}, "--rate");
 }
 
-TEST_F(RunOptions, WhatLaterVersionsWillDoIsRefused) {
-  for (const std::vector<std::string>& flags :
-       std::vector<std::vector<std::string>>{{"--viewer"}, {"--viewer", "8080"}}) {
-    ExpectError(2, flags, flags[0]);
-    ExpectError(2, flags, "not in this version yet");
-  }
-}
-
 TEST_F(RunOptions, DynamicsFlagsThatDoNotGoTogetherAreRefused) {
   ExpectError(2, {"--dynamics", "full"}, "needs --detector");
   ExpectError(2, {"--dynamics", "geometry", "--detector", "model.onnx"}, "--detector");

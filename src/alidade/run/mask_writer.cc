@@ -1,4 +1,4 @@
-#include "mask_writer.h"
+#include "alidade/run/mask_writer.h"
 
 #include <filesystem>
 #include <opencv2/imgproc.hpp>

@@ -1,4 +1,4 @@
-#include "output_folder.h"
+#include "alidade/run/output_folder.h"
 
 #include <array>
 #include <filesystem>

@@ -1,11 +1,6 @@
-#include "run_options.h"
+#include "run_flags.h"
 
 #include <CLI/CLI.hpp>
-
-#include "alidade/base/error.h"
-#include "alidade/io/text.h"
-#include "arguments.h"
-#include "settings_file.h"
 
 namespace alidade {
 namespace {
@@ -21,14 +16,6 @@ constexpr char kExamples[] =
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
     "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ (docs/formats.md).";
-
-void Refuse(bool asked, const std::string& flag) {
-  if (asked) ThrowUsage(flag + " is not in this version yet");
-}
-
-}  // namespace
-
-namespace {
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
@@ -95,85 +82,7 @@ void AddRunOptions(CLI::App& command, RunOptions& options) {
   command.add_flag(
       "--semidense", options.semidense,
       "Map shape too: depth at every pixel with structure, as semidense.ply and depth/");
-  const std::string later = "Not in this version";
-  command.add_option("--host", options.host, later)->group("");
-  command.add_option("--viewer", options.viewer, later)->expected(0, 1)->group("");
   command.footer(kExamples);
-}
-
-void CheckRunOptions(const RunOptions& options) {
-  if (options.semidense && options.localise) {
-    ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
-  }
-  Refuse(options.viewer.has_value(), "--viewer");
-  Refuse(options.host.has_value(), "--host");
-  CheckThreads(options.threads);
-  if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
-  if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
-}
-
-Sensor SensorNamed(const std::string& option, const std::string& word) {
-  std::vector<std::pair<std::string, Sensor>> sensors;
-  for (Sensor sensor : {Sensor::kMono, Sensor::kStereo, Sensor::kRgbd})
-    sensors.push_back({NameOf(sensor), sensor});
-  return Choice<Sensor>(option, word, sensors);
-}
-
-SourceOptions SourceOptionsFrom(const RunOptions& options) {
-  SourceOptions source;
-  if (options.sensor) {
-    source.sensor = SensorNamed("--sensor", *options.sensor);
-  }
-  source.camera_file = options.camera_file;
-  source.fov_degrees = options.fov_degrees;
-  source.first = options.first;
-  source.last = options.last;
-  return source;
-}
-
-SlamSettings SettingsFrom(const RunOptions& options) {
-  SlamSettings settings;
-  settings.ApplyProfile(options.profile);
-  if (options.config) ApplySettingsFile(*options.config, settings);
-  for (const std::string& assignment : options.settings) {
-    const size_t equals = assignment.find('=');
-    if (equals == std::string::npos) ThrowUsage("--set " + assignment + ": expected name=value");
-    settings.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
-  }
-  if (options.seed) settings.seed = *options.seed;
-  if (options.semidense) settings.semidense.enabled = true;
-  if (options.dynamics) {
-    settings.dynamics.mode = DynamicsModeNamed("--dynamics", *options.dynamics);
-  } else if (options.detector) {
-    settings.dynamics.mode = DynamicsMode::kFull;
-  }
-  const DynamicsMode mode = settings.dynamics.mode;
-  if (mode == DynamicsMode::kFull && !options.detector)
-    ThrowUsage("--dynamics full needs --detector MODEL.onnx");
-  if (mode != DynamicsMode::kFull && options.detector)
-    ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
-  if (mode == DynamicsMode::kOff && options.write_masks)
-    ThrowUsage("--write-masks needs --dynamics geometry or full: nothing is left out without");
-  settings.Check();
-  return settings;
-}
-
-bool ThreadedFrom(const RunOptions& options, bool live) {
-  if (!options.schedule) return live;
-  return Choice<bool>("--schedule", *options.schedule, {{"inline", false}, {"threaded", true}});
-}
-
-Rate RateFrom(const RunOptions& options, bool threaded) {
-  if (!options.rate) return {threaded ? Rate::Kind::kRealtime : Rate::Kind::kMax, 0};
-  if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
-  if (*options.rate == "max") return {};
-  const std::optional<double> fps = ParseNumber(*options.rate);
-  constexpr double kSlowest = 1e-3;  // a frame in 17 minutes; a slip of the keys, below
-  if (!fps || !(*fps >= kSlowest && *fps <= 1e6)) {
-    ThrowUsage("--rate is realtime, max or frames per second (0.001 to 1000000), not '" +
-               *options.rate + "'");
-  }
-  return {Rate::Kind::kFixed, *fps};
 }
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-#include "run_results.h"
+#include "alidade/run/results.h"
 
 #include <algorithm>
 

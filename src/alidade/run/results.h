@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alidade/map/map_store.h"
+#include "alidade/run/record.h"
 #include "alidade/semidense/semidense_mapper.h"
-#include "run_record.h"
 
 namespace alidade {
 

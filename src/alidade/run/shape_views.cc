@@ -1,4 +1,4 @@
-#include "shape_views.h"
+#include "alidade/run/shape_views.h"
 
 #include <algorithm>
 #include <opencv2/core.hpp>
@@ -7,8 +7,8 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/io/files/image_codec.h"
+#include "alidade/run/semidense_outputs.h"
 #include "alidade/view/cloud_picture.h"
-#include "semidense_outputs.h"
 
 namespace alidade {
 namespace {

@@ -1,7 +1,7 @@
 #include <cstdio>
 
 #include "alidade/base/timing.h"
-#include "run_stats.h"
+#include "alidade/run/stats.h"
 
 namespace alidade {
 namespace {

@@ -1,4 +1,4 @@
-#include "settings_file.h"
+#include "alidade/run/settings_file.h"
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"

@@ -5,9 +5,9 @@
 
 #include "alidade/geometry/camera.h"
 #include "alidade/io/cloud.h"
+#include "alidade/run/output_folder.h"
+#include "alidade/run/results.h"
 #include "alidade/view/report.h"
-#include "output_folder.h"
-#include "run_results.h"
 
 namespace alidade {
 

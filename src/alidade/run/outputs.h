@@ -1,9 +1,9 @@
 // The folder `alidade run` leaves behind (docs/formats.md).
 #pragma once
 
-#include "mask_writer.h"
-#include "output_folder.h"
-#include "run_record.h"
+#include "alidade/run/mask_writer.h"
+#include "alidade/run/output_folder.h"
+#include "alidade/run/record.h"
 
 namespace alidade {
 

@@ -1,11 +1,13 @@
 // Feeds a source to a Slam, frame by frame.
 #pragma once
 
+#include <vector>
+
 #include "alidade/io/read_ahead.h"
-#include "mask_writer.h"
-#include "run_options.h"
-#include "run_record.h"
-#include "terminal.h"
+#include "alidade/run/mask_writer.h"
+#include "alidade/run/options.h"
+#include "alidade/run/record.h"
+#include "alidade/run/watcher.h"
 
 namespace alidade {
 
@@ -19,7 +21,7 @@ inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
 // that cannot be used are warned about, counted and left out. In the threaded schedule a frame that
 // is late by more than settings.time.max_latency gives way to a newer one that is there already.
 // `masks` may be null.
-void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
-               RunRecord& record, MaskWriter* masks);
+void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
+               const std::vector<RunWatcher*>& watchers, RunRecord& record, MaskWriter* masks);
 
 }  // namespace alidade

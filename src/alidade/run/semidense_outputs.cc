@@ -1,4 +1,4 @@
-#include "semidense_outputs.h"
+#include "alidade/run/semidense_outputs.h"
 
 #include <string>
 #include <utility>

@@ -1,9 +1,9 @@
-#include "run_stats.h"
+#include "alidade/run/stats.h"
 
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/timing.h"
-#include "output_folder.h"
+#include "alidade/run/output_folder.h"
 
 namespace alidade {
 namespace {

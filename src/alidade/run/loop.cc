@@ -1,4 +1,4 @@
-#include "run_loop.h"
+#include "alidade/run/loop.h"
 
 #include <unistd.h>
 
@@ -15,7 +15,6 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/base/timing.h"
-#include "run_progress.h"
 
 namespace alidade {
 namespace {
@@ -115,8 +114,8 @@ void TellWhatStopped(const TrackResult& result, const Slam& slam, RunRecord& rec
   record.health = std::move(health);
 }
 
-TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWriter* masks,
-                TrackState state) {
+void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& watchers,
+          RunRecord& record, MaskWriter* masks) {
   ++record.frames;
   if (std::isfinite(frame.time)) {
     if (!record.first_time) record.first_time = frame.time;
@@ -127,7 +126,7 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWri
   }
   if (!frame.problem.empty()) {
     Drop(frame, frame.problem, record);
-    return state;
+    return;
   }
   TrackResult result;
   const int counted = slam.frames();
@@ -142,13 +141,13 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWri
       record.stamps.pop_back();
       record.numbers.pop_back();
       Drop(frame, what, record);
-      return state;
+      return;
     }
     // The frame counts, without a pose; the next will do better.
     if (!record.bug) record.bug = failure;
     ++record.untracked_reasons[what];
     LogWarning("frame " + std::to_string(frame.number) + " failed: " + what);
-    return state;
+    return;
   }
   TellWhatStopped(result, slam, record);
   if (masks) masks->Write(frame, slam.MoverMask());
@@ -156,7 +155,7 @@ TrackState Feed(const SourceFrame& frame, Slam& slam, RunRecord& record, MaskWri
     ++record.untracked_reasons[result.reason];
     record.dark += cv::mean(frame.image)[0] < kBlack;
   }
-  return result.state;
+  for (RunWatcher* watcher : watchers) watcher->Frame(frame, result);
 }
 
 }  // namespace
@@ -168,13 +167,11 @@ void CatchInterrupts() {
 
 bool Interrupted() { return g_interrupted != 0; }
 
-void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& terminal,
-               RunRecord& record, MaskWriter* masks) {
+void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
+               const std::vector<RunWatcher*>& watchers, RunRecord& record, MaskWriter* masks) {
   Pacer pacer(rate);
-  RunProgress progress(terminal, source.Info().frames);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
-  TrackState state = TrackState::kInitialising;
   const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
@@ -184,18 +181,18 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam, Terminal& termin
         cpu.emplace(source);
         wall.emplace();
       }
+      for (RunWatcher* watcher : watchers) watcher->Wait(Interrupted);
       const double late = pacer.WaitFor(frame->time);
       if (may_drop && late > record.settings.time.max_latency && source.ready()) {
         ++record.late;
         continue;
       }
-      state = Feed(*frame, slam, record, masks, state);
-      progress.Show(record.frames, state, slam);
+      Feed(*frame, slam, watchers, record, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept
     record.failure = std::current_exception();
   }
-  progress.ShowFinishing(slam);
+  for (RunWatcher* watcher : watchers) watcher->Finishing();
   {
     const Finisher finisher(slam);
     slam.Finish();

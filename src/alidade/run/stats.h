@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "alidade/run/record.h"
+#include "alidade/run/results.h"
 #include "alidade/view/report.h"
-#include "run_record.h"
-#include "run_results.h"
 
 namespace alidade {
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "alidade/map/depth_cloud.h"
-#include "output_folder.h"
-#include "run_results.h"
+#include "alidade/run/output_folder.h"
+#include "alidade/run/results.h"
 
 namespace alidade {
 

@@ -1,14 +1,14 @@
-#include "run_outputs.h"
+#include "alidade/run/outputs.h"
 
 #include <exception>
 #include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/io/cloud.h"
-#include "run_results.h"
-#include "run_stats.h"
-#include "semidense_outputs.h"
-#include "shape_views.h"
+#include "alidade/run/results.h"
+#include "alidade/run/semidense_outputs.h"
+#include "alidade/run/shape_views.h"
+#include "alidade/run/stats.h"
 
 namespace alidade {
 namespace {

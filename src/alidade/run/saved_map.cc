@@ -1,4 +1,4 @@
-#include "saved_map.h"
+#include "alidade/run/saved_map.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alidade/io/frame_source.h"
-#include "draft_folder.h"
-#include "output_folder.h"
+#include "alidade/run/draft_folder.h"
+#include "alidade/run/output_folder.h"
 
 namespace alidade {
 

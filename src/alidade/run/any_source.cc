@@ -1,6 +1,6 @@
-#include "any_source.h"
+#include "alidade/run/any_source.h"
 
-#include "synth_source.h"
+#include "alidade/run/synth_source.h"
 
 namespace alidade {
 

@@ -1,4 +1,4 @@
-// What `alidade run` was asked to do.
+// What a run can be asked to do.
 #pragma once
 
 #include <cstdint>
@@ -8,10 +8,6 @@
 
 #include "alidade/io/files/open_source.h"
 #include "alidade/system/settings.h"
-
-namespace CLI {
-class App;
-}
 
 namespace alidade {
 
@@ -29,16 +25,19 @@ struct RunOptions {
   bool semidense = false;
   std::optional<std::string> dynamics, detector;
   bool write_masks = false;
-  // Known words whose work is not in this version.
-  std::optional<std::string> viewer, host;
+  std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
+  bool view = false;                  // show it in a browser
+  std::optional<int> port;            // of the viewer; without: the first that is free
+  std::optional<std::string> host;    // address the viewer listens on; 127.0.0.1
 };
 
-// Adds the flags; parsing fills `options`, which must outlive `command`.
-void AddRunOptions(CLI::App& command, RunOptions& options);
-// The same for `alidade localize`.
-void AddLocalizeOptions(CLI::App& command, RunOptions& options);
+// More threads than cores only wait for each other, and each has 8 MB of stack to its name; no
+// machine this is meant for has as many cores.
+inline constexpr int kMostThreads = 256;
+// Of --threads: throws Error (usage) for a number that cannot be.
+void CheckThreads(int threads);
 
-// Throws Error (usage) for what this version cannot do yet, and for flags that do not go together.
+// Throws Error (usage) for flags that do not go together.
 void CheckRunOptions(const RunOptions& options);
 
 // Throws Error (usage) for a word that names none; `option` is whose word it is.

@@ -1,4 +1,4 @@
-#include "draft_folder.h"
+#include "alidade/run/draft_folder.h"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "synth_source.h"
+#include "alidade/run/synth_source.h"
 
 #include <cstdint>
 #include <cstdio>

@@ -1,0 +1,17 @@
+// The flags of `alidade run` and `alidade localize`.
+#pragma once
+
+#include "alidade/run/options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace alidade {
+
+// Adds the flags; parsing fills `options`, which must outlive `command`.
+void AddRunOptions(CLI::App& command, RunOptions& options);
+// The same for `alidade localize`.
+void AddLocalizeOptions(CLI::App& command, RunOptions& options);
+
+}  // namespace alidade

@@ -1,0 +1,124 @@
+#include "alidade/run/run.h"
+
+#include <memory>
+#include <mutex>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/base/parallel.h"
+#include "alidade/detect/onnx/open_detector.h"
+#include "alidade/io/read_ahead.h"
+#include "alidade/io/wrappers.h"
+#include "alidade/run/any_source.h"
+#include "alidade/run/loop.h"
+#include "alidade/run/mask_writer.h"
+#include "alidade/run/saved_map.h"
+
+namespace alidade {
+namespace {
+
+// What went wrong by no fault of the recording's; empty: nothing.
+std::string BugOf(const RunRecord& record) {
+  std::string bugs;
+  for (const StageHealth& stage : record.health.stages) {
+    if (stage.bug) bugs += (bugs.empty() ? "" : "; ") + stage.name + " stopped: " + stage.failure;
+  }
+  if (record.bug) bugs += (bugs.empty() ? "" : "; ") + ("a frame failed: " + WhatOf(record.bug));
+  return bugs;
+}
+
+// Takes the library's warnings while it lives.
+class Warnings {
+ public:
+  explicit Warnings(const std::vector<RunWatcher*>& watchers) {
+    SetWarningListener([this, &watchers](const std::string& message) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      all_.push_back(message);
+      for (RunWatcher* watcher : watchers) watcher->Warn(message);
+    });
+  }
+  ~Warnings() { SetWarningListener(nullptr); }
+  Warnings(const Warnings&) = delete;
+  Warnings& operator=(const Warnings&) = delete;
+
+  std::vector<std::string> all() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return all_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> all_;
+};
+
+}  // namespace
+
+RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watchers) {
+  CheckRunOptions(options);
+  RunOutcome outcome;
+  RunRecord& record = outcome.record;
+  record.source_path = options.source;
+  record.profile = options.profile;
+  record.settings = SettingsFrom(options);
+  ThreadedFrom(options, false);  // slips in words come out before anything is opened
+  RateFrom(options, false);
+
+  cv::setNumThreads(1);  // the loops are ours
+  SetThreadCount(options.threads);
+  record.threads = ThreadCount();
+  const Warnings warnings(watchers);
+
+  std::optional<SavedMap> saved;
+  if (options.load) saved = ReadSavedMap(*options.load);
+  SourceOptions wanted = SourceOptionsFrom(options);
+  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
+  record.settings.localise = options.localise;
+  wanted.color = record.settings.WantsColor();
+  std::unique_ptr<FrameSource> source =
+      Repeat(OpenAnySource(options.source, wanted), options.repeat);
+  record.source = source->Info();
+  record.settings.sensor = record.source.sensor;
+  record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
+  if (saved && saved->camera.width < record.source.camera.width)
+    record.settings.image_width = saved->camera.width;  // it was made from images scaled down
+  std::shared_ptr<Detector> detector;
+  if (options.detector)
+    detector = OpenDetector(*options.detector, record.settings.dynamics.detector);
+  Slam slam(record.source.camera, record.settings, detector);
+  if (saved) slam.Load(*saved);
+  OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name),
+                      options.load ? SavedMapPath(*options.load) : std::string());
+  outcome.folder = folder.path();
+
+  std::optional<MaskWriter> masks;
+  if (options.write_masks) masks.emplace(folder);
+  ReadAhead frames(std::move(source));
+  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record);
+  RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
+            masks ? &*masks : nullptr);
+  for (RunWatcher* watcher : watchers) watcher->Finished();
+  record.warnings = warnings.all();
+  if (record.failure && record.frames == 0) {
+    if (masks) masks->Discard();
+    folder.Remove();
+    std::rethrow_exception(record.failure);
+  }
+  outcome.summary =
+      WriteOutputs(folder, slam, record, !options.localise, masks ? &*masks : nullptr);
+  for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, folder.path());
+  if (record.failure) std::rethrow_exception(record.failure);
+  if (const std::string bugs = BugOf(record); !bugs.empty())
+    throw std::runtime_error(bugs + " (what could be done without is in " + folder.path() + ")");
+  if (record.interrupted) {
+    outcome.status = kInterruptedStatus;
+  } else if (outcome.summary.tracked == 0) {
+    throw Error(ErrorKind::kNothingMapped, "nothing could be mapped: " + WhyNothing(record));
+  }
+  return outcome;
+}
+
+}  // namespace alidade

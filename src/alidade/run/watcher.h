@@ -1,0 +1,37 @@
+// Those who look on while a recording is played: progress on a terminal, the viewer, the recorder.
+// They change no result.
+#pragma once
+
+#include <string>
+
+#include "alidade/io/frame_source.h"
+#include "alidade/run/outputs.h"
+#include "alidade/run/record.h"
+#include "alidade/system/slam.h"
+
+namespace alidade {
+
+// Calls come from the thread that plays the frames, but for Warn().
+class RunWatcher {
+ public:
+  virtual ~RunWatcher() = default;
+  // Before the first frame. What `slam` and `record` are references to lives until End() has
+  // returned.
+  virtual void Begin(const Slam& slam, const RunRecord& record) { (void)slam, (void)record; }
+  // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
+  // it must not any more.
+  virtual void Wait(bool (*interrupted)()) { (void)interrupted; }
+  // After each frame that Track() took.
+  virtual void Frame(const SourceFrame& frame, const TrackResult& result) {
+    (void)frame, (void)result;
+  }
+  virtual void Finishing() {}  // the workers are waited for
+  virtual void Finished() {}   // the map stays as it is now
+  // The results are written, in `folder`.
+  virtual void End(const RunSummary& summary, const std::string& folder) {
+    (void)summary, (void)folder;
+  }
+  virtual void Warn(const std::string& message) { (void)message; }  // from any thread
+};
+
+}  // namespace alidade
