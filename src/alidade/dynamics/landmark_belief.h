@@ -3,6 +3,9 @@
 
 #include <Eigen/Core>
 
+#include "alidade/dynamics/cells.h"
+#include "alidade/dynamics/frame_belief.h"
+
 namespace alidade {
 
 // What there is where a landmark should be seen.
@@ -12,6 +15,9 @@ enum class Sight {
   kOnMover,  // it is at the depth of what moves there
   kGone      // one sees through its place to what is behind
 };
+
+// `p`: the landmark in the camera's frame.
+Sight SightOf(const Cells& cells, const FrameBelief& belief, const Eigen::Vector3d& p);
 
 inline float EvidenceOf(Sight sight, bool found) {
   switch (sight) {
