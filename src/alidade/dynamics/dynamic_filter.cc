@@ -22,7 +22,9 @@ DynamicFilter::DynamicFilter(const Camera& camera, const DynamicsSettings& setti
       settings_(settings),
       cells_(camera),
       objects_(settings, class_names),
-      surfaces_(cells_),
+      surfaces_(cells_, settings.surfaces, settings.depth),
+      track_belief_(settings.tracks),
+      history_(settings.history),
       belief_(Unknown()) {}
 
 FrameBelief DynamicFilter::Unknown() const {
@@ -43,9 +45,10 @@ void DynamicFilter::Advance(const DynamicInput& input,
   // Until it is judged the frame is taken to be as the last one was, but for its depth.
   FrameBelief expected = belief_;
   expected.depth.clear();
-  if (!input.depth.empty()) expected.depth = DepthOfCells(cells_, camera_, input.depth);
+  if (!input.depth.empty())
+    expected.depth = DepthOfCells(cells_, camera_, input.depth, settings_.depth);
   if (!input.right.empty())
-    expected.depth = StereoDepthOfCells(cells_, camera_, input.gray, input.right);
+    expected.depth = StereoDepthOfCells(cells_, camera_, input.gray, input.right, settings_.depth);
   belief_ = std::move(expected);
   objects_.Advance(tracks_.tracks(), cells_, input.time, input.gray.size());
   if (arrived) {
@@ -93,7 +96,7 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* gues
     return unchanged;
   }
   // A frame that comes without depth keeps what the last ones said.
-  const bool had_depth = surfaces_.number() >= now_.number - SurfaceBelief::kGap;
+  const bool had_depth = surfaces_.number() >= now_.number - settings_.surfaces.gap;
   return had_depth ? unchanged : JudgeWithoutDepth(guess);
 }
 
@@ -109,9 +112,10 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeWithDepth(const PoseGuess& gue
     for (int i : CellsInBox(cells_, object.box)) suspect[i] = 1;
   }
   GeometryBelief judged;
-  judged.votes = Consensus(
-      cells_, depth, tracks_.tracks(),
-      VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world, history_, guess.nearest));
+  judged.votes = Consensus(cells_, depth, tracks_.tracks(),
+                           VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world,
+                                      history_, guess.nearest, settings_.votes),
+                           settings_.votes, settings_.depth);
   surfaces_.Update(now_.number, depth, guess.T_camera_world, history_, resting, suspect,
                    tracks_.tracks(), judged.votes);
   judged.log_odds = surfaces_.log_odds();
@@ -122,16 +126,17 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeWithoutDepth(const PoseGuess* 
   const std::vector<FlowTrack>& tracks = tracks_.tracks();
   std::vector<int8_t> votes;
   if (guess) {
-    votes = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest);
+    votes = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest,
+                       settings_.votes);
   } else {
     std::vector<uint8_t> on_object;
     for (const FlowTrack& track : tracks)
       on_object.push_back(belief_.object[cells_.At(track.at().x, track.at().y)]);
     votes = VoteByAgreement(camera_, tracks, on_object,
-                            settings_.seed + static_cast<uint64_t>(now_.number));
+                            settings_.seed + static_cast<uint64_t>(now_.number), settings_.votes);
   }
   GeometryBelief judged;
-  judged.votes = Consensus(cells_, {}, tracks, votes);
+  judged.votes = Consensus(cells_, {}, tracks, votes, settings_.votes, settings_.depth);
   track_belief_.Update(tracks, judged.votes);
   judged.log_odds = track_belief_.OfCells(cells_, tracks);
   if (settings_.foreground) judged.proven = track_belief_.Proven(cells_, tracks);
@@ -140,10 +145,10 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeWithoutDepth(const PoseGuess* 
 
 void DynamicFilter::FindObjects(std::span<const uint8_t> proven, FrameBelief& judged) {
   for (MovingObject& object : objects_.objects()) {
-    object.cells = !settings_.foreground ? CellsInBox(cells_, object.box)
-                   : judged.depth.empty()
-                       ? CellsInOval(cells_, object.box, proven)
-                       : FindForeground(cells_, judged.depth, judged.geometry, object.box);
+    object.cells = !settings_.foreground  ? CellsInBox(cells_, object.box)
+                   : judged.depth.empty() ? CellsInOval(cells_, object.box, proven, settings_.box)
+                                          : FindForeground(cells_, judged.depth, judged.geometry,
+                                                           object.box, settings_.box);
     if (object.carried && !IsCarried(object, judged.geometry)) continue;
     for (int i : object.cells) {
       judged.resting[i] = judged.object[i] ? std::min(judged.resting[i], object.static_log_odds)
@@ -154,22 +159,22 @@ void DynamicFilter::FindObjects(std::span<const uint8_t> proven, FrameBelief& ju
 }
 
 // A chair moves as a whole: when a good part of it is seen to, all of it does.
-bool DynamicFilter::IsCarried(const MovingObject& object, std::span<const float> geometry) {
-  constexpr double kPart = 0.4;
+bool DynamicFilter::IsCarried(const MovingObject& object, std::span<const float> geometry) const {
   const auto moving = std::count_if(object.cells.begin(), object.cells.end(),
                                     [&](int i) { return geometry[i] < 0; });
-  return static_cast<double>(moving) > kPart * static_cast<double>(object.cells.size());
+  return static_cast<double>(moving) >
+         settings_.objects.carried_share * static_cast<double>(object.cells.size());
 }
 
 bool DynamicFilter::FollowsMover() const {
-  constexpr double kMost = 0.55;
   const uint64_t seed = settings_.seed + static_cast<uint64_t>(now_.number);
-  return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), belief_.votes, seed) > kMost;
+  return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), belief_.votes, seed,
+                            settings_.votes) > settings_.votes.rival_share;
 }
 
 void DynamicFilter::Forget() {
   history_.Clear();
-  track_belief_ = {};
+  track_belief_ = TrackBelief(settings_.tracks);
   belief_.geometry.assign(cells_.count(), kUnknownStatic);
 }
 
@@ -196,7 +201,9 @@ void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, cons
   history_.Add(std::move(view));
 }
 
-Sight DynamicFilter::Look(const Eigen::Vector3d& p) const { return SightOf(cells_, belief_, p); }
+Sight DynamicFilter::Look(const Eigen::Vector3d& p) const {
+  return SightOf(cells_, belief_, p, settings_.landmarks, settings_.depth);
+}
 
 cv::Mat DynamicFilter::BeliefOfCells() const {
   return cv::Mat(cells_.rows(), cells_.columns(), CV_32F,

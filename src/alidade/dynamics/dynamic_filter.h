@@ -92,7 +92,7 @@ class DynamicFilter {
   GeometryBelief JudgeWithoutDepth(const PoseGuess* guess);
   // What each object covers of the picture: fills judged.object and judged.resting.
   void FindObjects(std::span<const uint8_t> proven, FrameBelief& judged);
-  static bool IsCarried(const MovingObject& object, std::span<const float> geometry);
+  bool IsCarried(const MovingObject& object, std::span<const float> geometry) const;
 
   Camera camera_;
   DynamicsSettings settings_;
