@@ -14,9 +14,9 @@ namespace alidade {
 namespace {
 
 // Median of the positive values among those read at nine places of each cell; 0 when fewer than
-// three have one.
+// `least` have one.
 template <typename Read>
-std::vector<float> Medians(const Cells& cells, cv::Size image, Read&& read) {
+std::vector<float> Medians(const Cells& cells, cv::Size image, int least, Read&& read) {
   std::vector<float> medians(cells.count(), 0);
   const float step = cells.size() / 3;
   for (int i = 0; i < cells.count(); ++i) {
@@ -32,7 +32,7 @@ std::vector<float> Medians(const Cells& cells, cv::Size image, Read&& read) {
         if (value > 0 && std::isfinite(value)) values[count++] = value;
       }
     }
-    if (count < 3) continue;
+    if (count < least) continue;
     medians[i] = UpperMedian(std::span(values).first(count));
   }
   return medians;
@@ -77,29 +77,32 @@ int Cells::Project(const Eigen::Vector3d& p) const {
   return At(static_cast<float>(raw.x()), static_cast<float>(raw.y()));
 }
 
-std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth) {
+std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth,
+                                const CellDepthSettings& settings) {
   const DepthImage image(depth, camera);
-  return Medians(cells, image.size(), [&](int x, int y) { return image.At(x, y); });
+  return Medians(cells, image.size(), settings.min_readings,
+                 [&](int x, int y) { return image.At(x, y); });
 }
 
 std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,
-                                      const cv::Mat& right) {
-  constexpr int kShrink = 2, kWindow = 15, kSixteenths = 16;
-  constexpr double kNearest = 0.5;  // metres: what is nearer has no match
+                                      const cv::Mat& right, const CellDepthSettings& settings) {
+  constexpr int kShrink = 2;
+  constexpr int kSixteenths = 16;  // of a pixel: OpenCV's unit of disparity
   cv::Mat small_left, small_right, disparity;
   const cv::Size size(left.cols / kShrink, left.rows / kShrink);
   cv::resize(left, small_left, size, 0, 0, cv::INTER_AREA);
   cv::resize(right, small_right, size, 0, 0, cv::INTER_AREA);
-  const double widest = camera.bf() / kNearest / kShrink;
+  // The disparity of the nearest depth, d = b f / z in pixels of the small image.
+  const double widest = camera.bf() / settings.stereo_nearest / kShrink;
   const int disparities = std::clamp(static_cast<int>(std::ceil(widest / 16)) * 16, 16,
                                      std::max(16, size.width / 32 * 16));
-  const auto matcher = cv::StereoBM::create(disparities, kWindow);
-  matcher->setTextureThreshold(10);
-  matcher->setUniquenessRatio(12);
+  const auto matcher = cv::StereoBM::create(disparities, settings.stereo_window);
+  matcher->setTextureThreshold(settings.stereo_texture);
+  matcher->setUniquenessRatio(settings.stereo_uniqueness);
   matcher->setSpeckleWindowSize(0);
   matcher->compute(small_left, small_right, disparity);
   const auto bf = static_cast<float>(camera.bf() * kSixteenths / kShrink);
-  return Medians(cells, left.size(), [&](int x, int y) {
+  return Medians(cells, left.size(), settings.min_readings, [&](int x, int y) {
     const int v = std::min(y / kShrink, size.height - 1), u = std::min(x / kShrink, size.width - 1);
     const int16_t d = disparity.at<int16_t>(v, u);
     return d > kSixteenths ? bf / static_cast<float>(d) : 0.0f;

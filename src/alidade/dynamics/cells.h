@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "alidade/dynamics/belief_settings.h"
 #include "alidade/geometry/camera.h"
 
 namespace alidade {
@@ -51,19 +52,20 @@ void Cells::VisitAround(int cell, int reach, Visit&& visit) const {
   }
 }
 
-// Whether `other` is not on the surface that `cell` is on, as their depths tell: metres, 0 =
-// unknown, may be empty. What is unknown is apart from nothing.
-inline bool ApartInDepth(std::span<const float> depth, int cell, int other) {
-  constexpr float kSurface = 0.06f;  // of the depth
+// Whether `other` is not on the surface that `cell` is on: |z' - z| > surface_step z. Depths of all
+// cells in metres, 0 = unknown, may be empty; what is unknown is apart from nothing.
+inline bool ApartInDepth(std::span<const float> depth, int cell, int other,
+                         const CellDepthSettings& settings = {}) {
   return !depth.empty() && depth[other] > 0 && depth[cell] > 0 &&
-         std::abs(depth[other] - depth[cell]) > kSurface * depth[cell];
+         std::abs(depth[other] - depth[cell]) > settings.surface_step * depth[cell];
 }
 
 // Metres along z in every cell, 0 = unknown: the median of nine readings.
 // From a depth image (CV_16U in camera.depth_factor units or CV_32F metres).
-std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth);
+std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth,
+                                const CellDepthSettings& settings = {});
 // From a rectified pair (CV_8U), by block matching at half size (Konolige 1998).
 std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,
-                                      const cv::Mat& right);
+                                      const cv::Mat& right, const CellDepthSettings& settings = {});
 
 }  // namespace alidade

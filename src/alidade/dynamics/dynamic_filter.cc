@@ -1,18 +1,18 @@
 #include "alidade/dynamics/dynamic_filter.h"
 
 #include <algorithm>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
-#include "alidade/base/log_odds.h"
-#include "alidade/dynamics/evidence.h"
+#include "alidade/dynamics/feature_belief.h"
 #include "alidade/dynamics/flow_votes.h"
 #include "alidade/features/depth_image.h"
 
 namespace alidade {
 namespace {
 
-constexpr float kSure = 0.8f;  // probability from which a feature counts fully
+// Of what is no object's: a little above that of objects, which tells them apart in earlier views.
+constexpr float kLeastGeometry = kObjectStatic + 0.1f;
 
 }  // namespace
 
@@ -22,11 +22,19 @@ DynamicFilter::DynamicFilter(const Camera& camera, const DynamicsSettings& setti
       settings_(settings),
       cells_(camera),
       objects_(settings, class_names),
-      surfaces_(cells_),
-      geometry_(cells_.count(), kUnknownStatic),
-      object_(cells_.count(), 0),
-      resting_(cells_.count(), 0),
-      belief_(geometry_) {}
+      surfaces_(cells_, settings.surfaces, settings.depth),
+      track_belief_(settings.tracks),
+      history_(settings.history),
+      belief_(Unknown()) {}
+
+FrameBelief DynamicFilter::Unknown() const {
+  FrameBelief belief;
+  belief.geometry.assign(cells_.count(), kUnknownStatic);
+  belief.object.assign(cells_.count(), 0);
+  belief.resting.assign(cells_.count(), 0);
+  belief.log_odds = belief.geometry;
+  return belief;
+}
 
 void DynamicFilter::Advance(const DynamicInput& input,
                             const std::optional<FrameDetections>& arrived) {
@@ -34,9 +42,14 @@ void DynamicFilter::Advance(const DynamicInput& input,
   times_.push_front(input.time);
   if (times_.size() > FlowTracks::kHistory) times_.pop_back();
   tracks_.Advance(input.gray);
-  depth_.clear();
-  if (!input.depth.empty()) depth_ = DepthOfCells(cells_, camera_, input.depth);
-  if (!input.right.empty()) depth_ = StereoDepthOfCells(cells_, camera_, input.gray, input.right);
+  // Until it is judged the frame is taken to be as the last one was, but for its depth.
+  FrameBelief expected = belief_;
+  expected.depth.clear();
+  if (!input.depth.empty())
+    expected.depth = DepthOfCells(cells_, camera_, input.depth, settings_.depth);
+  if (!input.right.empty())
+    expected.depth = StereoDepthOfCells(cells_, camera_, input.gray, input.right, settings_.depth);
+  belief_ = std::move(expected);
   objects_.Advance(tracks_.tracks(), cells_, input.time, input.gray.size());
   if (arrived) {
     const int ago = input.number - arrived->number;
@@ -49,183 +62,120 @@ cv::Mat DynamicFilter::ExpectedMovers() const {
   cv::Mat movers(cells_.rows(), cells_.columns(), CV_8U);
   // Without depth geometry tells single features, not what they are on.
   for (int i = 0; i < cells_.count(); ++i)
-    movers.data[i] = object_[i] || (!depth_.empty() && belief_[i] < 0) ? 255 : 0;
+    movers.data[i] =
+        belief_.object[i] || (!belief_.depth.empty() && belief_.log_odds[i] < 0) ? 255 : 0;
   return movers;
 }
 
-// What each object covers of the picture. `proven`: cells (nonzero) that stand still for certain,
-// which only the rim of a box can hold; may be empty.
-void DynamicFilter::FindObjects(std::span<const uint8_t> proven) {
-  std::fill(object_.begin(), object_.end(), uint8_t{0});
-  for (MovingObject& object : objects_.objects()) {
-    object.cells = !settings_.foreground ? CellsInBox(cells_, object.box)
-                   : depth_.empty()      ? CellsInOval(cells_, object.box, proven)
-                                         : FindForeground(cells_, depth_, geometry_, object.box);
-    if (object.carried && !IsCarried(object)) continue;
-    for (int i : object.cells) {
-      resting_[i] =
-          object_[i] ? std::min(resting_[i], object.static_log_odds) : object.static_log_odds;
-      object_[i] = 1;
-    }
+void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
+  if (guess) Enter(guess->world);
+  const GeometryBelief geometry = JudgeGeometry(guess);
+  FrameBelief judged = Unknown();
+  judged.depth = belief_.depth;
+  judged.geometry = geometry.log_odds;
+  judged.votes = geometry.votes;
+  FindObjects(geometry.proven, judged);
+  if (settings_.weigh) objects_.JudgeRest(tracks_.tracks(), judged.votes, cells_);
+  for (int i = 0; i < cells_.count(); ++i) {
+    judged.log_odds[i] = judged.object[i] ? std::min(judged.geometry[i], judged.resting[i])
+                                          : std::max(judged.geometry[i], kLeastGeometry);
   }
+  belief_ = std::move(judged);
+  frame.static_probability = StaticProbabilities(cells_, belief_, DepthImage(now_.depth, camera_),
+                                                 frame.keypoints, settings_);
 }
 
-// A chair moves as a whole: when a good part of it is seen to, all of it does.
-bool DynamicFilter::IsCarried(const MovingObject& object) const {
-  constexpr double kPart = 0.4;
-  const auto moving = std::count_if(object.cells.begin(), object.cells.end(),
-                                    [&](int i) { return geometry_[i] < 0; });
-  return static_cast<double>(moving) > kPart * static_cast<double>(object.cells.size());
+DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* guess) {
+  GeometryBelief unchanged;
+  unchanged.votes.assign(tracks_.tracks().size(), 0);
+  unchanged.log_odds = belief_.geometry;
+  if (!settings_.geometry) return unchanged;
+  if (!belief_.depth.empty()) {
+    if (guess) return JudgeWithDepth(*guess);
+    unchanged.log_odds.assign(cells_.count(), kUnknownStatic);
+    return unchanged;
+  }
+  // A frame that comes without depth keeps what the last ones said.
+  const bool had_depth = surfaces_.number() >= now_.number - settings_.surfaces.gap;
+  return had_depth ? unchanged : JudgeWithoutDepth(guess);
 }
 
-void DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
-  const std::vector<int> from = surfaces_.Carry(depth_, guess.T_camera_world, history_);
+DynamicFilter::GeometryBelief DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
+  const std::vector<float>& depth = belief_.depth;
+  const std::vector<int> from = surfaces_.Carry(depth, guess.T_camera_world, history_);
   std::vector<uint8_t> resting(cells_.count(), 0), suspect(cells_.count(), 0);
   for (int i = 0; i < cells_.count(); ++i) {
-    if (from[i] >= 0) resting[i] = object_[from[i]];
+    if (from[i] >= 0) resting[i] = belief_.object[from[i]];
   }
   for (const MovingObject& object : objects_.objects()) {
     if (object.carried) continue;
     for (int i : CellsInBox(cells_, object.box)) suspect[i] = 1;
   }
-  votes_ = Consensus(
-      cells_, depth_, tracks_.tracks(),
-      VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world, history_, guess.nearest));
-  surfaces_.Update(now_.number, depth_, guess.T_camera_world, history_, resting, suspect,
-                   tracks_.tracks(), votes_);
-  geometry_ = surfaces_.log_odds();
+  GeometryBelief judged;
+  judged.votes = Consensus(cells_, depth, tracks_.tracks(),
+                           VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world,
+                                      history_, guess.nearest, settings_.votes),
+                           settings_.votes, settings_.depth);
+  surfaces_.Update(now_.number, depth, guess.T_camera_world, history_, resting, suspect,
+                   tracks_.tracks(), judged.votes);
+  judged.log_odds = surfaces_.log_odds();
+  return judged;
 }
 
-void DynamicFilter::JudgeWithoutDepth(const PoseGuess* guess) {
+DynamicFilter::GeometryBelief DynamicFilter::JudgeWithoutDepth(const PoseGuess* guess) {
   const std::vector<FlowTrack>& tracks = tracks_.tracks();
+  std::vector<int8_t> votes;
   if (guess) {
-    votes_ = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest);
+    votes = VoteByPose(camera_, cells_, tracks, guess->T_camera_world, history_, guess->nearest,
+                       settings_.votes);
   } else {
     std::vector<uint8_t> on_object;
     for (const FlowTrack& track : tracks)
-      on_object.push_back(object_[cells_.At(track.at().x, track.at().y)]);
-    votes_ = VoteByAgreement(camera_, tracks, on_object,
-                             settings_.seed + static_cast<uint64_t>(now_.number));
+      on_object.push_back(belief_.object[cells_.At(track.at().x, track.at().y)]);
+    votes = VoteByAgreement(camera_, tracks, on_object,
+                            settings_.seed + static_cast<uint64_t>(now_.number), settings_.votes);
   }
-  votes_ = Consensus(cells_, {}, tracks, votes_);
-  track_belief_.Update(tracks, votes_);
-  geometry_ = track_belief_.OfCells(cells_, tracks);
+  GeometryBelief judged;
+  judged.votes = Consensus(cells_, {}, tracks, votes, settings_.votes, settings_.depth);
+  track_belief_.Update(tracks, judged.votes);
+  judged.log_odds = track_belief_.OfCells(cells_, tracks);
+  if (settings_.foreground) judged.proven = track_belief_.Proven(cells_, tracks);
+  return judged;
 }
 
-void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
-  std::vector<uint8_t> proven;
-  votes_.assign(tracks_.tracks().size(), 0);
-  if (guess) Enter(guess->world);
-  if (settings_.geometry) {
-    if (!depth_.empty() && guess) JudgeWithDepth(*guess);
-    if (!depth_.empty() && !guess) std::fill(geometry_.begin(), geometry_.end(), kUnknownStatic);
-    // A frame that comes without depth keeps what the last ones said.
-    const bool had_depth = surfaces_.number() >= now_.number - SurfaceBelief::kGap;
-    if (depth_.empty() && !had_depth) {
-      JudgeWithoutDepth(guess);
-      if (settings_.foreground) proven = track_belief_.Proven(cells_, tracks_.tracks());
+void DynamicFilter::FindObjects(std::span<const uint8_t> proven, FrameBelief& judged) {
+  for (MovingObject& object : objects_.objects()) {
+    object.cells = !settings_.foreground  ? CellsInBox(cells_, object.box)
+                   : judged.depth.empty() ? CellsInOval(cells_, object.box, proven, settings_.box)
+                                          : FindForeground(cells_, judged.depth, judged.geometry,
+                                                           object.box, settings_.box);
+    if (object.carried && !IsCarried(object, judged.geometry)) continue;
+    for (int i : object.cells) {
+      judged.resting[i] = judged.object[i] ? std::min(judged.resting[i], object.static_log_odds)
+                                           : object.static_log_odds;
+      judged.object[i] = 1;
     }
   }
-  FindObjects(proven);
-  if (settings_.weigh) objects_.JudgeRest(tracks_.tracks(), votes_, cells_);
-  for (int i = 0; i < cells_.count(); ++i) {
-    belief_[i] = object_[i] ? std::min(geometry_[i], resting_[i])
-                            : std::max(geometry_[i], kObjectStatic + 0.1f);
-  }
-  frame.static_probability.resize(frame.keypoints.size());
-  for (size_t k = 0; k < frame.keypoints.size(); ++k) {
-    float p = ProbabilityOf(BeliefAt(frame.keypoints[k]));
-    if (!settings_.weigh) p = p >= Frame::kMappable ? 1.0f : 0.0f;
-    frame.static_probability[k] = p > kSure ? 1 : p;
-  }
-  if (settings_.weigh) FeedTheStarving(frame);
 }
 
-// Where too few certain features are left, what may stand still has a small say rather than
-// nothing: better a pose that leans on them a little than none.
-void DynamicFilter::FeedTheStarving(Frame& frame) const {
-  constexpr float kEnough = 0.15f;  // of the features …
-  constexpr float kLeast = 120;     // … and so many at least, are certain
-  constexpr float kSmall = 0.15f;   // say of the others
-  const auto certain = static_cast<float>(
-      std::count_if(frame.static_probability.begin(), frame.static_probability.end(),
-                    [](float p) { return p >= Frame::kMappable; }));
-  const auto all = static_cast<float>(frame.keypoints.size());
-  if (certain >= kEnough * all && certain >= std::min(kLeast, all / 2)) return;
-  for (size_t k = 0; k < frame.keypoints.size(); ++k) {
-    const Keypoint& keypoint = frame.keypoints[k];
-    const int cell = cells_.At(keypoint.raw_x, keypoint.raw_y);
-    if (geometry_[cell] < 0) continue;  // seen to move
-    frame.static_probability[k] = std::max(frame.static_probability[k], kSmall);
-  }
-}
-
-// Metres at a pixel of the depth image; 0 where there is no reading.
-float DynamicFilter::DepthAt(int x, int y) const {
-  return DepthImage(now_.depth, camera_).At(x, y);
-}
-
-// Log-odds of the surface that has depth z at a cell: of the cells around the one nearest in depth;
-// where all of them show something else (a chair's back, with someone behind it), the worst of
-// those farther off that have it. `otherwise` where none has.
-float DynamicFilter::BeliefOfSurface(int cell, float z, float otherwise) const {
-  constexpr float kSurface = 0.08f;  // of the depth
-  constexpr int kFar = 6;            // cells
-  float belief = otherwise, least = kSurface * z;
-  cells_.VisitAround(cell, 1, [&](int n) {
-    if (!(depth_[n] > 0) || std::abs(depth_[n] - z) >= least) return;
-    least = std::abs(depth_[n] - z);
-    belief = belief_[n];
-  });
-  if (least < kSurface * z) return belief;
-  bool known = false;
-  cells_.VisitAround(cell, kFar, [&](int n) {
-    if (!(depth_[n] > 0) || std::abs(depth_[n] - z) >= kSurface * z) return;
-    belief = known ? std::min(belief, belief_[n]) : belief_[n];
-    known = true;
-  });
-  return belief;
-}
-
-// Of the surface the keypoint is on; where its depth is not known, the worst around it: an outline
-// moves with what it is the outline of.
-float DynamicFilter::BeliefAt(const Keypoint& keypoint) const {
-  constexpr int kReach = 2;  // pixels, to the next reading
-  const int cell = cells_.At(keypoint.raw_x, keypoint.raw_y);
-  if (depth_.empty()) return belief_[cell];
-  float lowest = belief_[cell];
-  cells_.VisitAround(cell, 1, [&](int n) { lowest = std::min(lowest, belief_[n]); });
-  const float otherwise = lowest >= 0 ? belief_[cell] : lowest;
-  if (keypoint.has_depth()) return BeliefOfSurface(cell, keypoint.depth, otherwise);
-  if (now_.depth.empty()) return otherwise;
-  const int x = static_cast<int>(std::lround(keypoint.raw_x));
-  const int y = static_cast<int>(std::lround(keypoint.raw_y));
-  const float here = DepthAt(x, y);
-  if (here > 0) return BeliefOfSurface(cell, here, otherwise);
-  float belief = 0;
-  bool known = false;
-  for (int dy = -kReach; dy <= kReach; ++dy) {
-    for (int dx = -kReach; dx <= kReach; ++dx) {
-      const float z = DepthAt(x + dx, y + dy);
-      if (!(z > 0)) continue;
-      const float of_it = BeliefOfSurface(cell, z, otherwise);
-      belief = known ? std::min(belief, of_it) : of_it;
-      known = true;
-    }
-  }
-  return known ? belief : otherwise;
+// A chair moves as a whole: when a good part of it is seen to, all of it does.
+bool DynamicFilter::IsCarried(const MovingObject& object, std::span<const float> geometry) const {
+  const auto moving = std::count_if(object.cells.begin(), object.cells.end(),
+                                    [&](int i) { return geometry[i] < 0; });
+  return static_cast<double>(moving) >
+         settings_.objects.carried_share * static_cast<double>(object.cells.size());
 }
 
 bool DynamicFilter::FollowsMover() const {
-  constexpr double kMost = 0.55;
   const uint64_t seed = settings_.seed + static_cast<uint64_t>(now_.number);
-  return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), votes_, seed) > kMost;
+  return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), belief_.votes, seed,
+                            settings_.votes) > settings_.votes.rival_share;
 }
 
 void DynamicFilter::Forget() {
   history_.Clear();
-  track_belief_ = {};
-  std::fill(geometry_.begin(), geometry_.end(), kUnknownStatic);
+  track_belief_ = TrackBelief(settings_.tracks);
+  belief_.geometry.assign(cells_.count(), kUnknownStatic);
 }
 
 void DynamicFilter::Enter(const WorldId& world) {
@@ -241,38 +191,23 @@ void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, cons
     view = std::make_shared<PastView>();
     view->number = now_.number;
     view->T_camera_world = *T_camera_world;
-    view->depth = depth_;
-    view->static_log_odds = belief_;
+    view->depth = belief_.depth;
+    view->static_log_odds = belief_.log_odds;
     for (int i = 0; i < cells_.count(); ++i) {
-      if (object_[i]) view->static_log_odds[i] = kObjectStatic;  // what rests is no background
+      if (belief_.object[i])
+        view->static_log_odds[i] = kObjectStatic;  // what rests is no background
     }
   }
   history_.Add(std::move(view));
 }
 
 Sight DynamicFilter::Look(const Eigen::Vector3d& p) const {
-  constexpr int kEnough = 5;  // neighbours with depth
-  const int cell = cells_.Project(p);
-  if (cell < 0) return Sight::kClear;
-  if (depth_.empty()) return belief_[cell] < 0 ? Sight::kHidden : Sight::kClear;
-  const auto z = static_cast<float>(p.z());
-  const float tolerance = DepthTolerance(z);
-  int known = 0, behind = 0;
-  bool still = false, mover = false;
-  cells_.VisitAround(cell, 1, [&](int n) {
-    if (!(depth_[n] > 0)) return;
-    ++known;
-    behind += depth_[n] > z + 2 * tolerance;
-    if (std::abs(depth_[n] - z) > tolerance) return;
-    (belief_[n] < 0 ? mover : still) = true;
-  });
-  if (still || known < kEnough) return Sight::kClear;
-  if (mover) return Sight::kOnMover;
-  return behind == known ? Sight::kGone : Sight::kHidden;
+  return SightOf(cells_, belief_, p, settings_.landmarks, settings_.depth);
 }
 
 cv::Mat DynamicFilter::BeliefOfCells() const {
-  return cv::Mat(cells_.rows(), cells_.columns(), CV_32F, const_cast<float*>(belief_.data()))
+  return cv::Mat(cells_.rows(), cells_.columns(), CV_32F,
+                 const_cast<float*>(belief_.log_odds.data()))
       .clone();
 }
 

@@ -11,6 +11,7 @@
 #include "alidade/base/ids.h"
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
+#include "alidade/dynamics/frame_belief.h"
 #include "alidade/dynamics/history.h"
 #include "alidade/dynamics/landmark_belief.h"
 #include "alidade/dynamics/objects.h"
@@ -78,14 +79,20 @@ class DynamicFilter {
 
  private:
   void Enter(const WorldId& world);
-  void JudgeWithDepth(const PoseGuess& guess);
-  void JudgeWithoutDepth(const PoseGuess* guess);
-  void FindObjects(std::span<const uint8_t> proven);
-  bool IsCarried(const MovingObject& object) const;
-  void FeedTheStarving(Frame& frame) const;
-  float DepthAt(int x, int y) const;
-  float BeliefOfSurface(int cell, float z, float otherwise) const;
-  float BeliefAt(const Keypoint& keypoint) const;
+  struct GeometryBelief {
+    std::vector<float> log_odds;  // of standing still, of each cell
+    std::vector<int8_t> votes;    // of each track
+    // Of each cell, nonzero: it stands still for certain, which only the rim of a detection's box
+    // can hold; may be empty.
+    std::vector<uint8_t> proven;
+  };
+  FrameBelief Unknown() const;
+  GeometryBelief JudgeGeometry(const PoseGuess* guess);
+  GeometryBelief JudgeWithDepth(const PoseGuess& guess);
+  GeometryBelief JudgeWithoutDepth(const PoseGuess* guess);
+  // What each object covers of the picture: fills judged.object and judged.resting.
+  void FindObjects(std::span<const uint8_t> proven, FrameBelief& judged);
+  bool IsCarried(const MovingObject& object, std::span<const float> geometry) const;
 
   Camera camera_;
   DynamicsSettings settings_;
@@ -97,13 +104,8 @@ class DynamicFilter {
   History history_;
 
   DynamicInput now_;
-  std::deque<double> times_;     // of the last frames, newest first, seconds
-  std::vector<float> depth_;     // of each cell; empty: none is measured
-  std::vector<float> geometry_;  // log-odds of standing still, of each cell, objects apart
-  std::vector<uint8_t> object_;  // of each cell: nonzero = of one that moves by itself
-  std::vector<float> resting_;   // log-odds of each cell of an object
-  std::vector<int8_t> votes_;    // of each track: moved, unknown, stood still
-  std::vector<float> belief_;    // of each cell, all together
+  std::deque<double> times_;  // of the last frames, newest first, seconds
+  FrameBelief belief_;        // of the present frame; before it is judged, what is expected of it
   WorldId world_;
 };
 

@@ -6,21 +6,20 @@
 namespace alidade {
 namespace {
 
-constexpr float kPastUnmeasured = 0.2f;
-constexpr float kStep = 0.05f;  // of the depth: a step so high lets next to nothing pass
-
-// How much passes from a cell to its neighbour.
-float Passes(std::span<const float> depth, int a, int b) {
+// How much passes from a cell to its neighbour: 1 - (|z - z'| / (spread_step min(z, z')))².
+float Passes(std::span<const float> depth, int a, int b, const CellDepthSettings& settings) {
   if (depth.empty()) return 1;
-  if (!(depth[a] > 0) || !(depth[b] > 0)) return kPastUnmeasured;
-  const float step = std::abs(depth[a] - depth[b]) / (kStep * std::min(depth[a], depth[b]));
+  if (!(depth[a] > 0) || !(depth[b] > 0)) return settings.spread_unmeasured;
+  const float step =
+      std::abs(depth[a] - depth[b]) / (settings.spread_step * std::min(depth[a], depth[b]));
   return step > 1 ? 0 : 1 - step * step;
 }
 
 }  // namespace
 
 DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
-                             const Se3& T_camera_world, const PastView& past) {
+                             const Se3& T_camera_world, const PastView& past,
+                             const CellDepthSettings& settings) {
   DepthComparison comparison;
   comparison.result.assign(cells.count(), Comparison::kUnknown);
   comparison.met.assign(cells.count(), -1);
@@ -31,7 +30,7 @@ DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
     const int there = cells.Project(p);
     if (there < 0) continue;
     const auto z = static_cast<float>(p.z());
-    const float tolerance = DepthTolerance(std::max(z, depth[i]));
+    const float tolerance = DepthTolerance(std::max(z, depth[i]), settings);
     float nearest_to = 1e9f;  // signed difference of the neighbour that agrees best
     int known = 0, met = -1;
     cells.VisitAround(there, 1, [&](int n) {
@@ -47,7 +46,8 @@ DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
     if (std::abs(nearest_to) <= tolerance) {
       comparison.result[i] = Comparison::kSame;
       comparison.met[i] = met;
-    } else if (nearest_to > 2 * tolerance && known >= 5) {
+    } else if (nearest_to > settings.free_tolerances * tolerance &&
+               known >= settings.free_neighbours) {
       // The neighbour that agrees best lies behind, so all others that are not hidden do.
       bool free = true;
       cells.VisitAround(there, 1,
@@ -91,10 +91,11 @@ double DistanceTo(const EpipolarSegment& segment, const Eigen::Vector2d& pixel) 
 }
 
 void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth, float fade,
-                        std::vector<float>& values, std::vector<float>& weights) {
+                        std::vector<float>& values, std::vector<float>& weights,
+                        const CellDepthSettings& settings) {
   for (int i = 0; i < cells.count(); ++i) values[i] *= weights[i];
   const auto pass = [&](int from, int to) {
-    const float share = fade * Passes(depth, from, to);
+    const float share = fade * Passes(depth, from, to, settings);
     values[to] += share * (values[from] - values[to]);
     weights[to] += share * (weights[from] - weights[to]);
   };

@@ -11,9 +11,10 @@
 
 namespace alidade {
 
-// How far two depths of one surface may be apart: noise of sensors that measure disparity grows as
-// z² (Khoshelham & Elberink 2012), errors of poses as z.
-inline float DepthTolerance(float z) { return 0.04f + 0.02f * z + 0.004f * z * z; }
+// How far two depths of one surface may be apart, metres: a + b z + c z².
+inline float DepthTolerance(float z, const CellDepthSettings& settings = {}) {
+  return settings.tolerance + settings.tolerance_linear * z + settings.tolerance_square * z * z;
+}
 
 enum class Comparison : uint8_t {
   kUnknown,  // not seen then, or hidden
@@ -22,14 +23,19 @@ enum class Comparison : uint8_t {
 };
 
 // Every cell of the present view against an earlier one; also says which cell of it was met (-1).
-// Bescos et al. 2018, §III-C, with the least difference among neighbours so that outlines do not
-// count.
+// Seen from there the cell's surface is at depth z; z' is the depth measured then, of the nine
+// cells around that which agrees best, so that outlines do not count; t is DepthTolerance:
+//   |z' - z| <= t              the same
+//   z' - z > free_tolerances t  free, if all of the nine that have depth, and enough have, are
+//                              farther than z
+// Bescos et al. 2018, §III-C.
 struct DepthComparison {
   std::vector<Comparison> result;
   std::vector<int> met;
 };
 DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
-                             const Se3& T_camera_world, const PastView& past);
+                             const Se3& T_camera_world, const PastView& past,
+                             const CellDepthSettings& settings = {});
 
 // Where a point seen at an earlier pixel may be now: a piece of its epipolar line.
 struct EpipolarSegment {
@@ -46,6 +52,7 @@ double DistanceTo(const EpipolarSegment& segment, const Eigen::Vector2d& pixel);
 // crosses everything. `weights`: how much each cell's own value counts; afterwards, how much was
 // heard there. Gastal & Oliveira 2011 (recursive filtering).
 void SpreadOverSurfaces(const Cells& cells, std::span<const float> depth, float fade,
-                        std::vector<float>& values, std::vector<float>& weights);
+                        std::vector<float>& values, std::vector<float>& weights,
+                        const CellDepthSettings& settings = {});
 
 }  // namespace alidade

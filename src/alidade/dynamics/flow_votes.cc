@@ -9,14 +9,10 @@
 namespace alidade {
 namespace {
 
-constexpr int kMostAgo = 15;  // frames
-// Pixels off where it should be, and of the way it went: errors of pose, and of measured depth,
-// grow with it.
-constexpr double kMoved = 1.5, kMovedMeasured = 3;
-constexpr double kShare = 0.05, kShareMeasured = 0.15;
-
-int8_t Vote(double off, double way, bool measured) {
-  const double moved = measured ? kMovedMeasured + kShareMeasured * way : kMoved + kShare * way;
+// `off`: pixels from the nearest place where it may be; `way`: pixels that it went.
+int8_t Vote(double off, double way, bool measured, const FlowVoteSettings& settings) {
+  const double moved = measured ? settings.measured_px + settings.measured_share * way
+                                : settings.moved_px + settings.moved_share * way;
   return off > moved ? -1 : off < moved / 2 ? 1 : 0;
 }
 
@@ -25,8 +21,10 @@ struct InverseDepths {
   bool measured = false;       // by a sensor
 };
 
-// What depth a point may have had, by the cells around: corners often lie on an outline.
-InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest) {
+// What depth a point may have had: the least and the most of the cells around, because corners
+// often lie on an outline, and depth_noise more.
+InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest,
+                      const FlowVoteSettings& settings) {
   const int cell = cells.At(then.x, then.y);
   if (past.depth.empty() || !(past.depth[cell] > 0)) return {0, 1 / nearest, false};
   float near = past.depth[cell], far = near;
@@ -35,90 +33,87 @@ InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then
     near = std::min(near, past.depth[n]);
     far = std::max(far, past.depth[n]);
   });
-  constexpr double kFar = 1.03, kNear = 0.97;  // noise
-  return {1 / (kFar * far), 1 / (kNear * near), true};
+  return {1 / ((1 + settings.depth_noise) * far), 1 / ((1 - settings.depth_noise) * near), true};
 }
 
 }  // namespace
 
 std::vector<int8_t> VoteByPose(const Camera& camera, const Cells& cells,
                                std::span<const FlowTrack> tracks, const Se3& T_camera_world,
-                               const History& history, double nearest) {
+                               const History& history, double nearest,
+                               const FlowVoteSettings& settings) {
   std::vector<int8_t> votes(tracks.size(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const FlowTrack& track = tracks[i];
     // Of the frames it was seen in, the oldest with a known pose: the most parallax.
-    int ago = std::min(track.length() - 1, kMostAgo);
-    while (ago >= 2 && !history.Before(ago)) --ago;
-    if (ago < 2) continue;
+    int ago = std::min(track.length() - 1, settings.most_ago);
+    while (ago >= settings.least_ago && !history.Before(ago)) --ago;
+    if (ago < settings.least_ago) continue;
     const PastView& past = *history.Before(ago);
     const cv::Point2f then = track.Before(ago);
     const Eigen::Vector2d pixel_then = camera.Undistort({then.x, then.y});
     const Eigen::Vector2d pixel_now = camera.Undistort({track.at().x, track.at().y});
-    const InverseDepths range = MayHave(cells, past, then, nearest);
+    const InverseDepths range = MayHave(cells, past, then, nearest, settings);
     const EpipolarSegment segment =
         SegmentOf(camera, camera.Unproject(pixel_then),
                   T_camera_world * past.T_camera_world.Inverse(), range.least, range.most);
     votes[i] = segment.in_front ? Vote(DistanceTo(segment, pixel_now),
-                                       (pixel_now - pixel_then).norm(), range.measured)
+                                       (pixel_now - pixel_then).norm(), range.measured, settings)
                                 : int8_t{-1};
   }
   return votes;
 }
 
 std::vector<int8_t> VoteByAgreement(const Camera& camera, std::span<const FlowTrack> tracks,
-                                    std::span<const uint8_t> left_out, uint64_t seed) {
-  constexpr int kAgo = 10, kIterations = 100;
-  constexpr size_t kEnough = 40;
-  constexpr double kLeastShare = 0.5;       // of the tracks
-  constexpr double kSigma = 1.5;            // pixels
-  constexpr double kHomographyShare = .85;  // of the inliers of the other: the camera only turned
+                                    std::span<const uint8_t> left_out, uint64_t seed,
+                                    const FlowVoteSettings& settings) {
+  const int ago = settings.agreement_ago;
+  const double sigma = settings.agreement_sigma;
   std::vector<int8_t> votes(tracks.size(), 0);
   std::vector<Eigen::Vector2d> a, b;
   std::vector<size_t> used;
   const Eigen::Vector2d middle(camera.cx, camera.cy);
   for (size_t i = 0; i < tracks.size(); ++i) {
-    if (tracks[i].length() <= kAgo || left_out[i]) continue;
-    const cv::Point2f then = tracks[i].Before(kAgo), now = tracks[i].at();
-    a.push_back((camera.Undistort({then.x, then.y}) - middle) / kSigma);
-    b.push_back((camera.Undistort({now.x, now.y}) - middle) / kSigma);
+    if (tracks[i].length() <= ago || left_out[i]) continue;
+    const cv::Point2f then = tracks[i].Before(ago), now = tracks[i].at();
+    a.push_back((camera.Undistort({then.x, then.y}) - middle) / sigma);
+    b.push_back((camera.Undistort({now.x, now.y}) - middle) / sigma);
     used.push_back(i);
   }
-  if (used.size() < kEnough) return votes;
-  const RansacModels models = FitTwoViewModels(a, b, kIterations, seed, false);
-  const bool turned = models.homography.inliers > kHomographyShare * models.fundamental.inliers;
+  if (used.size() < static_cast<size_t>(settings.agreement_tracks)) return votes;
+  const RansacModels models = FitTwoViewModels(a, b, settings.agreement_iterations, seed, false);
+  const bool turned =
+      models.homography.inliers > settings.homography_share * models.fundamental.inliers;
   const RansacModel& model = turned ? models.homography : models.fundamental;
-  if (model.inliers < kLeastShare * static_cast<double>(used.size())) return votes;
+  if (model.inliers < settings.agreement_share * static_cast<double>(used.size())) return votes;
   for (size_t k = 0; k < used.size(); ++k) votes[used[k]] = model.inlier[k] ? 1 : -1;
   return votes;
 }
 
 double ShareOfRivalMotion(const Camera& camera, const Cells& cells,
                           std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
-                          uint64_t seed) {
-  constexpr int kBlock = 4;    // cells: someone near has many corners, the room is wide
-  constexpr int kEnough = 10;  // blocks
+                          uint64_t seed, const FlowVoteSettings& settings) {
+  const int block = settings.rival_block;
   std::vector<uint8_t> fits(tracks.size());
   for (size_t i = 0; i < tracks.size(); ++i) fits[i] = votes[i] >= 0;
-  const std::vector<int8_t> rival = VoteByAgreement(camera, tracks, fits, seed);
-  const int columns = cells.columns() / kBlock + 1, rows = cells.rows() / kBlock + 1;
+  const std::vector<int8_t> rival = VoteByAgreement(camera, tracks, fits, seed, settings);
+  const int columns = cells.columns() / block + 1, rows = cells.rows() / block + 1;
   std::vector<int> sums(static_cast<size_t>(columns * rows), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
-    const int row = cell / cells.columns() / kBlock, column = cell % cells.columns() / kBlock;
+    const int row = cell / cells.columns() / block, column = cell % cells.columns() / block;
     sums[row * columns + column] += votes[i] > 0 ? 1 : rival[i] > 0 ? -1 : 0;
   }
   const auto rivals = std::count_if(sums.begin(), sums.end(), [](int sum) { return sum < 0; });
   const auto fitting = std::count_if(sums.begin(), sums.end(), [](int sum) { return sum > 0; });
-  if (rivals + fitting < kEnough) return 0;
+  if (rivals + fitting < settings.rival_blocks) return 0;
   return static_cast<double>(rivals) / static_cast<double>(rivals + fitting);
 }
 
 std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
-                              std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
-  constexpr int kReach = 3;        // cells around
-  constexpr int kEnough = 3;       // tracks
-  constexpr float kAgreed = 0.4f;  // mean vote
+                              std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
+                              const FlowVoteSettings& settings,
+                              const CellDepthSettings& depth_settings) {
   std::vector<int> sums(cells.count(), 0), counts(cells.count(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
@@ -129,14 +124,14 @@ std::vector<int8_t> Consensus(const Cells& cells, std::span<const float> depth,
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);
     int sum = 0, count = 0;
-    cells.VisitAround(cell, kReach, [&](int n) {
-      if (ApartInDepth(depth, cell, n)) return;
+    cells.VisitAround(cell, settings.consensus_reach, [&](int n) {
+      if (ApartInDepth(depth, cell, n, depth_settings)) return;
       sum += sums[n];
       count += counts[n];
     });
-    if (count < kEnough) continue;
+    if (count < settings.consensus_tracks) continue;
     const float mean = static_cast<float>(sum) / static_cast<float>(count);
-    agreed[i] = mean < -kAgreed ? -1 : mean > kAgreed ? 1 : 0;
+    agreed[i] = mean < -settings.consensus ? -1 : mean > settings.consensus ? 1 : 0;
   }
   return agreed;
 }

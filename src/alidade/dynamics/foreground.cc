@@ -10,20 +10,12 @@
 namespace alidade {
 namespace {
 
-constexpr float kBinsPerFactor = 14;  // depth bins between z and e·z: 7 % each
+// A histogram of depths, in bins of 7 %: between z and e·z there are so many.
+constexpr float kBinsPerFactor = 14;
 constexpr int kBins = 64;
-constexpr float kNearest = 0.2f;  // metres: begin of the first bin
-constexpr float kWiden = 0.06f;   // of the box's size, on every side: boxes cut off hands and feet
-constexpr float kReach = 0.22f;   // of the depth, but …
-constexpr float kMinReach =
-    0.45f;                       // … at least so many metres before and behind the middle: an arm
-constexpr float kStep = 0.04f;   // of the depth, from one cell of a surface to the next
-constexpr float kStatic = 3.5f;  // log-odds: known to stand still
-constexpr float kIslandNear = -0.06f, kIslandFar = 0.3f;  // of the depth, behind the middle
-constexpr float kMiddle = 0.3f, kMostStill = 0.7f;
-constexpr float kRim = 0.4f;   // of the oval: outside it background may be seen
-constexpr float kOval = 2.6f;  // exponent of the oval: between an ellipse and the box
+constexpr float kNearest = 0.2f;  // metres: begin of the first bin; the last begins at 18 m
 
+// |u|^e + |v|^e, u and v from -1 to 1 across the box: with e = 2 below 1 inside its ellipse.
 float Inside(const cv::Rect2f& box, cv::Point2f p, float exponent) {
   const float u = std::abs(p.x - box.x - box.width / 2) / (box.width / 2);
   const float v = std::abs(p.y - box.y - box.height / 2) / (box.height / 2);
@@ -43,7 +35,8 @@ int BinOf(float z) {
   return std::clamp(static_cast<int>(std::log(z / kNearest) * kBinsPerFactor), 0, kBins - 1);
 }
 
-// Depth of what fills the middle of the box; 0 when nothing there has depth.
+// Depth of what fills the middle of the box: median of the two neighbouring bins of depth that
+// weigh most together, a cell weighing exp(-3 (u² + v²)). 0 when nothing there has depth.
 float CoreDepth(const Cells& cells, std::span<const float> depth,
                 std::span<const float> static_log_odds, float least_static, const cv::Rect2f& box) {
   std::array<float, kBins> weights{};
@@ -77,39 +70,43 @@ std::vector<int> CellsInBox(const Cells& cells, const cv::Rect2f& box) {
 }
 
 std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
-                             std::span<const uint8_t> proven) {
+                             std::span<const uint8_t> proven, const BoxSettings& settings) {
   std::vector<int> found;
   VisitBox(cells, box, [&](int i) {
-    const float off = Inside(box, cells.Centre(i), kOval);
-    if (off > 1 || (off > kRim && !proven.empty() && proven[i])) return;
+    const float off = Inside(box, cells.Centre(i), settings.oval);
+    if (off > 1 || (off > settings.rim && !proven.empty() && proven[i])) return;
     found.push_back(i);
   });
   return found;
 }
 
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
-                                std::span<const float> static_log_odds, const cv::Rect2f& box) {
+                                std::span<const float> static_log_odds, const cv::Rect2f& box,
+                                const BoxSettings& settings) {
   // Something that stood still before it was detected fills the middle all the same.
   int of_core = 0, still = 0;
   VisitBox(cells, box, [&](int i) {
-    if (!(depth[i] > 0) || Inside(box, cells.Centre(i), 2) > kMiddle) return;
+    if (!(depth[i] > 0) || Inside(box, cells.Centre(i), 2) > settings.middle) return;
     ++of_core;
-    still += static_log_odds[i] > kStatic;
+    still += static_log_odds[i] > settings.known_static;
   });
-  const float least_static = still > kMostStill * of_core ? 1e9f : kStatic;
+  const float least_static = still > settings.most_still * of_core ? 1e9f : settings.known_static;
   const float core = CoreDepth(cells, depth, static_log_odds, least_static, box);
-  if (core <= 0) return CellsInOval(cells, box);
+  if (core <= 0) return CellsInOval(cells, box, {}, settings);
   std::vector<int> found;
-  const cv::Rect2f wide(box.x - kWiden * box.width, box.y - kWiden * box.height,
-                        (1 + 2 * kWiden) * box.width, (1 + 2 * kWiden) * box.height);
-  const float reach = std::max(kMinReach, kReach * core), begin = 0.06f * core;
+  const float widen = settings.widen;
+  const cv::Rect2f wide(box.x - widen * box.width, box.y - widen * box.height,
+                        (1 + 2 * widen) * box.width, (1 + 2 * widen) * box.height);
+  const float reach = std::max(settings.min_reach, settings.reach * core);
+  const float begin = settings.seed * core;
   std::vector<uint8_t> state(cells.count(), 0);  // 1: may be grown into, 2: taken
   std::deque<int> front;
   VisitBox(cells, wide, [&](int i) {
     if (!(depth[i] > 0) || std::abs(depth[i] - core) > reach) return;
     if (static_log_odds[i] > least_static) return;
     state[i] = 1;
-    if (std::abs(depth[i] - core) <= begin && Inside(box, cells.Centre(i), 2) < 0.5f) {
+    if (std::abs(depth[i] - core) <= begin &&
+        Inside(box, cells.Centre(i), 2) < settings.seed_middle) {
       state[i] = 2;
       front.push_back(i);
     }
@@ -118,7 +115,7 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
     const int i = front.front();
     front.pop_front();
     cells.VisitAround(i, 1, [&](int n) {
-      if (state[n] != 1 || std::abs(depth[n] - depth[i]) > kStep * core) return;
+      if (state[n] != 1 || std::abs(depth[n] - depth[i]) > settings.step * core) return;
       state[n] = 2;
       front.push_back(n);
     });
@@ -127,7 +124,8 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
   VisitBox(cells, box, [&](int i) {
     if (state[i] != 1) return;
     const float off = (depth[i] - core) / core;
-    if (off > kIslandNear && off < kIslandFar && Inside(box, cells.Centre(i), kOval) < 1)
+    if (off > -settings.island_before && off < settings.island_behind &&
+        Inside(box, cells.Centre(i), settings.oval) < 1)
       state[i] = 2;
   });
   // Cells without a reading belong to what is around them.

@@ -1,22 +1,15 @@
 #include "alidade/dynamics/history.h"
 
 namespace alidade {
-namespace {
-
-constexpr size_t kRecent = 32;  // frames
-constexpr int kStep = 10;       // frames from one older view to the next
-constexpr size_t kOlder = 9;
-
-}  // namespace
 
 void History::Add(std::shared_ptr<const PastView> view) {
   recent_.push_front(std::move(view));
-  if (recent_.size() <= kRecent) return;
+  if (recent_.size() <= static_cast<size_t>(settings_.recent)) return;
   const std::shared_ptr<const PastView> last = recent_.back();
   recent_.pop_back();
-  if (!last || (!older_.empty() && last->number - older_.front()->number < kStep)) return;
+  if (!last || (!older_.empty() && last->number - older_.front()->number < settings_.step)) return;
   older_.push_front(last);
-  if (older_.size() > kOlder) older_.pop_back();
+  if (older_.size() > most_older()) older_.pop_back();
 }
 
 void History::Clear() {

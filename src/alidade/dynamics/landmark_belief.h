@@ -3,6 +3,10 @@
 
 #include <Eigen/Core>
 
+#include "alidade/dynamics/belief_settings.h"
+#include "alidade/dynamics/cells.h"
+#include "alidade/dynamics/frame_belief.h"
+
 namespace alidade {
 
 // What there is where a landmark should be seen.
@@ -13,16 +17,24 @@ enum class Sight {
   kGone      // one sees through its place to what is behind
 };
 
-inline float EvidenceOf(Sight sight, bool found) {
+// `p`: the landmark in the camera's frame, at depth z. With t = DepthTolerance(z), of the nine
+// cells around where it should be seen: kClear when one within t of z is believed to stand still,
+// kOnMover when one is that moves, kGone when all that have depth are beyond z + free_tolerances t,
+// kHidden otherwise.
+Sight SightOf(const Cells& cells, const FrameBelief& belief, const Eigen::Vector3d& p,
+              const LandmarkEvidenceSettings& settings = {},
+              const CellDepthSettings& depth_settings = {});
+
+inline float EvidenceOf(Sight sight, bool found, const LandmarkEvidenceSettings& settings = {}) {
   switch (sight) {
     case Sight::kOnMover:
-      return -0.4f;
+      return settings.on_mover;
     case Sight::kGone:
-      return found ? 0.0f : -0.7f;
+      return found ? 0.0f : settings.gone;
     case Sight::kHidden:
-      return found ? -0.3f : 0.0f;
+      return found ? settings.hidden_found : 0.0f;
     case Sight::kClear:
-      return found ? 0.15f : 0.0f;
+      return found ? settings.found : 0.0f;
   }
   return 0;
 }

@@ -12,13 +12,11 @@ namespace alidade {
 namespace {
 
 constexpr size_t kPast = FlowTracks::kHistory;
-constexpr float kSame = 0.3f;      // overlap from which a detection is of an object known already
-constexpr size_t kEnoughFlow = 4;  // tracks that tell how an object moved
 
 // Median motion over the last `ago` frames of the tracks that `belongs` (called with where they
-// were then) lets through.
+// were then) lets through; none when they are fewer than `least`.
 template <typename Belongs>
-std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int ago,
+std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int ago, int least,
                                         Belongs&& belongs) {
   std::vector<float> x, y;
   for (const FlowTrack& track : tracks) {
@@ -27,7 +25,7 @@ std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int a
     x.push_back(motion.x);
     y.push_back(motion.y);
   }
-  if (x.size() < kEnoughFlow) return {};
+  if (x.size() < static_cast<size_t>(least)) return {};
   return cv::Point2f(UpperMedian(x), UpperMedian(y));
 }
 
@@ -56,14 +54,15 @@ ObjectTracks::Role ObjectTracks::RoleOf(int class_id) const {
 
 void ObjectTracks::Advance(std::span<const FlowTrack> tracks, const Cells& cells, double time,
                            cv::Size image) {
+  const ObjectSettings& limits = settings_.objects;
   const cv::Rect2f picture(0, 0, static_cast<float>(image.width), static_cast<float>(image.height));
   std::vector<MovingObject> kept;
   for (MovingObject& object : objects_) {
     const bool known = !object.cells.empty();
-    const auto motion = MedianMotion(tracks, 1, [&](cv::Point2f p) {
+    const auto motion = MedianMotion(tracks, 1, limits.flow_tracks, [&](cv::Point2f p) {
       if (known)
         return std::binary_search(object.cells.begin(), object.cells.end(), cells.At(p.x, p.y));
-      return Inner(object.box, 0.6f).contains(p);
+      return Inner(object.box, limits.flow_middle).contains(p);
     });
     if (motion) object.velocity = *motion;
     object.past.push_front(object.box);
@@ -78,6 +77,7 @@ void ObjectTracks::Advance(std::span<const FlowTrack> tracks, const Cells& cells
 
 void ObjectTracks::Update(std::span<const Detection> detections, int ago, double seen,
                           std::span<const FlowTrack> tracks) {
+  const ObjectSettings& limits = settings_.objects;
   std::vector<uint8_t> taken(objects_.size(), 0);
   for (const Detection& detection : detections) {
     const Role role = RoleOf(detection.class_id);
@@ -87,7 +87,7 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
       return object.past[std::min(static_cast<size_t>(ago), object.past.size()) - 1];
     };
     int best = -1;
-    float most = kSame;
+    float most = limits.same_overlap;
     for (size_t i = 0; i < taken.size(); ++i) {
       const float overlap = Overlap(then(objects_[i]), detection.box);
       if (taken[i] || overlap <= most || objects_[i].carried != (role == Role::kCarried)) continue;
@@ -111,11 +111,11 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
     object.carried = role == Role::kCarried;
     object.box = detection.box;
     object.seen = seen;
-    const cv::Rect2f inner = Inner(detection.box, 0.6f);
-    const auto motion =
-        ago > 0 && settings_.propagate
-            ? MedianMotion(tracks, ago, [&](cv::Point2f p) { return inner.contains(p); })
-            : std::nullopt;
+    const cv::Rect2f inner = Inner(detection.box, limits.flow_middle);
+    const auto motion = ago > 0 && settings_.propagate
+                            ? MedianMotion(tracks, ago, limits.flow_tracks,
+                                           [&](cv::Point2f p) { return inner.contains(p); })
+                            : std::nullopt;
     if (motion) {
       object.velocity = *motion / static_cast<float>(ago);
       object.box += *motion;
@@ -126,9 +126,7 @@ void ObjectTracks::Update(std::span<const Detection> detections, int ago, double
 
 void ObjectTracks::JudgeRest(std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
                              const Cells& cells) {
-  constexpr int kEnough = 6;                     // tracks that can tell
-  constexpr double kMoves = 0.15, kRests = 0.7;  // share of them
-  constexpr float kMoved = -1, kRested = 0.07f;  // log-odds, per frame
+  const ObjectSettings& limits = settings_.objects;
   for (MovingObject& object : objects_) {
     int moved = 0, rested = 0;
     for (size_t t = 0; t < tracks.size(); ++t) {
@@ -137,11 +135,11 @@ void ObjectTracks::JudgeRest(std::span<const FlowTrack> tracks, std::span<const 
       moved += votes[t] < 0;
       rested += votes[t] > 0;
     }
-    if (moved + rested < kEnough) continue;
-    if (moved > kMoves * (moved + rested))
-      object.static_log_odds += kMoved;
-    else if (rested > kRests * (moved + rested))
-      object.static_log_odds += kRested;
+    if (moved + rested < limits.rest_tracks) continue;
+    if (moved > limits.moves_share * (moved + rested))
+      object.static_log_odds += limits.moved;
+    else if (rested > limits.rests_share * (moved + rested))
+      object.static_log_odds += limits.rested;
     object.static_log_odds = std::clamp(object.static_log_odds, kObjectStatic, kRestingStatic);
   }
 }

@@ -60,12 +60,14 @@ class ObjectTracks {
 // `static_log_odds`: of each cell; what is known well to stand still is something else, such as the
 // floor.
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
-                                std::span<const float> static_log_odds, const cv::Rect2f& box);
+                                std::span<const float> static_log_odds, const cv::Rect2f& box,
+                                const BoxSettings& settings = {});
 // All in the box.
 std::vector<int> CellsInBox(const Cells& cells, const cv::Rect2f& box);
 // Those of an oval in the box: all that can be said without depth.
 // `proven`: cells (nonzero) that stand still for certain, left out at the rim; may be empty.
 std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
-                             std::span<const uint8_t> proven = {});
+                             std::span<const uint8_t> proven = {},
+                             const BoxSettings& settings = {});
 
 }  // namespace alidade

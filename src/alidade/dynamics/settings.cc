@@ -26,6 +26,15 @@ void DynamicsSettings::Check() const {
     if (!holds) ThrowUsage(std::string("dynamics.") + what);
   };
   detector.Check();
+  depth.Check();
+  history.Check();
+  votes.Check();
+  surfaces.Check();
+  tracks.Check();
+  objects.Check();
+  box.Check();
+  features.Check();
+  landmarks.Check();
   require(detector_every_frames >= 1, "detector_every_frames must be at least 1");
   require(detector_latency_frames >= 0 && detector_latency_frames <= 30,
           "detector_latency_frames must be from 0 to 30");

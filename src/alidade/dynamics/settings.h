@@ -6,6 +6,7 @@
 
 #include "alidade/base/api.h"
 #include "alidade/detect/settings.h"
+#include "alidade/dynamics/belief_settings.h"
 
 namespace ALIDADE_API alidade {
 
@@ -47,6 +48,17 @@ struct DynamicsSettings {
   bool geometry = true;    // flow, epipolar lines and depth against the predicted pose
   bool propagate = true;   // detections are carried to the present frame; false: used as they come
   bool weigh = true;       // belief weighs residuals; false: a feature counts fully or not at all
+
+  // Thresholds, by part.
+  CellDepthSettings depth;
+  HistorySettings history;
+  FlowVoteSettings votes;
+  SurfaceBeliefSettings surfaces;
+  TrackBeliefSettings tracks;
+  ObjectSettings objects;
+  BoxSettings box;
+  FeatureBeliefSettings features;
+  LandmarkEvidenceSettings landmarks;
 
   uint64_t seed = 1;  // of random samples; the system's
 

@@ -11,16 +11,17 @@
 
 namespace alidade {
 
-inline constexpr float kUnknownStatic = 1.5f;    // log-odds of what nothing is known of: 0.82
-inline constexpr float kCertainStatic = 5;       // bound of all log-odds
-inline constexpr float kObjectStatic = -4;       // of what a detector knows to move …
-inline constexpr float kRestingStatic = -0.85f;  // … at most, while it is seen to rest: 0.3
+// The scale of belief: log-odds l = ln(p / (1 - p)) of standing still.
+inline constexpr float kUnknownStatic = 1.5f;    // of what nothing is known of: p = 0.82
+inline constexpr float kCertainStatic = 5;       // bound of all log-odds: p = 0.993
+inline constexpr float kObjectStatic = -4;       // of what a detector knows to move: p = 0.018 …
+inline constexpr float kRestingStatic = -0.85f;  // … at most, while it is seen to rest: p = 0.3
 
 class SurfaceBelief {
  public:
-  static constexpr int kGap = 5;  // frames that may come without depth
-
-  explicit SurfaceBelief(const Cells& cells);  // keeps a reference
+  // Keeps a reference to `cells`.
+  explicit SurfaceBelief(const Cells& cells, const SurfaceBeliefSettings& settings = {},
+                         const CellDepthSettings& depth_settings = {});
 
   // Moves all that is believed on to the present frame: what a cell shows is believed to be what
   // was at its place in the last one; movers are large against their motion in a frame. Returns for
@@ -48,6 +49,8 @@ class SurfaceBelief {
   void Spread(std::span<const float> depth, std::span<const uint8_t> suspect);
 
   const Cells& cells_;
+  SurfaceBeliefSettings settings_;
+  CellDepthSettings depth_settings_;
   int number_ = -1000;  // of the frame the belief is of
   std::vector<float> log_odds_;
   std::vector<float> certainty_;  // of each cell, 0…1: how much it was itself held against others

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "alidade/dynamics/belief_settings.h"
 #include "alidade/dynamics/cells.h"
 #include "alidade/dynamics/flow_tracks.h"
 
@@ -13,6 +14,8 @@ namespace alidade {
 
 class TrackBelief {
  public:
+  explicit TrackBelief(const TrackBeliefSettings& settings = {}) : settings_(settings) {}
+
   // Adds the votes of Consensus() to what is believed of each track.
   void Update(std::span<const FlowTrack> tracks, std::span<const int8_t> votes);
   // Log-odds of each cell: what is believed of the tracks in and around it.
@@ -25,6 +28,7 @@ class TrackBelief {
     uint32_t id = 0;
     float log_odds = 0;  // added to that of the unknown
   };
+  TrackBeliefSettings settings_;
   std::vector<Entry> entries_;  // one for each track, in order of id
 };
 

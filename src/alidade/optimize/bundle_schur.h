@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "alidade/optimize/block_cholesky.h"
+#include "alidade/optimize/bundle_kernels.h"
 #include "alidade/optimize/bundle_linearise.h"
 
 namespace alidade {
@@ -31,9 +32,6 @@ class SchurSolver {
     std::vector<SquareBlock<6>> blocks;  // row by row, ascending columns
     std::vector<Vector6d> right;
   };
-  struct Eliminated {                     // of one point: damped H = L L'
-    double l00, l10, l11, l20, l21, l22;  // with inverse pivots
-  };
 
   void FindBlocks();
   void Analyse();
@@ -48,10 +46,10 @@ class SchurSolver {
   const BundleLayout& layout_;
   bool sparse_;
   int cameras_;
-  std::vector<int> row_begin_;    // first block of each block row
-  std::vector<int> column_;       // of each block
-  std::vector<Reduced> reduced_;  // one per chunk; the first takes the sum
-  std::vector<Eliminated> eliminated_;
+  std::vector<int> row_begin_;           // first block of each block row
+  std::vector<int> column_;              // of each block
+  std::vector<Reduced> reduced_;         // one per chunk; the first takes the sum
+  std::vector<PointFactor> eliminated_;  // of each point's damped H
   Eigen::MatrixXd dense_;
   BlockCholesky<6> factor_;
 };

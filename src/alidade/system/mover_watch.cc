@@ -35,10 +35,9 @@ void MoverWatch::Begin(const FrameInput& prepared, int number) {
 cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }
 
 bool MoverWatch::FollowsMover() {
-  constexpr int kEnough = 5;  // frames
   if (!filter_) return false;
   doubtful_ = std::max(0, doubtful_ + (filter_->FollowsMover() ? 1 : -1));
-  return doubtful_ >= kEnough;
+  return doubtful_ >= settings_.votes.rival_frames;
 }
 
 void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
@@ -55,7 +54,6 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
 }
 
 LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const {
-  constexpr double kMostOnMovers = 0.5;  // more, and it is the movers that are not believed
   LandmarkNews news;
   int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
@@ -67,10 +65,11 @@ LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot
     if (!landmark) continue;
     const Sight sight = filter_->Look(estimate.placed.T_camera_world * landmark->p_world);
     on_movers += sight == Sight::kOnMover;
-    news.evidence.push_back({s.landmark, EvidenceOf(sight, s.found)});
+    news.evidence.push_back({s.landmark, EvidenceOf(sight, s.found, settings_.landmarks)});
     if (s.found || sight == Sight::kClear) news.sightings.push_back({s.landmark, s.found});
   }
-  if (on_movers > kMostOnMovers * static_cast<double>(news.evidence.size())) news.evidence.clear();
+  if (on_movers > settings_.landmarks.most_on_movers * static_cast<double>(news.evidence.size()))
+    news.evidence.clear();
   return news;
 }
 

@@ -9,172 +9,10 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/nearest_name.h"
+#include "alidade/system/settings_fields.h"
 
 namespace alidade {
 namespace {
-
-// The list of fields, once: read, written and named from here.
-template <typename Settings, typename Visit>
-void VisitFields(Settings& s, Visit&& visit) {
-  visit("image_width", s.image_width);
-  visit("seed", s.seed);
-  auto& t = s.tracker;
-  visit("tracker.extractor.features", t.extractor.features);
-  visit("tracker.extractor.fast_threshold", t.extractor.fast_threshold);
-  visit("tracker.extractor.fast_minimum", t.extractor.fast_minimum);
-  visit("tracker.extractor.cell", t.extractor.cell);
-  visit("tracker.match_scale", t.match_scale);
-  visit("tracker.min_predicted", t.min_predicted);
-  visit("tracker.min_after_prediction", t.min_after_prediction);
-  visit("tracker.min_tracked", t.min_tracked);
-  visit("tracker.min_found_share", t.min_found_share);
-  visit("tracker.torn_share", t.torn_share);
-  visit("tracker.unproven_frames", t.unproven_frames);
-  visit("tracker.min_agreement", t.min_agreement);
-  visit("tracker.good_agreement", t.good_agreement);
-  visit("tracker.bad_frame_sigma", t.bad_frame_sigma);
-  visit("tracker.max_distance", t.max_distance);
-  visit("tracker.local_ratio", t.local_ratio);
-  visit("tracker.last_frame_radius", t.last_frame_radius);
-  visit("tracker.last_frame_radius_depth", t.last_frame_radius_depth);
-  visit("tracker.local_radius", t.local_radius);
-  visit("tracker.local_radius_depth", t.local_radius_depth);
-  visit("tracker.local_keyframes", t.local_keyframes);
-  visit("tracker.relocalise_radius", t.relocalise_radius);
-  visit("tracker.min_relocalised", t.min_relocalised);
-  visit("tracker.min_relocalised_share", t.min_relocalised_share);
-  visit("tracker.min_relocalised_spread", t.min_relocalised_spread);
-  visit("tracker.sigma_px", t.noise.sigma_px);
-  visit("tracker.sigma_right_px", t.noise.sigma_right_px);
-  visit("tracker.depth_range", t.depth_range);
-  visit("tracker.keyframe_share_mono", t.keyframe_share_mono);
-  visit("tracker.keyframe_share_depth", t.keyframe_share_depth);
-  visit("tracker.keyframe_min_gap", t.keyframe_min_gap);
-  visit("tracker.keyframe_max_gap", t.keyframe_max_gap);
-  visit("tracker.max_extrapolation", t.motion.max_extrapolation);
-  visit("tracker.time_jitter", t.motion.jitter);
-  auto& m = s.mapper;
-  visit("mapper.sigma_px", m.noise.sigma_px);
-  visit("mapper.sigma_right_px", m.noise.sigma_right_px);
-  visit("mapper.match_scale", m.match_scale);
-  visit("mapper.sensor_noise", m.noise.sensor_noise);
-  visit("mapper.max_depth_error", m.max_depth_error);
-  visit("mapper.triangulate_keyframes_mono", m.triangulate_keyframes_mono);
-  visit("mapper.triangulate_keyframes_depth", m.triangulate_keyframes_depth);
-  visit("mapper.triangulate_distance", m.triangulate_distance);
-  visit("mapper.triangulate_ratio", m.triangulate_ratio);
-  visit("mapper.min_parallax_degrees", m.min_parallax_degrees);
-  visit("mapper.min_baseline_ratio", m.min_baseline_ratio);
-  visit("mapper.fuse_keyframes", m.fuse_keyframes);
-  visit("mapper.fuse_radius", m.fuse_radius);
-  visit("mapper.fuse_distance", m.fuse_distance);
-  visit("mapper.min_found_share", m.min_found_share);
-  visit("mapper.trial_keyframes", m.trial_keyframes);
-  visit("mapper.redundant_share", m.redundant_share);
-  visit("mapper.max_keyframes", m.max_keyframes);
-  visit("mapper.window_keyframes", m.window_keyframes);
-  visit("mapper.window_fixed", m.window_fixed);
-  visit("mapper.bundle.max_iterations", m.bundle.max_iterations);
-  visit("mapper.bundle.min_relative_decrease", m.bundle.min_relative_decrease);
-  visit("new_map_seconds", s.new_map_seconds);
-  visit("new_map_frames", s.new_map_frames);
-  visit("min_map_keyframes", s.min_map_keyframes);
-  visit("trajectory.keep_seconds", s.trajectory.keep_seconds);
-  visit("time.gap_seconds", s.time.gap_seconds);
-  visit("time.gap_intervals", s.time.gap_intervals);
-  visit("time.agree_frames", s.time.agree_frames);
-  visit("time.max_latency", s.time.max_latency);
-  auto& l = s.loop;
-  visit("loop.enabled", l.enabled);
-  visit("loop.sigma_px", l.noise.sigma_px);
-  visit("loop.sigma_right_px", l.noise.sigma_right_px);
-  visit("loop.match_scale", l.match_scale);
-  visit("loop.candidates", l.candidates);
-  visit("loop.group", l.group);
-  visit("loop.score_share", l.score_share);
-  visit("loop.min_matches", l.min_matches);
-  visit("loop.min_aligned", l.min_aligned);
-  visit("loop.min_found", l.min_found);
-  visit("loop.min_merge_found", l.min_merge_found);
-  visit("loop.min_found_share", l.min_found_share);
-  visit("loop.search_radius", l.search_radius);
-  visit("loop.max_distance", l.max_distance);
-  visit("loop.confirm_keyframes", l.confirm_keyframes);
-  visit("loop.confirm_needed", l.confirm_needed);
-  visit("loop.confirm_found", l.confirm_found);
-  visit("loop.max_drift", l.max_drift);
-  visit("loop.max_drift_floor", l.max_drift_floor);
-  visit("loop.max_turn", l.max_turn);
-  visit("loop.max_scale", l.max_scale);
-  visit("loop.max_plain_scale", l.max_plain_scale);
-  visit("loop.graph_shared", l.graph_shared);
-  visit("loop.graph.max_iterations", l.graph.max_iterations);
-  visit("loop.graph.length_scale", l.graph.length_scale);
-  visit("loop.bundle.max_iterations", l.bundle.max_iterations);
-  visit("loop.bundle.min_relative_decrease", l.bundle.min_relative_decrease);
-  auto& p = s.places;
-  visit("places.sample", p.sample);
-  visit("places.branching", p.vocabulary.branching);
-  visit("places.levels", p.vocabulary.levels);
-  visit("places.min_split", p.vocabulary.min_split);
-  visit("places.rounds", p.vocabulary.rounds);
-  visit("places.shortlist", p.shortlist);
-  visit("places.match_level", p.matching.level);
-  visit("places.match_max_distance", p.matching.max_distance);
-  visit("places.match_ratio", p.matching.ratio);
-  auto& d = s.semidense;
-  visit("semidense.enabled", d.enabled);
-  visit("semidense.from_sensor", d.from_sensor);
-  visit("semidense.keyframes", d.keyframes);
-  visit("semidense.min_gradient", d.min_gradient);
-  visit("semidense.max_edge_angle", d.max_edge_angle);
-  visit("semidense.max_turn", d.max_turn);
-  visit("semidense.gradient_weight", d.gradient_weight);
-  visit("semidense.intensity_sigma", d.intensity_sigma);
-  visit("semidense.line_sigma", d.line_sigma);
-  visit("semidense.max_residual", d.max_residual);
-  visit("semidense.chi2_pair", d.chi2_pair);
-  visit("semidense.chi2_check", d.chi2_check);
-  visit("semidense.min_compatible", d.min_compatible);
-  visit("semidense.max_landmark_difference", d.max_landmark_difference);
-  visit("semidense.fuse", d.fuse);
-  visit("semidense.smooth", d.smooth);
-  visit("semidense.cross_check", d.cross_check);
-  visit("semidense.delay", d.delay);
-  visit("semidense.redo_baseline", d.redo_baseline);
-  visit("semidense.max_waiting", d.max_waiting);
-  visit("semidense.voxel", d.voxel);
-  auto& y = s.dynamics;
-  visit("dynamics.mode", y.mode);
-  visit("dynamics.moving_classes", y.moving_classes);
-  visit("dynamics.carried_classes", y.carried_classes);
-  visit("dynamics.detector.min_score", y.detector.min_score);
-  visit("dynamics.detector.max_overlap", y.detector.max_overlap);
-  visit("dynamics.detector_every_frames", y.detector_every_frames);
-  visit("dynamics.detector_latency_frames", y.detector_latency_frames);
-  visit("dynamics.detector_rest", y.detector_rest);
-  visit("dynamics.drop_detections", y.drop_detections);
-  visit("dynamics.bridge_seconds", y.bridge_seconds);
-  visit("dynamics.foreground", y.foreground);
-  visit("dynamics.geometry", y.geometry);
-  visit("dynamics.propagate", y.propagate);
-  visit("dynamics.weigh", y.weigh);
-  auto& i = s.start;
-  visit("start.min_depth_landmarks", i.min_depth_landmarks);
-  visit("start.min_matches", i.min_matches);
-  visit("start.match_scale", i.match_scale);
-  visit("start.references", i.references);
-  visit("start.reference_gap", i.reference_gap);
-  visit("start.window", i.window);
-  visit("start.min_motion", i.min_motion);
-  visit("start.trial_frames", i.trial_frames);
-  visit("start.trial_share", i.trial_share);
-  visit("start.iterations", i.two_view.iterations);
-  visit("start.sigma", i.two_view.sigma);
-  visit("start.homography_share", i.two_view.homography_share);
-  visit("start.min_parallax_degrees", i.two_view.min_parallax_degrees);
-  visit("start.min_triangulated", i.two_view.min_triangulated);
-}
 
 template <typename Value>
 Value ParseNumber(const std::string& name, const std::string& text) {
@@ -208,6 +46,16 @@ template <typename Value>
 std::string Format(const Value& value) {
   if constexpr (std::is_same_v<Value, DynamicsMode>) {
     return NameOf(value);
+  } else if constexpr (std::is_same_v<Value, float>) {  // as it is written: 0.3, not 0.3000000119
+    std::string text;
+    for (int digits = 6; digits <= 9; ++digits) {
+      std::ostringstream out;
+      out.precision(digits);
+      out << value;
+      text = out.str();
+      if (std::strtof(text.c_str(), nullptr) == value) break;
+    }
+    return text;
   } else {
     std::ostringstream out;
     out.precision(10);

@@ -1,0 +1,103 @@
+// What Slam is made of: what the system keeps between frames, and what it does with one. Private to
+// system/; its files have one matter each:
+//   slam.cc            one frame, from image to pose and keyframe
+//   slam_start.cc      a map is begun, loaded, given up or left
+//   slam_time.cc       time that jumps, new recordings, cuts
+//   slam_failure.cc    a frame that ended in the middle, and what has stopped
+//   slam_questions.cc  what any thread may ask
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "alidade/map/anchor.h"
+#include "alidade/system/camera_clock.h"
+#include "alidade/system/frame_log.h"
+#include "alidade/system/mover_watch.h"
+#include "alidade/system/slam.h"
+#include "alidade/system/workers.h"
+#include "alidade/system/young_map.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+
+class Slam::Impl {
+ public:
+  Impl(const Camera& given, const SlamSettings& settings,
+       const std::shared_ptr<Detector>& detector);
+  TrackResult Track(const FrameInput& input);
+  void Load(const SavedMap& saved);
+  void Reset();
+  void Finish(double limit);
+  SlamHealth Health() const;
+
+  // The last frame that was done, for those who ask: never changed once it is shown.
+  struct Shown {
+    std::shared_ptr<const Frame> frame;
+    std::vector<LandmarkId> matches;
+    cv::Mat belief_of_cells;  // of standing still; empty without dynamics
+  };
+  std::shared_ptr<const Shown> shown() const {
+    const std::lock_guard<std::mutex> lock(shown_mutex_);
+    return shown_;
+  }
+
+  Camera given_;
+  SlamSettings settings_;
+  Camera camera_;
+  bool dense_;  // semi-dense mapping is asked for
+  Workers workers_;
+  Tracker tracker_;
+  MoverWatch movers_;
+  PlacedFrame last_;  // the present frame, as it was tracked
+  YoungMap young_;    // of one camera
+  TrackState state_ = TrackState::kInitialising;
+  FrameLog log_;
+  CameraClock clock_;
+  SampleLog frame_ms_, extract_ms_, track_ms_;
+  std::atomic<int> relocalisations_{0}, cuts_{0};
+  std::atomic<int> frames_{0};        // counted so far
+  std::atomic<int> first_number_{0};  // of the next recording's frames, after a loaded map's
+
+ private:
+  // slam.cc: a frame.
+  TrackResult TrackCounted(const FrameInput& prepared, double time);
+  TrackResult Continue(const std::shared_ptr<Frame>& frame);
+  TrackResult FindBack(const std::shared_ptr<Frame>& frame);
+  TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
+  void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
+  void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
+  void Reanchor();
+  void Lose();
+
+  // slam_start.cc: the begin and the end of a map.
+  TrackResult Start(const std::shared_ptr<Frame>& frame);
+  bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
+  bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
+  TrackResult GiveUpStart(const char* reason);
+  void LeaveMap();
+
+  // slam_time.cc: time that jumps.
+  const char* Tick(double time);
+  void Cut();
+
+  // slam_failure.cc: a frame that ended in the middle.
+  void Recover(TrackState before) noexcept;
+  void EndFrame() noexcept;
+
+  // slam_questions.cc: what is published.
+  void Show();
+
+  double lost_since_ = 0;  // when the first frame without a pose came, by the steady clock, seconds
+  int lost_sighted_ = 0;   // frames since that showed something
+  bool jump_told_ = false;  // of the time, to the user
+  bool restarted_ = false;  // Reset() was called since the last frame
+
+  std::mutex driving_;  // held by the driving call that is under way
+  mutable std::mutex shown_mutex_;
+  std::shared_ptr<const Shown> shown_;
+};
+
+}  // namespace alidade

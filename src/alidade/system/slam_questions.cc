@@ -1,0 +1,73 @@
+// What any thread may ask beside Track(): answered from what is published and never changes again.
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "alidade/map/map_file.h"
+#include "alidade/system/slam_impl.h"
+
+namespace alidade {
+
+void Slam::Impl::Show() {
+  const auto shown =
+      std::make_shared<Shown>(Shown{last_.frame, last_.matches, movers_.BeliefOfCells()});
+  const std::lock_guard<std::mutex> lock(shown_mutex_);
+  shown_ = shown;
+}
+
+SlamHealth Slam::Health() const { return impl_->Health(); }
+MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
+const Camera& Slam::camera() const { return impl_->camera_; }
+int Slam::frames() const { return impl_->frames_; }
+int Slam::first_number() const { return impl_->first_number_; }
+
+std::vector<FeatureUse> Slam::Features() const {
+  std::vector<FeatureUse> features;
+  const auto last = impl_->shown();
+  if (!last) return features;
+  for (size_t k = 0; k < last->frame->keypoints.size(); ++k) {
+    const Keypoint& keypoint = last->frame->keypoints[k];
+    features.push_back({keypoint.raw_x, keypoint.raw_y, last->frame->Static(static_cast<int>(k)),
+                        k < last->matches.size() && last->matches[k].valid()});
+  }
+  return features;
+}
+
+cv::Mat Slam::MoverMask() const {
+  const auto last = impl_->shown();
+  if (!last || last->belief_of_cells.empty()) return {};
+  return MaskOf(last->belief_of_cells, {impl_->camera_.width, impl_->camera_.height});
+}
+
+SlamCounts Slam::Counts() const {
+  return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(), impl_->cuts_,
+          impl_->log_.let_go()};
+}
+
+SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
+
+std::string Slam::SaveMap() const {
+  // Places first: they are never ahead of the map then, which may grow meanwhile.
+  SavedPlaces places = impl_->workers_.places().Save();
+  return EncodeMap({Snapshot(), impl_->camera_, NameOf(impl_->settings_.sensor),
+                    impl_->settings_.All(), std::move(places)});
+}
+
+StageTimes Slam::Times() const {
+  StageTimes times;
+  times.frame = impl_->frame_ms_.All();
+  times.extract = impl_->extract_ms_.All();
+  times.track = impl_->track_ms_.All();
+  times.map = impl_->workers_.MapMilliseconds();
+  times.loop = impl_->workers_.LoopMilliseconds();
+  times.semidense = impl_->workers_.SemiDenseMilliseconds();
+  times.detect = impl_->movers_.DetectorMilliseconds();
+  times.dynamics = impl_->movers_.Milliseconds();
+  return times;
+}
+
+std::vector<FramePose> Slam::Trajectory(int since) const {
+  return impl_->log_.Trajectory(impl_->workers_.map(), since);
+}
+
+}  // namespace alidade
