@@ -43,7 +43,7 @@ class InlineFeed : public testing::Test {
       EXPECT_EQ(answer->detections[0].class_id, answer->number);
       EXPECT_FALSE(feed.Take(number).has_value());  // once
     }
-    EXPECT_EQ(feed.Milliseconds().size(), shown_.size());
+    EXPECT_EQ(feed.milliseconds().All().size(), shown_.size());
     return answers;
   }
   DynamicsSettings settings_;
@@ -134,7 +134,7 @@ TEST_F(InlineFeed, WithoutADetectorThereAreNoAnswers) {
       feed.Offer(number, Picture(number));
       EXPECT_FALSE(feed.Take(number).has_value());
     }
-    EXPECT_TRUE(feed.Milliseconds().empty());
+    EXPECT_TRUE(feed.milliseconds().All().empty());
   }
 }
 
@@ -202,7 +202,7 @@ TEST_F(ThreadedFeed, TheNewestFrameWinsAndNobodyWaitsForASlowDetector) {
   const FrameDetections answer = WaitForAnswer(*feed, 100);
   EXPECT_EQ(answer.number, 99);
   EXPECT_EQ(answer.detections[0].class_id, 99);
-  EXPECT_EQ(feed->Milliseconds().size(), 2u);
+  EXPECT_EQ(feed->milliseconds().All().size(), 2u);
 }
 
 TEST_F(ThreadedFeed, ThePictureIsTheDetectorsOwn) {

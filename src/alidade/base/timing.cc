@@ -31,6 +31,7 @@ Summary Summarise(std::vector<double> samples) {
 
 void SampleLog::Add(double sample) noexcept {
   const std::lock_guard<std::mutex> lock(mutex_);
+  last_ = {sample, last_.number + 1};
   const bool kept = place_ == pick_;
   if (++place_ == stride_) {
     place_ = 0;
@@ -53,6 +54,11 @@ void SampleLog::Add(double sample) noexcept {
 std::vector<double> SampleLog::All() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return {kept_.begin(), kept_.end()};
+}
+
+SampleLog::Reading SampleLog::Last() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return last_;
 }
 
 double ProcessCpuSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }

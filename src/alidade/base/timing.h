@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <mutex>
 #include <vector>
 
@@ -38,6 +39,11 @@ class SampleLog {
   explicit SampleLog(size_t most = kMost) : most_(most) {}
   void Add(double sample) noexcept;  // to within 1e-7 of it; left out when there is no memory
   std::vector<double> All() const;   // in the order they were added
+  struct Reading {
+    double value = 0;
+    int64_t number = 0;  // how many there were with it; 0: none yet
+  };
+  Reading Last() const;
 
  private:
   size_t most_;
@@ -46,6 +52,7 @@ class SampleLog {
   uint32_t stride_ = 1;            // one of so many is kept
   uint32_t place_ = 0, pick_ = 0;  // of the next among them; which of them is kept
   Random random_;
+  Reading last_;
 };
 
 double ProcessCpuSeconds();  // user + system time of all threads so far; 0 where unknown

@@ -33,10 +33,7 @@ class DetectionFeed {
   // The answer that is due at frame `number`, if any: the newest.
   std::optional<FrameDetections> Take(int number);
   // Any thread may ask.
-  std::vector<double> Milliseconds() const {
-    return milliseconds_.All();
-  }                                    // one for each frame
-                                       // the detector was given
+  const SampleLog& milliseconds() const { return milliseconds_; }  // one per frame it was given
   std::exception_ptr failure() const;  // what ended the detector; null: nothing did
 
  private:

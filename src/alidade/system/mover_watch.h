@@ -55,8 +55,8 @@ class MoverWatch {
   // As DynamicFilter::BeliefOfCells, after End; empty when off.
   cv::Mat BeliefOfCells() const { return filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
   // Any thread may ask. One for each frame; one for each the detector was given.
-  std::vector<double> Milliseconds() const { return milliseconds_.All(); }
-  std::vector<double> DetectorMilliseconds() const { return detections_.Milliseconds(); }
+  const SampleLog& milliseconds() const { return milliseconds_; }
+  const SampleLog& detector_milliseconds() const { return detections_.milliseconds(); }
   std::vector<StageHealth> health() const;
   bool any_stopped() const { return filter_failed_ || detections_.failure(); }
 

@@ -84,6 +84,12 @@ struct StageTimes {
   std::vector<double> dynamics;  // flow, geometry and belief, not the detector
 };
 
+// The newest reading of each, and how many there were: a stage whose number has not grown has not
+// run since one asked last.
+struct LatestTimes {
+  SampleLog::Reading frame, extract, track, map, loop, semidense, detect, dynamics;
+};
+
 // Frames that Trajectory() has no longer (settings.trajectory.keep_seconds).
 struct LetGoFrames {
   int frames = 0;
@@ -155,6 +161,7 @@ class Slam {
   cv::Mat MoverMask() const;
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
+  LatestTimes Latest() const;
   const Camera& camera() const;  // as used: scaled by the profile
   SlamCounts Counts() const;
   SemiDenseReport SemiDense() const;  // of the keyframes that are done

@@ -58,12 +58,25 @@ StageTimes Slam::Times() const {
   times.frame = impl_->frame_ms_.All();
   times.extract = impl_->extract_ms_.All();
   times.track = impl_->track_ms_.All();
-  times.map = impl_->workers_.MapMilliseconds();
-  times.loop = impl_->workers_.LoopMilliseconds();
-  times.semidense = impl_->workers_.SemiDenseMilliseconds();
-  times.detect = impl_->movers_.DetectorMilliseconds();
-  times.dynamics = impl_->movers_.Milliseconds();
+  times.map = impl_->workers_.map_milliseconds().All();
+  times.loop = impl_->workers_.loop_milliseconds().All();
+  times.semidense = impl_->workers_.semidense_milliseconds().All();
+  times.detect = impl_->movers_.detector_milliseconds().All();
+  times.dynamics = impl_->movers_.milliseconds().All();
   return times;
+}
+
+LatestTimes Slam::Latest() const {
+  const Workers& workers = impl_->workers_;
+  const MoverWatch& movers = impl_->movers_;
+  return {impl_->frame_ms_.Last(),
+          impl_->extract_ms_.Last(),
+          impl_->track_ms_.Last(),
+          workers.map_milliseconds().Last(),
+          workers.loop_milliseconds().Last(),
+          workers.semidense_milliseconds().Last(),
+          movers.detector_milliseconds().Last(),
+          movers.milliseconds().Last()};
 }
 
 std::vector<FramePose> Slam::Trajectory(int since) const {

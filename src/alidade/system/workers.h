@@ -53,9 +53,9 @@ class Workers {
   int loops() const { return loop_closer_.loops(); }
   int merges() const { return loop_closer_.merges(); }
   SemiDenseReport SemiDense() const { return semidense_mapper_.report(); }
-  std::vector<double> MapMilliseconds() const { return mapping_.milliseconds().All(); }
-  std::vector<double> LoopMilliseconds() const { return looping_.milliseconds().All(); }
-  std::vector<double> SemiDenseMilliseconds() const { return semidense_.milliseconds().All(); }
+  const SampleLog& map_milliseconds() const { return mapping_.milliseconds(); }
+  const SampleLog& loop_milliseconds() const { return looping_.milliseconds(); }
+  const SampleLog& semidense_milliseconds() const { return semidense_.milliseconds(); }
 
  private:
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
