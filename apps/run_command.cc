@@ -1,9 +1,14 @@
 // alidade run: a recording or camera in, a trajectory and a map out.
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "alidade/run/loop.h"
 #include "alidade/run/run.h"
+#include "alidade/run/stream_feed.h"
+#include "alidade/version.h"
 #include "commands.h"
 #include "run_flags.h"
 #include "run_progress.h"
@@ -14,7 +19,16 @@ namespace {
 int RunAndTell(const RunOptions& options) {
   CatchInterrupts();
   RunProgress progress(options.quiet);
-  return Run(options, {&progress}).status;
+  std::vector<RunWatcher*> watchers = {&progress};
+  std::optional<StreamFeed> feed;
+  if (options.record || options.view) {
+    feed.emplace("alidade " ALIDADE_VERSION, options.record);
+    watchers.push_back(&*feed);
+  }
+  const int status = Run(options, watchers).status;
+  if (options.record && !options.quiet && feed->frames() > 0)
+    std::printf("The stream takes %.1f MB\n", 1e-6 * static_cast<double>(feed->bytes()));
+  return status;
 }
 
 }  // namespace

@@ -44,6 +44,12 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--repeat", options.repeat, "Play forth and back this many times");
   command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores");
   command.add_option("--seed", options.seed, "Seed of every random choice");
+  command
+      .add_option("--record", options.record,
+                  "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
+                  "among the results, or FILE)")
+      ->expected(0, 1)
+      ->default_str("");
   command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)");
   command.add_option("--first", options.first, "First frame, counted from 0");
   command.add_option("--last", options.last, "Last frame, included");

@@ -97,7 +97,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record);
+  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record, folder.path());
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
