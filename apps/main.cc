@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/run/run.h"
 #include "alidade/version.h"
 #include "arguments.h"
 #include "commands.h"
@@ -92,6 +93,8 @@ int main(int argc, char** argv) {
     return Complain(error.what(), static_cast<int>(error.kind()));
   } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
     return Complain(error.what(), static_cast<int>(alidade::ErrorKind::kInput));
+  } catch (const alidade::RunStopped& stopped) {
+    return Complain(stopped.what(), kBugStatus);
   } catch (const std::bad_alloc&) {
     return Complain("out of memory", kBugStatus);
   } catch (const std::exception& error) {

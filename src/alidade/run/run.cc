@@ -4,7 +4,6 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -112,7 +111,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
   if (const std::string bugs = BugOf(record); !bugs.empty())
-    throw std::runtime_error(bugs + " (what could be done without is in " + folder.path() + ")");
+    throw RunStopped(bugs + " (what could be done without is in " + folder.path() + ")");
   if (record.interrupted) {
     outcome.status = kInterruptedStatus;
   } else if (outcome.summary.tracked == 0) {
