@@ -1,0 +1,92 @@
+# cmake -DWEB=web -DNPM=npm -DOUT=page_files.cc -P: builds the viewer's page and makes it part of a C++ file. What fails
+# costs the page, not the build.
+set(PROBLEM "")
+set(MARK ${WEB}/node_modules/.alidade-lock)  # the lock file that node_modules was made from
+
+function(run)
+  if(PROBLEM)
+    return()
+  endif()
+  execute_process(COMMAND ${NPM} ${ARGN} WORKING_DIRECTORY ${WEB} RESULT_VARIABLE STATUS OUTPUT_VARIABLE TEXT
+                  ERROR_VARIABLE TEXT TIMEOUT 600)
+  if(NOT STATUS EQUAL 0)
+    list(JOIN ARGN " " WHAT)
+    file(WRITE ${OUT}.log "${TEXT}")
+    set(PROBLEM "npm ${WHAT} failed, see ${OUT}.log" PARENT_SCOPE)
+  endif()
+endfunction()
+
+if(NPM)
+  file(SHA256 ${WEB}/package-lock.json LOCK)
+  set(INSTALLED "")
+  if(EXISTS ${MARK})
+    file(READ ${MARK} INSTALLED)
+  endif()
+  if(NOT INSTALLED STREQUAL LOCK)
+    run(ci --ignore-scripts --no-audit --no-fund)
+    if(NOT PROBLEM)
+      file(WRITE ${MARK} ${LOCK})
+    endif()
+  endif()
+  run(run build)
+else()
+  set(PROBLEM "Node.js 18 with npm was not found (scripts/setup)")
+endif()
+if(PROBLEM)
+  message("warning: built without the viewer's page: ${PROBLEM}")
+endif()
+
+# The files, copied: those in web/ are of another build the next time. Assembled, not compiled: an array of a million
+# numbers takes seconds.
+get_filename_component(FOLDER ${OUT} DIRECTORY)
+set(FOLDER ${FOLDER}/page)
+file(REMOVE_RECURSE ${FOLDER})
+set(FILES "")
+if(NOT PROBLEM)
+  file(GLOB FILES ${WEB}/viewer/dist/*)
+endif()
+set(DATA "")
+set(NAMES "")
+set(TABLE "")
+set(NUMBER 0)
+foreach(FILE ${FILES})
+  get_filename_component(NAME ${FILE} NAME)
+  file(COPY ${FILE} DESTINATION ${FOLDER})
+  file(SHA256 ${FILE} HASH)
+  set(SYMBOL alidade_page_${NUMBER})
+  string(APPEND DATA "// ${NAME} ${HASH}
+asm(R\"(
+.pushsection .rodata
+.hidden ${SYMBOL}
+.hidden ${SYMBOL}_end
+.global ${SYMBOL}
+.global ${SYMBOL}_end
+${SYMBOL}:
+.incbin \"${FOLDER}/${NAME}\"
+${SYMBOL}_end:
+.byte 0
+.popsection
+)\");
+")
+  string(APPEND NAMES "extern \"C\" [[gnu::visibility(\"hidden\")]] const char ${SYMBOL}[], ${SYMBOL}_end[];\n")
+  string(APPEND TABLE "      {\"${NAME}\", Between(${SYMBOL}, ${SYMBOL}_end)},\n")
+  math(EXPR NUMBER "${NUMBER} + 1")
+endforeach()
+file(WRITE ${OUT} "// Made by cmake/BuildViewerPage.cmake.
+#include \"alidade/serve/response.h\"
+
+${DATA}
+${NAMES}
+namespace alidade {
+namespace {
+[[maybe_unused]] std::string_view Between(const char* begin, const char* end) {
+  return {begin, static_cast<size_t>(end - begin)};
+}
+}  // namespace
+const std::vector<PageFile>& PageFiles() {
+  static const std::vector<PageFile> files = {
+${TABLE}  };
+  return files;
+}
+}  // namespace alidade
+")

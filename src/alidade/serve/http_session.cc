@@ -1,0 +1,193 @@
+#include "alidade/serve/http_session.h"
+
+#include <algorithm>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/bind_handler.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <filesystem>
+#include <utility>
+
+#include "alidade/serve/response.h"
+#include "alidade/serve/stream_client.h"
+
+namespace alidade {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace asio = boost::asio;
+
+constexpr uint32_t kMostHeader = 8192;             // bytes: browsers send 1000
+constexpr size_t kPartBytes = size_t{256} << 10;   // of a file, read and sent at a time
+constexpr auto kLinger = std::chrono::seconds(1);  // for the other side to read why it was refused
+constexpr std::string_view kText = "text/plain; charset=utf-8";
+
+std::optional<std::string_view> Only(const http::fields& fields, http::field name) {
+  const auto [first, last] = fields.equal_range(name);
+  if (first == last || std::next(first) != last) return std::nullopt;
+  return std::string_view(first->value().data(), first->value().size());
+}
+
+}  // namespace
+
+HttpSession::HttpSession(asio::ip::tcp::socket socket, ServerCore& core)
+    : core_(core),
+      stream_(std::move(socket)),
+      buffer_(2 * kMostHeader),
+      active_(std::chrono::steady_clock::now()) {}
+
+void HttpSession::Start() { Read(); }
+
+void HttpSession::Close() { stream_.close(); }
+
+void HttpSession::Wake() {
+  active_ = std::chrono::steady_clock::now();
+  stream_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(core_.task.settings.patience)));
+}
+
+void HttpSession::Read() {
+  parser_.emplace();
+  parser_->header_limit(kMostHeader);
+  parser_->body_limit(0);
+  Wake();
+  http::async_read(stream_, buffer_, *parser_,
+                   [self = shared_from_this()](beast::error_code error, size_t) {
+                     if (error) return self->OnBadRequest(error);
+                     self->OnRequest();
+                   });
+}
+
+void HttpSession::OnBadRequest(beast::error_code error) {
+  keep_alive_ = false;
+  head_only_ = false;
+  if (error == http::error::header_limit || error == http::error::buffer_overflow)
+    return Send(431, kText, "too long\n");
+  if (error == http::error::body_limit || error == http::error::unexpected_body)
+    return Send(413, kText, "requests have no body\n");
+  const bool malformed = error.category() == make_error_code(http::error::bad_method).category() &&
+                         error != http::error::end_of_stream &&
+                         error != http::error::partial_message;
+  if (malformed) return Send(400, kText, "no HTTP\n");
+  Close();  // the other side has gone, or was silent for too long
+}
+
+std::string HttpSession::Refusal(const Request& request) const {
+  beast::error_code error;
+  const auto local = stream_.socket().local_endpoint(error);
+  if (error) return "gone";
+  const std::string address = UrlAddress(local.address());
+  Caller caller;
+  caller.host = Only(request, http::field::host);
+  if (request.count(http::field::origin) > 0)
+    caller.origin = Only(request, http::field::origin).value_or("");
+  caller.target = {request.target().data(), request.target().size()};
+  caller.local = address;
+  caller.loopback = address == "[::1]" || address.rfind("127.", 0) == 0;
+  return core_.gate->Refusal(caller);
+}
+
+void HttpSession::OnRequest() {
+  const Request& request = parser_->get();
+  keep_alive_ = request.keep_alive();
+  head_only_ = request.method() == http::verb::head;
+  const std::string refusal = Refusal(request);
+  if (!refusal.empty()) {
+    text_ = refusal + "\n";
+    keep_alive_ = false;
+    return Send(403, kText, text_);
+  }
+  if (!head_only_ && request.method() != http::verb::get)
+    return Send(405, kText, "GET and HEAD only\n");
+  const std::string_view target(request.target().data(), request.target().size());
+  const std::string_view path = PathOf(target);
+  const ServeTask& task = core_.task;
+  const bool is_stream = path == "/stream" && task.hub != nullptr;
+  const bool is_file = path == "/run.stream" && task.hub == nullptr;
+  // What is compiled in is no secret, and the page asks for it without the token.
+  const bool is_own = path == "/" || path == "/index.html" || path == "/info.json";
+  if ((is_stream || is_file || is_own) && !core_.gate->HasToken(target)) {
+    return Send(403, kText, "the address that the program printed ends in a token: it is needed\n");
+  }
+  if (is_stream) return Upgrade();
+  if (is_file) return SendFile();
+  if (path == "/info.json") return Send(200, "application/json", task.info);
+  const auto page = FindPage(path, PageFiles());
+  if (!page) return Send(404, kText, "there is no such page\n");
+  Send(200, page->type, page->bytes);
+}
+
+void HttpSession::Upgrade() {
+  const Request& request = parser_->get();
+  if (!beast::websocket::is_upgrade(request) || buffer_.size() > 0)
+    return Send(400, kText, "this is a WebSocket\n");
+  if (!core_.MayJoin()) return Send(503, kText, "too many viewers\n");
+  auto client = std::make_shared<StreamClient>(std::move(stream_), core_.io, *core_.task.hub,
+                                               core_.task.settings, core_.viewers);
+  core_.clients.push_back(client);
+  client->Start(request);
+}
+
+void HttpSession::Send(int status, std::string_view type, std::string_view body) {
+  head_ = ResponseHead(status, type, body.size(), keep_alive_);
+  Wake();
+  const std::array<asio::const_buffer, 2> buffers = {
+      asio::buffer(head_), asio::buffer(body.data(), head_only_ ? 0 : body.size())};
+  asio::async_write(stream_, buffers, [self = shared_from_this()](beast::error_code error, size_t) {
+    self->Sent(error);
+  });
+}
+
+void HttpSession::SendFile() {
+  std::error_code error;
+  const std::string& path = core_.task.replay_path;
+  file_left_ = std::filesystem::file_size(path, error);
+  file_.open(path, std::ios::binary);
+  if (error || !file_) return Send(404, kText, "the recording is gone\n");
+  head_ = ResponseHead(200, "application/octet-stream", file_left_, keep_alive_);
+  if (head_only_) file_left_ = 0;
+  Wake();
+  asio::async_write(stream_, asio::buffer(head_),
+                    [self = shared_from_this()](beast::error_code failed, size_t) {
+                      if (failed) return self->Close();
+                      self->SendPart();
+                    });
+}
+
+void HttpSession::SendPart() {
+  if (file_left_ == 0) {
+    file_.close();
+    part_ = {};
+    return Sent({});
+  }
+  part_.resize(std::min<uint64_t>(kPartBytes, file_left_));
+  if (!file_.read(part_.data(), static_cast<std::streamsize>(part_.size())))
+    return Close();  // it has become shorter meanwhile
+  file_left_ -= part_.size();
+  Wake();
+  asio::async_write(stream_, asio::buffer(part_),
+                    [self = shared_from_this()](beast::error_code error, size_t) {
+                      if (error) return self->Close();
+                      self->SendPart();
+                    });
+}
+
+void HttpSession::Sent(beast::error_code error) {
+  if (error) return Close();
+  if (keep_alive_) return Read();
+  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, error);
+  stream_.expires_after(kLinger);
+  Linger();
+}
+
+// A socket closed with input unread takes back what was sent last.
+void HttpSession::Linger() {
+  stream_.async_read_some(asio::buffer(scratch_),
+                          [self = shared_from_this()](beast::error_code error, size_t) {
+                            if (error) return self->Close();
+                            self->Linger();
+                          });
+}
+
+}  // namespace alidade

@@ -1,0 +1,198 @@
+#include "alidade/serve/server.h"
+
+#include <pthread.h>
+
+#include <algorithm>
+#include <boost/asio/ip/udp.hpp>
+#include <boost/asio/ip/v6_only.hpp>
+#include <boost/asio/post.hpp>
+#include <chrono>
+#include <csignal>
+#include <stdexcept>
+#include <utility>
+
+#include "alidade/serve/http_session.h"
+#include "alidade/serve/response.h"
+#include "alidade/serve/stream_client.h"
+
+namespace alidade {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr int kPortsTried = 100;
+// What the kernel keeps for a viewer that has stopped: without a limit 4 MB of old pictures.
+constexpr int kSendBuffer = 64 << 10;                   // bytes
+constexpr auto kRest = std::chrono::milliseconds(100);  // until descriptors may be free again
+constexpr auto kGoodbye = std::chrono::seconds(2);      // at the end, for what waits to be sent
+
+asio::ip::address AddressOf(const std::string& host, asio::io_context& io) {
+  error_code error;
+  const asio::ip::address address = asio::ip::make_address(host, error);
+  if (!error) return address;
+  tcp::resolver resolver(io);
+  const auto found = resolver.resolve(host, "", error);
+  if (error || found.empty()) throw std::runtime_error("no address is known of '" + host + "'");
+  return found.begin()->endpoint().address();
+}
+
+// By which others reach this machine; nothing is sent. 192.0.2.1 is for documentation (RFC 5737).
+asio::ip::address OutwardAddress(asio::io_context& io) {
+  error_code error;
+  asio::ip::udp::socket socket(io);
+  socket.open(asio::ip::udp::v4(), error);
+  if (!error) socket.connect({asio::ip::make_address_v4("192.0.2.1"), 9}, error);
+  const auto local = error ? asio::ip::udp::endpoint() : socket.local_endpoint(error);
+  return error ? asio::ip::make_address("127.0.0.1") : local.address();
+}
+
+template <class T>
+void ForgetEnded(std::vector<std::weak_ptr<T>>& all) {
+  all.erase(std::remove_if(all.begin(), all.end(), [](const auto& one) { return one.expired(); }),
+            all.end());
+}
+
+}  // namespace
+
+std::string UrlAddress(const asio::ip::address& address) {
+  if (address.is_v4()) return address.to_string();
+  if (address.to_v6().is_v4_mapped())
+    return asio::ip::make_address_v4(asio::ip::v4_mapped, address.to_v6()).to_string();
+  return "[" + address.to_string() + "]";
+}
+
+bool ServerCore::MayJoin() {
+  ForgetEnded(clients);
+  return static_cast<int>(clients.size()) < task.settings.max_clients;
+}
+
+bool ServerCore::MayConnect() {
+  ForgetEnded(clients);
+  ForgetEnded(sessions);
+  if (static_cast<int>(clients.size() + sessions.size()) < task.settings.max_connections)
+    return true;
+  std::shared_ptr<HttpSession> oldest;
+  for (const auto& one : sessions) {
+    const auto session = one.lock();
+    if (session && (!oldest || session->active() < oldest->active())) oldest = session;
+  }
+  if (!oldest) return false;
+  oldest->Close();
+  return true;
+}
+
+Server::Server(const ServeTask& task) : core_(task) {
+  const std::string& host = task.settings.host;
+  const asio::ip::address address = AddressOf(host, core_.io);
+  Listen(address);
+  error_code no_address;
+  asio::ip::make_address(host, no_address);
+  const std::string token = address.is_loopback() ? "" : RandomToken();
+  core_.gate.emplace(port_, no_address ? host : "", token);
+  const std::string name = no_address                 ? host
+                           : address.is_unspecified() ? UrlAddress(OutwardAddress(core_.io))
+                                                      : UrlAddress(address);
+  address_ = "http://" + name + (port_ == 80 ? "" : ":" + std::to_string(port_)) + "/";
+  if (!token.empty()) address_ += "?token=" + token;
+
+  Accept();
+  // Signals are for the threads that the program handles them in.
+  sigset_t all, before;
+  sigfillset(&all);
+  pthread_sigmask(SIG_SETMASK, &all, &before);
+  thread_ = std::thread([this] { Run(); });
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
+}
+
+Server::~Server() {
+  asio::post(core_.io, [this] { Finish(); });
+  if (ended_.get_future().wait_for(kGoodbye) == std::future_status::timeout) core_.io.stop();
+  thread_.join();
+}
+
+bool Server::has_page() const {
+  const auto& files = PageFiles();
+  return std::any_of(files.begin(), files.end(),
+                     [](const PageFile& file) { return file.name == "index.html"; });
+}
+
+void Server::Listen(const asio::ip::address& host) {
+  const ServeSettings& settings = core_.task.settings;
+  const int tries = settings.port_given || settings.port == 0 ? 1 : kPortsTried;
+  error_code error;
+  for (int port = settings.port; port < settings.port + tries && port <= 65535; ++port) {
+    const tcp::endpoint endpoint(host, static_cast<unsigned short>(port));
+    acceptor_ = tcp::acceptor(core_.io);
+    acceptor_.open(endpoint.protocol(), error);
+    if (error) break;
+    acceptor_.set_option(asio::socket_base::reuse_address(true), error);
+    acceptor_.set_option(asio::socket_base::send_buffer_size(kSendBuffer), error);
+    if (host.is_v6()) acceptor_.set_option(asio::ip::v6_only(false), error);
+    acceptor_.bind(endpoint, error);
+    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    if (!error) {
+      port_ = acceptor_.local_endpoint().port();
+      return;
+    }
+    if (error != asio::error::address_in_use) break;
+  }
+  const std::string what = settings.host + ":" + std::to_string(settings.port);
+  if (error == asio::error::address_in_use) {
+    throw std::runtime_error(tries == 1 ? "port " + what + " is in use; another, or none, will do"
+                                        : "port " + what + " and those after it are in use");
+  }
+  throw std::runtime_error(what + ": " + error.message());
+}
+
+void Server::Accept() {
+  acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
+    if (error) {  // no descriptors, no memory: it would fail again at once
+      rest_.expires_after(kRest);
+      rest_.async_wait([this](error_code stopped) {
+        if (!stopped) Accept();
+      });
+      return;
+    }
+    try {
+      if (core_.MayConnect()) {
+        error_code ignored;
+        socket.set_option(tcp::no_delay(true), ignored);
+        const auto session = std::make_shared<HttpSession>(std::move(socket), core_);
+        core_.sessions.push_back(session);
+        session->Start();
+      }
+    } catch (...) {  // no memory: this one goes, others come
+    }
+    Accept();
+  });
+}
+
+void Server::Run() {
+  pthread_setname_np(pthread_self(), "viewer");
+  for (bool done = false; !done;) {
+    try {
+      core_.io.run();
+      done = true;
+    } catch (...) {  // a connection's step failed (no memory), and the connection with it
+    }
+  }
+  ended_.set_value();
+}
+
+// Without connections run() has nothing left to wait for, and returns.
+void Server::Finish() {
+  error_code ignored;
+  acceptor_.close(ignored);
+  rest_.cancel();
+  for (const auto& one : core_.sessions) {
+    if (const auto session = one.lock()) session->Close();
+  }
+  for (const auto& one : core_.clients) {
+    if (const auto client = one.lock()) client->Finish();
+  }
+}
+
+}  // namespace alidade

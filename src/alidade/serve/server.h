@@ -1,0 +1,71 @@
+// The server: one thread, in which all connections are taken and served.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <future>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "alidade/serve/gate.h"
+#include "alidade/serve/serve_module.h"
+
+namespace alidade {
+
+class HttpSession;
+class StreamClient;
+
+// As in a URL: IPv6 in brackets.
+std::string UrlAddress(const boost::asio::ip::address& address);
+
+// What connections share. `io` first: what waits in it goes last, and may refer to the rest only
+// through what it owns.
+struct ServerCore {
+  explicit ServerCore(const ServeTask& given) : task(given) {}
+
+  boost::asio::io_context io{1};
+  const ServeTask task;
+  std::optional<Gate> gate;
+  std::vector<std::weak_ptr<HttpSession>> sessions;
+  std::vector<std::weak_ptr<StreamClient>> clients;
+  std::shared_ptr<std::atomic<int>> viewers = std::make_shared<std::atomic<int>>(0);
+
+  bool MayJoin();  // one viewer more
+  // Makes room for one connection more: closes the one without a viewer that has been silent
+  // longest. False when there are only viewers.
+  bool MayConnect();
+};
+
+class Server : public ViewerServer {
+ public:
+  explicit Server(const ServeTask& task);  // throws std::exception
+  ~Server() override;
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  const std::string& address() const override { return address_; }
+  int port() const override { return port_; }
+  int viewers() const override { return *core_.viewers; }
+  bool has_page() const override;
+
+ private:
+  void Listen(const boost::asio::ip::address& host);
+  void Accept();
+  void Run();
+  void Finish();
+
+  ServerCore core_;
+  boost::asio::ip::tcp::acceptor acceptor_{core_.io};
+  boost::asio::steady_timer rest_{core_.io};  // after connections could not be taken
+  std::string address_;
+  int port_ = 0;
+  std::promise<void> ended_;
+  std::thread thread_;
+};
+
+}  // namespace alidade

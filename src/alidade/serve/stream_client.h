@@ -1,0 +1,63 @@
+// One viewer: what the hub tells goes to its WebSocket, what it asks goes to the hub.
+#pragma once
+
+#include <atomic>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "alidade/serve/client_queue.h"
+#include "alidade/serve/viewer_server.h"
+
+namespace alidade {
+
+// Everything but what the hub calls happens in the one thread of the io_context.
+class StreamClient : public std::enable_shared_from_this<StreamClient> {
+ public:
+  using Request = boost::beast::http::request<boost::beast::http::empty_body>;
+
+  // `viewers` counts those that are connected.
+  StreamClient(boost::beast::tcp_stream stream, boost::asio::io_context& io, StreamHub& hub,
+               const ServeSettings& settings, std::shared_ptr<std::atomic<int>> viewers);
+  ~StreamClient();
+  StreamClient(const StreamClient&) = delete;
+  StreamClient& operator=(const StreamClient&) = delete;
+
+  void Start(const Request& upgrade);
+  void Finish();  // sends what waits, then says good-bye
+
+ private:
+  void Read();
+  void Hear(std::string_view text);
+  void Pump();  // sends the next message, if there is one and nothing is being sent
+  void Join();
+  void Leave();
+  void Close(boost::beast::websocket::close_code code);
+  void End();
+
+  boost::asio::io_context& io_;
+  StreamHub& hub_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  boost::beast::flat_buffer heard_;
+  std::shared_ptr<ClientQueue> queue_;
+  std::shared_ptr<std::atomic<int>> viewers_;
+  std::optional<int> joined_;  // the hub's id for it
+  ClientQueue::Message sending_;
+  bool open_ = false;
+  bool finishing_ = false;
+  bool wants_whole_ = false;
+  bool counted_ = false;
+  std::chrono::steady_clock::time_point second_{};  // in which `asked_` were heard
+  std::chrono::steady_clock::time_point whole_at_{};
+  int asked_ = 0;
+};
+
+}  // namespace alidade

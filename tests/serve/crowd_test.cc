@@ -1,0 +1,255 @@
+// The viewer's server among those who mean no good, or have stopped: it goes on for the others, and
+// its memory stays bounded.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+#include <vector>
+
+#include "alidade/base/random.h"
+#include "alidade/serve/client_queue.h"
+#include "alidade/serve/viewer_server.h"
+#include "serve/counting_hub.h"
+#include "serve/plain_client.h"
+
+namespace alidade::crowd_test {
+namespace {
+
+using ::testing::StartsWith;
+
+ServeSettings AnyPort() {
+  ServeSettings settings;
+  settings.port = 0;
+  return settings;
+}
+
+// Bytes of this process that are in memory.
+size_t MemoryInUse() {
+  size_t pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return resident * 4096;
+}
+
+// As many descriptors as the system allows; how many those are.
+size_t RaiseDescriptors() {
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  limit.rlim_cur = limit.rlim_max;
+  setrlimit(RLIMIT_NOFILE, &limit);
+  return limit.rlim_cur;
+}
+
+TEST(ClientQueue, HoldsWhatItMayAndForgetsAllBeyond) {
+  const auto message = std::make_shared<const std::string>(400, 'x');
+  ClientQueue queue(1000);
+  queue.Begin();
+  for (int i = 0; i < 10; ++i) queue.Push(message);  // the whole state counts not
+  queue.Joined();
+  EXPECT_FALSE(queue.behind());
+  EXPECT_EQ(queue.waiting_bytes(), 4000u);
+  EXPECT_FALSE(queue.Push(message));  // who sends was woken by the first
+  EXPECT_FALSE(queue.Push(message));
+  EXPECT_TRUE(queue.Push(message));
+  EXPECT_TRUE(queue.behind());
+  EXPECT_EQ(queue.waiting_bytes(), 0u);
+  EXPECT_FALSE(queue.Push(message));
+  EXPECT_EQ(queue.Pop(), nullptr);
+  EXPECT_EQ(message.use_count(), 1);
+  queue.Begin();
+  queue.Joined();
+  EXPECT_TRUE(queue.Push(message));
+  EXPECT_EQ(queue.Pop(), message);
+  EXPECT_FALSE(queue.Push(message));  // who got something looks again
+  EXPECT_EQ(queue.Pop(), message);
+  EXPECT_EQ(queue.Pop(), nullptr);
+  EXPECT_TRUE(queue.Push(std::make_shared<const std::string>(5000, 'x'))) << "alone, any size goes";
+  EXPECT_FALSE(queue.behind());
+}
+
+// 400 MB are told while one viewer does not read: it is given the whole state when it reads again,
+// and meanwhile costs no more than its bounds. The other one misses nothing.
+TEST(ServeCrowd, AStoppedViewerCostsLittleAndHarmsNobody) {
+  constexpr int kTold = 4000;
+  CountingHub hub(100000);
+  ServeSettings settings = AnyPort();
+  settings.client_bytes = 1 << 20;
+  settings.patience = 600;  // the stopped one is not to be closed here
+  const auto server = StartViewer(settings, &hub, "", "");
+  PlainClient reader(server->port()), stopped(server->port(), 65536);
+  ASSERT_EQ(reader.Upgrade(), 101);
+  ASSERT_EQ(stopped.Upgrade(), 101);
+  for (int i = 0; i < 2; ++i) ASSERT_TRUE(reader.Message());
+  const size_t before = MemoryInUse();
+  size_t most = 0;
+  for (int i = 1; i <= kTold; ++i) {
+    hub.Tell();
+    const auto message = reader.Message();
+    ASSERT_TRUE(message);
+    ASSERT_EQ(message->substr(0, message->find(' ')), std::to_string(i));
+    if (i % 100 == 0) most = std::max(most, MemoryInUse());
+  }
+  EXPECT_LT(most, before + (32 << 20));  // 1 MB waiting, two whole messages; the rest is slack
+  RecordProperty("memory_growth_kb", static_cast<int>((most - std::min(most, before)) >> 10));
+
+  // Reads on: old messages that were under way, then the whole state as it is now.
+  bool whole = false;
+  while (!whole) {
+    const auto message = stopped.Message();
+    ASSERT_TRUE(message);
+    whole = message->rfind("whole " + std::to_string(kTold) + " ", 0) == 0;
+  }
+  hub.Tell();
+  EXPECT_THAT(*stopped.Message(), StartsWith(std::to_string(kTold + 1) + " "));
+  EXPECT_EQ(server->viewers(), 2);
+}
+
+TEST(ServeCrowd, WhoGivesNoSignOfLifeIsClosed) {
+  CountingHub hub(100000);
+  ServeSettings settings = AnyPort();
+  settings.patience = 1;
+  const auto server = StartViewer(settings, &hub, "", "");
+  PlainClient silent(server->port()), half(server->port()), stopped(server->port(), 65536);
+  half.Send("GET / HTTP/1.1\r\nHost: ");
+  ASSERT_EQ(stopped.Upgrade(), 101);
+  ASSERT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 1; }));
+  EXPECT_EQ(silent.ReceiveAll(), "");
+  EXPECT_EQ(half.ReceiveAll(), "");
+  EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 0; }));
+  // One that answers pings stays, for longer than all others were given.
+  PlainClient alive(server->port());
+  ASSERT_EQ(alive.Upgrade(), 101);
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::seconds(3));
+    hub.Tell();
+  });
+  for (int i = 0; i < 2; ++i) EXPECT_TRUE(alive.Message());
+  const auto told = alive.Message();
+  later.join();
+  ASSERT_TRUE(told);
+  EXPECT_THAT(*told, StartsWith("1 "));
+}
+
+TEST(ServeCrowd, AThousandWhoStaySilent) {
+  const size_t descriptors = RaiseDescriptors();
+  CountingHub hub;
+  const auto server = StartViewer(AnyPort(), &hub, "", "");
+  PlainClient viewer(server->port());
+  ASSERT_EQ(viewer.Upgrade(), 101);
+  std::vector<PlainClient> silent;
+  const size_t count = std::min<size_t>(1000, descriptors / 4);
+  for (size_t i = 0; i < count; ++i) silent.emplace_back(server->port());
+  EXPECT_THAT(PlainClient(server->port()).Ask("GET /"), StartsWith("HTTP/1.1 200 "));
+  hub.Tell();
+  for (const char* text : {"hello", "whole 0", "1"}) EXPECT_EQ(viewer.Message(), text);
+  // The longest silent were closed to make room, the newest were not.
+  EXPECT_EQ(silent.front().ReceiveAll(), "");
+  EXPECT_THAT(silent.back().Ask("GET /"), StartsWith("HTTP/1.1 200 "));
+}
+
+TEST(ServeCrowd, AThousandViewers) {
+  if (RaiseDescriptors() < 2500) GTEST_SKIP() << "too few descriptors (ulimit -n)";
+  CountingHub hub(200);
+  ServeSettings settings = AnyPort();
+  settings.max_clients = 1000;
+  settings.max_connections = 1100;
+  const auto server = StartViewer(settings, &hub, "", "");
+  const size_t before = MemoryInUse();
+  std::vector<PlainClient> viewers;
+  for (int i = 0; i < 1000; ++i) {
+    viewers.emplace_back(server->port());
+    ASSERT_EQ(viewers.back().Upgrade(), 101);
+  }
+  for (int i = 0; i < 10; ++i) hub.Tell();
+  for (PlainClient& viewer : viewers) {
+    std::optional<std::string> last;
+    for (int i = 0; i < 12; ++i) last = viewer.Message();
+    ASSERT_TRUE(last);
+    ASSERT_THAT(*last, StartsWith("10 "));
+  }
+  EXPECT_EQ(server->viewers(), 1000);
+  RecordProperty("memory_growth_kb", static_cast<int>((MemoryInUse() - before) >> 10));
+}
+
+TEST(ServeCrowd, TheEndIsSoonWhoeverHangs) {
+  CountingHub hub(3000000);
+  std::vector<PlainClient> hanging;
+  {
+    const auto server = StartViewer(AnyPort(), &hub, "", "");
+    for (int i = 0; i < 3; ++i) hanging.emplace_back(server->port(), 65536);
+    EXPECT_EQ(hanging[0].Upgrade(), 101);  // reads nothing
+    hanging[1].Send("GET / HTTP/1.1\r\n");
+  }
+  EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 0; }));
+  EXPECT_EQ(hanging[1].ReceiveAll(), "");
+}
+
+// What is nearly right goes deeper than what is nonsense: bytes of good requests are changed, added
+// and left out.
+std::string Spoiled(std::string bytes, Random& random) {
+  const uint32_t times = 1 + random.Below(6);
+  for (uint32_t i = 0; i < times && !bytes.empty(); ++i) {
+    const size_t at = random.Below(static_cast<uint32_t>(bytes.size()));
+    const char byte = static_cast<char>(random.Below(256));
+    switch (random.Below(5)) {
+      case 0:
+        bytes[at] = byte;
+        break;
+      case 1:
+        bytes[at] = static_cast<char>(bytes[at] ^ (1 << random.Below(8)));
+        break;
+      case 2:
+        bytes.insert(at, random.Below(50), byte);
+        break;
+      case 3:
+        bytes.erase(at, random.Below(20));
+        break;
+      default:
+        bytes.resize(at);
+        break;
+    }
+  }
+  return bytes;
+}
+
+TEST(ServeCrowd, MalformedRequestsAndFrames) {
+  const int rounds = std::getenv("ALIDADE_LONG_TESTS") != nullptr ? 10000 : 2000;
+  CountingHub hub;
+  const auto server = StartViewer(AnyPort(), &hub, "", "");
+  PlainClient viewer(server->port());
+  ASSERT_EQ(viewer.Upgrade(), 101);
+  for (const char* text : {"hello", "whole 0"}) ASSERT_EQ(viewer.Message(), text);
+  Random random(7);
+  for (int round = 1; round <= rounds; ++round) {
+    PlainClient client(server->port());
+    std::string bytes;
+    if (round % 2 == 0) {
+      bytes = "GET /" + std::string(round % 4 == 0 ? "stream" : "") +
+              " HTTP/1.1\r\nHost: " + client.Host() +
+              "\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n" +
+              "Sec-WebSocket-Version: 13\r\nSec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n" +
+              "Content-Length: 0\r\n\r\n";
+      if (round % 50 == 0) bytes.insert(16, std::string(random.Below(20000), 'a'));
+    } else {
+      ASSERT_EQ(client.Upgrade(), 101);
+      for (int opcode : {1, 2, 0, 9, 10, 8})
+        bytes += PlainClient::Frame(opcode, "{\"do\":\"step\"}");
+      if (round % 51 == 0) bytes.insert(0, PlainClient::Frame(1, std::string(70000, 'a')));
+    }
+    client.Send(Spoiled(bytes, random));
+    client.EndOfSending();
+    client.ReceiveAll();
+    if (round % 500 == 0) {
+      hub.Tell();
+      ASSERT_EQ(viewer.Message(), std::to_string(round / 500));
+    }
+  }
+  EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 1; }));
+  EXPECT_THAT(PlainClient(server->port()).Ask("GET /"), StartsWith("HTTP/1.1 200 "));
+}
+
+}  // namespace
+}  // namespace alidade::crowd_test
