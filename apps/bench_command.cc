@@ -61,8 +61,10 @@ void Print(const bench::Section& section) {
     std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
   for (const bench::Row& row : section.rows) {
     const Summary s = Summarise(row.milliseconds);
-    std::printf("  %-44s %10.3f %8.3f %10.3f %7d  %s\n", row.name.c_str(), s.median,
-                u.count > 0 ? s.median / u.median : 0.0, s.p95, s.count, row.note.c_str());
+    char ratio[32] = "-";  // where no frame of OpenCV's was timed in turns
+    if (u.count > 0) std::snprintf(ratio, sizeof ratio, "%.3f", s.median / u.median);
+    std::printf("  %-44s %10.3f %8s %10.3f %7d  %s\n", row.name.c_str(), s.median, ratio, s.p95,
+                s.count, row.note.c_str());
   }
   for (const bench::Table& table : section.tables) {
     std::printf("\n  %s\n", table.name.c_str());
@@ -101,7 +103,7 @@ ordered_json ToJson(const bench::Section& section) {
     rows.push_back({{"name", row.name},
                     {"median_ms", s.median},
                     {"p95_ms", s.p95},
-                    {"median_u", s.median / u.median},
+                    {"median_u", u.count > 0 ? ordered_json(s.median / u.median) : ordered_json()},
                     {"count", s.count},
                     {"note", row.note}});
   }

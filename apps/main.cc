@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/version.h"
 #include "arguments.h"
 #include "commands.h"
 

@@ -11,18 +11,26 @@ set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1 -DNDEBUG")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
+# What the library shows is what its headers mark: ALIDADE_API (base/api.h).
+set(CMAKE_CXX_VISIBILITY_PRESET hidden)
+set(CMAKE_VISIBILITY_INLINES_HIDDEN ON)
+
+# A fixed baseline (2009 and later: SSE4.2, popcnt), not the build machine's: the same bits everywhere.
+set(ALIDADE_ARCH "x86-64-v2" CACHE STRING "What -march= gets on x86-64; empty: the compiler's own default. Other values: other bits")
+
+# For our own files alone; who uses the library is free to compile as they please, but for this: fixed-size matrices
+# of Eigen are aligned to 16 bytes, as the library has them, whatever the instruction set (32 with AVX otherwise).
+set(ALIDADE_PUBLIC_DEFINITIONS EIGEN_MAX_STATIC_ALIGN_BYTES=16)
 add_library(alidade_flags INTERFACE)
 target_compile_features(alidade_flags INTERFACE cxx_std_20)
-# Warnings are ours alone; -ffp-contract is for those who use the library's headers too.
-target_compile_options(alidade_flags INTERFACE "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow;-Werror>"
-                       -ffp-contract=off)
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  # A fixed baseline (2009 and later: SSE4.2, popcnt), not the build machine's: the same bits everywhere.
-  target_compile_options(alidade_flags INTERFACE -march=x86-64-v2)
+target_compile_definitions(alidade_flags INTERFACE ${ALIDADE_PUBLIC_DEFINITIONS})
+target_compile_options(alidade_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror -ffp-contract=off)
+if(ALIDADE_ARCH AND CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(alidade_flags INTERFACE -march=${ALIDADE_ARCH})
 endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   # Of several files compiled in one go it takes a constant inside a function for a shadow on one of another file.
-  target_compile_options(alidade_flags INTERFACE "$<BUILD_INTERFACE:-Wno-shadow>")
+  target_compile_options(alidade_flags INTERFACE -Wno-shadow)
 endif()
 if(ALIDADE_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # compiles in half the time of -O2 -g, runs nearly as fast

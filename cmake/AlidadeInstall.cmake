@@ -1,29 +1,69 @@
-# cmake --install: the program, the portable floors, and what find_package(Alidade) needs.
+# cmake --install: the program with its modules, the library static and shared, and what finds it: find_package(Alidade),
+# pkg-config alidade.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
 set(ALIDADE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Alidade)
+
+# What is in the library: all floors but those that only the program and tests need.
 get_property(ALIDADE_FLOORS GLOBAL PROPERTY ALIDADE_FLOORS)
+set(PARTS ${ALIDADE_FLOORS} alidade_module alidade_io_files alidade_onnx)
+list(REMOVE_ITEM PARTS alidade_synth alidade_view)
+set(OBJECTS)
+foreach(PART ${PARTS})
+  list(APPEND OBJECTS $<TARGET_OBJECTS:${PART}>)
+endforeach()
 
-# What users link: all the floors as Alidade::Alidade.
-add_library(alidade_library INTERFACE)
-target_link_libraries(alidade_library INTERFACE ${ALIDADE_FLOORS})
-set_target_properties(alidade_library PROPERTIES EXPORT_NAME Alidade)
+# alidade_artefact(NAME KIND LINKS ...): the library as Alidade::NAME, in an export set of its own, so that who takes the
+# shared one need not have what the static one must be linked with.
+function(alidade_artefact NAME KIND)
+  cmake_parse_arguments(ARG "" "" "LINKS" ${ARGN})
+  add_library(alidade_${NAME} ${KIND} ${OBJECTS})
+  set_target_properties(alidade_${NAME} PROPERTIES OUTPUT_NAME alidade EXPORT_NAME ${NAME} LINKER_LANGUAGE CXX
+                        VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  target_compile_features(alidade_${NAME} INTERFACE cxx_std_20)
+  target_compile_definitions(alidade_${NAME} INTERFACE ${ALIDADE_PUBLIC_DEFINITIONS})
+  target_include_directories(alidade_${NAME} INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(alidade_${NAME} PUBLIC Eigen3::Eigen opencv_core PRIVATE ${ARG_LINKS})
+  install(TARGETS alidade_${NAME} EXPORT Alidade_${NAME} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT Alidade_${NAME} NAMESPACE Alidade:: FILE Alidade_${NAME}.cmake DESTINATION ${ALIDADE_CMAKE_DIR})
+endfunction()
 
-install(TARGETS alidade_library alidade_flags ${ALIDADE_FLOORS} EXPORT AlidadeTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT AlidadeTargets NAMESPACE Alidade:: DESTINATION ${ALIDADE_CMAKE_DIR})
-install(DIRECTORY src/alidade DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h"
-        PATTERN "base/module" EXCLUDE PATTERN "io/files" EXCLUDE PATTERN "io/media" EXCLUDE
-        PATTERN "detect/onnx" EXCLUDE)
+set(NEEDS Threads::Threads opencv_imgproc opencv_features2d opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
+    ${CMAKE_DL_LIBS})
+find_package(JPEG REQUIRED)
+find_package(PNG REQUIRED)
+find_package(yaml-cpp REQUIRED)
+alidade_artefact(static STATIC LINKS ${NEEDS})
+alidade_artefact(shared SHARED LINKS ${NEEDS})
+# Templates of other libraries, instantiated here, are nobody's business.
+set(SYMBOLS ${CMAKE_CURRENT_LIST_DIR}/alidade.map)
+target_link_options(alidade_shared PRIVATE -Wl,--version-script=${SYMBOLS} -Wl,--no-undefined)
+set_target_properties(alidade_shared PROPERTIES LINK_DEPENDS ${SYMBOLS})
+if(ALIDADE_SANITIZE)
+  target_link_options(alidade_shared PRIVATE -fsanitize=${ALIDADE_SANITIZE})
+endif()
+
+# The API is the headers that mark their namespace as visible, and they are what is installed. tests/architecture sees to
+# it that they include no others.
+install(CODE "set(ALIDADE_SOURCES \"${PROJECT_SOURCE_DIR}/src\")
+set(ALIDADE_INCLUDES \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}\")")
+install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake)
+
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  add_dependencies(alidade alidade_media alidade_dnn)  # what is installed is built
-  # The program finds them beside it, see base/module.
-  install(TARGETS alidade_media alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_dnn)  # what is installed is built
 endif()
+# The program and the library find them beside themselves, see base/module.
+install(TARGETS alidade_media alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
 configure_package_config_file(cmake/AlidadeConfig.cmake.in ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake
-                              INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR})
+                              INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR} PATH_VARS CMAKE_INSTALL_LIBDIR)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/AlidadeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake ${CMAKE_BINARY_DIR}/AlidadeConfigVersion.cmake
         DESTINATION ${ALIDADE_CMAKE_DIR})
+list(TRANSFORM ALIDADE_PUBLIC_DEFINITIONS PREPEND -D OUTPUT_VARIABLE DEFINITIONS)
+list(JOIN DEFINITIONS " " DEFINITIONS)
+configure_file(cmake/alidade.pc.in ${CMAKE_BINARY_DIR}/alidade.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/alidade.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -154,7 +154,7 @@ Section BenchLargeMap(int keyframes) {
        Timed(kTurns,
              [&](int turn) {
                store.Commit([&](MapCommit& commit) {
-                 commit.Edit(landmarks[landmarks.size() / 20 * static_cast<size_t>(turn)])
+                 commit.Edit(landmarks[landmarks.size() / kTurns * static_cast<size_t>(turn)])
                      ->p_world.x() += 0;
                });
              }),

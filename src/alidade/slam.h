@@ -2,3 +2,4 @@
 #pragma once
 
 #include "alidade/system/slam.h"
+#include "alidade/version.h"

@@ -19,7 +19,7 @@ const std::map<std::string, int> kFloors = {
     {"base", 0},     {"geometry", 1}, {"features", 2}, {"io", 2},         {"detect", 2},
     {"optimize", 2}, {"synth", 2},    {"place", 3},    {"evaluation", 3}, {"map", 4},
     {"tracking", 5}, {"mapping", 5},  {"looping", 5},  {"semidense", 5},  {"dynamics", 5},
-    {"system", 6},   {"view", 7},     {"apps", 8}};
+    {"system", 6},   {"view", 7}, {"stream", 7},     {"apps", 8}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 4> kOuterFolders = {"base/module", "io/files", "io/media",
@@ -57,7 +57,7 @@ std::string FolderOf(const std::string& path) {
 }
 
 bool IsPortable(const std::string& path) {
-  if (kFloors.at(FolderOf(path)) > 6) return false;
+  if (kFloors.at(FolderOf(path)) > 6 && FolderOf(path) != "stream") return false;
   return std::none_of(kOuterFolders.begin(), kOuterFolders.end(),
                       [&](const std::string& outer) { return StartsWith(path, outer + "/"); });
 }
@@ -134,6 +134,35 @@ TEST(Architecture, EachFolderHasAFloorAndSaysWhatItIsFor) {
     EXPECT_EQ(kFloors.count(entry.path().filename().string()), 1u) << entry.path().filename();
     EXPECT_TRUE(fs::exists(entry.path() / "README.md")) << entry.path().filename();
   }
+}
+
+// What is installed: cmake/InstallHeaders.cmake takes the headers that mark their namespace.
+bool IsInstalled(const fs::path& header) {
+  const std::string name = header.filename().string();
+  if (name == "slam.h" || name == "version.h" || name == "api.h") return true;
+  std::ifstream stream(header);
+  for (std::string line; std::getline(stream, line);) {
+    if (StartsWith(line, "namespace ALIDADE_API alidade")) return true;
+  }
+  return false;
+}
+
+TEST(Architecture, InstalledHeadersIncludeInstalledHeadersOnly) {
+  const fs::path sources = fs::path(ALIDADE_SOURCE_DIR) / "src";
+  int installed = 0;
+  for (const std::string& path : SourcesUnder(sources / "alidade", sources)) {
+    if (fs::path(path).extension() != ".h" || !IsInstalled(sources / path)) continue;
+    ++installed;
+    for (const std::string& header : IncludesOf(sources / path)) {
+      if (!StartsWith(header, "alidade/")) {
+        EXPECT_FALSE(StartsWith(header, "yaml-cpp/") || StartsWith(header, "flatbuffers/"))
+            << path << " asks users for " << header;
+      } else {
+        EXPECT_TRUE(IsInstalled(sources / header)) << path << " includes " << header;
+      }
+    }
+  }
+  EXPECT_GT(installed, 30);
 }
 
 TEST(ArchitectureRules, SeeIncludesThatGoUpOrSideways) {

@@ -1,14 +1,77 @@
-// What the README shows: images in, a state out.
+// What the README shows, and what else a program of its own needs: images in, a state out;
+// recordings read, results judged, detectors opened, errors caught.
 #include <alidade/slam.h>
 
 #include <cstdio>
+#include <fstream>
+#include <string>
 
-int main() {
+#include "alidade/detect/onnx/open_detector.h"
+#include "alidade/evaluation/ate.h"
+#include "alidade/io/files/image_file.h"
+#include "alidade/io/files/open_source.h"
+#include "alidade/io/files/trajectory_file.h"
+
+namespace {
+
+int Fail(const char* what) {
+  std::printf("outside: %s\n", what);
+  return 1;
+}
+
+// 2 × 1 pixels of 24 bits: what only the media module reads.
+void WriteBitmap(const std::string& path) {
+  std::string bytes(54 + 8, '\0');
+  bytes.replace(0, 2, "BM");
+  bytes[2] = 62, bytes[10] = 54, bytes[14] = 40, bytes[18] = 2, bytes[22] = 1, bytes[26] = 1,
+  bytes[28] = 24;
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) return Fail("needs a folder to write in");
+  const std::string folder = arguments[1];
+  if (std::string(ALIDADE_VERSION).empty() || ALIDADE_VERSION_MAJOR < 0) return Fail("no version");
+
   const auto camera = alidade::Camera::FromFieldOfView(640, 480, 66);
   alidade::SlamSettings settings;
+  settings.Check();
   alidade::Slam slam(camera, settings);
   const cv::Mat black(480, 640, CV_8UC1, cv::Scalar(0));
   const alidade::TrackResult result = slam.Track({.time = 0.5, .image = black});
+  if (result.state != alidade::TrackState::kInitialising) return Fail("black is no start");
+  try {
+    slam.Track({.time = 0.5, .image = black});
+    return Fail("the same time twice was taken");
+  } catch (const alidade::Error& error) {
+    if (error.kind() != alidade::ErrorKind::kInput) return Fail("wrong kind of error");
+  }
+  // Values with Eigen inside, made there and read here: both must mean the same bytes.
+  if (!result.quality.covariance.isZero() ||
+      !alidade::Se3::Exp(alidade::Vector6d::Ones()).R.isUnitary(1e-9)) {
+    return Fail("matrices are laid out otherwise in the library");
+  }
+
+  const std::string path = folder + "/trajectory.txt";
+  std::ofstream(path) << "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 1 0 0 0 0 1\n4 1 1 1 0 0 0 1\n";
+  const alidade::Trajectory truth = alidade::ReadTrajectory(path);
+  if (alidade::EvaluateAte(truth, truth, {}).error.rmse > 1e-9)
+    return Fail("ATE of the truth itself");
+
+  WriteBitmap(folder + "/000.bmp");
+  if (alidade::ReadImageGray(folder + "/000.bmp").cols != 2) return Fail("a bitmap of two pixels");
+  try {
+    alidade::OpenSource(folder + "/none");
+    return Fail("a recording that is not there was opened");
+  } catch (const alidade::Error&) {
+  }
+  try {
+    alidade::OpenDetector(path);
+    return Fail("a text was taken for a detector");
+  } catch (const alidade::Error&) {
+  }
   std::printf("%d keyframes\n", slam.Snapshot().keyframe_count());
-  return result.state == alidade::TrackState::kInitialising ? 0 : 1;
+  return 0;
 }

@@ -4,7 +4,9 @@
 #include <stdexcept>
 #include <string>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // Doubles as the program's exit status.
 enum class ErrorKind {

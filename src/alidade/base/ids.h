@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <functional>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 template <typename Tag>
 struct Id {

@@ -5,7 +5,9 @@
 #include <functional>
 #include <string>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 using WarningListener = std::function<void(const std::string&)>;
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // PCG32 (O'Neill 2014). Cheap to copy; equal seeds and streams give equal sequences.
 class Random {

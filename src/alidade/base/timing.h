@@ -6,9 +6,10 @@
 #include <mutex>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/random.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 class Stopwatch {
  public:

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct Detection {
   int class_id = -1;  // index into Detector::ClassNames()

@@ -1,7 +1,9 @@
 // What a detector's answers are held to.
 #pragma once
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct DetectorSettings {
   float min_score = 0.25f;    // below, a detection is left out: what YOLOv5 itself runs with

@@ -4,9 +4,10 @@
 #include <cstdint>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/detect/settings.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class DynamicsMode {
   kOff,       // everything is taken to stand still

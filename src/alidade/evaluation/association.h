@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 enum class Association {
   kTum,  // one-to-one, the closest pair of all first (the TUM benchmark's associate tool);

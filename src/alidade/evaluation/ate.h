@@ -5,11 +5,12 @@
 #include <optional>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/evaluation/association.h"
 #include "alidade/evaluation/statistics.h"
 #include "alidade/io/trajectory.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class Alignment { kNone, kSe3, kSim3 };
 

@@ -7,7 +7,9 @@
 #include <span>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // One keyframe's depth beside the truth, both along z. The estimate may be smaller than the others:
 // it is judged at its own resolution.

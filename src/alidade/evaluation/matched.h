@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/evaluation/ate.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct TimeOrder {
   std::vector<double> stamps;  // ascending, seconds

@@ -2,9 +2,10 @@
 // drift. Sturm et al. 2012, eq. 1-3.
 #pragma once
 
+#include "alidade/base/api.h"
 #include "alidade/evaluation/ate.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class DeltaUnit { kSeconds, kFrames };
 enum class PairSelection {

@@ -3,7 +3,9 @@
 
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // All in the unit of the errors; std with ddof 0; the median of an even number is the mean of the
 // middle two.

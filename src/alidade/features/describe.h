@@ -4,9 +4,10 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/descriptor.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 inline constexpr int kPatchRadius = 15;   // pixels, of the disc that gives the orientation
 inline constexpr int kPatternReach = 18;  // pixels, of the disc that holds the sampling pattern

@@ -5,7 +5,9 @@
 #include <bit>
 #include <cstdint>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct Descriptor {
   std::array<uint64_t, 4> words{};

@@ -5,11 +5,12 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
+#include "alidade/base/api.h"
 #include "alidade/features/describe.h"
 #include "alidade/features/fast.h"
 #include "alidade/features/frame.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct ExtractorSettings {
   int features = 1000;      // wanted per image, over all levels

@@ -6,7 +6,9 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct Corner {
   int x = 0, y = 0;  // pixels of the level

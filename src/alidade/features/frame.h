@@ -8,11 +8,12 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/descriptor.h"
 #include "alidade/features/picture.h"
 #include "alidade/geometry/camera.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // Image pyramid geometry: level l is the image scaled by 1 / ScaleOfLevel(l).
 inline constexpr int kPyramidLevels = 8;

@@ -4,10 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/descriptor.h"
 #include "alidade/features/frame.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct MatchSettings {
   int max_distance = 50;    // bits of 256

@@ -3,7 +3,9 @@
 
 #include <opencv2/core.hpp>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // All as the (left) camera took them, lens distortion and all, of the camera's size.
 struct Picture {

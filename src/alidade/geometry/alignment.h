@@ -4,9 +4,10 @@
 #include <Eigen/Core>
 #include <span>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // T minimising sum |target_i - T * source_i|² (Umeyama 1991; scale held at 1 unless asked for). At
 // least 3 pairs, not all in one point: throws Error (input) otherwise, and on numbers that are not

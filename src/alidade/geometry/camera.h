@@ -7,9 +7,10 @@
 #include <array>
 #include <limits>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct Camera {
   int width = 0, height = 0;  // pixels

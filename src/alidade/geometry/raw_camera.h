@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <array>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 enum class Lens {
   kPinhole,  // radial-tangential distortion k1 k2 p1 p2 k3 (Brown 1966)

@@ -6,11 +6,12 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // For each pixel of the rectified image the place in the image as taken.
 struct RectifyMap {

@@ -6,7 +6,15 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
+
+static_assert(
+    EIGEN_MAX_STATIC_ALIGN_BYTES == 16,
+    "the library was compiled with -DEIGEN_MAX_STATIC_ALIGN_BYTES=16, which CMake's "
+    "Alidade::Alidade and pkg-config's alidade hand on: values with Eigen inside would be "
+    "laid out otherwise");
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;

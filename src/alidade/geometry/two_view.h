@@ -9,10 +9,11 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct TwoViewSettings {
   int iterations = 200;            // RANSAC samples of 8 matches, for each model

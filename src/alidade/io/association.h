@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // Pairs (index in a, index in b) of the nearest times less than `max_dt` seconds apart, one to one,
 // best first as in TUM's associate.py; returned in the order of a. The lists may be in any order;

@@ -6,13 +6,14 @@
 #include <optional>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/rectify.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/io/frame_source.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct Calibration {
   RawCamera left;

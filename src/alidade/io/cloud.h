@@ -7,7 +7,9 @@
 #include <string>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // What is empty is not known; else there is one for each point.
 struct Cloud {

@@ -6,10 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // A model of one camera as plain values. Pixels are those of the image as taken, the centre of the
 // top-left one at 0, 0 as everywhere in Alidade: COLMAP's half pixel is added when it is written.

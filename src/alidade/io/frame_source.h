@@ -6,9 +6,10 @@
 #include <optional>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class Sensor { kMono, kStereo, kRgbd };
 

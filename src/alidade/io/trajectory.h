@@ -5,9 +5,10 @@
 #include <string_view>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct StampedPose {
   double time = 0;  // seconds

@@ -1,10 +1,11 @@
 // Settings of the loop closer. Counts of matches are for 1000 features; match_scale adapts them.
 #pragma once
 
+#include "alidade/base/api.h"
 #include "alidade/map/adjust.h"
 #include "alidade/optimize/pose_graph.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct LoopSettings {
   bool enabled = true;       // false: places are recognised only to relocalise

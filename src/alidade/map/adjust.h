@@ -5,12 +5,13 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
 #include "alidade/map/measurement.h"
 #include "alidade/optimize/bundle_adjustment.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct AdjustSettings {
   MeasurementNoise noise;  // of keypoints

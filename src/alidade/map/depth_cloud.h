@@ -4,11 +4,12 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/io/cloud.h"
 #include "alidade/map/map_store.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct PlacedDepth {
   const DepthMap* depth = nullptr;

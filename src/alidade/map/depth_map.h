@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct DepthPixel {
   uint16_t x = 0, y = 0;  // undistorted pixel of the keyframe's camera

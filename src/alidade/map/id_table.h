@@ -4,13 +4,16 @@
 // copying: Driscoll, Sarnak, Sleator & Tarjan 1989.)
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // The tree for objects of any type. Reading is thread-safe; a copy shares all nodes.
 class IdTree {
@@ -40,6 +43,14 @@ class IdTree {
     if (root_) WalkBack(*root_, levels_ - 1, visit);
   }
 
+  // visit(object in `before`, object here) for all ids where these differ, null where there is
+  // none, in order of id. What both share is skipped by whole nodes: costs what has changed.
+  template <typename Visit>
+  void ForEachChange(const IdTree& before, Visit&& visit) const {
+    WalkChanges({before.root_.get(), before.levels_}, {root_.get(), levels_},
+                std::max(levels_, before.levels_), visit);
+  }
+
   int CountNodes() const;                          // for tests
   int CountNodesNotIn(const IdTree& other) const;  // that `other` does not share
 
@@ -50,6 +61,20 @@ class IdTree {
     std::array<std::shared_ptr<const void>, kSlots> slots;  // nodes, on the lowest level objects
     int used = 0;                                           // slots that are not empty
     uint64_t version = 0;
+  };
+
+  struct Subtree {
+    const Node* node = nullptr;
+    int levels = 0;
+    // Its part in slot `i` of a tree of `high` levels: a lower tree lies in the first slot.
+    Subtree Part(int i, int high) const {
+      if (levels < high) return i == 0 ? *this : Subtree{};
+      if (!node) return {};
+      return {static_cast<const Node*>(node->slots[static_cast<size_t>(i)].get()), levels - 1};
+    }
+    const void* Object(int i) const {
+      return node ? node->slots[static_cast<size_t>(i)].get() : nullptr;
+    }
   };
 
   static bool SetBelow(std::shared_ptr<const void>& slot, int level, uint32_t id,
@@ -78,6 +103,18 @@ class IdTree {
     return true;
   }
 
+  template <typename Visit>
+  static void WalkChanges(Subtree before, Subtree now, int levels, Visit& visit) {
+    if (before.node == now.node && (!now.node || before.levels == now.levels)) return;
+    for (int i = 0; i < kSlots; ++i) {
+      if (levels > 1) {
+        WalkChanges(before.Part(i, levels), now.Part(i, levels), levels - 1, visit);
+      } else if (before.Object(i) != now.Object(i)) {
+        visit(before.Object(i), now.Object(i));
+      }
+    }
+  }
+
   std::shared_ptr<const Node> root_;
   int levels_ = 1;
   int size_ = 0;
@@ -101,6 +138,13 @@ class IdTable {
   void ForEachFromLast(Visit&& visit) const {
     tree_.ForEachFromLast(
         [&](const void* object) { return visit(*static_cast<const Object*>(object)); });
+  }
+  // visit(const Object* before, const Object* now): see IdTree.
+  template <typename Visit>
+  void ForEachChange(const IdTable& before, Visit&& visit) const {
+    tree_.ForEachChange(before.tree_, [&](const void* then, const void* now) {
+      visit(static_cast<const Object*>(then), static_cast<const Object*>(now));
+    });
   }
   const IdTree& tree() const { return tree_; }
 

@@ -4,12 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/map/depth_map.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct Neighbour {
   KeyFrameId id;

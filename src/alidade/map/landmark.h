@@ -4,10 +4,11 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/ids.h"
 #include "alidade/features/descriptor.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct Observation {
   KeyFrameId keyframe;

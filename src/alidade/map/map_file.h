@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
 #include "alidade/place/place_index.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // All that is saved. Images are not: the frames of a map read back have none.
 struct SavedMap {

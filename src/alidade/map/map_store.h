@@ -9,11 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/map/id_table.h"
 #include "alidade/map/keyframe.h"
 #include "alidade/map/landmark.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // What is left of a keyframe the map can do without: where it was, told by its parent, for those
 // who were placed against it.

@@ -4,10 +4,11 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "alidade/base/api.h"
 #include "alidade/features/frame.h"
 #include "alidade/geometry/camera.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // How well a keypoint is placed, pixels on level 0.
 struct MeasurementNoise {

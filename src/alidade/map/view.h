@@ -3,11 +3,12 @@
 
 #include <optional>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/map/landmark.h"
 #include "alidade/map/map_store.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct LandmarkView {
   Eigen::Vector2d pixel;  // undistorted

@@ -1,10 +1,11 @@
 // Settings of the mapper.
 #pragma once
 
+#include "alidade/base/api.h"
 #include "alidade/map/measurement.h"
 #include "alidade/optimize/bundle_adjustment.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct MapperSettings {
   MeasurementNoise noise;    // of keypoints

@@ -6,10 +6,11 @@
 #include <atomic>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct BundleObservation {
   int camera = -1, point = -1;  // indices

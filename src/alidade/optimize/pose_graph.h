@@ -8,9 +8,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct PoseGraphEdge {
   int a = -1, b = -1;  // indices of nodes

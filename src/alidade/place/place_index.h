@@ -10,13 +10,14 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
 #include "alidade/place/settings.h"
 #include "alidade/place/vocabulary.h"
 #include "alidade/place/word_index.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // What a saved map keeps: words are found anew on load.
 struct SavedPlaces {

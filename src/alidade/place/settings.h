@@ -1,10 +1,11 @@
 // What place recognition can be told.
 #pragma once
 
+#include "alidade/base/api.h"
 #include "alidade/place/vocabulary.h"
 #include "alidade/place/word_matching.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct PlaceSettings {
   VocabularySettings vocabulary;

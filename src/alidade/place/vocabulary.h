@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/descriptor.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct VocabularySettings {
   int branching = 10;  // children of a node at most

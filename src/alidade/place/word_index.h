@@ -8,13 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
 #include "alidade/place/settings.h"
 #include "alidade/place/vocabulary.h"
 #include "alidade/place/word_matching.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct PlaceMatch {
   KeyFrameId id;

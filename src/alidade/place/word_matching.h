@@ -7,10 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/frame.h"
 #include "alidade/place/vocabulary.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct WordMatchSettings {
   int level = 3;          // of the tree: two keypoints are compared when their words lie below the

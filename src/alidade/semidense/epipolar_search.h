@@ -10,6 +10,7 @@
 #include "alidade/geometry/camera.h"
 #include "alidade/semidense/gradient_image.h"
 #include "alidade/semidense/hypothesis.h"
+#include "alidade/semidense/report.h"
 #include "alidade/semidense/settings.h"
 
 namespace alidade {
@@ -20,11 +21,6 @@ struct EpipolarPair {
   const GradientImage* other = nullptr;
   cv::Mat values;  // of the reference, as the other's exposure would have made them
   Se3 T_other_reference;
-};
-
-struct SearchCount {
-  int64_t searches = 0;  // epipolar lines that were walked
-  int64_t samples = 0;   // places on them
 };
 
 // The lines of one pair, one after the other.

@@ -12,21 +12,11 @@
 #include "alidade/features/picture.h"
 #include "alidade/map/map_store.h"
 #include "alidade/semidense/depth_view.h"
-#include "alidade/semidense/epipolar_search.h"
 #include "alidade/semidense/gradient_image.h"
+#include "alidade/semidense/report.h"
 #include "alidade/semidense/settings.h"
 
 namespace alidade {
-
-// What was done so far.
-struct SemiDenseReport {
-  int keyframes = 0;   // worked on, each time counted
-  int64_t pixels = 0;  // with enough gradient, in those
-  SearchCount search;
-  int most_behind = 0;  // keyframes that waited at once, whose turn had come
-  int let_go = 0;       // keyframes that stay without depth: too many waited (max_waiting)
-  size_t bytes = 0;     // that are held now, the finished depth in the map included
-};
 
 class SemiDenseMapper {
  public:

@@ -1,7 +1,9 @@
 // Settings of semi-dense mapping; names as in Mur-Artal & Tardós, RSS 2015 ("the paper").
 #pragma once
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct SemiDenseSettings {
   bool enabled = false;

@@ -4,7 +4,9 @@
 
 #include <deque>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 struct ClockSettings {
   // A pause is a gap when it is longer than both: the motion before says nothing of the place

@@ -166,6 +166,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     MapId map;
     Se3 T_anchor_world;
     double scale = 1;
+    const ChunkAnchor* anchor = nullptr;
   };
   std::vector<Place> places;
   std::vector<FramePose> trajectory;
@@ -178,6 +179,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
       places.clear();
       for (const ChunkAnchor& anchor : *chunk.anchors) {
         Place place;
+        place.anchor = &anchor;
         place.map = map.MapOf(anchor.keyframe);
         if (place.map.valid()) {
           const double scale = map.ScaleOf(anchor.keyframe);
@@ -201,6 +203,10 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
       pose.tracked = place.map.valid();  // not when its map was given up
       if (pose.tracked) {
         Se3 T_camera_anchor = Unpack(record.T_camera_anchor);
+        T_camera_anchor.t *= place.anchor->scale;
+        pose.reference = place.anchor->keyframe;
+        pose.T_reference_camera = (T_camera_anchor * place.anchor->T_placed_keyframe).Inverse();
+        T_camera_anchor = Unpack(record.T_camera_anchor);
         T_camera_anchor.t *= place.scale;
         pose.T_world_camera = (T_camera_anchor * place.T_anchor_world).Inverse();
         pose.T_world_camera_live = Unpack(record.T_world_camera_live);

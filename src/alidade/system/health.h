@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // One part beside the tracker: "mapping", "loop closing", "full adjustment", "semi-dense mapping",
 // "dynamics", "detector"; those that were asked for.

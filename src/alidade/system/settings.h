@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/dynamics/settings.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/looping/settings.h"
@@ -16,7 +17,7 @@
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct TrajectorySettings {
   // Frames older than this are let go, a few hundred at a time: what a program that runs for days

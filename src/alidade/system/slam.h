@@ -6,16 +6,17 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/base/error.h"
 #include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
-#include "alidade/semidense/semidense_mapper.h"
+#include "alidade/semidense/report.h"
 #include "alidade/system/health.h"
 #include "alidade/system/settings.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 enum class TrackState { kInitialising, kTracking, kLost };
 
@@ -62,6 +63,10 @@ struct FramePose {
   MapId map;                // whose world the pose is in: none when not tracked
   Se3 T_world_camera;       // corrected by all that was learnt since
   Se3 T_world_camera_live;  // as it was when the frame was done
+  // The same told by the keyframe it hangs on (living, or culled and followed by another, see
+  // MapState::culled), with lengths as if that one's scale were 1: what a correction leaves alone.
+  KeyFrameId reference;
+  Se3 T_reference_camera;
 };
 
 // A feature of a frame, and what became of it.

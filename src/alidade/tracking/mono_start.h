@@ -6,11 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "alidade/base/api.h"
 #include "alidade/features/frame.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/two_view.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct MonoStartSettings {
   TwoViewSettings two_view;

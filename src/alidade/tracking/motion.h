@@ -3,9 +3,10 @@
 
 #include <deque>
 
+#include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct MotionSettings {
   // Seconds a motion is taken to go on at most: nobody moves a camera evenly for longer. (Frames

@@ -1,11 +1,12 @@
 // Settings of the tracker. Counts of matches are for 1000 features; match_scale adapts them.
 #pragma once
 
+#include "alidade/base/api.h"
 #include "alidade/features/extractor.h"
 #include "alidade/map/measurement.h"
 #include "alidade/tracking/motion.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct TrackerSettings {
   ExtractorSettings extractor;

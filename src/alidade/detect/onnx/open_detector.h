@@ -4,10 +4,11 @@
 #include <memory>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/detect/detector.h"
 #include "alidade/detect/settings.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // Reads the file and runs the network once on a grey picture, so that what cannot work fails here:
 // throws Error (input) naming the file when it is missing, no ONNX, damaged, needs an operator that

@@ -4,9 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/io/calibration.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 inline constexpr double kDefaultFovDegrees =
     66;  // horizontal; most phones' main camera lies between 60 and 70

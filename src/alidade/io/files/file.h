@@ -6,7 +6,9 @@
 #include <string_view>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // Where a file ends at the latest, bytes: what is longer is no file of that kind, or was made to
 // eat memory, and is refused before it is read.

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // What a file is, by its first bytes. All throw Error (input) naming the file and what is wrong
 // with it: cut short, empty, no image. A damaged image is an error, never a half grey picture.

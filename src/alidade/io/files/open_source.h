@@ -5,9 +5,10 @@
 #include <optional>
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/io/frame_source.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 struct SourceOptions {
   // Nothing: rgbd when there is depth, stereo when there is a second camera, else mono.

@@ -3,9 +3,10 @@
 
 #include <string>
 
+#include "alidade/base/api.h"
 #include "alidade/io/trajectory.h"
 
-namespace alidade {
+namespace ALIDADE_API alidade {
 
 // Known by its content: TUM text (8 numbers a line), EuRoC's ground truth csv (of the body: T_BS of
 // ../cam0/sensor.yaml takes it to the left camera), KITTI poses (12 numbers a line, with times.txt

@@ -1,0 +1,179 @@
+#include "alidade/stream/stream_scene.h"
+
+#include <cmath>
+
+#include "alidade/base/error.h"
+#include "alidade/stream/pack.h"
+
+namespace alidade {
+namespace {
+
+[[noreturn]] void Refuse(const std::string& what) { ThrowInput("the stream is damaged: " + what); }
+
+Se3 PoseFrom(const stream::Pose* pose, const char* whose) {
+  if (!pose) Refuse(std::string("no pose of ") + whose);
+  const double norm =
+      std::hypot(std::hypot(pose->qx(), pose->qy()), std::hypot(pose->qz(), pose->qw()));
+  const bool finite =
+      std::isfinite(pose->tx()) && std::isfinite(pose->ty()) && std::isfinite(pose->tz());
+  if (!finite || !(std::abs(norm - 1) < 1e-3)) Refuse(std::string("a pose of ") + whose);
+  return UnpackPose(*pose);
+}
+
+double ScaleFrom(double scale) {
+  if (!(scale > 0) || !std::isfinite(scale)) Refuse("a scale");
+  return scale;
+}
+
+std::vector<uint32_t> ListFrom(const flatbuffers::Vector<uint32_t>* list) {
+  return list ? std::vector<uint32_t>(list->begin(), list->end()) : std::vector<uint32_t>();
+}
+
+std::string TextFrom(const flatbuffers::String* text) { return text ? text->str() : ""; }
+
+void Check(const flatbuffers::Vector<uint8_t>* bytes, size_t each, const char* what) {
+  if (bytes && bytes->size() % each != 0) Refuse(std::string("half a ") + what);
+}
+
+void TakeKeyFrame(const stream::KeyFrame& told, StreamScene& scene) {
+  SceneKeyFrame& keyframe = scene.keyframes[{told.id()}];
+  keyframe.map = {told.map()};
+  keyframe.parent = {told.parent()};
+  keyframe.number = told.number();
+  keyframe.time = told.time();
+  keyframe.T_world_camera = PoseFrom(told.t_world_camera(), "a keyframe");
+  keyframe.scale = ScaleFrom(told.scale());
+  keyframe.covisible = ListFrom(told.covisible());
+  keyframe.loops = ListFrom(told.loops());
+}
+
+// Frames that hang on it hang on the one that is followed from now on.
+void TakeCull(const stream::Culled& cull, StreamScene& scene) {
+  const Se3 T_follows_culled = PoseFrom(&cull.t_follows_culled(), "what was culled");
+  const double scale = ScaleFrom(cull.scale());
+  for (SceneFrame& frame : scene.path) {
+    if (frame.reference.value != cull.id()) continue;
+    frame.reference = {cull.follows()};
+    frame.T_reference_camera.t *= scale;
+    frame.T_reference_camera = T_follows_culled * frame.T_reference_camera;
+  }
+  scene.keyframes.erase({cull.id()});
+}
+
+void TakeChange(const stream::MapChange& change, StreamScene& scene) {
+  if (change.whole()) {
+    scene.keyframes.clear();
+    scene.landmarks.clear();
+    scene.path.clear();
+    scene.events.clear();
+  }
+  scene.version = change.version();
+  if (change.keyframes()) {
+    for (const stream::KeyFrame* told : *change.keyframes()) TakeKeyFrame(*told, scene);
+  }
+  if (change.moves()) {
+    for (const stream::Move* move : *change.moves()) {
+      const auto found = scene.keyframes.find({move->id()});
+      if (found == scene.keyframes.end()) Refuse("a keyframe moves that was never told");
+      found->second.T_world_camera = PoseFrom(&move->t_world_camera(), "a keyframe");
+      found->second.scale = ScaleFrom(move->scale());
+    }
+  }
+  Check(change.landmarks(), kPackedLandmark, "landmark");
+  for (size_t i = 0; change.landmarks() && i < change.landmarks()->size(); i += kPackedLandmark) {
+    const auto [id, told] = UnpackLandmark(change.landmarks()->data() + i);
+    if (!told.p.allFinite() || scene.keyframes.count(told.keyframe) == 0) Refuse("a landmark");
+    scene.landmarks[id] = {told.keyframe, told.p};
+  }
+  if (change.removed_landmarks()) {
+    for (uint32_t id : *change.removed_landmarks()) scene.landmarks.erase({id});
+  }
+  if (change.culled()) {
+    for (const stream::Culled* cull : *change.culled()) TakeCull(*cull, scene);
+  }
+  for (size_t i = 0; change.depth() && i < change.depth()->size(); ++i) {
+    const stream::DepthCloud& cloud = *change.depth()->Get(static_cast<unsigned>(i));
+    const auto found = scene.keyframes.find({cloud.keyframe()});
+    if (found == scene.keyframes.end()) Refuse("depth of a keyframe that was never told");
+    Check(cloud.points(), kPackedPoint, "point");
+    const bool any = cloud.points() && cloud.points()->size() > 0;
+    if (any && !(cloud.least() > 0 && cloud.most() >= cloud.least() && std::isfinite(cloud.most())))
+      Refuse("a range of depth");
+    found->second.depth_least = cloud.least();
+    found->second.depth_most = cloud.most();
+    found->second.depth.clear();
+    if (any) {
+      found->second.depth.assign(reinterpret_cast<const char*>(cloud.points()->data()),
+                                 cloud.points()->size());
+    }
+  }
+  if (change.path()) {
+    for (const stream::PathFrame* told : *change.path()) {
+      SceneFrame frame{told->number(), static_cast<int>(told->state()), told->time(), {}, {}};
+      if (scene.keyframes.count({told->reference()}) != 0) {
+        frame.reference = {told->reference()};
+        frame.T_reference_camera = PoseFrom(&told->t_reference_camera(), "a frame");
+      }
+      scene.path.push_back(frame);
+    }
+  }
+}
+
+void TakeFrame(const stream::Frame& told, StreamScene& scene) {
+  Check(told.features(), kPackedFeature, "feature");
+  SceneFrame frame{told.number(), static_cast<int>(told.state()), told.time(), {}, {}};
+  if (told.reference() != KeyFrameId::kNone) {
+    if (scene.keyframes.count({told.reference()}) == 0) Refuse("a frame hangs on nothing");
+    frame.reference = {told.reference()};
+    frame.T_reference_camera = PoseFrom(told.t_reference_camera(), "a frame");
+  }
+  scene.path.push_back(frame);
+  ++scene.frames;
+  scene.told_keyframes = told.keyframes();
+  scene.told_landmarks = told.landmarks();
+  scene.matches = told.matches();
+}
+
+}  // namespace
+
+void StreamScene::Take(std::string_view bytes) {
+  // FlatBuffers reads numbers where they lie: they must lie as they did when they were written.
+  std::vector<uint64_t> aligned((bytes.size() + 7) / 8);
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(aligned.data()));
+  const auto* data = reinterpret_cast<const uint8_t*>(aligned.data());
+  flatbuffers::Verifier verifier(data, bytes.size());
+  if (bytes.size() < 12 || !stream::MessageBufferHasIdentifier(data) ||
+      !stream::VerifyMessageBuffer(verifier)) {
+    Refuse("these bytes are no message");
+  }
+  const stream::Message& message = *stream::GetMessage(data);
+  if (const stream::Hello* hello = message.body_as_Hello()) {
+    if (hello->version() > 1) ThrowInput("the stream is of a newer version");
+    if (hello->camera()) {
+      width = hello->camera()->width();
+      height = hello->camera()->height();
+    }
+    source = TextFrom(hello->source());
+    unit = TextFrom(hello->unit());
+  } else if (const stream::MapChange* change = message.body_as_MapChange()) {
+    TakeChange(*change, *this);
+  } else if (const stream::Frame* frame = message.body_as_Frame()) {
+    TakeFrame(*frame, *this);
+  } else if (const stream::Event* event = message.body_as_Event()) {
+    events.push_back({static_cast<int>(event->kind()), event->number(), TextFrom(event->text())});
+  }
+}
+
+Eigen::Vector3d StreamScene::PointOf(const SceneLandmark& landmark) const {
+  const SceneKeyFrame& keyframe = keyframes.at(landmark.keyframe);
+  return keyframe.T_world_camera * (keyframe.scale * landmark.p.cast<double>());
+}
+
+Se3 StreamScene::PoseOf(const SceneFrame& frame) const {
+  const SceneKeyFrame& keyframe = keyframes.at(frame.reference);
+  Se3 T_reference_camera = frame.T_reference_camera;
+  T_reference_camera.t *= keyframe.scale;
+  return keyframe.T_world_camera * T_reference_camera;
+}
+
+}  // namespace alidade

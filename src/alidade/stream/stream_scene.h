@@ -1,0 +1,68 @@
+// What a reader of the stream knows: messages put together again. The C++ counterpart of
+// web/scene's, for tests and for what draws without a browser.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "alidade/base/ids.h"
+#include "alidade/geometry/se3.h"
+
+namespace alidade {
+
+struct SceneKeyFrame {
+  MapId map;
+  KeyFrameId parent;
+  int number = 0;   // of its frame
+  double time = 0;  // seconds
+  Se3 T_world_camera;
+  double scale = 1;
+  std::vector<uint32_t> covisible, loops;
+  float depth_least = 0, depth_most = 0;
+  std::string depth;  // packed points (pack.h)
+};
+
+// Told in a keyframe: p_world = T_world_camera * (scale * p).
+struct SceneLandmark {
+  KeyFrameId keyframe;
+  Eigen::Vector3f p = Eigen::Vector3f::Zero();
+};
+
+struct SceneFrame {
+  int number = 0;
+  int state = 0;  // TrackState
+  double time = 0;
+  KeyFrameId reference;  // none: no pose
+  Se3 T_reference_camera;
+};
+
+struct SceneEvent {
+  int kind = 0;  // stream::EventKind
+  int number = 0;
+  std::string text;
+};
+
+class StreamScene {
+ public:
+  // Throws Error (input) saying what is wrong with bytes that are no message of ours, or that tell
+  // of what was never told; the scene may then have taken part of the message.
+  void Take(std::string_view message);
+
+  int width = 0, height = 0;  // of the camera
+  std::string source, unit;
+  uint64_t version = 0;  // of the map
+  std::map<KeyFrameId, SceneKeyFrame> keyframes;
+  std::map<LandmarkId, SceneLandmark> landmarks;
+  std::vector<SceneFrame> path;
+  std::vector<SceneEvent> events;
+  int frames = 0;                                                // messages of frames
+  uint32_t told_keyframes = 0, told_landmarks = 0, matches = 0;  // counts of the last frame
+
+  Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world
+  Se3 PoseOf(const SceneFrame& frame) const;  // T_world_camera; needs a reference
+};
+
+}  // namespace alidade
