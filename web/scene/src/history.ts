@@ -19,16 +19,17 @@ export interface HistorySettings {
   budget: number; // bytes of messages kept
   stride: number; // bytes of messages between kept states
   states: number; // kept at most; each holds what changed in the map since the one before
+  events: number; // kept at most
   thinned: number; // of old frames one in so many keeps its picture
 }
 
-export const HISTORY: HistorySettings = { budget: 256e6, stride: 4e6, states: 64, thinned: 10 };
+export const HISTORY: HistorySettings = { budget: 256e6, stride: 4e6, states: 64, events: 5000, thinned: 10 };
 
 interface Kept { index: number; state: State } // after entry `index`
 
 export class History {
   readonly entries: (Entry | null)[] = []; // null: gone
-  readonly events: { index: number; event: Event }[] = [];
+  readonly events: Event[] = []; // by number
   readonly frames: { index: number; number: number; time: number }[] = [];
   first = 0; // entries before it are gone
   private kept: Kept[] = [];
@@ -53,7 +54,7 @@ export class History {
       entry.time = message.time;
       this.frames.push({ index, number: message.number, time: message.time });
     }
-    if (message.kind === 'event') this.events.push({ index, event: message });
+    if (message.kind === 'event') this.addEvent(message);
     this.entries.push(entry);
     this.bytes += bytes.byteLength;
     this.sinceKept += bytes.byteLength;
@@ -146,6 +147,18 @@ export class History {
       else high = middle - 1;
     }
     return low;
+  }
+
+  // All are told again after a whole state.
+  private addEvent(event: Event): void {
+    let at = this.events.length;
+    while (at > 0 && this.events[at - 1].number > event.number) --at;
+    for (let i = at - 1; i >= 0 && this.events[i].number === event.number; --i) {
+      const { what, text, a, b } = this.events[i];
+      if (what === event.what && text === event.text && a === event.a && b === event.b) return;
+    }
+    this.events.splice(at, 0, event);
+    if (this.events.length > this.settings.events) this.events.shift();
   }
 
   private replace(index: number, message: Message | null): void {

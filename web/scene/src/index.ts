@@ -7,3 +7,5 @@ export { StreamFileReader } from './stream_file.ts';
 export { LAYERS, NoWebGL, Scene } from './scene.ts';
 export type { Colours, LayerName } from './scene.ts';
 export type { ViewMode } from './view.ts';
+export { alignTruth } from './align.ts';
+export type { Alignment } from './align.ts';

@@ -1,9 +1,10 @@
 // The three.js scene of a state. Draws what the state says; keeps nothing but GPU buffers and where it is looked at from.
-import { ColorManagement, Group, Matrix4, Scene as ThreeScene, Vector2, Vector3, WebGLRenderer } from 'three';
+import { ColorManagement, Group, Scene as ThreeScene, Vector2, Vector3, WebGLRenderer } from 'three';
+import type { Alignment } from './align.ts';
 import { Anchors, WORLD } from './anchors.ts';
 import { CloudUpload, corners, drawEdges, drawFrusta, drawPath, LandmarkUpload } from './layers.ts';
 import { LineLayer } from './lines.ts';
-import type { Pose, TruePose } from './messages.ts';
+import type { Pose } from './messages.ts';
 import { NONE } from './messages.ts';
 import { transform } from './pose.ts';
 import { PointLayer } from './points.ts';
@@ -15,6 +16,8 @@ import { View } from './view.ts';
 import type { ViewMode } from './view.ts';
 
 ColorManagement.enabled = false; // colours are the page's own
+
+const LEANING = 0.1; // radians
 
 export const LAYERS = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera'] as const;
 export type LayerName = (typeof LAYERS)[number];
@@ -41,6 +44,7 @@ export class Scene {
   private state: State | null = null;
   private active = NONE; // the map that is shown
   private placed = false;
+  private covered = { left: 0, right: 0 };
   private levelled = 0; // keyframes when `up` was last asked for
   private frameRequest = 0;
   private before = 0;
@@ -92,6 +96,10 @@ export class Scene {
 
   show(layer: LayerName, visible: boolean): void {
     this.layers[layer].visible = visible;
+    if (layer === 'truth' && this.state) {
+      this.drawn = null; // the path is coloured by its errors
+      this.update(this.state);
+    }
     this.invalidate();
   }
 
@@ -112,15 +120,13 @@ export class Scene {
     this.invalidate();
   }
 
-  // Truth in the world of the map (null: none to show), and the share 0…1 of the greatest error for each frame of the path.
-  overlay(truth: readonly TruePose[] | null, errors: ((i: number) => number) | null): void {
+  // The truth as it lies in the world of the map, and how far off each frame of the path is; null: not known.
+  overlay(alignment: Alignment | null): void {
     const layer = this.lines.truth;
-    layer.begin(truth?.length ?? 0);
-    for (let i = 1; i < (truth?.length ?? 0); ++i) {
-      layer.add(WORLD, truth![i - 1].T_world_camera.slice(4), WORLD, truth![i].T_world_camera.slice(4));
-    }
+    layer.begin(alignment?.truth.length ?? 0);
+    for (let i = 1; i < (alignment?.truth.length ?? 0); ++i) layer.add(WORLD, alignment!.truth[i - 1], WORLD, alignment!.truth[i]);
     layer.end();
-    this.errors = errors;
+    this.errors = alignment && ((i) => (alignment.errors[i] / (alignment.worst || 1)) || 0);
     this.drawn = null;
     this.invalidate();
   }
@@ -128,9 +134,7 @@ export class Scene {
   update(state: State): void {
     this.state = state;
     const { frame } = state;
-    if (frame && frame.map !== NONE) this.active = frame.map;
-    else if (!state.keyframes.size) this.active = NONE;
-    if (this.active === NONE) for (const keyframe of state.keyframes.values()) this.active = keyframe.map;
+    this.active = state.activeMap;
     const drawn = this.drawn;
     const mapChanged = !drawn || drawn.keyframes !== state.keyframes || drawn.map !== state.mapVersion || drawn.active !== this.active;
     if (mapChanged) {
@@ -144,7 +148,7 @@ export class Scene {
       this.cloudUpload.update(state);
       this.level(state);
     }
-    if (mapChanged || drawn?.frame !== frame) drawPath(this.lines.path, state, this.anchors, this.errors ?? (() => 0));
+    if (mapChanged || drawn?.frame !== frame) drawPath(this.lines.path, state, this.anchors, this.errors && this.layers.truth.visible ? this.errors : () => 0);
     this.placeCamera(state.cameraPose(), state);
     this.drawn = { keyframes: state.keyframes, frame, map: state.mapVersion, active: this.active };
     this.invalidate();
@@ -156,7 +160,7 @@ export class Scene {
     this.levelled = 0;
     this.active = NONE;
     this.drawn = null;
-    this.overlay(null, null);
+    this.overlay(null);
   }
 
   // Where a point of the world is on the page, CSS pixels from the canvas's corner; null: behind the eye.
@@ -168,6 +172,12 @@ export class Scene {
     return { x: (0.5 * at.x + 0.5) * this.canvas.clientWidth, y: (0.5 - 0.5 * at.y) * this.canvas.clientHeight };
   }
 
+  // CSS pixels of the canvas's sides that are covered by something else.
+  insets(left: number, right: number): void {
+    this.covered = { left, right };
+    this.resize();
+  }
+
   resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
     if (!width || !height) return;
@@ -177,7 +187,7 @@ export class Scene {
     this.resolution.value.set(width * ratio, height * ratio);
     this.points.landmarks.size = Math.round(2 * ratio);
     this.points.cloud.size = Math.round(2 * ratio);
-    this.view.resize(width, height);
+    this.view.resize(width, height, this.covered.left, this.covered.right);
     this.invalidate();
   }
 
@@ -201,25 +211,30 @@ export class Scene {
     if (pose) {
       const of = corners(state.hello?.camera ?? null, 0.1 * typicalDistance(state, this.active));
       addFrustumAt(layer, pose, of);
-      if (!this.placed) this.view.behind(pose, false);
+      if (!this.placed && this.view.mode === 'follow') this.view.behind(pose, false);
       else this.view.follow(pose);
       this.placed = true;
     }
     layer.end();
   }
 
-  // Up is asked for again as the map grows, seldom, and not once somebody has turned the view.
+  // Up is asked for again as the map grows, and followed when it was far off and nobody has turned the view.
   private level(state: State): void {
     const count = state.keyframes.size;
-    if (count === 0 || count < 2 * this.levelled) return;
-    this.levelled = Math.max(count, 2);
+    if (count === 0 || (this.levelled > 0 && (count < 2 * this.levelled || this.view.touched))) return;
     const poses = [...state.keyframes.values()].filter((k) => k.map === this.active).map((k) => k.T_world_camera);
     const { right, forward, up } = upright(poses);
-    const m = new Matrix4().set(
+    const { elements: old } = this.world.matrix;
+    const same = old[1] * up[0] + old[5] * up[1] + old[9] * up[2] > Math.cos(LEANING);
+    if (this.levelled > 0 && same) {
+      this.levelled = count;
+      return;
+    }
+    this.levelled = count;
+    this.world.matrix.set(
       right[0], right[1], right[2], 0, up[0], up[1], up[2], 0, -forward[0], -forward[1], -forward[2], 0, 0, 0, 0, 1);
-    this.world.matrix.copy(m);
     this.world.matrixWorldNeedsUpdate = true;
-    this.placed = this.placed && this.view.mode !== 'follow';
+    this.placed = false;
   }
 }
 

@@ -1,6 +1,6 @@
 // What a viewer knows: the sum of the messages so far. apply() is the only thing that changes it; clone() is cheap (see pages.ts).
 import { Landmarks } from './landmarks.ts';
-import type { Culled, DepthCloud, Frame, Hello, KeyFrame, MapChange, Message, Playback } from './messages.ts';
+import type { Culled, DepthCloud, Frame, Hello, KeyFrame, MapChange, Message, Playback, Pose, TrackingState } from './messages.ts';
 import { NONE } from './messages.ts';
 import { Path } from './path.ts';
 import { compose, IDENTITY, transform } from './pose.ts';
@@ -50,13 +50,32 @@ export class State {
     }
   }
 
+  // Of the latest frame; one who joins late knows it from the path only.
+  get latest(): { number: number; time: number; state: TrackingState } | null {
+    const last = this.path.length > 0 ? this.path.at(this.path.length - 1) : null;
+    return !this.frame || (last && last.number > this.frame.number) ? last : this.frame;
+  }
+
   // Where the camera of the latest frame is, by the map as it is now; null: not known.
-  cameraPose() {
-    const frame = this.frame;
-    if (!frame || frame.state !== 'tracking') return null;
-    const reference = this.keyframes.get(frame.reference);
-    if (reference && frame.T_reference_camera) return compose(reference.T_world_camera, reference.scale, frame.T_reference_camera);
-    return frame.T_world_camera;
+  cameraPose(): Pose | null {
+    if (this.path.length === 0) return this.frame?.T_world_camera ?? null;
+    const last = this.path.at(this.path.length - 1);
+    if (last.state !== 'tracking') return null;
+    const reference = this.keyframes.get(last.reference);
+    if (reference) return compose(reference.T_world_camera, reference.scale, last.T_reference_camera);
+    return this.frame?.number === last.number ? this.frame.T_world_camera : null;
+  }
+
+  // The map that the latest frame is in; NONE while there is none.
+  get activeMap(): number {
+    for (let i = this.path.length - 1; i >= 0; --i) {
+      const keyframe = this.keyframes.get(this.path.at(i).reference);
+      if (keyframe) return keyframe.map;
+      if (i < this.path.length - 1000) break;
+    }
+    let newest: KeyFrame | undefined;
+    for (const keyframe of this.keyframes.values()) if (!newest || keyframe.id > newest.id) newest = keyframe;
+    return newest?.map ?? NONE;
   }
 
   // Of a landmark, in the world; undefined: no such landmark.
@@ -108,11 +127,6 @@ export class State {
     const resolved = resolve(moves);
     this.landmarks.follow(resolved);
     this.path.follow(resolved);
-    if (this.frame && resolved.has(this.frame.reference)) {
-      const { follows, scale, T_follows_culled } = resolved.get(this.frame.reference)!;
-      const T = this.frame.T_reference_camera;
-      this.frame = { ...this.frame, reference: follows, T_reference_camera: T && compose(T_follows_culled, scale, T) };
-    }
   }
 }
 

@@ -50,6 +50,7 @@ export class Sample {
   readonly points = new Map<number, Point>(); // those of the map
   readonly clouds = new Map<number, DepthCloud>();
   readonly path: PathFrame[] = [];
+  readonly events: Message[] = []; // so far
   private readonly room: [number, number, number][] = [];
   private readonly inMap = new Map<number, number>(); // room point → landmark
   private readonly truth: Pose[] = [];
@@ -89,7 +90,7 @@ export class Sample {
 
   // Messages of frame i, in order.
   step(i: number): Message[] {
-    const messages: Message[] = [];
+    const messages: Message[] = []; // events
     const share = i / this.frames;
     const lost = share > 0.3 && share < 0.34;
     const waiting = i < 8;
@@ -110,9 +111,9 @@ export class Sample {
       event('loop', 'keyframes 0 and ' + this.last, 0, this.last);
     }
     if (i === this.frames - 1) event('finished', '');
-    messages.push(this.frame(i, lost ? 'lost' : waiting ? 'initialising' : 'tracking', keyframe, fresh));
-    if (keyframe) messages.push(change);
-    return messages;
+    this.events.push(...messages);
+    const frame = this.frame(i, lost ? 'lost' : waiting ? 'initialising' : 'tracking', keyframe, fresh);
+    return [...(keyframe ? [change] : []), ...messages, frame];
   }
 
   *messages(): Generator<Message> {
@@ -120,7 +121,10 @@ export class Sample {
     yield { kind: 'playback', paused: false, finished: false, mayPause: true };
     for (let i = 0; i < this.frames; ++i) {
       yield* this.step(i);
-      if (i % 300 === 299) yield this.whole();
+      if (i % 300 === 299) {
+        yield this.whole();
+        yield* this.events;
+      }
     }
     yield { kind: 'playback', paused: false, finished: true, mayPause: true };
   }

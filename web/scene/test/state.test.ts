@@ -95,7 +95,7 @@ test('a map that is gone takes its landmarks with it, not the frames that were s
 
 test('going back gives the state that was, from kept states and from whole ones', () => {
   for (const stride of [1, 200e3, 1e12]) {
-    const history = new History({ budget: 1e12, stride, states: 20, thinned: 10 });
+    const history = new History({ budget: 1e12, stride, states: 20, events: 100, thinned: 10 });
     const live = new State();
     const copies = new Map<number, State>();
     for (const message of new Sample({ ...SMALL, frames: 300 }).messages()) {
@@ -114,7 +114,7 @@ test('going back gives the state that was, from kept states and from whole ones'
 });
 
 test('memory of the past is bounded: pictures go first, then the map in steps, then all', () => {
-  const history = new History({ budget: 0.5e6, stride: 50e3, states: 20, thinned: 10 });
+  const history = new History({ budget: 0.5e6, stride: 50e3, states: 20, events: 100, thinned: 10 });
   const live = new State();
   let index = 0;
   for (let round = 0; round < 4; ++round) {

@@ -1,5 +1,5 @@
 // The viewer's page: bytes come in, the player holds the state, the parts draw what it says, at most once a picture.
-import { DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
+import { alignTruth, DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
 import type { Colours, ViewMode } from '@alidade/scene';
 import { fillAbout } from './about.ts';
 import { Connection, query } from './connection.ts';
@@ -19,6 +19,7 @@ let replay = false;
 let connection: Connection | null = null;
 let dirty = true;
 let before = performance.now();
+const notices = new Map<string, string>(); // by what they are about
 let fresh = false; // a connection has been made, and has said nothing yet
 
 const seek = (number: number) => {
@@ -34,7 +35,6 @@ const scene = makeScene();
 function makeScene(): Scene | null {
   try {
     const made = new Scene(byId('scene') as HTMLCanvasElement);
-    new ResizeObserver(() => made.resize()).observe(byId('scene'));
     return made;
   } catch (error) {
     if (!(error instanceof NoWebGL)) throw error;
@@ -44,7 +44,6 @@ function makeScene(): Scene | null {
   }
 }
 
-const notices = new Map<string, string>();
 function notice(text: string, about: string): void {
   if (text) notices.set(about, text);
   else notices.delete(about);
@@ -78,6 +77,8 @@ function reset(): void {
   plot.reset();
   picture.reset();
   scene?.forget();
+  panel.error(null, player.latest);
+  aligned = { version: -1n, length: 0, time: 0 };
 }
 
 function connect(): void {
@@ -100,6 +101,7 @@ function connect(): void {
 async function loadRecorded(): Promise<void> {
   replay = true;
   player = new Player(MOST_BYTES);
+  document.body.classList.add('replay');
   document.body.dataset.connection = 'replay';
   const response = await fetch('run.stream' + query());
   if (!response.ok || !response.body) throw new Error(`run.stream: ${response.status} ${response.statusText}`);
@@ -182,7 +184,6 @@ function update(): void {
   document.body.dataset.shown = player.attached ? 'now' : 'past';
   document.body.classList.toggle('paused', paused());
   write(byId('play-word'), paused() ? 'Go on' : 'Pause');
-  document.body.classList.toggle('replay', replay);
   panel.update(shown);
   picture.update(shown);
   if (shown.frame) plot.add(shown.frame);
@@ -191,10 +192,32 @@ function update(): void {
   scene?.update(shown);
 }
 
+// The truth is laid over the map again when the map has moved or the path has grown by some, at most once a second.
+let aligned = { version: -1n, length: 0, time: 0 };
+function overlayTruth(now: number): void {
+  const { shown } = player;
+  if (!shown.hello?.truth.length || now - aligned.time < 1000) return;
+  if (shown.mapVersion === aligned.version && Math.abs(shown.path.length - aligned.length) < 30) return;
+  aligned = { version: shown.mapVersion, length: shown.path.length, time: now };
+  const alignment = alignTruth(shown, shown.activeMap);
+  scene?.overlay(alignment);
+  panel.error(alignment, shown);
+  dirty = true;
+}
+
+function layout(): void {
+  if (!scene) return;
+  if (narrow.matches) return scene.insets(0, 0);
+  const { right } = picture.hidden ? { right: 0 } : byId('picture').getBoundingClientRect();
+  const panelWidth = document.body.classList.contains('panel-closed') ? 0 : byId('panel').offsetWidth + 12;
+  scene.insets(right < innerWidth / 2 ? right : 0, panelWidth);
+}
+
 function tick(now: number): void {
   const seconds = Math.min(0.5, (now - before) / 1000);
   before = now;
   if (player.tick(seconds, !replay)) dirty = true;
+  overlayTruth(now);
   if (dirty) {
     dirty = false;
     update();
@@ -211,6 +234,8 @@ function colours(): Colours {
   };
 }
 
+const sizes = new ResizeObserver(layout);
+for (const id of ['scene', 'picture', 'panel']) sizes.observe(byId(id));
 onTheme(() => {
   scene?.colours(colours());
   plot.make();

@@ -1,12 +1,12 @@
 // Counts, state in words, the run, events.
 import { LAYERS } from '@alidade/scene';
-import type { LayerName, State } from '@alidade/scene';
+import type { Alignment, Event, LayerName, State } from '@alidade/scene';
 import { byId, make, write } from './dom.ts';
 import type { Player } from './player.ts';
-import { clock, EVENT_WORDS, stateReason, stateWord } from './words.ts';
+import { clock, eventText, reasonText, STATE_WORDS } from './words.ts';
 
 const LAYER_WORDS: Record<LayerName, string> = {
-  path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Seen together', loops: 'Loops',
+  path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Covisibility', loops: 'Loops',
   truth: 'Truth', camera: 'Camera',
 };
 const EVENTS_SHOWN = 200;
@@ -15,21 +15,24 @@ export class Panel {
   private readonly counts = (['keyframes', 'landmarks', 'matches', 'frames'] as const).map(
     (name) => [name, document.querySelector(`[data-count=${name}]`)!] as const);
   private listed = 0;
+  private newest: Event | undefined;
 
   constructor(private readonly player: () => Player, private readonly seek: (number: number) => void) {}
 
   update(state: State): void {
     const { frame, hello } = state;
+    const { latest } = state;
+    const now = frame && frame.number === latest?.number ? frame : null; // null: joined late, no frame has come yet
     const numbers = {
-      keyframes: frame?.keyframes ?? state.keyframes.size, landmarks: frame?.landmarks ?? state.landmarks.size,
-      matches: frame?.matches ?? 0, frames: frame ? frame.number + 1 : 0,
+      keyframes: now?.keyframes ?? state.keyframes.size, landmarks: now?.landmarks ?? state.landmarks.size,
+      matches: now?.matches ?? 0, frames: latest ? latest.number + 1 : 0,
     };
     for (const [name, element] of this.counts) write(element, String(numbers[name]));
-    const word = frame ? stateWord(frame) : 'Waiting';
-    const name = frame?.state ?? 'initialising';
+    const name = latest?.state ?? 'initialising';
     if (document.body.dataset.state !== name) document.body.dataset.state = name;
-    write(byId('state-word'), word);
-    write(byId('state-reason'), frame ? stateReason(frame) : 'for the first frame');
+    write(byId('state-word'), latest ? STATE_WORDS[name] : 'Waiting');
+    const over = state.playback?.finished && this.player().attached ? 'The run has ended.' : '';
+    write(byId('state-reason'), !latest ? 'for the first frame' : over || (now ? reasonText(now) : ''));
     write(byId('source'), hello?.source ?? '');
     const sensors: Record<string, string> = { mono: 'one camera', stereo: 'stereo pair', rgbd: 'RGB-D camera' };
     const maps = frame && frame.maps > 1 ? `${frame.maps} maps` : '';
@@ -44,22 +47,31 @@ export class Panel {
     byId('events').replaceChildren();
   }
 
+  // How far the path is from the truth, where that is known.
+  error(alignment: Alignment | null, state: State): void {
+    const metres = (value: number) => (value < 1 ? `${(100 * value).toFixed(1)} cm` : `${value.toFixed(2)} m`);
+    const scaled = state.hello?.unit !== 'm' ? ', scale fitted' : '';
+    write(byId('error'), alignment ? `From the truth: ${metres(alignment.rmse)} RMSE, at most ${metres(alignment.worst)}${scaled}` : '');
+  }
+
+  // Newest first. Told seldom: the list is made anew when there is one more.
   private listEvents(): void {
     const { events } = this.player().history;
-    const list = byId('events');
-    for (; this.listed < events.length; ++this.listed) {
-      const { event } = events[this.listed];
-      const first = this.player().latest.path.length > 0 ? this.player().latest.path.at(0).time : event.time;
-      const button = make('button');
+    const { path } = this.player().latest;
+    const newest = events[events.length - 1];
+    if (this.listed === events.length && this.newest === newest) return;
+    this.listed = events.length;
+    this.newest = newest;
+    const first = path.length > 0 ? path.at(0).time : 0;
+    byId('events').replaceChildren(...events.slice(-EVENTS_SHOWN).reverse().map((event) => {
+      const button = make('button', '', `event ${event.what}`);
       button.type = 'button';
-      button.className = `event ${event.what}`;
-      button.append(make('time', clock(event.time - first)), make('span', `${EVENT_WORDS[event.what]}${event.text ? ': ' + event.text : ''}`));
+      button.append(make('time', clock(event.time - first)), make('span', eventText(event)));
       button.addEventListener('click', () => this.seek(event.number));
       const item = make('li');
       item.append(button);
-      list.prepend(item);
-      while (list.children.length > EVENTS_SHOWN) list.lastChild!.remove();
-    }
+      return item;
+    }));
   }
 }
 

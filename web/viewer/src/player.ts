@@ -114,8 +114,8 @@ export class Player {
   private showFrame(at: number, goesOn = false): void {
     const { frames } = this.history;
     const i = Math.max(0, Math.min(frames.length - 1, at));
-    // Up to the next frame: what the frame changed in the map is told after it.
-    const end = i + 1 < frames.length ? frames[i + 1].index - 1 : this.history.last;
+    // What a frame changed in the map is told before it; after the last one what was done at the end.
+    const end = i + 1 < frames.length ? frames[i].index : this.history.last;
     this.attached = false;
     if (!goesOn) this.playing = false;
     this.show(Math.max(end, this.history.first));

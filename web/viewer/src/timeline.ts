@@ -3,7 +3,7 @@ import { STATES } from '@alidade/scene';
 import type { State } from '@alidade/scene';
 import { byId, write } from './dom.ts';
 import type { Player } from './player.ts';
-import { clock, EVENT_WORDS } from './words.ts';
+import { clock, eventText } from './words.ts';
 
 const RANK = { tracking: 0, initialising: 1, lost: 2 }; // of the frames that fall on one pixel the worst is shown
 
@@ -33,7 +33,7 @@ export class Timeline {
     const player = this.player();
     const { latest, shown, history } = player;
     const end = this.end();
-    const number = shown.frame?.number ?? 0;
+    const number = shown.latest?.number ?? 0;
     const key = [end, latest.path.length, number, history.events.length, history.first, this.canvas.clientWidth].join();
     if (key === this.drawn) return;
     this.drawn = key;
@@ -47,7 +47,7 @@ export class Timeline {
 
   private time(state: State): number {
     const first = this.player().latest.path.length > 0 ? this.player().latest.path.at(0).time : 0;
-    return (state.frame?.time ?? first) - first;
+    return (state.latest?.time ?? first) - first;
   }
 
   // The greatest frame number of the axis.
@@ -94,7 +94,7 @@ export class Timeline {
         draw.fillRect(x, barTop, 1, bar);
       }
     }
-    for (const { event } of this.player().history.events) this.mark(draw, (event.number / (end + 1)) * w, barTop, ratio, event.what, colour);
+    for (const event of this.player().history.events) this.mark(draw, (event.number / (end + 1)) * w, barTop, ratio, event.what, colour);
     const x = ((number + 0.5) / (end + 1)) * w;
     draw.fillStyle = colour('--ink');
     draw.fillRect(Math.round(x - ratio), barTop - bar * 0.45, 2 * ratio, bar * 1.9);
@@ -134,11 +134,11 @@ export class Timeline {
     const width = this.canvas.clientWidth;
     let nearest = 8; // CSS pixels
     let text = '';
-    for (const { event } of history.events) {
+    for (const event of history.events) {
       const away = Math.abs((event.number / (this.end() + 1)) * width - x);
       if (away < nearest) {
         nearest = away;
-        text = `${EVENT_WORDS[event.what]}${event.text ? ': ' + event.text : ''}`;
+        text = eventText(event);
       }
     }
     this.tip.hidden = text === '';

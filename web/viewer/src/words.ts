@@ -1,5 +1,5 @@
 // What the program says, for people: what is going on, and what to do about it.
-import type { Frame, TrackingState } from '@alidade/scene';
+import type { Event, Frame, TrackingState } from '@alidade/scene';
 
 export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
 
@@ -20,14 +20,13 @@ export function advice(reason: string): string {
   return ADVICE.find(([pattern]) => pattern.test(reason))?.[1] ?? '';
 }
 
-export function stateWord(frame: Frame): string {
-  return STATE_WORDS[frame.state];
+export function reasonText(frame: Frame): string {
+  if (frame.state === 'tracking') return '';
+  return [sentence(frame.reason), advice(frame.reason)].filter(Boolean).join(' ');
 }
 
-export function stateReason(frame: Frame): string {
-  if (frame.state === 'tracking') return '';
-  const reason = frame.reason.charAt(0).toUpperCase() + frame.reason.slice(1);
-  return [reason && reason + '.', advice(frame.reason)].filter(Boolean).join(' ');
+function sentence(text: string): string {
+  return text && `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 }
 
 export function clock(seconds: number): string {
@@ -40,3 +39,10 @@ export const EVENT_WORDS = {
   waiting: 'Not started', started: 'Started', lost: 'Lost', found: 'Found again', loop: 'Loop closed', merge: 'Maps merged',
   new_map: 'New map', given_up: 'Map given up', cut: 'Cut in the recording', warning: 'Warning', finished: 'Finished',
 } as const;
+
+// Some events say in their text what they are.
+export function eventText({ what, text }: Event): string {
+  const word = EVENT_WORDS[what];
+  if (!text || text.toLowerCase() === word.toLowerCase()) return word;
+  return text.toLowerCase().startsWith(`${word.toLowerCase()}: `) ? text.charAt(0).toUpperCase() + text.slice(1) : `${word}: ${text}`;
+}

@@ -103,9 +103,9 @@ export async function startServer(settings: ServerSettings = {}): Promise<Server
           send(encode(playback()));
         }
         if (what === 'step' && paused) advance(1);
-        if (what === 'whole') client.send(encode(sample.whole()));
+        if (what === 'whole') for (const message of [sample.whole(), ...sample.events]) client.send(encode(message));
       });
-      for (const message of [sample.hello(), sample.whole(), playback()]) client.send(encode(message));
+      for (const message of [sample.hello(), sample.whole(), ...sample.events, playback()]) client.send(encode(message));
     });
   });
   advance(settings.start ?? 0);
