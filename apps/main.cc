@@ -34,6 +34,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddEvaluateCommand(app, action);
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
+  alidade::AddViewCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddBenchCommand(app, action);
 }
@@ -62,6 +63,7 @@ int Run(int argc, char** argv) {
       "video\n"
       "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
       "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
+      "  alidade run my_recording --viewer           watch it in a browser\n"
       "  alidade info alidade-out/my_recording       what is in a map\n"
       "  alidade run --help                          all of a command's options\n"
       "\nExit status: 0 done, 2 usage, 3 input, 4 nothing could be mapped, 70 a bug of ours, 130 "
