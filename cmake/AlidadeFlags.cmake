@@ -34,6 +34,9 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
 endif()
 if(ALIDADE_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # compiles in half the time of -O2 -g, runs nearly as fast
+  if(ALIDADE_FUZZ)
+    set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O2 -g1")  # run far more often than compiled
+  endif()
   target_compile_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -75,6 +75,35 @@ TEST(OnnxModel, RefusesConstantsThatAreTooShortOrTooLong) {
   }
 }
 
+// Two bytes of a file must not take a hundred of memory without end.
+TEST(OnnxModel, RefusesMoreThanANetworkCanHave) {
+  const auto bytes = [](const std::string& graph) {
+    return ProtobufWriter().Integer(1, 7).Bytes(7, graph).text();
+  };
+  ProtobufWriter layers, inputs, sides, constant;
+  for (int i = 0; i < 100001; ++i) {
+    layers.Bytes(1, "");
+    inputs.Bytes(1, "");
+  }
+  for (const std::string& graph :
+       {layers.text(), ProtobufWriter().Bytes(1, inputs.text()).text()}) {
+    EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(bytes(graph)); }),
+                testing::HasSubstr("more than 100000 parts"));
+  }
+  for (int i = 0; i < 33; ++i) {
+    sides.Bytes(1, "");
+    constant.Integer(1, 1);
+  }
+  const auto shape = ProtobufWriter().Bytes(2, sides.text()).text();
+  const auto type = ProtobufWriter().Bytes(1, shape).text();
+  const auto input = ProtobufWriter().Bytes(2, type).text();
+  for (const std::string& graph : {ProtobufWriter().Bytes(11, input).text(),
+                                   ProtobufWriter().Bytes(5, constant.text()).text()}) {
+    EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(bytes(graph)); }),
+                testing::HasSubstr("too many sides"));
+  }
+}
+
 // Whatever a file holds: read, or an Error, and nothing outside of it is touched (the sanitizers'
 // builds look for that).
 TEST(OnnxModel, SurvivesDamagedFiles) {
@@ -123,11 +152,11 @@ TEST(Protobuf, StopsWhereAMessageIsDamaged) {
 TEST(Protobuf, ReadsRepeatedIntegersEitherWay) {
   ProtobufField packed;
   packed.bytes = std::string_view("\x03\x80\x01\x07", 4);
-  EXPECT_EQ(Integers(packed), (std::vector<uint64_t>{3, 128, 7}));
+  EXPECT_EQ(Integers(packed, 9), (std::vector<uint64_t>{3, 128, 7}));
   ProtobufField single;
   single.is_integer = true;
   single.value = 9;
-  EXPECT_EQ(Integers(single), std::vector<uint64_t>{9});
+  EXPECT_EQ(Integers(single, 9), std::vector<uint64_t>{9});
 }
 
 }  // namespace

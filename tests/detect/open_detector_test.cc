@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "alidade/base/random.h"
+#include "alidade/detect/onnx/model_file.h"
 #include "detect/tiny_network.h"
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
@@ -279,6 +280,17 @@ TEST_F(OpenDetectorTest, SaysWhyAFileCannotBeRead) {
   EXPECT_EQ(message(folder_ / "none.onnx"), folder_ / "none.onnx: there is no such file");
   EXPECT_EQ(message(folder_.path()), folder_.path() + ": is not a file");
   EXPECT_EQ(message("/dev/null"), "/dev/null: is not a file");
+}
+
+// Sparse files take no place on the disk, but all memory once they are read.
+TEST_F(OpenDetectorTest, FilesTooLongOrOfZerosAreRefusedUnread) {
+  const std::string path = folder_.Write("net.onnx", WithOneThing().Bytes());
+  const auto message = [&] { return MessageOf(ErrorKind::kInput, [&] { OpenDetector(path); }); };
+  std::filesystem::resize_file(path, uintmax_t{1} << 42);  // 4 TB
+  EXPECT_EQ(message(), path + ": is longer than 1024 MB: it cannot be a detector");
+  folder_.Write("net.onnx", "");
+  EXPECT_EQ(message(), path + ": is empty");
+  MessageOf(ErrorKind::kInput, [] { CheckOnnxStart(std::string_view("\0", 1)); });
 }
 
 TEST_F(OpenDetectorTest, SaysWhichOperatorOpenCvLacks) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/base/random.h"
 
 namespace alidade::camera_test {
 namespace {
@@ -120,6 +121,29 @@ TEST(Camera, CheckNamesTheFieldThatCannotBe) {
   EXPECT_NE(message([](Camera& c) { c.baseline = -1; }).find("baseline"), std::string::npos);
   EXPECT_NE(message([](Camera& c) { c.depth_factor = -1; }).find("depth_factor"),
             std::string::npos);
+  // Finite, but their squares are not.
+  for (auto change :
+       {+[](Camera& c) { c.fx = 1e200; }, +[](Camera& c) { c.fy = 1e-200; },
+        +[](Camera& c) { c.cx = -1e200; }, +[](Camera& c) { c.distortion[4] = 1e200; },
+        +[](Camera& c) { c.fps = 1e-200; }, +[](Camera& c) { c.baseline = 1e200; },
+        +[](Camera& c) { c.depth_factor = 1e-200; }})
+    EXPECT_NE(message(change).find("number that cannot be"), std::string::npos);
+}
+
+// A lens that no picture of this size is seen through: what Newton's method leaves is no place.
+TEST(Camera, UndistortedPixelsAreSomewhereWhateverTheLens) {
+  Random random(3);
+  for (int round = 0; round < 2000; ++round) {
+    Camera camera = RealCameras()[0];
+    camera.fx = std::pow(10, random.Uniform(-9, 3));
+    camera.fy = std::pow(10, random.Uniform(-9, 3));
+    for (double& k : camera.distortion)
+      k = (random.Below(2) == 0 ? -1 : 1) * std::pow(10, random.Uniform(-9, 9));
+    camera.Check();
+    const Eigen::Vector2d ideal =
+        camera.Undistort({random.Uniform(0, 640), random.Uniform(0, 480)});
+    EXPECT_TRUE(ideal.allFinite() && ideal.cwiseAbs().maxCoeff() <= 1e9) << ideal.transpose();
+  }
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/files/yaml_check.h"
+#include "alidade/io/text.h"
 #include "support/expect_error.h"
 #include "support/temp_folder.h"
 
@@ -98,6 +99,39 @@ TEST(HostileFiles, LongerThanTheirKindIsRefusedUnread) {
   const std::string just = folder.Write("just", std::string(100, 'x'));
   EXPECT_EQ(ReadFile(just, 100).size(), 100u);
   Refusal(just, 99);
+}
+
+// A sparse file takes no place on the disk, but all memory once it is read.
+TEST(HostileFiles, AStartThatIsRefusedIsAllThatIsRead) {
+  const TempFolder folder;
+  const std::string path = folder.Write("map.alidade", "not a map");
+  const StartCheck refuse = [](std::string_view start) {
+    EXPECT_EQ(start.substr(0, 9), "not a map");
+    EXPECT_LE(start.size(), kStartBytes);
+    ThrowInput("no map");
+  };
+  const auto problem = [&] {
+    return MessageOf(ErrorKind::kInput, [&] { ReadFile(path, size_t{1} << 50, refuse); });
+  };
+  EXPECT_EQ(problem(), "no map");
+  ASSERT_EQ(truncate(path.c_str(), off_t{1} << 42), 0);  // 4 TB
+  EXPECT_EQ(problem(), "no map");
+  folder.Write("map.alidade", std::string(3 * kStartBytes, 'x'));
+  int looks = 0;
+  const std::string read = ReadFile(path, kMostFileBytes, [&](std::string_view) { ++looks; });
+  EXPECT_EQ(read, std::string(3 * kStartBytes, 'x'));
+  EXPECT_EQ(looks, 1);
+}
+
+TEST(HostileFiles, TextOfTooManyLinesOrTooLongOnesIsRefused) {
+  CheckIsText(std::string(kMostLines, '\n'), "rgb.txt");
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [] { CheckIsText(std::string(kMostLines + 1, '\n'), "rgb.txt"); }),
+              HasSubstr("rgb.txt has more than 10000000 lines"));
+  const std::string line(kMostLineBytes, 'x');
+  CheckIsText("\n" + line + "\n" + line, "rgb.txt");
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { CheckIsText("\n" + line + "x\n", "rgb.txt"); }),
+              HasSubstr("rgb.txt:2: the line is longer"));
 }
 
 TEST(HostileFiles, WhatIsNoImageInAFolderOfImagesIsListedAndToldWhenRead) {

@@ -1,6 +1,8 @@
 #include "alidade/io/files/image_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <zlib.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
@@ -83,6 +85,85 @@ TEST(ImageFile, PalettesAlphaAndSixteenBitsBecomeGray) {
   const cv::Mat binary = TinyImage(6) > 128;
   ASSERT_TRUE(cv::imwrite(folder / "binary.png", binary, {cv::IMWRITE_PNG_BILEVEL, 1}));
   EXPECT_EQ(MaxDifference(ReadImageGray(folder / "binary.png"), binary), 0);
+}
+
+// Its length, its name, its bytes, and a CRC of the last two.
+std::string PngChunk(const std::string& name, const std::string& bytes) {
+  const auto big_endian = [](size_t value) {
+    std::string text;
+    for (int shift = 24; shift >= 0; shift -= 8) text += static_cast<char>(value >> shift);
+    return text;
+  };
+  const std::string named = name + bytes;
+  return big_endian(bytes.size()) + named +
+         big_endian(crc32(0, reinterpret_cast<const Bytef*>(named.data()),
+                          static_cast<uInt>(named.size())));
+}
+
+// A palette's transparency is a chunk of its own, not a kind of pixel: such pictures came with four
+// channels, whatever was asked for.
+TEST(ImageFile, TransparentPalettesBecomeGrayAndColor) {
+  const std::string corpus = ALIDADE_FUZZ_CORPUS "/png/good-palette-transparent";
+  EXPECT_EQ(ReadImageGray(corpus).type(), CV_8UC1);
+  EXPECT_EQ(ReadImageColor(corpus).type(), CV_8UC3);
+  const GrayAndColor both = ReadImageGrayAndColor(corpus);
+  EXPECT_EQ(both.gray.type(), CV_8UC1);
+  EXPECT_EQ(both.color.type(), CV_8UC3);
+}
+
+// No file of a few bytes holds a picture of millions of pixels: told before there is memory for it.
+TEST(ImageFile, TooShortForWhatTheirHeadersClaim) {
+  const TempFolder folder;
+  WriteImage(folder / "a.png", TinyImage(1));
+  std::string png = ReadFile(folder / "a.png");
+  const std::string huge =  // 8192 x 8192, 8 bits of grey
+      PngChunk("IHDR", std::string("\0\0\x20\0\0\0\x20\0\x08\0\0\0\0", 13));
+  png.replace(8, huge.size(), huge);
+  EXPECT_THAT(DecodePng(png, ImageUse::kGray).problem, testing::HasSubstr("too short"));
+  WriteImage(folder / "a.jpg", TinyImage(1));
+  std::string jpeg = ReadFile(folder / "a.jpg");
+  const size_t frame = jpeg.find("\xff\xc0");
+  jpeg.replace(frame + 5, 4, std::string("\x20\0\x20\0", 4));
+  EXPECT_THAT(DecodeJpeg(jpeg, ImageUse::kGray).problem, testing::HasSubstr("too short"));
+}
+
+// Each scan is a pass over the picture: some ten are in a JPEG that arrives step by step, in one
+// made to take minutes as many as there is room for.
+TEST(ImageFile, JpegsOfHundredsOfScansAreRefused) {
+  std::vector<uchar> made;
+  ASSERT_TRUE(cv::imencode(".jpg", TinyImage(1), made, {cv::IMWRITE_JPEG_PROGRESSIVE, 1}));
+  std::string jpeg(made.begin(), made.end());
+  ASSERT_EQ(DecodeJpeg(jpeg, ImageUse::kGray).problem, "");
+  const size_t first = jpeg.find("\xff\xda"), second = jpeg.find("\xff\xda", first + 2);
+  const std::string scan = jpeg.substr(first, second - first);
+  for (int i = 0; i < 200; ++i) jpeg.insert(first, scan);
+  EXPECT_THAT(DecodeJpeg(jpeg, ImageUse::kGray).problem, testing::HasSubstr("more than 100 scans"));
+}
+
+long PeakMegabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss / 1024;
+}
+
+// Unpacked, a comment is up to a thousand times as long, and there may be a thousand comments.
+TEST(ImageFile, CommentsOfPngsAreNotUnpacked) {
+  const TempFolder folder;
+  WriteImage(folder / "a.png", TinyImage(1));
+  std::string png = ReadFile(folder / "a.png");
+  const std::string words(7'000'000, 'a');
+  uLongf length = compressBound(words.size());
+  std::string packed(length, '\0');
+  ASSERT_EQ(compress(reinterpret_cast<Bytef*>(packed.data()), &length,
+                     reinterpret_cast<const Bytef*>(words.data()), words.size()),
+            Z_OK);
+  const std::string comment =
+      PngChunk("zTXt", "Comment" + std::string(2, '\0') + packed.substr(0, length));
+  constexpr size_t kBehindHeader = 33;
+  for (int i = 0; i < 30; ++i) png.insert(kBehindHeader, comment);  // 210 MB
+  const long before = PeakMegabytes();
+  EXPECT_EQ(DecodePng(png, ImageUse::kColor).problem, "");
+  EXPECT_LT(PeakMegabytes() - before, 60);
 }
 
 TEST(ImageFile, SizeIsThatOfTheHeader) {

@@ -9,6 +9,12 @@
 #include "alidade/geometry/picture_size.h"
 
 namespace alidade {
+namespace {
+
+// No camera comes near; squares and powers of such numbers are still numbers.
+constexpr double kMost = 1e9;
+
+}  // namespace
 
 void Camera::Check() const {
   const auto require = [](bool holds, const std::string& what) {
@@ -24,6 +30,13 @@ void Camera::Check() const {
   require(std::isfinite(depth_factor) && depth_factor >= 0,
           "depth_factor must be zero or positive");
   require(std::isfinite(baseline) && baseline >= 0, "baseline must be zero or positive");
+  const auto within = [](double v) { return std::abs(v) <= kMost; };
+  bool all = true;
+  for (double v : {fx, fy, 1 / fx, 1 / fy, cx, cy, fps, 1 / fps, depth_factor, baseline})
+    all = all && within(v);
+  for (double v : distortion) all = all && within(v);
+  require(all && (depth_factor == 0 || within(1 / depth_factor)),
+          "it has a number that cannot be, beyond 1e9 or, where it divides, below 1e-9");
 }
 
 bool Camera::HasDistortion() const {
@@ -63,7 +76,10 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& distorted) const {
     y -= dy;
     if (dx * dx + dy * dy < 1e-20) break;
   }
-  return {fx * x + cx, fy * y + cy};
+  const Eigen::Vector2d ideal(fx * x + cx, fy * y + cy);
+  // Far outside a lens's picture its polynomial may have no solution, and the steps lead anywhere.
+  const bool found = ideal.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMost;
+  return found ? ideal : distorted;
 }
 
 Camera Camera::ScaledToWidth(int new_width) const {

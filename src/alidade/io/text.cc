@@ -3,6 +3,7 @@
 #include <locale.h>
 #include <stdlib.h>
 
+#include <algorithm>
 #include <string>
 
 #include "alidade/base/error.h"
@@ -26,6 +27,16 @@ void CheckIsText(std::string_view bytes, const std::string& name) {
     ThrowInput(name + " is written in UTF-16: save it as UTF-8 or plain ASCII");
   if (bytes.find('\0') != std::string_view::npos)
     ThrowInput(name + " is no text: there are bytes of 0 in it");
+  size_t lines = 0;
+  for (size_t begin = 0; begin < bytes.size(); ++lines) {
+    if (lines == kMostLines)
+      ThrowInput(name + " has more than " + std::to_string(kMostLines) + " lines");
+    const size_t end = std::min(bytes.find('\n', begin), bytes.size());
+    if (end - begin > kMostLineBytes)
+      ThrowInput(name + ":" + std::to_string(lines + 1) + ": the line is longer than " +
+                 std::to_string(kMostLineBytes) + " bytes");
+    begin = end + 1;
+  }
 }
 
 std::vector<TextLine> ContentLines(std::string_view text) {

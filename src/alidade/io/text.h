@@ -1,6 +1,7 @@
 // Lines, fields and numbers of text files, the same in every locale.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,8 +9,13 @@
 
 namespace alidade {
 
+// Of two bytes each, lines take a hundred times as much memory once they are read. Ten million are
+// four days at 30 frames a second.
+inline constexpr size_t kMostLines = 10'000'000;
+inline constexpr size_t kMostLineBytes = size_t{1} << 16;  // a path has 4096 at most
+
 // Throws Error (input), naming the file, when the bytes are none of a text we can read: UTF-16 as
-// some editors write it, or no text at all (bytes of 0 in it).
+// some editors write it, no text at all (bytes of 0 in it), or beyond the limits above.
 void CheckIsText(std::string_view bytes, const std::string& name);
 
 struct TextLine {

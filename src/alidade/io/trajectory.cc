@@ -84,7 +84,7 @@ Trajectory ParseKittiTrajectory(std::string_view poses, const std::string& poses
       Fail(poses_name, pose_lines[i], "the left 3x3 part is not a rotation");
     }
     const Se3 pose = Se3{R, {v[3], v[7], v[11]}}.Normalised();
-    trajectory.push_back({time, pose, std::string(time_lines[i].text)});
+    trajectory.push_back({time, pose, std::string(Fields(time_lines[i].text)[0])});
   }
   return trajectory;
 }

@@ -193,7 +193,14 @@ class Decoder {
 
 }  // namespace
 
+void CheckMapStart(std::string_view start) {
+  constexpr size_t kSmallest = 16;  // to look at the identifier at all
+  if (start.size() < kSmallest || !fb::MapBufferHasIdentifier(start.data()))
+    ThrowInput("not a map of Alidade");
+}
+
 SavedMap DecodeMap(std::string_view bytes) {
+  CheckMapStart(bytes);
   // Numbers are read where they lie, which must be a multiple of their size.
   std::vector<uint64_t> aligned;
   const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
@@ -202,9 +209,6 @@ SavedMap DecodeMap(std::string_view bytes) {
     std::memcpy(aligned.data(), bytes.data(), bytes.size());
     data = reinterpret_cast<const uint8_t*>(aligned.data());
   }
-  constexpr size_t kSmallest = 16;  // to look at the identifier at all
-  if (bytes.size() < kSmallest || !fb::MapBufferHasIdentifier(data))
-    ThrowInput("not a map of Alidade");
   if (bytes.size() > FLATBUFFERS_MAX_BUFFER_SIZE)
     ThrowInput("the map is too large to be one (2 GB)");
   const auto most_tables = static_cast<flatbuffers::uoffset_t>(bytes.size() / 4);

@@ -102,7 +102,7 @@ void CheckSize(const MapState& state) {
 std::string EncodeMap(const SavedMap& saved) {
   const MapState& state = saved.map.state();
   CheckSize(state);
-  FlatBufferBuilder builder(1 << 20);
+  FlatBufferBuilder builder(1 << 16);  // bytes to begin with
   std::vector<Offset<fb::KeyFrame>> keyframes;
   state.keyframes.ForEach(
       [&](const KeyFrame& keyframe) { keyframes.push_back(EncodeKeyFrame(builder, keyframe)); });

@@ -29,6 +29,10 @@ struct SavedMap {
 // file can be (2 GB), std::logic_error when it could not be read (a bug of ours).
 std::string EncodeMap(const SavedMap& saved);
 
+// Throws Error (input) when a file that begins like this is no map. A look at it before a sparse
+// file of 2 GB is read.
+void CheckMapStart(std::string_view start);
+
 // Throws Error (input) that says what is wrong when these are not the bytes of a map, when they are
 // damaged, or when they come from a newer program.
 SavedMap DecodeMap(std::string_view bytes);

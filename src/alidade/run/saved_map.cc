@@ -18,12 +18,16 @@ std::string SavedMapPath(const std::string& path) {
 
 SavedMap ReadSavedMap(const std::string& path) {
   const std::string file = SavedMapPath(path);
-  const std::string bytes = ReadFile(file, kMostMapBytes);
-  try {
-    return DecodeMap(bytes);
-  } catch (const Error& error) {
-    ThrowInput(file + ": " + error.what());
-  }
+  const auto named = [&file](const auto& read) {
+    try {
+      return read();
+    } catch (const Error& error) {
+      ThrowInput(file + ": " + error.what());
+    }
+  };
+  const std::string bytes = ReadFile(
+      file, kMostMapBytes, [&](std::string_view start) { named([&] { CheckMapStart(start); }); });
+  return named([&] { return DecodeMap(bytes); });
 }
 
 std::vector<MapPart> PartsOf(const MapSnapshot& map) {

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 #include <type_traits>
 
 #include "alidade/base/error.h"
 #include "alidade/base/nearest_name.h"
+#include "alidade/io/text.h"
 #include "alidade/system/settings_fields.h"
 
 namespace alidade {
@@ -16,11 +16,10 @@ namespace {
 
 template <typename Value>
 Value ParseNumber(const std::string& name, const std::string& text) {
-  char* end = nullptr;
-  double number = std::strtod(text.c_str(), &end);
   const bool whole = std::is_integral_v<Value>;
-  if (text.empty() || *end != '\0' || !std::isfinite(number) ||
-      (whole && number != std::floor(number))) {
+  double number = alidade::ParseNumber(text).value_or(std::nan(""));
+  if constexpr (!whole) number = static_cast<Value>(number);  // beyond a float's range: infinite
+  if (!std::isfinite(number) || (whole && number != std::floor(number))) {
     ThrowUsage("setting " + name + ": '" + text + "' is not " +
                (whole ? "a whole number" : "a number"));
   }
@@ -68,14 +67,15 @@ std::string Format(const Value& value) {
 
 void SlamSettings::Set(const std::string& name, const std::string& value) {
   bool known = false;
-  std::vector<std::string> names;
   VisitFields(*this, [&](const char* field, auto& member) {
-    names.push_back(field);
     if (name != field) return;
     known = true;
     member = Parse<std::decay_t<decltype(member)>>(name, value);
   });
-  if (!known) ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
+  if (known) return;
+  std::vector<std::string> names;
+  VisitFields(*this, [&](const char* field, const auto&) { names.push_back(field); });
+  ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
 }
 
 std::vector<std::pair<std::string, std::string>> SlamSettings::All() const {

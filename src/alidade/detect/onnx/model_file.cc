@@ -47,10 +47,25 @@ enum { kKey = 1, kValue = 2 };
 
 constexpr uint64_t kMostIrVersion = 100;  // 13 in 2025
 constexpr int64_t kOpenSide = -1;
+// Of layers, their inputs and outputs, and constants. The largest YOLO has some thousand; each
+// takes as little as two bytes of a hostile file, but a hundred of memory.
+constexpr int kMostParts = 100000;
 
 struct Node {
   std::string_view operation;
   std::vector<std::string_view> inputs, outputs;
+};
+
+class PartCounter {
+ public:
+  void Add() {
+    if (++parts_ > kMostParts)
+      ThrowInput("is no detector: its layers and constants have more than " +
+                 std::to_string(kMostParts) + " parts");
+  }
+
+ private:
+  int parts_ = 0;
 };
 
 struct Graph {
@@ -68,9 +83,10 @@ void ForEachField(std::string_view message, const Visit& visit) {
   if (reader.damaged()) ThrowInput("is damaged or cut short");
 }
 
-Node ReadNode(std::string_view bytes) {
+Node ReadNode(std::string_view bytes, PartCounter& count) {
   Node read;
   ForEachField(bytes, [&](const ProtobufField& field) {
+    count.Add();
     if (field.number == node::kInput) read.inputs.push_back(field.bytes);
     if (field.number == node::kOutput) read.outputs.push_back(field.bytes);
     if (field.number == node::kOperation) read.operation = field.bytes;
@@ -104,7 +120,10 @@ void ReadTensorType(std::string_view bytes, OnnxInput* input) {
       input->element_type = static_cast<int>(std::min<uint64_t>(field.value, 1000));
     if (field.number != tensor_type::kShape) return;
     ForEachField(field.bytes, [&](const ProtobufField& side) {
-      if (side.number == shape::kDim) input->shape.push_back(ReadSide(side.bytes));
+      if (side.number != shape::kDim) return;
+      if (input->shape.size() == kMostOnnxSides)
+        ThrowInput("is damaged: an input has too many sides");
+      input->shape.push_back(ReadSide(side.bytes));
     });
   });
 }
@@ -137,8 +156,10 @@ void CheckConnections(const Graph& read) {
 
 Graph ReadGraph(std::string_view bytes) {
   Graph read;
+  PartCounter count;
   ForEachField(bytes, [&](const ProtobufField& field) {
-    if (field.number == graph::kNode) read.nodes.push_back(ReadNode(field.bytes));
+    count.Add();
+    if (field.number == graph::kNode) read.nodes.push_back(ReadNode(field.bytes, count));
     if (field.number == graph::kInitializer) ReadConstant(field.bytes, &read);
     if (field.number == graph::kInput) read.inputs.push_back(ReadInput(field.bytes));
   });
@@ -175,6 +196,12 @@ std::string ReadClassNames(std::string_view metadata) {
 }
 
 }  // namespace
+
+void CheckOnnxStart(std::string_view start) {
+  if (start.empty()) ThrowInput("is empty");
+  // The first byte holds the number of a field, from 1; those of a sparse file are zeros.
+  if (static_cast<unsigned char>(start.front()) >> 3 == 0) ThrowInput("is no ONNX file");
+}
 
 OnnxModel ReadOnnxModel(std::string_view bytes) {
   if (bytes.empty()) ThrowInput("is empty");

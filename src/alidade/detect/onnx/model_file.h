@@ -23,7 +23,12 @@ struct OnnxModel {
   std::string class_names;        // as the exporter wrote them, see ParseClassNames; often ""
 };
 
-// Throws Error (input) when the bytes are no ONNX model, or damaged as far as this is read.
+// Throws Error (input) when a file that begins like this is no ONNX model: a look at it before all
+// of it is read.
+void CheckOnnxStart(std::string_view start);
+
+// Throws Error (input) when the bytes are no ONNX model, hold more than a detector can need, or
+// damaged as far as this is read.
 OnnxModel ReadOnnxModel(std::string_view bytes);
 
 }  // namespace alidade

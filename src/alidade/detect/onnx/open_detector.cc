@@ -1,10 +1,10 @@
 #include "alidade/detect/onnx/open_detector.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "alidade/base/error.h"
 #include "alidade/base/module/load_module.h"
@@ -21,24 +21,34 @@ namespace {
 
 constexpr int kStride = 32;          // of the coarsest cells: sides are multiples of it
 constexpr int64_t kMostSide = 4096;  // pixels: beyond, it is a damaged file
-constexpr int kOpenSize = 640;       // of both sides when the file leaves them open
+constexpr size_t kMostNetworkBytes = size_t{1} << 30;  // the largest YOLO has 0.4 GB
+constexpr int kOpenSize = 640;  // of both sides when the file leaves them open
 constexpr char kAdvice[] =
     "; networks of the YOLOv5 and YOLOX families can be, others may need the layers of a newer "
     "OpenCV";
 constexpr int kTrialGrey = 114;
 constexpr int kFloat = 1, kHalf = 10;  // TensorProto.DataType
 
+// Refused by size or start before there is memory for it: a sparse file takes none on the disk.
 std::string ReadNetworkFile(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) ThrowInput("there is no such file");
   if (!std::filesystem::is_regular_file(status)) ThrowInput("is not a file");
   errno = 0;
+  const auto fail = [] { ThrowInput(std::string("cannot be read: ") + std::strerror(errno)); };
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
   std::ifstream stream(path, std::ios::binary);
-  std::ostringstream bytes;
-  if (stream) bytes << stream.rdbuf();
-  if (!stream) ThrowInput(std::string("cannot be read: ") + std::strerror(errno));
-  return std::move(bytes).str();
+  if (error || !stream) fail();
+  if (size > kMostNetworkBytes)
+    ThrowInput("is longer than " + std::to_string(kMostNetworkBytes >> 20) +
+               " MB: it cannot be a detector");
+  std::string bytes(std::min<size_t>(size, 1), '\0');
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail();
+  CheckOnnxStart(bytes);
+  bytes.resize(size);
+  if (!stream.read(bytes.data() + 1, static_cast<std::streamsize>(size - 1))) fail();
+  return bytes;
 }
 
 cv::Size InputSize(const OnnxModel& model) {

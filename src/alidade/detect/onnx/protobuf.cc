@@ -61,12 +61,24 @@ std::optional<ProtobufField> ProtobufReader::Next() {
   return field;
 }
 
-std::vector<uint64_t> Integers(const ProtobufField& field) {
+std::vector<uint64_t> Integers(const ProtobufField& field, size_t most) {
   if (field.is_integer) return {field.value};
   std::vector<uint64_t> integers;
   ProtobufReader reader(field.bytes);
-  while (const std::optional<uint64_t> integer = reader.TakeInteger()) integers.push_back(*integer);
+  while (integers.size() < most) {
+    const std::optional<uint64_t> integer = reader.TakeInteger();
+    if (!integer) break;
+    integers.push_back(*integer);
+  }
   return integers;
+}
+
+uint64_t CountIntegers(const ProtobufField& field) {
+  if (field.is_integer) return 1;
+  uint64_t count = 0;
+  ProtobufReader reader(field.bytes);
+  while (reader.TakeInteger()) ++count;
+  return count;
 }
 
 }  // namespace alidade

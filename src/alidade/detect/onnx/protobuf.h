@@ -34,8 +34,10 @@ class ProtobufReader {
   bool damaged_ = false;
 };
 
-// Of a repeated integer field, which may be written one by one or packed. What is damaged of it is
-// left out.
-std::vector<uint64_t> Integers(const ProtobufField& field);
+// Of a repeated integer field, which may be written one by one or packed: the first `most`. What is
+// damaged of it is left out.
+std::vector<uint64_t> Integers(const ProtobufField& field, size_t most);
+// How many there are.
+uint64_t CountIntegers(const ProtobufField& field);
 
 }  // namespace alidade

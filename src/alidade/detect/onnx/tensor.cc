@@ -47,8 +47,10 @@ OnnxTensor ReadTensor(std::string_view bytes) {
   while (const std::optional<ProtobufField> field = reader.Next()) {
     switch (field->number) {
       case kDims:
-        for (const uint64_t side : Integers(*field))
+        for (const uint64_t side : Integers(*field, kMostOnnxSides + 1))
           tensor.shape.push_back(static_cast<int64_t>(side));
+        if (tensor.shape.size() > kMostOnnxSides)
+          ThrowInput("is damaged: a constant has too many sides");
         break;
       case kDataType:
         type = field->value;
@@ -68,7 +70,7 @@ OnnxTensor ReadTensor(std::string_view bytes) {
       case kInt32Data:
       case kInt64Data:
       case kUint64Data:
-        numbers += Integers(*field).size();
+        numbers += CountIntegers(*field);
         break;
       case kDataLocation:
         tensor.external = field->value == 1;

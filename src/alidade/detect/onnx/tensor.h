@@ -2,11 +2,14 @@
 // there. OpenCV reads past the end of what is too short.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
 namespace alidade {
+
+inline constexpr size_t kMostOnnxSides = 32;  // as many as OpenCV's arrays may have
 
 struct OnnxTensor {
   std::string_view name;

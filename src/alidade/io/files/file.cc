@@ -5,10 +5,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <utility>
 
 #include "alidade/base/error.h"
 
@@ -78,6 +80,10 @@ void CheckEnds(const std::string& path, const struct stat& status) {
 }  // namespace
 
 std::string ReadFile(const std::string& path, size_t most_bytes) {
+  return ReadFile(path, most_bytes, [](std::string_view) {});
+}
+
+std::string ReadFile(const std::string& path, size_t most_bytes, const StartCheck& check) {
   const auto fail = [&path] { ThrowInput("cannot read " + path + ": " + std::strerror(errno)); };
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) fail();
@@ -92,12 +98,17 @@ std::string ReadFile(const std::string& path, size_t most_bytes) {
                " MB: it cannot be what it is taken for");
   };
   check_size(static_cast<size_t>(status.st_size));
-  std::string bytes;
   // The size is a hint: pipes and /proc have none.
-  bytes.resize(static_cast<size_t>(status.st_size > 0 ? status.st_size : 0) + 1);
+  const auto hint = static_cast<size_t>(status.st_size > 0 ? status.st_size : 0) + 1;
+  std::string bytes;
+  bytes.resize(std::min(hint, kStartBytes));
   size_t used = 0;
+  bool checked = false;
   while (true) {
-    if (used == bytes.size()) bytes.resize(2 * bytes.size());
+    if (used == bytes.size()) {
+      if (!std::exchange(checked, true)) check(bytes);
+      bytes.resize(used < hint ? hint : 2 * used);
+    }
     const ssize_t got = ::read(fd.get(), bytes.data() + used, bytes.size() - used);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail();
@@ -106,6 +117,7 @@ std::string ReadFile(const std::string& path, size_t most_bytes) {
     check_size(used);
   }
   bytes.resize(used);
+  if (!checked) check(bytes);
   return bytes;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +16,17 @@ namespace ALIDADE_API alidade {
 inline constexpr size_t kMostFileBytes = size_t{1} << 29;    // a list of ten million frames; a
                                                              // picture of kMostPixels, 8 bytes each
 inline constexpr size_t kMostConfigBytes = size_t{1} << 20;  // camera and settings: a few hundred
+inline constexpr size_t kStartBytes = 4096;
 inline constexpr size_t kMostMapBytes = (size_t{1} << 31) - 1;  // FlatBuffers holds no more
 
 // Throws Error (input) when it cannot be read, is longer than `most_bytes`, or is no file but a
 // folder, a pipe, a socket or a device (links are followed): those have no end, or none soon. Pipes
 // the process was started with are read all the same, as a shell's <(command) has them.
 std::string ReadFile(const std::string& path, size_t most_bytes = kMostFileBytes);
+// The same, with a look at the first kStartBytes (or all there are) before the rest is read and has
+// memory: `check` throws what is to be told of a file that begins otherwise than it should.
+using StartCheck = std::function<void(std::string_view start)>;
+std::string ReadFile(const std::string& path, size_t most_bytes, const StartCheck& check);
 
 // Throws Error (input) for what ReadFile() would not read because it is no file, or not there: for
 // those who hand a path to others.

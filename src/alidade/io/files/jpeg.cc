@@ -1,7 +1,9 @@
+#include <algorithm>
 #include <csetjmp>
 #include <cstdio>  // jpeglib.h needs it first
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 //
 #include <jerror.h>
 #include <jpeglib.h>
@@ -39,6 +41,18 @@ void OnMessage(j_common_ptr info, int level) {
     JumpOut(info);
 }
 
+// Each scan of a progressive JPEG is a pass over the whole picture, however short it is in the
+// file: encoders make some ten.
+constexpr int kMostScans = 100;
+
+// libjpeg calls this for every row of blocks.
+void OnProgress(j_common_ptr info) {
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number <= kMostScans) return;
+  auto* errors = reinterpret_cast<JumpingErrors*>(info->err);
+  std::snprintf(errors->message, sizeof errors->message, "it has more than %d scans", kMostScans);
+  std::longjmp(errors->target, 1);
+}
+
 void Install(JumpingErrors& errors) {
   jpeg_std_error(&errors.manager);
   errors.manager.error_exit = JumpOut;
@@ -70,6 +84,8 @@ class Decompressor {
     Install(errors);
     info.err = &errors.manager;
     jpeg_create_decompress(&info);
+    progress.progress_monitor = OnProgress;
+    info.progress = &progress;
   }
   ~Decompressor() { jpeg_destroy_decompress(&info); }
   Decompressor(const Decompressor&) = delete;
@@ -77,7 +93,20 @@ class Decompressor {
 
   jpeg_decompress_struct info{};
   JumpingErrors errors{};
+  jpeg_progress_mgr progress{};
 };
+
+// Every block of 8 x 8 samples takes a bit at least; not so in JPEGs with arithmetic coding, which
+// nobody has.
+bool IsTooShort(const jpeg_decompress_struct& info, size_t bytes) {
+  size_t blocks = std::numeric_limits<size_t>::max();  // of the coarsest colour
+  for (int i = 0; i < info.num_components; ++i) {
+    const jpeg_component_info& component = info.comp_info[i];
+    blocks =
+        std::min(blocks, size_t{component.width_in_blocks} * size_t{component.height_in_blocks});
+  }
+  return !info.arith_code && blocks / 8 > bytes;
+}
 
 struct Compressed {
   unsigned char* bytes = nullptr;
@@ -126,6 +155,8 @@ DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
   if (!ReadHeader(decoder.info, decoder.errors, bytes)) return failed();
   const int64_t width = decoder.info.image_width, height = decoder.info.image_height;
   if (!IsPictureSize(width, height)) return {{}, "cannot be used: " + TooLargeText(width, height)};
+  if (IsTooShort(decoder.info, bytes.size()))
+    return {{}, "is a damaged JPEG: it is too short for its width and height"};
   const J_COLOR_SPACE stored = decoder.info.jpeg_color_space;
   const bool both = use == ImageUse::kGrayAndColor && stored != JCS_GRAYSCALE;
   if (both && stored != JCS_YCbCr) {  // rare: without luma of its own

@@ -4,6 +4,7 @@
 #include <bit>
 #include <csetjmp>
 #include <cstring>
+#include <new>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -13,6 +14,9 @@
 
 namespace alidade {
 namespace {
+
+// Deflate makes no more than 1032 bytes of one (zlib, "Technical Details").
+constexpr size_t kMostInflated = 1032;
 
 struct Trouble {
   char message[160] = "";
@@ -51,7 +55,14 @@ class Decoder {
   explicit Decoder(std::string_view bytes) : reader{bytes} {
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &trouble, OnError, OnWarning);
     info = png_create_info_struct(png);
+    if (info == nullptr) {
+      png_destroy_read_struct(&png, nullptr, nullptr);
+      throw std::bad_alloc();
+    }
     png_set_read_fn(png, &reader, ReadBytes);
+    // Comments, colour profiles and the like are left packed: a thousand of them, 8 MB each once
+    // unpacked, fit into a small file.
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   }
   ~Decoder() { png_destroy_read_struct(&png, &info, nullptr); }
   Decoder(const Decoder&) = delete;
@@ -77,7 +88,7 @@ bool SetUp(Decoder& decoder, ImageUse use) {
   const int bits = png_get_bit_depth(png, decoder.info);
   if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
   if (color == PNG_COLOR_TYPE_GRAY && bits < 8) png_set_expand_gray_1_2_4_to_8(png);
-  if (color & PNG_COLOR_MASK_ALPHA) png_set_strip_alpha(png);
+  png_set_strip_alpha(png);  // of palettes too, where it is a chunk of its own
   if (bits == 16 && use != ImageUse::kDepth) png_set_scale_16(png);
   if (bits == 16 && use == ImageUse::kDepth && std::endian::native == std::endian::little)
     png_set_swap(png);
@@ -134,6 +145,9 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   const int64_t width = png_get_image_width(decoder.png, decoder.info);
   const int64_t height = png_get_image_height(decoder.png, decoder.info);
   if (!IsPictureSize(width, height)) return {{}, "cannot be used: " + TooLargeText(width, height)};
+  const size_t unpacked = png_get_rowbytes(decoder.png, decoder.info) * static_cast<size_t>(height);
+  if (unpacked / kMostInflated > bytes.size())
+    return {{}, "is a damaged PNG: it is too short for its width and height"};
   if (!SetUp(decoder, use)) return failed();
   const int channels = png_get_channels(decoder.png, decoder.info);
   const int depth = png_get_bit_depth(decoder.png, decoder.info) == 16 ? CV_16U : CV_8U;

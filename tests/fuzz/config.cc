@@ -1,0 +1,23 @@
+#include "alidade/system/settings.h"
+#include "fuzz/targets.h"
+#include "alidade/run/settings_file.h"
+
+namespace alidade::fuzz {
+
+// Settings that can be are written into maps and stats.json, and can be set to what is written.
+void Config(std::string_view bytes) {
+  SlamSettings settings;
+  ApplySettingsText(std::string(bytes), "settings.yaml", settings);
+  settings.Check();
+  SlamSettings again;
+  for (const auto& [name, value] : settings.All()) {
+    try {
+      again.Set(name, value);
+    } catch (const std::exception& error) {
+      Expect(false, "a setting's value cannot be set: " + std::string(error.what()));
+    }
+  }
+  Expect(again.All() == settings.All(), "settings change when they are set to what they are");
+}
+
+}  // namespace alidade::fuzz
