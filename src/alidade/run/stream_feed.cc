@@ -7,10 +7,28 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
+#include "alidade/io/files/trajectory_file.h"
 
 namespace alidade {
 namespace {
+
+std::vector<StreamTruth> TruthOf(const Trajectory& trajectory) {
+  std::vector<StreamTruth> truth;
+  for (const StampedPose& pose : trajectory) truth.push_back({pose.time, pose.T_world_camera});
+  return truth;
+}
+
+// What lies beside a recording as its truth; empty: nothing that can be read.
+std::vector<StreamTruth> TruthBeside(const std::string& source) {
+  if (!IsFolder(source)) return {};
+  try {
+    return TruthOf(ReadTrajectory(source));
+  } catch (const Error&) {
+    return {};
+  }
+}
 
 StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRecord& record) {
   StreamSource source;
@@ -21,6 +39,7 @@ StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRec
   source.frames = record.source.frames;
   source.live = record.source.kind == "camera";
   source.camera = slam.camera();
+  source.truth = TruthBeside(record.source_path);
   return source;
 }
 
@@ -66,6 +85,7 @@ StreamFeed::~StreamFeed() {
 
 void StreamFeed::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
   slam_ = &slam;
+  record_ = &record;
   folder_ = folder;
   {
     const std::lock_guard<std::mutex> lock(encoder_mutex_);
@@ -180,6 +200,10 @@ void StreamFeed::Finished() {
   Drain();
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->End(slam_->Snapshot()));
+  if (!record_->truth.empty()) {  // of a rendered source, which tells it frame by frame
+    encoder_->SetTruth(TruthOf(record_->truth));
+    Tell({encoder_->Hello()});
+  }
   playback_.finished = true;
   playback_.paused = playback_.may_pause = false;
   Tell({encoder_->Playback(playback_)});

@@ -68,6 +68,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   const std::optional<std::string> file_path_;
   const StreamFeedSettings settings_;
   const Slam* slam_ = nullptr;
+  const RunRecord* record_ = nullptr;
   std::string folder_;
   LatestTimes latest_;                                  // as of the frame before
   double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording

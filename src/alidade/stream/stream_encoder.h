@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/stream/settings.h"
@@ -70,6 +71,9 @@ class StreamEncoder {
   ~StreamEncoder();
   StreamEncoder(const StreamEncoder&) = delete;
   StreamEncoder& operator=(const StreamEncoder&) = delete;
+
+  // Known later than the rest: to be told by another Hello().
+  void SetTruth(std::vector<StreamTruth> truth) { source_.truth = std::move(truth); }
 
   // Each a message.
   std::string Hello() const;

@@ -8,6 +8,7 @@ import { compose, IDENTITY, transform } from './pose.ts';
 export class State {
   hello: Hello | null = null;
   frame: Frame | null = null; // the latest
+  pictured: Frame | null = null; // the latest with a picture: not every frame brings one
   playback: Playback | null = null;
   mapVersion = 0n;
   // Objects in these two are never changed, only replaced.
@@ -34,6 +35,7 @@ export class State {
         break;
       case 'frame':
         this.frame = message;
+        if (message.picture) this.pictured = message;
         this.path.set([{
           number: message.number, time: message.time, state: message.state, reference: message.reference,
           T_reference_camera: message.T_reference_camera ?? IDENTITY,

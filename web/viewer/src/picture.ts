@@ -3,6 +3,8 @@ import { USES } from '@alidade/scene';
 import type { Frame, State } from '@alidade/scene';
 import { byId } from './dom.ts';
 
+const kPictureSeconds = 1; // programs send some ten a second
+
 export class Picture {
   private readonly section = byId('picture');
   private readonly canvas = byId('picture-canvas') as HTMLCanvasElement;
@@ -26,7 +28,10 @@ export class Picture {
   }
 
   update(state: State): void {
-    const { frame } = state;
+    // The latest picture, with its own features, unless pictures have ceased.
+    const { pictured } = state;
+    const age = pictured && state.frame ? state.frame.time - pictured.time : -1;
+    const frame = age >= 0 && age < kPictureSeconds ? pictured : state.frame;
     const camera = state.hello?.camera;
     const width = camera?.width || frame?.picture?.width || 4;
     const height = camera?.height || frame?.picture?.height || 3;
