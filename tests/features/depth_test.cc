@@ -56,6 +56,19 @@ TEST(AttachDepth, WhatLiesBeyondTheSensorsRangeIsNoReading) {
   EXPECT_FLOAT_EQ(frame.keypoints[1].depth, 8.1f);
 }
 
+// Metres taken for something else: their column in a right image would lie farther out than a saved
+// map may have it.
+TEST(AttachDepth, WhatLiesInTheLensIsNoReading) {
+  const Camera camera = DepthCamera();
+  for (const float metres : {1e-30f, 1e-7f}) {
+    const cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(metres));
+    Frame frame = FrameWith({{10, 10}});
+    AttachDepth(depth, camera, frame);
+    EXPECT_FALSE(frame.keypoints[0].has_depth());
+    EXPECT_EQ(frame.keypoints[0].right_x, Keypoint::kNoDepth);
+  }
+}
+
 TEST(AttachDepth, LeavesOutEdgesHolesAndNonsense) {
   const Camera camera = DepthCamera();
   cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(2.f));

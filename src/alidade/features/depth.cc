@@ -12,6 +12,10 @@ namespace {
 constexpr float kEdgeSpread =
     0.05f;  // share of the depth: within a surface seen at a slant it stays below
 
+// Pixels; no picture is as wide. What is nearer is no reading, and its column in the right image
+// would be none that a map can be saved with.
+constexpr float kMostDisparity = 1e6f;
+
 float DepthAt(const DepthImage& depth, int x, int y) {
   const float centre = depth.At(x, y);
   if (centre == 0) return Keypoint::kNoDepth;
@@ -45,7 +49,7 @@ void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, doubl
   for (Keypoint& k : frame.keypoints) {
     k.depth = DepthAt(image, static_cast<int>(std::lround(k.raw_x)),
                       static_cast<int>(std::lround(k.raw_y)));
-    if (k.depth > range) k.depth = Keypoint::kNoDepth;
+    if (k.depth > range || bf > kMostDisparity * k.depth) k.depth = Keypoint::kNoDepth;
     k.right_x = k.has_depth() ? k.x - bf / k.depth : Keypoint::kNoDepth;
   }
 }
