@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <thread>
 
 #include "alidade/serve/viewer_server.h"
 #include "serve/counting_hub.h"
@@ -100,7 +101,7 @@ TEST(Serve, OtherHostNamesAndOriginsAreRefused) {
   };
   EXPECT_EQ(status("Host: 127.0.0.1" + port + "\r\n"), "200");
   EXPECT_EQ(status("Host: LocalHost" + port + "\r\n"), "200");
-  for (const std::string host :
+  for (const std::string& host :
        {"evil.example" + port, std::string("127.0.0.1"), std::string("127.0.0.1:1"),
         "127.0.0.1.evil.example" + port, "192.168.0.1" + port, "0.0.0.0" + port, port,
         std::string(), "127.0.0.1" + port + "\r\nHost: 127.0.0.1" + port}) {
@@ -109,7 +110,7 @@ TEST(Serve, OtherHostNamesAndOriginsAreRefused) {
   }
   EXPECT_EQ(PlainClient(server->port()).Upgrade(), 101);  // a program, not a page
   EXPECT_EQ(upgrade("Origin: http://127.0.0.1" + port + "\r\n"), 101);
-  for (const std::string origin :
+  for (const std::string& origin :
        {std::string("http://evil.example"), "https://127.0.0.1" + port, std::string("null"),
         std::string("http://127.0.0.1:1"), std::string("http://localhost") + port, std::string()}) {
     EXPECT_EQ(upgrade("Origin: " + origin + "\r\n"), 403) << origin;
@@ -294,7 +295,6 @@ TEST(ServeStream, TheEndIsToldAfterWhatWaits) {
   for (int i = 1; i <= 50; ++i) EXPECT_EQ(client.Message(), std::to_string(i));
   EXPECT_EQ(client.Message(), std::nullopt);
   EXPECT_EQ(client.close_code(), 1001);
-  client.Send(PlainClient::Frame(8, ""));
   end.join();
   EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 0; }));
 }
