@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/run/run.h"
 #include "alidade/version.h"
 #include "arguments.h"
 #include "commands.h"
@@ -33,6 +34,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddEvaluateCommand(app, action);
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
+  alidade::AddViewCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddBenchCommand(app, action);
 }
@@ -61,6 +63,7 @@ int Run(int argc, char** argv) {
       "video\n"
       "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
       "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
+      "  alidade run my_recording --viewer           watch it in a browser\n"
       "  alidade info alidade-out/my_recording       what is in a map\n"
       "  alidade run --help                          all of a command's options\n"
       "\nExit status: 0 done, 2 usage, 3 input, 4 nothing could be mapped, 70 a bug of ours, 130 "
@@ -92,6 +95,8 @@ int main(int argc, char** argv) {
     return Complain(error.what(), static_cast<int>(error.kind()));
   } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
     return Complain(error.what(), static_cast<int>(alidade::ErrorKind::kInput));
+  } catch (const alidade::RunStopped& stopped) {
+    return Complain(stopped.what(), kBugStatus);
   } catch (const std::bad_alloc&) {
     return Complain("out of memory", kBugStatus);
   } catch (const std::exception& error) {

@@ -1,12 +1,23 @@
 // alidade run: a recording or camera in, a trajectory and a map out.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
 #include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
 
 #include "alidade/run/loop.h"
 #include "alidade/run/run.h"
+#include "alidade/run/stream_feed.h"
+#include "alidade/serve/viewer_server.h"
+#include "alidade/version.h"
 #include "commands.h"
 #include "run_flags.h"
 #include "run_progress.h"
+#include "viewer_flags.h"
 
 namespace alidade {
 namespace {
@@ -14,7 +25,29 @@ namespace {
 int RunAndTell(const RunOptions& options) {
   CatchInterrupts();
   RunProgress progress(options.quiet);
-  return Run(options, {&progress}).status;
+  std::vector<RunWatcher*> watchers = {&progress};
+  std::optional<StreamFeed> feed;
+  std::unique_ptr<ViewerServer> server;
+  if (options.record || options.viewer) {
+    CheckRunOptions(options);
+    feed.emplace("alidade " ALIDADE_VERSION, options.record);
+    watchers.push_back(&*feed);
+  }
+  if (options.viewer) {
+    server =
+        StartViewer(ServeSettingsFor(options.viewer, options.host), &*feed, "", options.source);
+    std::printf("Shown at %s\n", server->address().c_str());
+    std::fflush(stdout);
+  }
+  const int status = Run(options, watchers).status;
+  if (options.record && !options.quiet && feed->frames() > 0)
+    std::printf("The stream takes %.1f MB\n", 1e-6 * static_cast<double>(feed->bytes()));
+  if (server && isatty(STDOUT_FILENO) != 0) {
+    std::printf("Still shown at %s until Ctrl-C\n", server->address().c_str());
+    std::fflush(stdout);
+    while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  return status;
 }
 
 }  // namespace

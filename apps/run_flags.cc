@@ -10,6 +10,7 @@ constexpr char kExamples[] =
     "  alidade run my_recording                     best sensor the recording has\n"
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
+    "  alidade run my_recording --viewer            watch it in a browser\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
     "  alidade run my_recording --semidense         the shape of the place as well\n"
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
@@ -44,6 +45,20 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--repeat", options.repeat, "Play forth and back this many times");
   command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores");
   command.add_option("--seed", options.seed, "Seed of every random choice");
+  command
+      .add_option("--record", options.record,
+                  "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
+                  "among the results, or FILE)")
+      ->expected(0, 1)
+      ->default_str("");
+  command
+      .add_option("--viewer", options.viewer,
+                  "Show the run in a browser while it goes on; prints the address (PORT: 8090, or "
+                  "the next that is free)")
+      ->expected(0, 1)
+      ->default_str("");
+  command.add_option("--host", options.host,
+                     "Address the viewer listens on (127.0.0.1: this machine only)");
   command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)");
   command.add_option("--first", options.first, "First frame, counted from 0");
   command.add_option("--last", options.last, "Last frame, included");

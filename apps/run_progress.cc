@@ -34,7 +34,8 @@ std::string Clock(double seconds) {
 
 }  // namespace
 
-void RunProgress::Begin(const Slam& slam, const RunRecord& record) {
+void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
+  (void)folder;
   slam_ = &slam;
   record_ = &record;
 }

@@ -12,7 +12,7 @@ class RunProgress : public RunWatcher {
  public:
   explicit RunProgress(bool quiet) : terminal_(quiet), quiet_(quiet) {}
 
-  void Begin(const Slam& slam, const RunRecord& record) override;
+  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
   void Finishing() override;
   void Finished() override { terminal_.SetProgress(""); }

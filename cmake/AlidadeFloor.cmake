@@ -31,6 +31,8 @@ function(alidade_test FOLDER)
   add_executable(test_${FOLDER} ${SOURCES})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
+  # What is tested is compiled as it is used; the tests themselves are not what takes time.
+  target_compile_options(test_${FOLDER} PRIVATE $<$<CONFIG:Release>:-O1>)
   if(ARG_END_TO_END)
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end
                          FIXTURES_REQUIRED recordings)

@@ -1,17 +1,10 @@
 #include "bench/dynamic_run.h"
 
 #include "alidade/base/error.h"
+#include "alidade/run/loop.h"
 #include "alidade/run/results.h"
 
 namespace alidade::bench {
-namespace {
-
-FrameInput InputOf(const SourceFrame& frame) {
-  return {frame.time, frame.image, frame.right, frame.depth, frame.color};
-}
-
-}  // namespace
-
 DynamicErrors EvaluateErrors(const DynamicScene& scene, Sensor sensor, const Trajectory& estimate) {
   DynamicErrors errors;
   const Alignment align = sensor == Sensor::kMono ? Alignment::kSim3 : Alignment::kSe3;

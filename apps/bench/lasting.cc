@@ -10,6 +10,7 @@
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
 #include "alidade/run/any_source.h"
+#include "alidade/run/loop.h"
 #include "alidade/run/options.h"
 #include "alidade/slam.h"
 
@@ -27,10 +28,6 @@ double ResidentMegabytes() {
     std::fclose(file);
   }
   return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
-}
-
-FrameInput InputOf(const SourceFrame& frame) {
-  return {frame.time, frame.image, frame.right, frame.depth, frame.color};
 }
 
 std::unique_ptr<FrameSource> Open(const std::string& source, const std::string& sensor) {

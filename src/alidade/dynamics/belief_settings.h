@@ -3,7 +3,9 @@
 // and -0.85 is p = 0.3. "Per frame" is at 30 frames per second.
 #pragma once
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 // Depth of cells, and of one view against another. dynamics.depth
 struct CellDepthSettings {

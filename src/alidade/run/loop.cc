@@ -133,7 +133,7 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
   record.stamps.push_back(frame.stamp);
   record.numbers.push_back(frame.number);
   try {
-    result = slam.Track({frame.time, frame.image, frame.right, frame.depth, frame.color});
+    result = slam.Track(InputOf(frame));
   } catch (...) {
     const std::exception_ptr failure = std::current_exception();
     const std::string what = WhatOf(failure);

@@ -11,6 +11,11 @@
 
 namespace alidade {
 
+// What Slam::Track() is given of a frame.
+inline FrameInput InputOf(const SourceFrame& frame) {
+  return {frame.time, frame.image, frame.right, frame.depth, frame.color};
+}
+
 // From now on Ctrl-C (or a TERM signal) lets RunFrames() return, once the workers are done; a
 // second one does not wait for them, a third ends the program.
 void CatchInterrupts();

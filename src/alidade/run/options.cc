@@ -17,7 +17,7 @@ void CheckRunOptions(const RunOptions& options) {
   if (options.semidense && options.localise) {
     ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
   }
-  if (options.host && !options.view)
+  if (options.host && !options.viewer)
     ThrowUsage("--host is where the viewer listens: it needs --viewer");
   CheckThreads(options.threads);
   if (options.repeat < 0) ThrowUsage("--repeat must not be negative");

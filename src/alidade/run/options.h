@@ -26,8 +26,7 @@ struct RunOptions {
   std::optional<std::string> dynamics, detector;
   bool write_masks = false;
   std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
-  bool view = false;                  // show it in a browser
-  std::optional<int> port;            // of the viewer; without: the first that is free
+  std::optional<std::string> viewer;  // show it in a browser: the port; empty: one that is free
   std::optional<std::string> host;    // address the viewer listens on; 127.0.0.1
 };
 

@@ -4,7 +4,6 @@
 #include <mutex>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -97,7 +96,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record);
+  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record, folder.path());
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
@@ -112,7 +111,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, folder.path());
   if (record.failure) std::rethrow_exception(record.failure);
   if (const std::string bugs = BugOf(record); !bugs.empty())
-    throw std::runtime_error(bugs + " (what could be done without is in " + folder.path() + ")");
+    throw RunStopped(bugs + " (what could be done without is in " + folder.path() + ")");
   if (record.interrupted) {
     outcome.status = kInterruptedStatus;
   } else if (outcome.summary.tracked == 0) {

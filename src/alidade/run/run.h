@@ -1,6 +1,7 @@
 // A whole run: from what was asked for to the files it leaves behind.
 #pragma once
 
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,15 @@ struct RunOutcome {
   int status = 0;
 };
 
+// A part of the system stopped, by no fault of the recording's: it had no memory left, or has a
+// bug. What could be done without is written.
+class RunStopped : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 // Opens the source, plays it, writes the results. Throws Error (see ErrorKind) for what cannot be,
-// and std::runtime_error for what is a bug of ours, after all that can be written was written;
-// `watchers` were told where, then.
+// RunStopped (after everything else was done), and whatever else is a bug of ours.
 RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watchers);
 
 }  // namespace alidade

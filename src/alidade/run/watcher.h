@@ -16,8 +16,10 @@ class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
   // Before the first frame. What `slam` and `record` are references to lives until End() has
-  // returned.
-  virtual void Begin(const Slam& slam, const RunRecord& record) { (void)slam, (void)record; }
+  // returned, or Run() throws. Results will be in `folder`, which is there.
+  virtual void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
+    (void)slam, (void)record, (void)folder;
+  }
   // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
   // it must not any more.
   virtual void Wait(bool (*interrupted)()) { (void)interrupted; }

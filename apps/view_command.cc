@@ -1,0 +1,112 @@
+// alidade view: a run that was recorded, or a map, in a browser.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "alidade/base/error.h"
+#include "alidade/run/loop.h"
+#include "alidade/run/saved_map.h"
+#include "alidade/run/stream_file.h"
+#include "alidade/serve/viewer_server.h"
+#include "alidade/stream/stream_encoder.h"
+#include "alidade/stream/stream_hub.h"
+#include "alidade/version.h"
+#include "commands.h"
+#include "viewer_flags.h"
+
+namespace alidade {
+namespace {
+
+struct ViewArguments {
+  std::string what;
+  std::optional<std::string> port, host;
+};
+
+// Has said all there is to say.
+class StillHub : public StreamHub {
+ public:
+  explicit StillHub(std::vector<std::string> messages) {
+    for (std::string& message : messages)
+      messages_.push_back(std::make_shared<const std::string>(std::move(message)));
+  }
+  int Join(Take take) override {
+    for (const auto& message : messages_) take(message);
+    return 0;
+  }
+  void Leave(int) override {}
+  void Control(StreamControl) override {}
+
+ private:
+  std::vector<std::shared_ptr<const std::string>> messages_;
+};
+
+// A map alone.
+std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& path) {
+  StreamSource source;
+  source.program = "alidade " ALIDADE_VERSION;
+  source.source = path;
+  source.sensor = saved.sensor;
+  source.unit = saved.sensor == NameOf(Sensor::kMono) ? "map units" : "m";
+  source.camera = saved.camera;
+  StreamEncoder encoder(source);
+  encoder.End(saved.map);
+  std::vector<std::string> messages = encoder.Whole();
+  messages.push_back(encoder.Playback({false, true, false}));
+  return messages;
+}
+
+// What is to be replayed: the file itself, or the one in the folder of a run; empty: none.
+std::string StreamIn(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path file =
+      fs::is_directory(path, error) ? fs::path(path) / "run.stream" : fs::path(path);
+  return file.extension() == ".stream" && fs::is_regular_file(file, error) ? file.string() : "";
+}
+
+int View(const ViewArguments& arguments) {
+  const std::string recorded = StreamIn(arguments.what);
+  std::unique_ptr<StillHub> hub;
+  if (recorded.empty()) {
+    hub = std::make_unique<StillHub>(MessagesOf(ReadSavedMap(arguments.what), arguments.what));
+  } else {
+    StreamFileReader check(recorded);  // says what is wrong with it before anyone looks
+  }
+  CatchInterrupts();
+  const auto server = StartViewer(ServeSettingsFor(arguments.port, arguments.host), hub.get(),
+                                  recorded, arguments.what);
+  std::printf("%s is shown at %s (Ctrl-C ends)\n", arguments.what.c_str(),
+              server->address().c_str());
+  std::fflush(stdout);
+  while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return 0;
+}
+
+}  // namespace
+
+void AddViewCommand(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("view", "Look at a run, or a map, in a browser");
+  auto arguments = std::make_shared<ViewArguments>();
+  command
+      ->add_option("WHAT", arguments->what,
+                   "Folder of results, a recorded stream (run.stream) or a map (map.alidade)")
+      ->required();
+  command->add_option("--port", arguments->port,
+                      "Port to listen on (8090, or the next that is free)");
+  command->add_option("--host", arguments->host,
+                      "Address to listen on (127.0.0.1: this machine only); any other gives an "
+                      "address with a secret in it");
+  command->footer(
+      "\nExamples:\n"
+      "  alidade run kitchen --record && alidade view alidade-out/kitchen     the run, replayed\n"
+      "  alidade view alidade-out/kitchen/map.alidade                         its map\n"
+      "  alidade view alidade-out/kitchen --host 0.0.0.0                      from another device\n"
+      "\nPrints the address, and goes on until Ctrl-C.");
+  command->callback([arguments, &action] { action = [arguments] { return View(*arguments); }; });
+}
+
+}  // namespace alidade

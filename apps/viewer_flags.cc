@@ -1,0 +1,24 @@
+#include "viewer_flags.h"
+
+#include "alidade/base/error.h"
+#include "alidade/io/text.h"
+
+namespace alidade {
+
+ServeSettings ServeSettingsFor(const std::optional<std::string>& port,
+                               const std::optional<std::string>& host) {
+  ServeSettings settings;
+  if (host) settings.host = *host;
+  if (port && !port->empty()) {
+    const std::optional<double> number = ParseNumber(*port);
+    if (!number || *number != static_cast<int>(*number) || *number < 0 || *number > 65535)
+      ThrowUsage("the viewer's port is a number from 0 (any free one) to 65535, not '" + *port +
+                 "'");
+    settings.port = static_cast<int>(*number);
+    settings.port_given = true;
+  }
+  settings.Check();
+  return settings;
+}
+
+}  // namespace alidade

@@ -1,0 +1,229 @@
+#include "alidade/run/stream_feed.h"
+
+#include <algorithm>
+#include <chrono>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/files/image_codec.h"
+
+namespace alidade {
+namespace {
+
+StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRecord& record) {
+  StreamSource source;
+  source.program = program;
+  source.source = record.source_path;
+  source.sensor = NameOf(record.settings.sensor);
+  source.unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
+  source.frames = record.source.frames;
+  source.live = record.source.kind == "camera";
+  source.camera = slam.camera();
+  return source;
+}
+
+// What each stage took since `before`; -1 where it has not run.
+StreamMilliseconds Since(const LatestTimes& before, const LatestTimes& now) {
+  const auto of = [](const SampleLog::Reading& then, const SampleLog::Reading& last) {
+    return last.number > then.number ? static_cast<float>(last.value) : -1.f;
+  };
+  return {of(before.frame, now.frame),   of(before.extract, now.extract),
+          of(before.track, now.track),   of(before.map, now.map),
+          of(before.loop, now.loop),     of(before.semidense, now.semidense),
+          of(before.detect, now.detect), of(before.dynamics, now.dynamics)};
+}
+
+}  // namespace
+
+void StreamFeedSettings::Check() const {
+  stream.Check();
+  const auto check = [](bool good, const char* name, const char* range) {
+    if (!good) ThrowUsage("stream." + std::string(name) + " must be " + range);
+  };
+  check(picture_width >= 16 && picture_width <= 8192, "picture_width", "within 16…8192");
+  check(picture_quality >= 1 && picture_quality <= 100, "picture_quality", "within 1…100");
+  check(pictures_hz >= 0, "pictures_hz", "at least 0");
+  check(whole_seconds > 0, "whole_seconds", "above 0");
+  check(waiting >= 1, "waiting", "at least 1");
+}
+
+StreamFeed::StreamFeed(std::string program, std::optional<std::string> file,
+                       const StreamFeedSettings& settings)
+    : program_(std::move(program)), file_path_(std::move(file)), settings_(settings) {
+  settings.Check();
+}
+
+StreamFeed::~StreamFeed() {
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    stop_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void StreamFeed::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
+  slam_ = &slam;
+  folder_ = folder;
+  {
+    const std::lock_guard<std::mutex> lock(encoder_mutex_);
+    encoder_ = std::make_unique<StreamEncoder>(SourceOf(program_, slam, record), settings_.stream);
+    playback_.may_pause = record.source.kind != "camera";
+    if (file_path_) {
+      file_ = std::make_unique<StreamFileWriter>(file_path_->empty() ? folder + "/run.stream"
+                                                                     : *file_path_);
+    }
+    Tell({encoder_->Hello(), encoder_->Playback(playback_)});
+  }
+  thread_ = std::thread([this] { Run(); });
+}
+
+// A viewer may hold up a recording.
+void StreamFeed::Wait(bool (*interrupted)()) {
+  std::unique_lock<std::mutex> lock(queue_mutex_);
+  while (paused_ && steps_ == 0 && !interrupted())
+    changed_.wait_for(lock, std::chrono::milliseconds(50));
+  if (paused_ && steps_ > 0) --steps_;
+}
+
+void StreamFeed::Frame(const SourceFrame& frame, const TrackResult& result) {
+  Shown shown;
+  StreamFrame& told = shown.frame;
+  told.number = frame.number;
+  told.time = frame.time;
+  told.result = result;
+  const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
+  if (!last.empty()) told.pose = last.back();
+  const LatestTimes latest = slam_->Latest();
+  told.ms = Since(latest_, latest);
+  latest_ = latest;
+  told.features = slam_->Features();
+  told.mover_mask = slam_->MoverMask();
+  told.map = slam_->Snapshot();
+  if (settings_.pictures_hz > 0 && !(frame.time - picture_time_ < 1 / settings_.pictures_hz)) {
+    picture_time_ = frame.time;
+    shown.image = frame.color.empty() ? frame.image : frame.color;
+  }
+  {
+    std::unique_lock<std::mutex> lock(queue_mutex_);
+    const auto most = static_cast<size_t>(settings_.waiting);
+    if (file_path_) {
+      changed_.wait(lock, [&] { return queue_.size() < most; });
+    } else if (queue_.size() >= most) {
+      queue_.pop_front();
+    }
+    queue_.push_back(std::move(shown));
+  }
+  changed_.notify_all();
+}
+
+void StreamFeed::Run() {
+  while (true) {
+    Shown shown;
+    {
+      std::unique_lock<std::mutex> lock(queue_mutex_);
+      working_ = false;
+      changed_.notify_all();
+      changed_.wait(lock, [&] { return stop_ || !queue_.empty(); });
+      if (stop_) return;
+      shown = std::move(queue_.front());
+      queue_.pop_front();
+      working_ = true;
+    }
+    changed_.notify_all();
+    Encode(shown);
+  }
+}
+
+void StreamFeed::Encode(Shown& shown) {
+  if (!shown.image.empty()) {
+    cv::Mat image = shown.image;
+    if (image.cols > settings_.picture_width) {
+      const int height = std::max(1, image.rows * settings_.picture_width / image.cols);
+      cv::resize(shown.image, image, {settings_.picture_width, height}, 0, 0, cv::INTER_AREA);
+    }
+    shown.frame.picture = {image.cols, image.rows, "image/jpeg",
+                           EncodeJpeg(image, settings_.picture_quality)};
+  }
+  const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  Tell(encoder_->Add(shown.frame));
+  ++frames_;
+  if (file_ && shown.frame.time - whole_time_ >= settings_.whole_seconds) {
+    if (whole_time_ > -1e300) {
+      for (const std::string& message : encoder_->Whole()) file_->Write(message);
+    }
+    whole_time_ = shown.frame.time;
+  }
+}
+
+void StreamFeed::Tell(std::vector<std::string> messages) {
+  for (std::string& bytes : messages) {
+    const auto message = std::make_shared<const std::string>(std::move(bytes));
+    if (file_) {
+      file_->Write(*message);
+    } else {
+      bytes_ += message->size();
+    }
+    for (const auto& [id, take] : takers_) take(message);
+  }
+  if (file_) bytes_ = file_->bytes();
+}
+
+void StreamFeed::Drain() {
+  std::unique_lock<std::mutex> lock(queue_mutex_);
+  changed_.wait(lock, [&] { return queue_.empty() && !working_; });
+}
+
+void StreamFeed::Finished() {
+  Drain();
+  const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  Tell(encoder_->End(slam_->Snapshot()));
+  playback_.finished = true;
+  playback_.paused = playback_.may_pause = false;
+  Tell({encoder_->Playback(playback_)});
+}
+
+void StreamFeed::End(const RunSummary& summary, const std::string& folder) {
+  (void)summary, (void)folder;
+  const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  if (file_) file_->Close();
+  file_ = nullptr;
+}
+
+int StreamFeed::Join(Take take) {
+  const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  if (encoder_) {
+    for (std::string& bytes : encoder_->Whole())
+      take(std::make_shared<const std::string>(std::move(bytes)));
+    take(std::make_shared<const std::string>(encoder_->Playback(playback_)));
+  }
+  takers_[next_taker_] = std::move(take);
+  return next_taker_++;
+}
+
+void StreamFeed::Leave(int id) {
+  const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  takers_.erase(id);
+}
+
+void StreamFeed::Control(StreamControl control) {
+  const std::lock_guard<std::mutex> encoder(encoder_mutex_);
+  if (!playback_.may_pause) return;
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    if (control == StreamControl::kStep) {
+      if (paused_) ++steps_;
+      paused_ = true;
+    } else {
+      paused_ = control == StreamControl::kPause;
+      steps_ = 0;
+    }
+    playback_.paused = paused_;
+  }
+  changed_.notify_all();
+  Tell({encoder_->Playback(playback_)});
+}
+
+}  // namespace alidade

@@ -1,0 +1,94 @@
+// A run as a stream: shown each frame, it encodes what happened in a thread of its own, adds the
+// picture, and gives the messages to those who joined, and to a file.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "alidade/run/stream_file.h"
+#include "alidade/run/watcher.h"
+#include "alidade/stream/stream_encoder.h"
+#include "alidade/stream/stream_hub.h"
+
+namespace alidade {
+
+struct StreamFeedSettings {
+  StreamSettings stream;
+  int picture_width = 400;    // pixels; the camera's picture is scaled down to it
+  int picture_quality = 70;   // of JPEG, 1…100: 11-14 kB at 320 pixels
+  double pictures_hz = 10;    // pictures a second, at most: by the recording's clock
+  double whole_seconds = 10;  // of a file, between two whole states: what a reader may begin at
+  int waiting = 8;            // frames that wait to be encoded; of more, the newest counts (with a
+                              // file: the run waits)
+  void Check() const;         // throws Error (usage) naming the field that cannot be
+};
+
+class StreamFeed : public RunWatcher, public StreamHub {
+ public:
+  // `file`: where the stream is kept; nothing: nowhere. Empty: run.stream among the results.
+  StreamFeed(std::string program, std::optional<std::string> file,
+             const StreamFeedSettings& settings = {});
+  ~StreamFeed() override;
+
+  // The run's.
+  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
+  void Wait(bool (*interrupted)()) override;
+  void Frame(const SourceFrame& frame, const TrackResult& result) override;
+  void Finished() override;
+  void End(const RunSummary& summary, const std::string& folder) override;
+
+  // The carriers'.
+  int Join(Take take) override;
+  void Leave(int id) override;
+  void Control(StreamControl control) override;
+
+  // Of the file, or of all messages where there is none.
+  size_t bytes() const { return bytes_; }
+  int frames() const { return frames_; }
+
+ private:
+  struct Shown {
+    StreamFrame frame;
+    cv::Mat image;  // to be coded; empty: no picture
+  };
+  void Run();
+  void Encode(Shown& shown);
+  void Tell(std::vector<std::string> messages);  // with encoder_mutex_ held
+  void Drain();
+
+  const std::string program_;
+  const std::optional<std::string> file_path_;
+  const StreamFeedSettings settings_;
+  const Slam* slam_ = nullptr;
+  std::string folder_;
+  LatestTimes latest_;                                  // as of the frame before
+  double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording
+
+  std::mutex encoder_mutex_;  // of all down to the next mutex
+  std::unique_ptr<StreamEncoder> encoder_;
+  std::unique_ptr<StreamFileWriter> file_;
+  std::map<int, Take> takers_;
+  int next_taker_ = 0;
+  StreamPlayback playback_;
+
+  mutable std::mutex queue_mutex_;
+  std::condition_variable changed_;
+  std::deque<Shown> queue_;
+  bool working_ = false, stop_ = false;
+  bool paused_ = false;
+  int steps_ = 0;  // frames that may pass while paused
+
+  std::atomic<size_t> bytes_{0};
+  std::atomic<int> frames_{0};
+  std::thread thread_;
+};
+
+}  // namespace alidade

@@ -1,0 +1,51 @@
+// The stream in a file: run.stream. 8 bytes "ALIDSTR1", then for each message its length (u32,
+// little-endian), 4 zero bytes, and the message, filled up with zeros to a multiple of 8. A file
+// that was cut off is good up to its last whole message.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace alidade {
+
+// Written beside its place, and there once it is closed.
+class StreamFileWriter {
+ public:
+  // Throws Error (input) when it cannot be made.
+  explicit StreamFileWriter(const std::string& path);
+  ~StreamFileWriter();  // without Close(): nothing stays
+  StreamFileWriter(const StreamFileWriter&) = delete;
+  StreamFileWriter& operator=(const StreamFileWriter&) = delete;
+
+  // False when the disk is full or gone; nothing more is written then.
+  bool Write(std::string_view message);
+  void Close();  // throws Error (input) when not all of it could be written
+  size_t bytes() const { return bytes_; }
+
+ private:
+  std::string path_, draft_;
+  std::FILE* file_ = nullptr;
+  size_t bytes_ = 0;
+  bool failed_ = false;
+};
+
+// Message by message.
+class StreamFileReader {
+ public:
+  // Throws Error (input) when it cannot be read or is no stream.
+  explicit StreamFileReader(const std::string& path);
+  ~StreamFileReader();
+  StreamFileReader(const StreamFileReader&) = delete;
+  StreamFileReader& operator=(const StreamFileReader&) = delete;
+
+  // Nothing at the end, or where the file was cut off.
+  std::optional<std::string> Next();
+
+ private:
+  std::FILE* file_ = nullptr;
+  size_t left_ = 0;  // bytes
+};
+
+}  // namespace alidade

@@ -1,0 +1,157 @@
+// Bytes → message. Pure; what is malformed throws DecodeError and nothing else.
+import * as flatbuffers from 'flatbuffers';
+import * as fb from '../generated/stream_generated.ts';
+import { EVENT_KINDS, STATES } from './messages.ts';
+import type { Camera, DepthCloud, Event, Frame, Hello, KeyFrame, MapChange, Message, Pose } from './messages.ts';
+import { DecodeError, verify } from './verify.ts';
+
+export { DecodeError } from './verify.ts';
+
+export const VERSION = 1; // of the format; higher ones are refused
+
+// The message holds copies, so `bytes` may go. They may start anywhere: accessors and views need 8-byte alignment, else they are copied.
+export function decode(bytes: Uint8Array): Message {
+  const aligned = bytes.byteOffset % 8 === 0 ? bytes : bytes.slice();
+  verify(aligned);
+  const message = fb.Message.getRootAsMessage(new flatbuffers.ByteBuffer(aligned));
+  const body = <T>(table: T): T => {
+    if (message.body(table as never) === null) throw new DecodeError('a message that says nothing');
+    return table;
+  };
+  switch (message.bodyType()) {
+    case fb.Body.Hello:
+      return hello(body(new fb.Hello()));
+    case fb.Body.Frame:
+      return frame(body(new fb.Frame()));
+    case fb.Body.MapChange:
+      return mapChange(body(new fb.MapChange()));
+    case fb.Body.Event:
+      return event(body(new fb.Event()));
+    case fb.Body.Playback: {
+      const playback = body(new fb.Playback());
+      return { kind: 'playback', paused: playback.paused(), finished: playback.finished(), mayPause: playback.mayPause() };
+    }
+    default:
+      throw new DecodeError('a message that says nothing');
+  }
+}
+
+function list<From, To>(count: number, at: (i: number) => From | null, to: (from: From) => To): To[] {
+  const result = new Array<To>(count);
+  for (let i = 0; i < count; ++i) result[i] = to(at(i)!);
+  return result;
+}
+
+function pose(p: fb.Pose): Pose {
+  const values = [p.qx(), p.qy(), p.qz(), p.qw(), p.tx(), p.ty(), p.tz()];
+  if (!values.every(Number.isFinite)) throw new DecodeError('a pose that is no number');
+  const norm = Math.hypot(values[0], values[1], values[2], values[3]);
+  if (Math.abs(norm - 1) > 1e-3) throw new DecodeError(`a rotation whose quaternion has length ${norm}`);
+  return values;
+}
+
+function scale(value: number): number {
+  if (!(value > 0 && value < Infinity)) throw new DecodeError(`a scale of ${value}`);
+  return value;
+}
+
+function entry<T>(names: readonly T[], value: number, what: string): T {
+  if (value >= names.length) throw new DecodeError(`${what} ${value} is not known`);
+  return names[value];
+}
+
+function records(bytes: Uint8Array | null, size: number, what: string): Uint8Array<ArrayBuffer> {
+  if (bytes === null) return new Uint8Array(0);
+  if (bytes.byteLength % size !== 0) throw new DecodeError(`${what}: ${bytes.byteLength} bytes are not records of ${size}`);
+  return new Uint8Array(bytes); // a copy
+}
+
+function camera(c: fb.Camera): Camera {
+  return {
+    width: c.width(), height: c.height(), fx: c.fx(), fy: c.fy(), cx: c.cx(), cy: c.cy(),
+    distortion: [...(c.distortionArray() ?? [])], baseline: c.baseline(),
+  };
+}
+
+function hello(body: fb.Hello): Hello {
+  if (body.version() > VERSION) {
+    throw new DecodeError(`the stream is of version ${body.version()}, this page reads up to ${VERSION}: reload it, or update it`);
+  }
+  const from = body.camera();
+  return {
+    kind: 'hello', version: body.version(), program: body.program() ?? '', source: body.source() ?? '',
+    sensor: body.sensor() ?? '', unit: body.unit() ?? '', frames: body.frames(), live: body.live(),
+    camera: from && camera(from),
+    truth: list(body.truthLength(), (i) => body.truth(i), (t) => ({ time: t.time(), T_world_camera: pose(t.tWorldCamera()!) })),
+  };
+}
+
+function frame(body: fb.Frame): Frame {
+  const inReference = body.tReferenceCamera();
+  const inWorld = body.tWorldCamera();
+  const picture = body.picture();
+  return {
+    kind: 'frame', number: body.number(), time: body.time(), state: entry(STATES, body.state(), 'state'),
+    reason: body.reason() ?? '', cut: body.cut() ?? '', keyframe: body.keyframe(),
+    reference: body.reference(), map: body.map(),
+    T_reference_camera: inReference && pose(inReference), T_world_camera: inWorld && pose(inWorld),
+    keyframes: body.keyframes(), landmarks: body.landmarks(), matches: body.matches(), maps: body.maps(),
+    foundShare: body.foundShare(), ms: [...(body.msArray() ?? [])],
+    features: records(body.featuresArray(), 6, 'features'),
+    detections: list(body.detectionsLength(), (i) => body.detections(i), (d) => ({
+      x: d.x(), y: d.y(), width: d.width(), height: d.height(), score: d.score(), label: d.label() ?? '',
+    })),
+    outlines: list(body.outlinesLength(), (i) => body.outlines(i), (o) => new Uint16Array(o.pointsArray() ?? [])),
+    picture: picture && {
+      width: picture.width(), height: picture.height(), type: picture.type() ?? '',
+      bytes: new Uint8Array(picture.bytesArray() ?? []),
+    },
+  };
+}
+
+function keyframe(k: fb.KeyFrame): KeyFrame {
+  const at = k.tWorldCamera();
+  if (!at) throw new DecodeError(`keyframe ${k.id()} without a pose`);
+  return {
+    id: k.id(), map: k.map(), parent: k.parent(), number: k.number(), time: k.time(),
+    T_world_camera: pose(at), scale: scale(k.scale()),
+    covisible: [...(k.covisibleArray() ?? [])], loops: [...(k.loopsArray() ?? [])],
+  };
+}
+
+function cloud(d: fb.DepthCloud): DepthCloud {
+  const least = d.least();
+  const most = d.most();
+  const points = new Uint16Array(records(d.pointsArray(), 8, 'depth').buffer);
+  if (points.length > 0 && !(least > 0 && most >= least && most < Infinity)) {
+    throw new DecodeError(`depth of keyframe ${d.keyframe()} between inverse depths ${least} and ${most}`);
+  }
+  return { keyframe: d.keyframe(), least, most, points };
+}
+
+function mapChange(body: fb.MapChange): MapChange {
+  return {
+    kind: 'map', version: body.version(), whole: body.whole(),
+    keyframes: list(body.keyframesLength(), (i) => body.keyframes(i), keyframe),
+    moves: list(body.movesLength(), (i) => body.moves(i), (m) => ({
+      id: m.id(), scale: scale(m.scale()), T_world_camera: pose(m.tWorldCamera()!),
+    })),
+    landmarks: new DataView(records(body.landmarksArray(), 20, 'landmarks').buffer),
+    removedLandmarks: new Uint32Array(body.removedLandmarksArray() ?? []),
+    culled: list(body.culledLength(), (i) => body.culled(i), (c) => ({
+      id: c.id(), follows: c.follows(), scale: scale(c.scale()), T_follows_culled: pose(c.tFollowsCulled()!),
+    })),
+    depth: list(body.depthLength(), (i) => body.depth(i), cloud),
+    path: list(body.pathLength(), (i) => body.path(i), (p) => ({
+      number: p.number(), time: p.time(), state: entry(STATES, p.state(), 'state'), reference: p.reference(),
+      T_reference_camera: pose(p.tReferenceCamera()!),
+    })),
+  };
+}
+
+function event(body: fb.Event): Event {
+  return {
+    kind: 'event', what: entry(EVENT_KINDS, body.kind(), 'event'), number: body.number(), time: body.time(),
+    text: body.text() ?? '', a: body.a(), b: body.b(),
+  };
+}

@@ -1,0 +1,150 @@
+// What of the state is drawn, by layer; each fills its GPU buffers from the state, where it is other than what was drawn last.
+import type { Anchors } from './anchors.ts';
+import { NOWHERE } from './anchors.ts';
+import type { LineLayer } from './lines.ts';
+import type { Camera, DepthCloud, KeyFrame } from './messages.ts';
+import { NONE } from './messages.ts';
+import type { Page } from './pages.ts';
+import { PAGE } from './pages.ts';
+import type { PointLayer } from './points.ts';
+import type { State } from './state.ts';
+
+export class LandmarkUpload {
+  private drawn: { page: Page; version: number }[] = [];
+
+  constructor(private readonly layer: PointLayer, private readonly anchors: Anchors) {}
+
+  update(state: State): void {
+    const { landmarks } = state;
+    this.layer.reserve(landmarks.pages.length * PAGE);
+    landmarks.pages.forEach((page, number) => {
+      const drawn = this.drawn[number];
+      if (drawn?.page === page && drawn.version === page.version) return;
+      this.drawn[number] = { page, version: page.version };
+      const begin = number * PAGE;
+      const end = Math.min(begin + PAGE, landmarks.size);
+      for (let i = begin; i < end; ++i) {
+        const at = 5 * (i - begin);
+        this.layer.set(i, this.anchors.slot(page.u32[at + 1]), page.f32[at + 2], page.f32[at + 3], page.f32[at + 4]);
+      }
+      this.layer.changed(begin, end);
+    });
+    this.drawn.length = landmarks.pages.length;
+    this.layer.count = landmarks.size;
+  }
+}
+
+const BLOCK = 256; // points
+
+// Points of a keyframe lie in blocks that may be anywhere; those of one that went are used again.
+export class CloudUpload {
+  private drawn = new Map<number, { cloud: DepthCloud; blocks: number[] }>();
+  private unused: number[] = [];
+  private blocks = 0;
+
+  constructor(private readonly layer: PointLayer, private readonly anchors: Anchors) {}
+
+  update(state: State): void {
+    const camera = state.hello?.camera;
+    if (!camera) return;
+    for (const [id, { cloud, blocks }] of this.drawn) {
+      if (state.clouds.get(id) === cloud) continue;
+      for (const block of blocks) {
+        for (let i = 0; i < BLOCK; ++i) this.layer.hide(block * BLOCK + i, NOWHERE);
+        this.layer.changed(block * BLOCK, (block + 1) * BLOCK);
+      }
+      this.unused.push(...blocks);
+      this.drawn.delete(id);
+    }
+    for (const [id, cloud] of state.clouds) if (!this.drawn.has(id)) this.add(id, cloud, camera);
+    this.layer.count = this.blocks * BLOCK;
+  }
+
+  private add(id: number, cloud: DepthCloud, camera: Camera): void {
+    const count = cloud.points.length / 4;
+    const slot = this.anchors.slot(id);
+    const blocks: number[] = [];
+    const span = Math.log(cloud.most / cloud.least) / 65535;
+    for (let begin = 0; begin < count; begin += BLOCK) {
+      const block = this.unused.pop() ?? this.blocks++;
+      blocks.push(block);
+      this.layer.reserve(this.blocks * BLOCK);
+      for (let i = 0; i < BLOCK; ++i) {
+        const at = 4 * (begin + i);
+        if (begin + i >= count) {
+          this.layer.hide(block * BLOCK + i, NOWHERE);
+          continue;
+        }
+        const z = 1 / (cloud.least * Math.exp(span * cloud.points[at + 2]));
+        const u = (cloud.points[at] * camera.width) / 65536 - 0.5;
+        const v = (cloud.points[at + 1] * camera.height) / 65536 - 0.5;
+        this.layer.set(block * BLOCK + i, slot, (z * (u - camera.cx)) / camera.fx, (z * (v - camera.cy)) / camera.fy, z, cloud.points[at + 3]);
+      }
+      this.layer.changed(block * BLOCK, (block + 1) * BLOCK);
+    }
+    this.drawn.set(id, { cloud, blocks });
+  }
+}
+
+const ORIGIN = [0, 0, 0];
+
+// Corners of the picture at depth 1, times `size`.
+export function corners(camera: Camera | null, size: number): number[][] {
+  const { width, height, fx, fy, cx, cy } = camera ?? { width: 640, height: 480, fx: 500, fy: 500, cx: 320, cy: 240 };
+  const at = (u: number, v: number) => [(size * (u - cx)) / fx, (size * (v - cy)) / fy, size];
+  return [at(-0.5, -0.5), at(width - 0.5, -0.5), at(width - 0.5, height - 0.5), at(-0.5, height - 0.5)];
+}
+
+function addFrustum(layer: LineLayer, slot: number, of: number[][]): void {
+  of.forEach((corner, k) => {
+    layer.add(slot, ORIGIN, slot, corner);
+    layer.add(slot, corner, slot, of[(k + 1) % 4]);
+  });
+}
+
+export function drawFrusta(layer: LineLayer, state: State, anchors: Anchors, size: number): void {
+  const of = corners(state.hello?.camera ?? null, size);
+  layer.begin(8 * state.keyframes.size);
+  for (const id of state.keyframes.keys()) addFrustum(layer, anchors.slot(id), of);
+  layer.end();
+}
+
+// Each edge once, though both ends tell it.
+export function drawEdges(layer: LineLayer, state: State, anchors: Anchors, of: (keyframe: KeyFrame) => readonly number[]): void {
+  const done = new Set<string>();
+  const edges: [number, number][] = [];
+  for (const keyframe of state.keyframes.values()) {
+    for (const other of of(keyframe)) {
+      if (!state.keyframes.has(other)) continue;
+      const key = keyframe.id < other ? `${keyframe.id} ${other}` : `${other} ${keyframe.id}`;
+      if (done.has(key)) continue;
+      done.add(key);
+      edges.push([anchors.slot(keyframe.id), anchors.slot(other)]);
+    }
+  }
+  layer.begin(edges.length);
+  for (const [a, b] of edges) layer.add(a, ORIGIN, b, ORIGIN);
+  layer.end();
+}
+
+// From frame to frame where both are known. `tint`: 0…1 for each frame's end.
+export function drawPath(layer: LineLayer, state: State, anchors: Anchors, tint: (i: number) => number): void {
+  const { path } = state;
+  layer.begin(path.length);
+  let before: { slot: number; t: number[]; number: number; map: number } | null = null;
+  for (let i = 0; i < path.length; ++i) {
+    const page = path.read(i);
+    const at = (i % PAGE) * 20;
+    const reference = page.u32[at + 17];
+    const keyframe = reference === NONE || page.u32[at + 18] !== 1 ? undefined : state.keyframes.get(reference);
+    if (!keyframe) {
+      before = null;
+      continue;
+    }
+    const t = page.f64.subarray(at / 2 + 5, at / 2 + 8);
+    const here = { slot: anchors.slot(reference), t: [t[0], t[1], t[2]], number: page.u32[at + 16] | 0, map: keyframe.map };
+    if (before && before.map === here.map) layer.add(before.slot, before.t, here.slot, here.t, tint(i));
+    before = here;
+  }
+  layer.end();
+}

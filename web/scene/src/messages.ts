@@ -1,0 +1,93 @@
+// What a message of the stream says, as plain values. Names, units and frames are those of src/alidade/stream/stream.fbs.
+
+export const NONE = 0xffffffff; // the id that is none
+
+export type Pose = readonly number[]; // qx qy qz qw tx ty tz; T_a_b maps points of b into a
+
+export const STATES = ['initialising', 'tracking', 'lost'] as const;
+export type TrackingState = (typeof STATES)[number];
+
+export const USES = ['free', 'matched', 'fresh', 'moving'] as const;
+
+export const EVENT_KINDS = [
+  'waiting', 'started', 'lost', 'found', 'loop', 'merge', 'new_map', 'given_up', 'cut', 'warning', 'finished',
+] as const;
+export type EventKind = (typeof EVENT_KINDS)[number];
+
+export const STAGES = ['frame', 'extract', 'track', 'map', 'loop', 'semidense', 'detect', 'dynamics'] as const;
+
+export interface Camera {
+  width: number; height: number; // pixels
+  fx: number; fy: number; cx: number; cy: number;
+  distortion: number[]; // k1 k2 p1 p2 k3
+  baseline: number; // metres; 0: one camera
+}
+
+export interface TruePose { time: number; T_world_camera: Pose }
+
+export interface Hello {
+  kind: 'hello';
+  version: number;
+  program: string; source: string; sensor: string; unit: string;
+  frames: number; // -1: unknown
+  live: boolean;
+  camera: Camera | null;
+  truth: TruePose[];
+}
+
+export interface Detection { x: number; y: number; width: number; height: number; score: number; label: string } // pixels
+export interface Picture { width: number; height: number; type: string; bytes: Uint8Array<ArrayBuffer> }
+
+export interface Frame {
+  kind: 'frame';
+  number: number; time: number;
+  state: TrackingState; reason: string; cut: string;
+  keyframe: boolean;
+  reference: number; map: number;
+  T_reference_camera: Pose | null; T_world_camera: Pose | null;
+  keyframes: number; landmarks: number; matches: number; maps: number;
+  foundShare: number;
+  ms: number[]; // of STAGES; -1: not run
+  features: Uint8Array; // 6 bytes each: x u16, y u16, use u8, static probability u8
+  detections: Detection[];
+  outlines: Uint16Array[]; // x, y, x, y, … of a closed polygon
+  picture: Picture | null;
+}
+
+export interface KeyFrame {
+  id: number; map: number; parent: number;
+  number: number; time: number;
+  T_world_camera: Pose; scale: number;
+  covisible: number[]; loops: number[];
+}
+export interface Move { id: number; scale: number; T_world_camera: Pose }
+export interface Culled { id: number; follows: number; scale: number; T_follows_culled: Pose }
+export interface DepthCloud {
+  keyframe: number;
+  least: number; most: number; // inverse depth
+  points: Uint16Array; // 4 each: x, y, depth, colour (rgb 565)
+}
+export interface PathFrame { number: number; time: number; state: TrackingState; reference: number; T_reference_camera: Pose }
+
+export interface MapChange {
+  kind: 'map';
+  version: bigint;
+  whole: boolean;
+  keyframes: KeyFrame[];
+  moves: Move[];
+  landmarks: DataView; // 20 bytes each: id u32, keyframe u32, x y z f32
+  removedLandmarks: Uint32Array;
+  culled: Culled[];
+  depth: DepthCloud[];
+  path: PathFrame[];
+}
+
+export interface Event {
+  kind: 'event';
+  what: EventKind; number: number; time: number; text: string;
+  a: number; b: number;
+}
+
+export interface Playback { kind: 'playback'; paused: boolean; finished: boolean; mayPause: boolean }
+
+export type Message = Hello | Frame | MapChange | Event | Playback;

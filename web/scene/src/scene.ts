@@ -1,0 +1,248 @@
+// The three.js scene of a state. Draws what the state says; keeps nothing but GPU buffers and where it is looked at from.
+import { ColorManagement, Group, Scene as ThreeScene, Vector2, Vector3, WebGLRenderer } from 'three';
+import type { Alignment } from './align.ts';
+import { Anchors, WORLD } from './anchors.ts';
+import { CloudUpload, corners, drawEdges, drawFrusta, drawPath, LandmarkUpload } from './layers.ts';
+import { LineLayer } from './lines.ts';
+import type { Pose } from './messages.ts';
+import { NONE } from './messages.ts';
+import { transform } from './pose.ts';
+import { PointLayer } from './points.ts';
+import type { State } from './state.ts';
+import { Thinning } from './thinning.ts';
+import { extentOf, typicalDistance } from './extent.ts';
+import { upright } from './upright.ts';
+import { View } from './view.ts';
+import type { ViewMode } from './view.ts';
+
+ColorManagement.enabled = false; // colours are the page's own
+
+const LEANING = 0.1; // radians
+
+export const LAYERS = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera'] as const;
+export type LayerName = (typeof LAYERS)[number];
+
+export interface Colours { page: string; ink: string; soft: string; path: string; dot: string; loop: string; truth: string; camera: string; worst: string }
+
+// Why the scene cannot be shown.
+export class NoWebGL extends Error {}
+
+export class Scene {
+  readonly view: View;
+  readonly layers: Record<LayerName, { visible: boolean }>;
+  private readonly renderer: WebGLRenderer;
+  private readonly three = new ThreeScene();
+  private readonly world = new Group(); // T_scene_world
+  private readonly anchors = new Anchors();
+  private readonly resolution = { value: new Vector2(1, 1) };
+  private readonly points: { landmarks: PointLayer; cloud: PointLayer };
+  private readonly lines: Record<Exclude<LayerName, 'landmarks' | 'cloud'>, LineLayer>;
+  private readonly landmarkUpload: LandmarkUpload;
+  private readonly cloudUpload: CloudUpload;
+  private readonly thinning: Thinning;
+  private drawn: { keyframes: unknown; frame: unknown; map: bigint; active: number } | null = null;
+  private state: State | null = null;
+  private active = NONE; // the map that is shown
+  private placed = false;
+  private covered = { left: 0, right: 0 };
+  private levelled = 0; // keyframes when `up` was last asked for
+  private frameRequest = 0;
+  private before = 0;
+  private errors: ((i: number) => number) | null = null;
+
+  constructor(private readonly canvas: HTMLCanvasElement) {
+    try {
+      this.renderer = new WebGLRenderer({ canvas, antialias: false, powerPreference: 'low-power' });
+    } catch (error) {
+      throw new NoWebGL(String(error));
+    }
+    this.world.rotation.x = Math.PI;
+    this.world.matrixAutoUpdate = false;
+    this.world.updateMatrix();
+    this.three.add(this.world);
+    this.view = new View(canvas, this.world.matrix, () => this.invalidate());
+    this.points = { landmarks: new PointLayer(this.anchors, false, 2), cloud: new PointLayer(this.anchors, true, 2) };
+    const line = (width: number, opacity: number, scaled = true) => new LineLayer(this.anchors, this.resolution, width, opacity, scaled);
+    this.lines = {
+      covisibility: line(1, 0.35), keyframes: line(1, 0.8, false), loops: line(2.5, 1), truth: line(1.5, 0.9), path: line(2.5, 1),
+      camera: line(2.5, 1, false),
+    };
+    const layers: Record<string, { visible: boolean }> = {};
+    [...Object.entries(this.points), ...Object.entries(this.lines)].forEach(([name, layer], order) => {
+      const holder = new Group();
+      layer.object.renderOrder = order;
+      holder.add(layer.object);
+      this.world.add(holder);
+      layers[name] = holder;
+    });
+    this.layers = layers as never;
+    this.landmarkUpload = new LandmarkUpload(this.points.landmarks, this.anchors);
+    this.cloudUpload = new CloudUpload(this.points.cloud, this.anchors);
+    this.thinning = new Thinning([this.points.landmarks, this.points.cloud], () => this.invalidate());
+    this.resize();
+  }
+
+  colours(c: Colours): void {
+    this.renderer.setClearColor(c.page, 1);
+    this.points.landmarks.ink = c.dot;
+    this.lines.path.ink(c.path, c.worst);
+    this.lines.keyframes.ink(c.path);
+    this.lines.covisibility.ink(c.dot);
+    this.lines.loops.ink(c.loop);
+    this.lines.truth.ink(c.truth);
+    this.lines.camera.ink(c.camera);
+    this.invalidate();
+  }
+
+  show(layer: LayerName, visible: boolean): void {
+    this.layers[layer].visible = visible;
+    if (layer === 'truth' && this.state) {
+      this.drawn = null; // the path is coloured by its errors
+      this.update(this.state);
+    }
+    this.invalidate();
+  }
+
+  setMode(mode: ViewMode): void {
+    this.view.setMode(mode);
+    const pose = this.state?.cameraPose();
+    if (mode === 'follow' && pose) this.view.behind(pose, true);
+    if (mode === 'top' && this.state) this.view.top(extentOf(this.state, this.active), true);
+    this.invalidate();
+  }
+
+  // Everything in sight.
+  fit(): void {
+    if (!this.state) return;
+    const extent = extentOf(this.state, this.active);
+    if (this.view.mode === 'top') this.view.top(extent, true);
+    else this.view.around(extent, true);
+    this.invalidate();
+  }
+
+  // The truth as it lies in the world of the map, and how far off each frame of the path is; null: not known.
+  overlay(alignment: Alignment | null): void {
+    const layer = this.lines.truth;
+    layer.begin(alignment?.truth.length ?? 0);
+    for (let i = 1; i < (alignment?.truth.length ?? 0); ++i) layer.add(WORLD, alignment!.truth[i - 1], WORLD, alignment!.truth[i]);
+    layer.end();
+    this.errors = alignment && ((i) => (alignment.errors[i] / (alignment.worst || 1)) || 0);
+    this.drawn = null;
+    this.invalidate();
+  }
+
+  update(state: State): void {
+    this.state = state;
+    const { frame } = state;
+    this.active = state.activeMap;
+    const drawn = this.drawn;
+    const mapChanged = !drawn || drawn.keyframes !== state.keyframes || drawn.map !== state.mapVersion || drawn.active !== this.active;
+    if (mapChanged) {
+      this.anchors.update(state, this.active);
+      const size = typicalDistance(state, this.active);
+      this.view.setSize(size);
+      drawFrusta(this.lines.keyframes, state, this.anchors, 0.05 * size);
+      drawEdges(this.lines.covisibility, state, this.anchors, (keyframe) => keyframe.covisible);
+      drawEdges(this.lines.loops, state, this.anchors, (keyframe) => keyframe.loops);
+      this.landmarkUpload.update(state);
+      this.cloudUpload.update(state);
+      this.level(state);
+    }
+    if (mapChanged || drawn?.frame !== frame) drawPath(this.lines.path, state, this.anchors, this.errors && this.layers.truth.visible ? this.errors : () => 0);
+    this.placeCamera(state.cameraPose(), state);
+    this.drawn = { keyframes: state.keyframes, frame, map: state.mapVersion, active: this.active };
+    this.invalidate();
+  }
+
+  // Another run: nothing of the old one is left.
+  forget(): void {
+    this.placed = false;
+    this.levelled = 0;
+    this.active = NONE;
+    this.drawn = null;
+    this.overlay(null);
+  }
+
+  // Where a point of the world is on the page, CSS pixels from the canvas's corner; null: behind the eye.
+  project(p: readonly number[]): { x: number; y: number } | null {
+    this.view.camera.updateMatrixWorld();
+    const at = new Vector3(p[0], p[1], p[2]).applyMatrix4(this.world.matrix).applyMatrix4(this.view.camera.matrixWorldInverse);
+    if (at.z >= 0) return null;
+    at.applyMatrix4(this.view.camera.projectionMatrix);
+    return { x: (0.5 * at.x + 0.5) * this.canvas.clientWidth, y: (0.5 - 0.5 * at.y) * this.canvas.clientHeight };
+  }
+
+  // CSS pixels of the canvas's sides that are covered by something else.
+  insets(left: number, right: number): void {
+    this.covered = { left, right };
+    this.resize();
+  }
+
+  resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    if (!width || !height) return;
+    const ratio = Math.min(2, devicePixelRatio);
+    this.renderer.setPixelRatio(ratio);
+    this.renderer.setSize(width, height, false);
+    this.resolution.value.set(width * ratio, height * ratio);
+    this.points.landmarks.size = Math.round(2 * ratio);
+    this.points.cloud.size = Math.round(2 * ratio);
+    this.view.resize(width, height, this.covered.left, this.covered.right);
+    this.invalidate();
+  }
+
+  invalidate(): void {
+    if (!this.frameRequest) this.frameRequest = requestAnimationFrame((now) => this.render(now));
+  }
+
+  private render(now: number): void {
+    this.frameRequest = 0;
+    const seconds = Math.min(0.1, (now - this.before) / 1000);
+    this.before = now;
+    const moving = this.view.controls.update(seconds);
+    this.thinning.before(now);
+    this.renderer.render(this.three, this.view.camera);
+    if (moving) this.invalidate();
+  }
+
+  private placeCamera(pose: Pose | null, state: State): void {
+    const layer = this.lines.camera;
+    layer.begin(8);
+    if (pose) {
+      const of = corners(state.hello?.camera ?? null, 0.1 * typicalDistance(state, this.active));
+      addFrustumAt(layer, pose, of);
+      if (!this.placed && this.view.mode === 'follow') this.view.behind(pose, false);
+      else this.view.follow(pose);
+      this.placed = true;
+    }
+    layer.end();
+  }
+
+  // Up is asked for again as the map grows, and followed when it was far off and nobody has turned the view.
+  private level(state: State): void {
+    const count = state.keyframes.size;
+    if (count === 0 || (this.levelled > 0 && (count < 2 * this.levelled || this.view.touched))) return;
+    const poses = [...state.keyframes.values()].filter((k) => k.map === this.active).map((k) => k.T_world_camera);
+    const { right, forward, up } = upright(poses);
+    const { elements: old } = this.world.matrix;
+    const same = old[1] * up[0] + old[5] * up[1] + old[9] * up[2] > Math.cos(LEANING);
+    if (this.levelled > 0 && same) {
+      this.levelled = count;
+      return;
+    }
+    this.levelled = count;
+    this.world.matrix.set(
+      right[0], right[1], right[2], 0, up[0], up[1], up[2], 0, -forward[0], -forward[1], -forward[2], 0, 0, 0, 0, 1);
+    this.world.matrixWorldNeedsUpdate = true;
+    this.placed = false;
+  }
+}
+
+function addFrustumAt(layer: LineLayer, T: Pose, of: number[][]): void {
+  const world = [[0, 0, 0], ...of].map((p) => transform(T, 1, p[0], p[1], p[2]));
+  const [centre, ...rest] = world;
+  rest.forEach((corner, k) => {
+    layer.add(WORLD, centre, WORLD, corner);
+    layer.add(WORLD, corner, WORLD, rest[(k + 1) % 4]);
+  });
+}

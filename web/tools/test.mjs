@@ -1,0 +1,25 @@
+// Bundles each *.test.ts of a folder and hands them to node's own test runner. Arguments: folder, then words that file names must hold, and options of node's runner
+// (--test-name-pattern=…).
+import { build } from 'esbuild';
+import { spawnSync } from 'node:child_process';
+import { readdirSync, rmSync } from 'node:fs';
+import { join } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const web = fileURLToPath(new URL('..', import.meta.url));
+const [folder, ...rest] = process.argv.slice(2);
+const words = rest.filter((word) => !word.startsWith('--'));
+const options = rest.filter((word) => word.startsWith('--'));
+const names = readdirSync(join(web, folder))
+  .filter((name) => name.endsWith('.test.ts') && words.every((word) => name.includes(word)));
+const outdir = join(web, '.test', folder);
+rmSync(outdir, { recursive: true, force: true });
+await build({
+  entryPoints: names.map((name) => join(web, folder, name)),
+  outdir, bundle: true, platform: 'node', format: 'esm', target: 'node18', outExtension: { '.js': '.mjs' },
+  packages: 'external', external: ['../tools/*'], alias: { '@alidade/scene': join(web, 'scene/src/index.ts') },
+  define: { WEB: JSON.stringify(web) }, sourcemap: 'inline', logLevel: 'warning',
+});
+const files = names.map((name) => join(outdir, name.replace(/\.ts$/, '.mjs')));
+const run = spawnSync(process.execPath, ['--enable-source-maps', '--test', ...options, ...files], { stdio: 'inherit' });
+process.exit(run.status ?? 1);

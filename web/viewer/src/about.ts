@@ -1,0 +1,9 @@
+import { byId, make } from './dom.ts';
+
+declare const BUNDLED: readonly { name: string; version: string; licence: string }[]; // by tools/build.mjs
+
+export function fillAbout(): void {
+  const list = byId('about-bundled');
+  for (const { name, version, licence } of BUNDLED) list.append(make('li', `${name} ${version}, ${licence}`));
+  byId('about-open').addEventListener('click', () => (byId('about') as HTMLDialogElement).showModal());
+}

@@ -1,0 +1,282 @@
+// The viewer's page: bytes come in, the player holds the state, the parts draw what it says, at most once a picture.
+import { alignTruth, DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
+import type { Colours, ViewMode } from '@alidade/scene';
+import { fillAbout } from './about.ts';
+import { Connection, query } from './connection.ts';
+import { byId, write } from './dom.ts';
+import { keys } from './keys.ts';
+import { layerSwitches, Panel } from './panel.ts';
+import { Picture } from './picture.ts';
+import { Player } from './player.ts';
+import { Plot } from './plot.ts';
+import { onTheme } from './theme.ts';
+import { Timeline } from './timeline.ts';
+
+const MOST_BYTES = 1.5e9; // of a recorded stream: what a page can hold
+
+let player = new Player();
+let replay = false;
+let connection: Connection | null = null;
+let dirty = true;
+let before = performance.now();
+const notices = new Map<string, string>(); // by what they are about
+let fresh = false; // a connection has been made, and has said nothing yet
+
+const seek = (number: number) => {
+  player.seek(number);
+  dirty = true;
+};
+const picture = new Picture();
+const plot = new Plot();
+const timeline = new Timeline(() => player, seek);
+const panel = new Panel(() => player, seek);
+const scene = makeScene();
+
+function makeScene(): Scene | null {
+  try {
+    const made = new Scene(byId('scene') as HTMLCanvasElement);
+    return made;
+  } catch (error) {
+    if (!(error instanceof NoWebGL)) throw error;
+    document.body.classList.add('no-webgl');
+    notice('This browser shows no 3D (WebGL 2 is missing or switched off): the picture and the numbers are here, the map is not.', 'webgl');
+    return null;
+  }
+}
+
+function notice(text: string, about: string): void {
+  if (text) notices.set(about, text);
+  else notices.delete(about);
+  const all = [...notices.values()].join(' ');
+  write(byId('notice'), all);
+  byId('notice').hidden = all === '';
+}
+
+function receive(bytes: Uint8Array): void {
+  try {
+    if (fresh) {
+      fresh = false;
+      reset();
+    }
+    player.push(bytes);
+    notice('', 'message');
+    if (player.latest.incomplete) {
+      player.latest.incomplete = false;
+      connection?.ask('whole');
+    }
+  } catch (error) {
+    if (!(error instanceof DecodeError)) throw error;
+    notice(`A message of the stream could not be read: ${error.message}.`, 'message');
+  }
+  dirty = true;
+}
+
+function reset(): void {
+  player.reset();
+  panel.reset();
+  plot.reset();
+  picture.reset();
+  scene?.forget();
+  panel.error(null, player.latest);
+  aligned = { version: -1n, length: 0, time: 0 };
+}
+
+function connect(): void {
+  connection = new Connection({
+    opened() {
+      document.body.dataset.connection = 'open';
+      fresh = true;
+      notice('', 'connection');
+    },
+    message: receive,
+    closed() {
+      document.body.dataset.connection = 'closed';
+      const over = player.latest.playback?.finished;
+      notice(over ? 'The program has ended. What it told stays here; the page goes on by itself if it is started again.'
+        : 'No connection: the program has ended, or has yet to start. Trying again …', 'connection');
+    },
+  });
+}
+
+async function loadRecorded(): Promise<void> {
+  replay = true;
+  player = new Player(MOST_BYTES);
+  document.body.classList.add('replay');
+  document.body.dataset.connection = 'replay';
+  const response = await fetch('run.stream' + query());
+  if (!response.ok || !response.body) throw new Error(`run.stream: ${response.status} ${response.statusText}`);
+  const reader = new StreamFileReader();
+  const body = response.body.getReader();
+  let total = 0;
+  for (;;) {
+    const { done, value } = await body.read();
+    if (done) break;
+    total += value.byteLength;
+    if (total > MOST_BYTES) {
+      notice('The recording is larger than this page can hold: its end is not shown.', 'file');
+      await body.cancel();
+      break;
+    }
+    for (const bytes of reader.push(value)) receive(bytes);
+  }
+  if (reader.rest > 0 && total <= MOST_BYTES) notice('The end of the recording is missing: the program was stopped while it wrote.', 'file');
+}
+
+async function begin(): Promise<void> {
+  try {
+    const response = await fetch('info.json' + query());
+    const info = response.ok ? await response.json() as { mode?: string; title?: string } : {};
+    if (info.title) document.title = `${info.title} – Alidade`;
+    if (info.mode === 'replay') return await loadRecorded();
+  } catch (error) {
+    if (replay) {
+      notice(`The recording could not be read: ${(error as Error).message}.`, 'file');
+      return;
+    }
+  }
+  connect();
+}
+
+// What the buttons below mean depends on what is shown: now (the program is asked to pause, if it may), or the past.
+function paused(): boolean {
+  if (player.attached && !replay) return Boolean(player.latest.playback?.paused);
+  return !player.playing;
+}
+
+function togglePlay(): void {
+  const { playback } = player.latest;
+  if (player.attached && !replay && playback?.mayPause && !playback.finished) connection?.ask(playback.paused ? 'resume' : 'pause');
+  else if (player.attached && !replay) player.detach();
+  else if (player.playing) player.playing = false;
+  else player.play();
+  dirty = true;
+}
+
+function step(by: number): void {
+  const { playback } = player.latest;
+  if (by > 0 && player.attached && !replay && playback?.mayPause && !playback.finished) connection?.ask(playback.paused ? 'step' : 'pause');
+  else player.step(by);
+  dirty = true;
+}
+
+function goLive(): void {
+  player.attach();
+  dirty = true;
+}
+
+function setView(mode: ViewMode): void {
+  scene?.setMode(mode);
+  for (const button of document.querySelectorAll<HTMLElement>('[data-view]')) {
+    button.setAttribute('aria-pressed', String(button.dataset.view === mode));
+  }
+}
+
+const narrow = matchMedia('(max-width: 760px)');
+
+// Wide: a panel that is open at first; narrow: a sheet that is not.
+function togglePanel(): void {
+  const open = narrow.matches ? document.body.classList.toggle('sheet-open') : !document.body.classList.toggle('panel-closed');
+  byId('panel-toggle').setAttribute('aria-expanded', String(open));
+}
+
+function update(): void {
+  const { shown } = player;
+  document.body.dataset.shown = player.attached ? 'now' : 'past';
+  document.body.classList.toggle('paused', paused());
+  write(byId('play-word'), paused() ? 'Go on' : 'Pause');
+  panel.update(shown);
+  picture.update(shown);
+  if (shown.frame) plot.add(shown.frame);
+  plot.draw();
+  timeline.update();
+  scene?.update(shown);
+}
+
+// The truth is laid over the map again when the map has moved or the path has grown by some, at most once a second.
+let aligned = { version: -1n, length: 0, time: 0 };
+function overlayTruth(now: number): void {
+  const { shown } = player;
+  if (!shown.hello?.truth.length || now - aligned.time < 1000) return;
+  if (shown.mapVersion === aligned.version && Math.abs(shown.path.length - aligned.length) < 30) return;
+  aligned = { version: shown.mapVersion, length: shown.path.length, time: now };
+  const alignment = alignTruth(shown, shown.activeMap);
+  scene?.overlay(alignment);
+  panel.error(alignment, shown);
+  dirty = true;
+}
+
+function layout(): void {
+  if (!scene) return;
+  if (narrow.matches) return scene.insets(0, 0);
+  const { right } = picture.hidden ? { right: 0 } : byId('picture').getBoundingClientRect();
+  const panelWidth = document.body.classList.contains('panel-closed') ? 0 : byId('panel').offsetWidth + 12;
+  scene.insets(right < innerWidth / 2 ? right : 0, panelWidth);
+}
+
+function tick(now: number): void {
+  const seconds = Math.min(0.5, (now - before) / 1000);
+  before = now;
+  if (player.tick(seconds, !replay)) dirty = true;
+  overlayTruth(now);
+  if (dirty) {
+    dirty = false;
+    update();
+  }
+  requestAnimationFrame(tick);
+}
+
+function colours(): Colours {
+  const style = getComputedStyle(document.documentElement);
+  const of = (name: string) => style.getPropertyValue(name).trim();
+  return {
+    page: of('--space'), ink: of('--ink'), soft: of('--soft'), path: of('--path'), dot: of('--dot'), loop: of('--loop'), truth: of('--truth'),
+    camera: of('--fresh'), worst: of('--lost'),
+  };
+}
+
+const sizes = new ResizeObserver(layout);
+for (const id of ['scene', 'picture', 'panel']) sizes.observe(byId(id));
+onTheme(() => {
+  scene?.colours(colours());
+  plot.make();
+  timeline.refresh();
+  picture.reset();
+  dirty = true;
+});
+const switches = layerSwitches((layer, visible) => scene?.show(layer, visible));
+for (const button of document.querySelectorAll<HTMLElement>('[data-view]')) {
+  button.addEventListener('click', () => setView(button.dataset.view as ViewMode));
+}
+byId('fit').addEventListener('click', () => scene?.fit());
+byId('play').addEventListener('click', togglePlay);
+byId('step').addEventListener('click', () => step(1));
+byId('live').addEventListener('click', goLive);
+byId('panel-toggle').addEventListener('click', togglePanel);
+byId('speed').addEventListener('change', (event) => { player.speed = Number((event.target as HTMLSelectElement).value); });
+fillAbout();
+keys([
+  [' ', 'space', 'pause or go on', togglePlay],
+  ['.', '.', 'one frame on', () => step(1)],
+  [',', ',', 'one frame back', () => step(-1)],
+  ['l', 'L', 'back to now', goLive],
+  ['1', '1', 'follow the camera', () => setView('follow')],
+  ['2', '2', 'turn freely', () => setView('orbit')],
+  ['3', '3', 'from above', () => setView('top')],
+  ['f', 'F', 'everything in sight', () => scene?.fit()],
+  ['c', 'C', 'camera picture', () => { picture.hidden = !picture.hidden; }],
+  ['p', 'P', 'details', togglePanel],
+  ['t', 'T', 'light or dark', () => byId('theme').click()],
+  ['?', '?', 'these keys', () => (byId('keys') as HTMLDialogElement).showModal()],
+]);
+// For tests, and for the curious.
+Object.assign(window, {
+  alidade: {
+    get state() { return player.shown; },
+    get player() { return player; },
+    get scene() { return scene; },
+    project: (p: readonly number[]) => scene?.project(p) ?? null,
+    switches,
+  },
+});
+requestAnimationFrame(tick);
+void begin();

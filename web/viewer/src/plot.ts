@@ -1,0 +1,83 @@
+// Milliseconds of each stage over the last frames.
+import uPlot from 'uplot';
+import { STAGES } from '@alidade/scene';
+import type { Frame } from '@alidade/scene';
+import { byId, make } from './dom.ts';
+
+const FRAMES = 240;
+// Stages that run on each frame are lines, the others (now and then) are dots.
+const SERIES: { stage: number; colour: string; dots: boolean }[] = [
+  { stage: 0, colour: '--ink', dots: false }, { stage: 1, colour: '--path', dots: false }, { stage: 2, colour: '--matched', dots: false },
+  { stage: 3, colour: '--fresh', dots: true }, { stage: 4, colour: '--truth', dots: true }, { stage: 5, colour: '--soft', dots: true },
+  { stage: 6, colour: '--moving', dots: true }, { stage: 7, colour: '--loop', dots: true },
+];
+
+export class Plot {
+  private readonly place = byId('plot');
+  private chart: uPlot | null = null;
+  private frames: { number: number; ms: readonly number[] }[] = [];
+  private dirty = false;
+
+  constructor() {
+    new ResizeObserver(() => this.make()).observe(this.place);
+  }
+
+  // The frame that is shown now; going back begins anew.
+  add(frame: Frame): void {
+    const last = this.frames[this.frames.length - 1];
+    if (last?.number === frame.number) return;
+    if (last && (frame.number < last.number || frame.number > last.number + FRAMES)) this.frames = [];
+    this.frames.push({ number: frame.number, ms: frame.ms });
+    if (this.frames.length > 2 * FRAMES) this.frames = this.frames.slice(-FRAMES);
+    this.dirty = true;
+  }
+
+  reset(): void {
+    this.frames = [];
+    this.dirty = true;
+  }
+
+  // Coloured anew, as after light has become dark.
+  make(): void {
+    const width = this.place.clientWidth;
+    if (!width) return;
+    const style = getComputedStyle(document.documentElement);
+    const colour = (name: string) => style.getPropertyValue(name).trim();
+    this.chart?.destroy();
+    const legend = byId('plot-legend');
+    legend.replaceChildren();
+    const series: uPlot.Series[] = [{}];
+    for (const { stage, colour: name, dots } of SERIES) {
+      series.push({
+        label: STAGES[stage], stroke: colour(name), width: dots ? 0 : stage === 0 ? 1.5 : 1,
+        paths: dots ? () => null : undefined,
+        points: dots ? { show: true, size: 4, fill: colour(name), stroke: colour(name) } : { show: false },
+      });
+      const item = make('li');
+      item.append(make('i', '', `swatch ${dots ? 'dots' : 'line'} of${name}`), STAGES[stage]);
+      legend.append(item);
+    }
+    const axis = { stroke: colour('--soft'), font: '11px system-ui, sans-serif', grid: { stroke: colour('--line'), width: 1 }, ticks: { show: false } };
+    this.chart = new uPlot({
+      width, height: 110, series, legend: { show: false }, cursor: { show: false },
+      scales: { x: { time: false }, y: { range: (_, __, most) => [0, nice(Number.isFinite(most) ? most : 10)] } },
+      axes: [{ ...axis, size: 18, gap: 2, grid: { show: false }, values: (_, ticks) => ticks.map(String) }, { ...axis, size: 30, gap: 2 }],
+    }, [[0], ...SERIES.map(() => [null])] as uPlot.AlignedData, this.place);
+    this.dirty = true;
+    this.draw();
+  }
+
+  draw(): void {
+    if (!this.dirty || !this.chart || !this.place.clientWidth) return;
+    this.dirty = false;
+    const frames = this.frames.slice(-FRAMES);
+    const value = (ms: number | undefined) => (ms === undefined || !(ms >= 0) ? null : ms);
+    this.chart.setData([frames.map((f) => f.number), ...SERIES.map(({ stage }) => frames.map((f) => value(f.ms[stage])))] as uPlot.AlignedData);
+  }
+}
+
+// The axis ends at 1, 2 or 5 times a power of ten, so that it stays as it is for long.
+function nice(most: number): number {
+  const power = 10 ** Math.floor(Math.log10(Math.max(1, most)));
+  return [1, 2, 5, 10].map((k) => k * power).find((end) => end >= most) ?? most;
+}

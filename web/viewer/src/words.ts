@@ -1,0 +1,48 @@
+// What the program says, for people: what is going on, and what to do about it.
+import type { Event, Frame, TrackingState } from '@alidade/scene';
+
+export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
+
+const ADVICE: readonly [RegExp, string][] = [
+  [/hardly moves/, 'Move the camera sideways, slowly.'],
+  [/too little parallax/, 'Turning is not enough: it has to see things from another place.'],
+  [/two motions explain/, 'What is seen is flat: show it something with depth.'],
+  [/too few matches between frames/, 'Move more slowly, or add light.'],
+  [/too few points agree/, 'Move more slowly, and keep moving things out of the picture.'],
+  [/too few corners with depth/, 'Show it something with texture, within the range of the depth camera.'],
+  [/too few corners/, 'Nothing to hold on to: show it something with texture, or add light.'],
+  [/not recognised/, 'Go back to a place it has seen, and look the same way.'],
+  [/too few landmarks found/, 'Blurred, covered, or a blank wall: go back slowly to what it has seen.'],
+  [/mapping has stopped/, 'The program says why on its terminal.'],
+];
+
+export function advice(reason: string): string {
+  return ADVICE.find(([pattern]) => pattern.test(reason))?.[1] ?? '';
+}
+
+export function reasonText(frame: Frame): string {
+  if (frame.state === 'tracking') return '';
+  return [sentence(frame.reason), advice(frame.reason)].filter(Boolean).join(' ');
+}
+
+function sentence(text: string): string {
+  return text && `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
+}
+
+export function clock(seconds: number): string {
+  if (!Number.isFinite(seconds)) return '–';
+  const whole = Math.max(0, seconds);
+  return `${Math.floor(whole / 60)}:${(whole % 60).toFixed(1).padStart(4, '0')}`;
+}
+
+export const EVENT_WORDS = {
+  waiting: 'Not started', started: 'Started', lost: 'Lost', found: 'Found again', loop: 'Loop closed', merge: 'Maps merged',
+  new_map: 'New map', given_up: 'Map given up', cut: 'Cut in the recording', warning: 'Warning', finished: 'Finished',
+} as const;
+
+// Some events say in their text what they are.
+export function eventText({ what, text }: Event): string {
+  const word = EVENT_WORDS[what];
+  if (!text || text.toLowerCase() === word.toLowerCase()) return word;
+  return text.toLowerCase().startsWith(`${word.toLowerCase()}: `) ? text.charAt(0).toUpperCase() + text.slice(1) : `${word}: ${text}`;
+}

@@ -1,0 +1,272 @@
+// The page in a real browser, with the sample's stream: what is drawn is what the sample says.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import type { Browser, Page } from 'playwright-core';
+import type { LayerName } from '@alidade/scene';
+import { CHROMIUM, differing, launch, open, sceneOnly, SKIP } from './browser.ts';
+import { startServer } from './server.ts';
+import type { Server, ServerSettings } from './server.ts';
+
+declare const WEB: string; // by tools/test.mjs
+const options = { skip: SKIP, timeout: 120e3 };
+const SMALL = { frames: 300, depthPoints: 200, landmarks: 2500 };
+
+let browser: Browser;
+const servers: Server[] = [];
+
+before(async () => { if (!SKIP) browser = await launch(); });
+after(async () => {
+  await browser?.close();
+  await Promise.all(servers.map((server) => server.close()));
+});
+
+async function serve(settings: ServerSettings): Promise<Server> {
+  const server = await startServer(settings);
+  servers.push(server);
+  return server;
+}
+
+const count = async (page: Page, name: string) => Number(await page.textContent(`[data-count=${name}]`));
+const frames = (page: Page, least: number) =>
+  page.waitForFunction((n) => Number(document.querySelector('[data-count=frames]')!.textContent) >= n, least);
+
+// The page's own view of things, as a test may ask for it.
+interface Debug {
+  state: {
+    keyframes: Map<number, { T_world_camera: number[]; scale: number }>;
+    landmarks: { size: number };
+    landmarkInWorld(id: number): number[] | undefined;
+    path: { length: number };
+    frame: { number: number } | null;
+  };
+  project(p: readonly number[]): { x: number; y: number } | null;
+  scene: { fit(): void };
+}
+declare global { interface Window { alidade: Debug } }
+
+test(`frames come and counts rise (${CHROMIUM})`, options, async () => {
+  const server = await serve({ sample: { ...SMALL, frames: 900 } });
+  const { page, problems, requests } = await open(browser, server.address + '?token=abc');
+  await frames(page, 40);
+  const first = { keyframes: await count(page, 'keyframes'), landmarks: await count(page, 'landmarks'), frames: await count(page, 'frames') };
+  assert.ok(first.keyframes >= 2 && first.landmarks > 100 && await count(page, 'matches') > 20);
+  assert.equal(await page.getAttribute('body', 'data-state'), 'tracking');
+  await frames(page, first.frames + 60);
+  assert.ok(await count(page, 'keyframes') > first.keyframes && await count(page, 'landmarks') > first.landmarks);
+  assert.deepEqual(problems, []);
+  assert.ok(requests.every((url) => url.startsWith(server.address) || url.startsWith('blob:') || url.startsWith('ws:')), requests.join());
+  await page.context().close();
+});
+
+test('every layer is drawn, and is not when it is switched off', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0, start: 230 });
+  const { page, problems } = await open(browser, server.address);
+  server.advance(1);
+  await frames(page, 231);
+  await page.keyboard.press('2');
+  await page.keyboard.press('f');
+  await page.waitForTimeout(1500);
+  const names: LayerName[] = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera'];
+  const set = (name: string, on: boolean) => page.setChecked(`[data-layer=${name}]`, on);
+  for (const name of names) await set(name, false);
+  const empty = await sceneOnly(page);
+  const [r, g, b] = empty.at(5, 5);
+  for (let y = 0; y < empty.height; y += 7) for (let x = 0; x < empty.width; x += 7) assert.deepEqual(empty.at(x, y), [r, g, b]);
+  for (const name of names) {
+    await set(name, true);
+    const seen = differing(await sceneOnly(page), empty);
+    assert.ok(seen > 60, `${name}: ${seen} pixels`);
+    await set(name, false);
+  }
+  assert.equal(differing(await sceneOnly(page), empty), 0);
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
+test('landmarks are drawn where they are: a dot within 2 pixels of each, nothing where there is none', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0, start: 120 });
+  const { page } = await open(browser, server.address);
+  server.advance(1);
+  await frames(page, 121);
+  for (const name of ['path', 'keyframes', 'cloud', 'loops', 'truth', 'camera']) await page.setChecked(`[data-layer=${name}]`, false);
+  for (const view of ['2', '3']) {
+    await page.keyboard.press(view);
+    await page.keyboard.press('f');
+    await page.waitForTimeout(1500);
+    const picture = await sceneOnly(page);
+    const world = [...server.sample.points.keys()].map((id) => server.sample.worldOf(id)); // by the sample, not by the page
+    const at = await page.evaluate((points) => points.map((p) => window.alidade.project(p)), world);
+    const ground = picture.at(2, 2);
+    const dotted = (x: number, y: number) => {
+      for (let dy = -2; dy <= 2; ++dy) for (let dx = -2; dx <= 2; ++dx) {
+        const [px, py] = [Math.round(x) + dx, Math.round(y) + dy];
+        if (px < 0 || py < 0 || px >= picture.width || py >= picture.height) continue;
+        if (picture.at(px, py).some((value, k) => Math.abs(value - ground[k]) > 12)) return true;
+      }
+      return false;
+    };
+    const inside = at.filter((p) => p && p.x > 5 && p.y > 5 && p.x < picture.width - 6 && p.y < picture.height - 6) as { x: number; y: number }[];
+    assert.ok(inside.length > 300, `${inside.length}`);
+    assert.equal(inside.filter((p) => !dotted(p.x, p.y)).length, 0);
+    // Dots and nothing else: what is far from all of them is empty.
+    let stray = 0;
+    for (let y = 10; y < picture.height; y += 11) for (let x = 10; x < picture.width; x += 11) {
+      if (inside.every((p) => Math.hypot(p.x - x, p.y - y) > 6) && dotted(x, y)) ++stray;
+    }
+    assert.ok(stray <= 3, `${stray}`); // of landmarks at the border
+  }
+  await page.context().close();
+});
+
+test('after a loop was closed the page has the poses of the map', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0 });
+  const { page } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(300);
+  await frames(page, 300);
+  const told = await page.evaluate(() => [...window.alidade.state.keyframes].map(([id, k]) => ({ id, T: [...k.T_world_camera], scale: k.scale })));
+  assert.equal(told.length, server.sample.keyframes.size);
+  for (const { id, T, scale } of told) {
+    const keyframe = server.sample.keyframes.get(id)!;
+    [...keyframe.T_world_camera, keyframe.scale].forEach((value, k) => assert.ok(Math.abs(value - [...T, scale][k]) < 1e-6));
+  }
+  const ids = [...server.sample.points.keys()];
+  const places = await page.evaluate((list) => list.map((id) => window.alidade.state.landmarkInWorld(id)), ids);
+  ids.forEach((id, i) => server.sample.worldOf(id).forEach((value, k) => assert.ok(Math.abs(value - places[i]![k]) < 1e-5, `landmark ${id}`)));
+  assert.equal(await page.evaluate(() => window.alidade.state.landmarks.size), ids.length);
+  await page.context().close();
+});
+
+test('going back shows an earlier state while the run goes on; then back to now', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0 });
+  const { page, problems } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(200);
+  await frames(page, 200);
+  const now = { keyframes: await count(page, 'keyframes'), landmarks: await count(page, 'landmarks') };
+  await page.fill('#seek', '60');
+  await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '61');
+  assert.equal(await page.getAttribute('body', 'data-shown'), 'past');
+  const then = { keyframes: await count(page, 'keyframes'), landmarks: await count(page, 'landmarks') };
+  assert.ok(then.keyframes < now.keyframes && then.landmarks < now.landmarks && then.keyframes > 0);
+  assert.equal(await page.evaluate(() => window.alidade.state.keyframes.size), then.keyframes);
+  server.advance(20);
+  await page.waitForTimeout(300);
+  assert.equal(await count(page, 'frames'), 61);
+  await page.keyboard.press('.');
+  await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '62');
+  await page.keyboard.press('l');
+  await frames(page, 220);
+  assert.equal(await page.getAttribute('body', 'data-shown'), 'now');
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
+test('pause and single step ask the program', options, async () => {
+  const server = await serve({ sample: SMALL });
+  const { page } = await open(browser, server.address);
+  await frames(page, 5);
+  await page.click('#play');
+  await page.waitForSelector('body.paused');
+  const stood = server.frame();
+  await frames(page, stood);
+  await page.click('#step');
+  await frames(page, stood + 1);
+  assert.equal(server.frame(), stood + 1);
+  await page.click('#play');
+  await frames(page, stood + 5);
+  assert.deepEqual(server.asked, ['pause', 'step', 'resume']);
+  await page.context().close();
+});
+
+test('a program that ends is noticed; one that starts again is shown', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0 });
+  const { page } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(50);
+  await frames(page, 50);
+  await server.close();
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match((await page.textContent('#notice'))!, /No connection/);
+  assert.equal(await count(page, 'frames'), 50); // what was told stays
+  const again = await serve({ sample: { ...SMALL, seed: 5 }, speed: 0, port: server.port });
+  await page.waitForFunction(() => document.body.dataset.connection === 'open', undefined, { timeout: 30e3 });
+  again.advance(20);
+  await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '20');
+  assert.equal(await page.isHidden('#notice'), true);
+  assert.equal(await page.evaluate(() => window.alidade.state.path.length), 20);
+  await page.context().close();
+});
+
+test('a message that cannot be read is told, and the page goes on', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0 });
+  const { page, problems } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(5);
+  await frames(page, 5);
+  server.send(new Uint8Array(100).fill(7));
+  await page.waitForSelector('#notice:not([hidden])');
+  assert.match((await page.textContent('#notice'))!, /could not be read/);
+  server.advance(5);
+  await frames(page, 10);
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
+test('a recorded stream is shown with its end, and played at any speed', options, async () => {
+  const server = await serve({ mode: 'replay', sample: SMALL });
+  const { page, problems } = await open(browser, server.address);
+  await frames(page, 300);
+  const end = await count(page, 'keyframes');
+  await page.selectOption('#speed', '10');
+  await page.click('#play');
+  await page.waitForFunction(() => Number(document.querySelector('[data-count=frames]')!.textContent) < 200);
+  assert.ok(await count(page, 'keyframes') < end);
+  await frames(page, 300);
+  await page.waitForSelector('body.paused');
+  assert.equal(await count(page, 'keyframes'), end);
+  await page.fill('#seek', '100');
+  await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '101');
+  assert.match((await page.textContent('#error'))!, /From the truth: .* RMSE/);
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
+test('without WebGL the page says so, and shows the rest', options, async () => {
+  const server = await serve({ sample: SMALL });
+  const { page } = await open(browser, server.address, {}, async (page) => void await page.addInitScript(() => {
+    const real = HTMLCanvasElement.prototype.getContext;
+    HTMLCanvasElement.prototype.getContext = function (this: HTMLCanvasElement, kind: string, ...rest: unknown[]) {
+      return kind.startsWith('webgl') ? null : real.call(this, kind as '2d', ...rest as []);
+    } as never;
+  }));
+  await frames(page, 10);
+  assert.match((await page.textContent('#notice'))!, /WebGL/);
+  await page.context().close();
+});
+
+test('axe finds nothing serious: light, dark, narrow, with its dialogs', options, async () => {
+  const axe = readFileSync(join(WEB, 'node_modules/axe-core/axe.min.js'), 'utf8');
+  const server = await serve({ sample: SMALL, speed: 0 });
+  for (const [width, colorScheme] of [[1280, 'light'], [1280, 'dark'], [412, 'light'], [412, 'dark']] as const) {
+    const { page } = await open(browser, server.address, { viewport: { width, height: 860 }, colorScheme });
+    await page.waitForFunction(() => document.body.dataset.connection === 'open');
+    server.advance(20);
+    await frames(page, server.frame());
+    if (width < 700) await page.click('#panel-toggle');
+    const run = async (what: string) => {
+      await page.evaluate(axe);
+      const violations = await page.evaluate(async () => {
+        const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { html: string; failureSummary: string }[] }[] }> } }).axe.run();
+        return found.violations.map(({ id, impact, nodes }) => `${impact} ${id}: ${nodes.map((node) => node.html + node.failureSummary).join(' | ')}`);
+      });
+      assert.deepEqual(violations, [], `${what}, ${width}, ${colorScheme}`);
+    };
+    await run('page');
+    await page.click('#about-open');
+    await run('about');
+    await page.context().close();
+  }
+});
