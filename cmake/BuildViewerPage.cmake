@@ -33,7 +33,7 @@ else()
   set(PROBLEM "Node.js 18 with npm was not found (scripts/setup)")
 endif()
 if(PROBLEM)
-  message("warning: built without the viewer's page: ${PROBLEM}")
+  message("warning: built without the viewer's page: ${PROBLEM}; touch web/package.json to try again")
 endif()
 
 # The files, copied: those in web/ are of another build the next time. Assembled, not compiled: an array of a million

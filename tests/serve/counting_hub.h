@@ -2,6 +2,7 @@
 // told.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <map>
@@ -51,6 +52,7 @@ class CountingHub : public StreamHub {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::minutes(1), [&] { return condition(*this); });
   }
+  size_t living_bytes() const { return *living_; }  // of messages that somebody keeps
   // Inside WaitFor().
   size_t members() const { return takes_.size(); }
   int joins() const { return joins_; }
@@ -59,10 +61,15 @@ class CountingHub : public StreamHub {
  private:
   std::shared_ptr<const std::string> Made(std::string text) const {
     if (text.size() < bytes_) text.resize(bytes_, ' ');
-    return std::make_shared<const std::string>(std::move(text));
+    *living_ += text.size();
+    return {new std::string(std::move(text)), [living = living_](const std::string* message) {
+              *living -= message->size();
+              delete message;
+            }};
   }
 
   const size_t bytes_;
+  const std::shared_ptr<std::atomic<size_t>> living_ = std::make_shared<std::atomic<size_t>>(0);
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<int, Take> takes_;

@@ -138,6 +138,8 @@ class PlainClient {
         if (payload.size() >= 2) {
           close_code_ = static_cast<uint8_t>(payload[0]) << 8 | static_cast<uint8_t>(payload[1]);
         }
+        Send(Frame(8, payload));
+        EndOfSending();
         return std::nullopt;
       }
       if (opcode == 9) Send(Frame(10, payload));
