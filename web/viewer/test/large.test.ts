@@ -76,7 +76,7 @@ test('a large map is shown, and can be turned', { skip: SKIP, timeout: 300e3 }, 
   // What a picture costs with one layer alone, all its points.
   for (const layer of ['landmarks', 'cloud', 'keyframes', 'path', 'covisibility', 'none']) {
     const ms = await page.evaluate(async (only) => {
-      const { alidade } = window as unknown as { alidade: { scene: { show(name: string, on: boolean): void; layers: object; measure(): Promise<number> } } };
+      const { alidade } = window as unknown as { alidade: { scene: { show(name: string, on: boolean): void; layers: object; measure(): number } } };
       for (const name of Object.keys(alidade.scene.layers)) alidade.scene.show(name, name === only);
       return alidade.scene.measure();
     }, layer);
