@@ -13,8 +13,6 @@ export interface Entry {
   message: Uint8Array | Message | null; // as it came, or what is left of it
 }
 
-export interface Sample { index: number; number: number; time: number; ms: number[] }
-
 export interface HistorySettings {
   budget: number; // bytes of messages kept
   stride: number; // bytes of messages between kept states
@@ -30,7 +28,7 @@ interface Kept { index: number; state: State } // after entry `index`
 export class History {
   readonly entries: (Entry | null)[] = []; // null: gone
   readonly events: Event[] = []; // by number
-  readonly frames: { index: number; number: number; time: number }[] = [];
+  readonly frames: { index: number; number: number; time: number; ms: readonly number[] }[] = [];
   first = 0; // entries before it are gone
   private kept: Kept[] = [];
   private bytes = 0;
@@ -52,7 +50,7 @@ export class History {
     if (message.kind === 'frame') {
       entry.number = message.number;
       entry.time = message.time;
-      this.frames.push({ index, number: message.number, time: message.time });
+      this.frames.push({ index, number: message.number, time: message.time, ms: message.ms });
     }
     if (message.kind === 'event') this.addEvent(message);
     this.entries.push(entry);

@@ -127,24 +127,37 @@ export function drawEdges(layer: LineLayer, state: State, anchors: Anchors, of: 
   layer.end();
 }
 
-// From frame to frame where both are known. `tint`: 0…1 for each frame's end.
-export function drawPath(layer: LineLayer, state: State, anchors: Anchors, tint: (i: number) => number): void {
-  const { path } = state;
-  layer.begin(path.length);
-  let before: { slot: number; t: number[]; number: number; map: number } | null = null;
-  for (let i = 0; i < path.length; ++i) {
-    const page = path.read(i);
-    const at = (i % PAGE) * 20;
-    const reference = page.u32[at + 17];
-    const keyframe = reference === NONE || page.u32[at + 18] !== 1 ? undefined : state.keyframes.get(reference);
-    if (!keyframe) {
-      before = null;
-      continue;
+// From frame to frame where both are known. While the map stays as it is, what is new is added to what there is.
+export class PathUpload {
+  private done = 0; // frames
+  private before: { slot: number; t: number[]; map: number } | null = null;
+
+  constructor(private readonly layer: LineLayer, private readonly anchors: Anchors) {}
+
+  // `tint`: 0…1 for each frame's end.
+  update(state: State, anew: boolean, tint: (i: number) => number): void {
+    const { path } = state;
+    if (anew || path.length < this.done) {
+      this.done = 0;
+      this.before = null;
+      this.layer.begin(path.length);
     }
-    const t = page.f64.subarray(at / 2 + 5, at / 2 + 8);
-    const here = { slot: anchors.slot(reference), t: [t[0], t[1], t[2]], number: page.u32[at + 16] | 0, map: keyframe.map };
-    if (before && before.map === here.map) layer.add(before.slot, before.t, here.slot, here.t, tint(i));
-    before = here;
+    this.layer.reserve(path.length);
+    for (; this.done < path.length; ++this.done) {
+      const i = this.done;
+      const page = path.read(i);
+      const at = (i % PAGE) * 20;
+      const reference = page.u32[at + 17];
+      const keyframe = reference === NONE || page.u32[at + 18] !== 1 ? undefined : state.keyframes.get(reference);
+      if (!keyframe) {
+        this.before = null;
+        continue;
+      }
+      const t = page.f64.subarray(at / 2 + 5, at / 2 + 8);
+      const here = { slot: this.anchors.slot(reference), t: [t[0], t[1], t[2]], map: keyframe.map };
+      if (this.before?.map === here.map) this.layer.add(this.before.slot, this.before.t, here.slot, here.t, tint(i));
+      this.before = here;
+    }
+    this.layer.end();
   }
-  layer.end();
 }

@@ -1,15 +1,15 @@
 // Segments of lines in one call: both ends carry a slot and a place in that slot's keyframe. WebGL's own lines are one pixel wide,
-// so each is two triangles, widened on the screen, with soft edges.
-import { BufferAttribute, Color, DynamicDrawUsage, GLSL3, InstancedBufferGeometry, InstancedInterleavedBuffer, InterleavedBufferAttribute,
-  Mesh, ShaderMaterial, Vector2 } from 'three';
+// so each is two triangles, widened on the screen, with soft edges. Not instanced: software GL takes each instance as a call of its own.
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, GLSL3, InterleavedBuffer, InterleavedBufferAttribute, Mesh, ShaderMaterial,
+  Vector2 } from 'three';
 import { PLACE } from './anchors.ts';
 import type { Anchors } from './anchors.ts';
 
-const FLOATS = 9; // of a segment: place and slot of each end, a number for its colour
+const FLOATS = 9; // of a corner: place and slot of each end, a number for the segment's colour
+const CORNERS = 4; // of a segment
 
 const VERTEX = /* glsl */ `
 ${PLACE}
-in vec3 from;
 in float fromSlot;
 in vec3 to;
 in float toSlot;
@@ -21,7 +21,8 @@ out float across;
 out float mixed;
 void main() {
   bool a_seen, b_seen;
-  vec4 a = modelViewMatrix * vec4(place(fromSlot, from, scaled, a_seen), 1.0);
+  vec2 corner = vec2(float(gl_VertexID >> 1 & 1), float((gl_VertexID + 1) >> 1 & 1) * 2.0 - 1.0); // which end, which side
+  vec4 a = modelViewMatrix * vec4(place(fromSlot, position, scaled, a_seen), 1.0);
   vec4 b = modelViewMatrix * vec4(place(toSlot, to, scaled, b_seen), 1.0);
   // What is behind the eye is cut off at a small distance, or it would turn over.
   const float near = -0.001;
@@ -37,9 +38,9 @@ void main() {
   vec2 along = (cb.xy / cb.w - ca.xy / ca.w) * resolution;
   along = length(along) > 1e-6 ? normalize(along) : vec2(1.0, 0.0);
   vec2 aside = vec2(-along.y, along.x) * (width + 1.0) / resolution;
-  vec4 c = position.x < 0.5 ? ca : cb;
-  across = position.y * (width + 1.0) * 0.5;
-  c.xy += (position.y * aside + (position.x - 0.5) * along * 0.5 / resolution) * c.w;
+  vec4 c = corner.x < 0.5 ? ca : cb;
+  across = corner.y * (width + 1.0) * 0.5;
+  c.xy += (corner.y * aside + (corner.x - 0.5) * along * 0.5 / resolution) * c.w;
   mixed = tint;
   gl_Position = c;
 }`;
@@ -58,21 +59,22 @@ void main() {
 }`;
 
 export class LineLayer {
-  readonly object: Mesh<InstancedBufferGeometry, ShaderMaterial>;
+  readonly object: Mesh<BufferGeometry, ShaderMaterial>;
   private data = new Float32Array(0);
-  private buffer: InstancedInterleavedBuffer | null = null;
+  private buffer: InterleavedBuffer | null = null;
   private count = 0;
+  private uploaded = 0; // segments
 
   // `scaled`: places are told as if the keyframe's scale were 1, else as they are.
   constructor(anchors: Anchors, resolution: { value: Vector2 }, width: number, opacity: number, scaled = true) {
     const material = new ShaderMaterial({
-      glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false,
+      glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false, side: DoubleSide,
       uniforms: {
         poses: anchors.uniform, resolution, width: { value: width }, opacity: { value: opacity }, scaled: { value: scaled },
         ink: { value: new Color() }, other: { value: new Color() },
       },
     });
-    this.object = new Mesh(new InstancedBufferGeometry(), material);
+    this.object = new Mesh(new BufferGeometry(), material);
     this.object.frustumCulled = false;
   }
 
@@ -86,45 +88,59 @@ export class LineLayer {
   // Begins anew, with room for so many.
   begin(count: number): void {
     this.count = 0;
-    if (this.buffer && FLOATS * count <= this.data.length) return;
-    this.data = new Float32Array(FLOATS * Math.max(256, Math.ceil(1.5 * count)));
-    this.buffer = new InstancedInterleavedBuffer(this.data, FLOATS);
+    this.uploaded = 0;
+    this.reserve(count);
+  }
+
+  // Room for so many; keeps what there is.
+  reserve(count: number): void {
+    const size = FLOATS * CORNERS;
+    if (this.buffer && size * count <= this.data.length) return;
+    const room = Math.max(256, Math.ceil(1.5 * count));
+    const data = new Float32Array(size * room);
+    data.set(this.data.subarray(0, size * this.count));
+    this.data = data;
+    this.uploaded = 0;
+    this.buffer = new InterleavedBuffer(data, FLOATS);
     this.buffer.setUsage(DynamicDrawUsage);
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]), 3));
-    geometry.setIndex([0, 1, 2, 0, 2, 3]);
-    const attribute = (name: string, size: number, at: number) =>
-      geometry.setAttribute(name, new InterleavedBufferAttribute(this.buffer!, size, at));
-    attribute('from', 3, 0);
+    const geometry = new BufferGeometry();
+    const attribute = (name: string, of: number, at: number) => geometry.setAttribute(name, new InterleavedBufferAttribute(this.buffer!, of, at));
+    attribute('position', 3, 0);
     attribute('fromSlot', 1, 3);
     attribute('to', 3, 4);
     attribute('toSlot', 1, 7);
     attribute('tint', 1, 8);
+    const triangles = new Uint32Array(6 * room);
+    for (let i = 0; i < room; ++i) [0, 1, 2, 0, 2, 3].forEach((corner, k) => { triangles[6 * i + k] = CORNERS * i + corner; });
+    geometry.setIndex(new BufferAttribute(triangles, 1));
     this.object.geometry.dispose();
     this.object.geometry = geometry;
   }
 
   add(fromSlot: number, from: ArrayLike<number>, toSlot: number, to: ArrayLike<number>, tint = 0): void {
-    const at = FLOATS * this.count++;
     const { data } = this;
-    data[at] = from[0];
-    data[at + 1] = from[1];
-    data[at + 2] = from[2];
-    data[at + 3] = fromSlot;
-    data[at + 4] = to[0];
-    data[at + 5] = to[1];
-    data[at + 6] = to[2];
-    data[at + 7] = toSlot;
-    data[at + 8] = tint;
+    const first = FLOATS * CORNERS * this.count++;
+    data[first] = from[0];
+    data[first + 1] = from[1];
+    data[first + 2] = from[2];
+    data[first + 3] = fromSlot;
+    data[first + 4] = to[0];
+    data[first + 5] = to[1];
+    data[first + 6] = to[2];
+    data[first + 7] = toSlot;
+    data[first + 8] = tint;
+    for (let corner = 1; corner < CORNERS; ++corner) data.copyWithin(first + FLOATS * corner, first, first + FLOATS);
   }
 
+  // What was added since the last time goes to the GPU.
   end(): void {
-    this.object.geometry.instanceCount = this.count;
+    this.object.geometry.setDrawRange(0, 6 * this.count);
     this.object.visible = this.count > 0;
-    if (!this.buffer || this.count === 0) return;
-    this.buffer.clearUpdateRanges();
-    this.buffer.addUpdateRange(0, FLOATS * this.count);
+    if (!this.buffer || this.count === this.uploaded) return;
+    const size = FLOATS * CORNERS;
+    this.buffer.addUpdateRange(size * this.uploaded, size * (this.count - this.uploaded));
     this.buffer.needsUpdate = true;
+    this.uploaded = this.count;
   }
 
   dispose(): void {

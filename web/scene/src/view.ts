@@ -17,18 +17,30 @@ export class View {
   readonly controls: CameraControls;
   mode: ViewMode = 'follow';
   touched = false; // somebody has turned or moved the view: it is theirs
+  private drawn: number[] = Array(16).fill(NaN) as number[]; // the camera's matrix at the last picture that was other
   private free = 1; // share of the width
   private size = 1; // how far away things are: length of a typical view
 
   constructor(element: HTMLElement, private readonly toScene: Matrix4, changed: () => void) {
     this.controls = new CameraControls(this.camera, element);
-    this.controls.smoothTime = 0.5; // seconds
+    this.controls.smoothTime = 0.25; // seconds
     this.controls.draggingSmoothTime = 0.05;
     this.controls.dollyToCursor = true;
     this.controls.addEventListener('controlstart', () => { this.touched = true; });
     this.controls.addEventListener('control', changed);
     this.controls.addEventListener('wake', changed);
     this.controls.setLookAt(0, 1.2, 3, 0, 0, -2, false);
+  }
+
+  // Goes on for so long; whether anybody could see the difference.
+  step(seconds: number): boolean {
+    if (!this.controls.update(seconds)) return false;
+    this.camera.updateMatrix();
+    const { elements } = this.camera.matrix;
+    const bound = (i: number) => (i < 12 ? 1e-4 : 1e-4 * this.size); // 1e-4 radians are less than a tenth of a pixel
+    const moved = elements.some((value, i) => !(Math.abs(value - this.drawn[i]) <= bound(i)));
+    if (moved) this.drawn = [...elements];
+    return moved;
   }
 
   // Typical distance of what is seen, world units: near and far planes, and how far off to stand, come from it.

@@ -74,7 +74,6 @@ function receive(bytes: Uint8Array): void {
 function reset(): void {
   player.reset();
   panel.reset();
-  plot.reset();
   picture.reset();
   scene?.forget();
   panel.error(null, player.latest);
@@ -186,7 +185,7 @@ function update(): void {
   write(byId('play-word'), paused() ? 'Go on' : 'Pause');
   panel.update(shown);
   picture.update(shown);
-  if (shown.frame) plot.add(shown.frame);
+  plot.update(player);
   plot.draw();
   timeline.update();
   scene?.update(shown);

@@ -1,8 +1,8 @@
 // Milliseconds of each stage over the last frames.
 import uPlot from 'uplot';
 import { STAGES } from '@alidade/scene';
-import type { Frame } from '@alidade/scene';
 import { byId, make } from './dom.ts';
+import type { Player } from './player.ts';
 
 const FRAMES = 240;
 // Stages that run on each frame are lines, the others (now and then) are dots.
@@ -16,24 +16,21 @@ export class Plot {
   private readonly place = byId('plot');
   private chart: uPlot | null = null;
   private frames: { number: number; ms: readonly number[] }[] = [];
+  private shown = '';
   private dirty = false;
 
   constructor() {
     new ResizeObserver(() => this.make()).observe(this.place);
   }
 
-  // The frame that is shown now; going back begins anew.
-  add(frame: Frame): void {
-    const last = this.frames[this.frames.length - 1];
-    if (last?.number === frame.number) return;
-    if (last && (frame.number < last.number || frame.number > last.number + FRAMES)) this.frames = [];
-    this.frames.push({ number: frame.number, ms: frame.ms });
-    if (this.frames.length > 2 * FRAMES) this.frames = this.frames.slice(-FRAMES);
-    this.dirty = true;
-  }
-
-  reset(): void {
-    this.frames = [];
+  // Of the player's frames those up to the one that is shown.
+  update(player: Player): void {
+    const { frames } = player.history;
+    const end = frames.length > 0 ? player.frame() + 1 : 0;
+    const key = `${frames.length > 0 ? frames[end - 1].number : -1} ${end}`;
+    if (key === this.shown) return;
+    this.shown = key;
+    this.frames = frames.slice(Math.max(0, end - FRAMES), end);
     this.dirty = true;
   }
 
@@ -70,7 +67,7 @@ export class Plot {
   draw(): void {
     if (!this.dirty || !this.chart || !this.place.clientWidth) return;
     this.dirty = false;
-    const frames = this.frames.slice(-FRAMES);
+    const { frames } = this;
     const value = (ms: number | undefined) => (ms === undefined || !(ms >= 0) ? null : ms);
     this.chart.setData([frames.map((f) => f.number), ...SERIES.map(({ stage }) => frames.map((f) => value(f.ms[stage])))] as uPlot.AlignedData);
   }
