@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <thread>
 #include <vector>
@@ -180,6 +182,27 @@ TEST(ServeCrowd, AThousandViewers) {
   RecordProperty("memory_growth_kb", static_cast<int>((MemoryInUse() - before) >> 10));
 }
 
+// Connections that cannot be taken must not be tried again at once: that would fill a core.
+TEST(ServeCrowd, OutOfDescriptorsItWaitsForSome) {
+  CountingHub hub;
+  const auto server = StartViewer(AnyPort(), &hub, "", "");
+  PlainClient(server->port()).Ask("GET /");
+  const int free = dup(0);
+  close(free);
+  rlimit limit{};
+  getrlimit(RLIMIT_NOFILE, &limit);
+  const rlimit before = limit;
+  limit.rlim_cur = static_cast<rlim_t>(free) + 1;
+  setrlimit(RLIMIT_NOFILE, &limit);
+  PlainClient client(server->port());  // has the last one
+  const clock_t start = clock();
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  const double cpu = static_cast<double>(clock() - start) / CLOCKS_PER_SEC;
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_THAT(client.Ask("GET /"), StartsWith("HTTP/1.1 200 "));
+  EXPECT_LT(cpu, 0.5) << "seconds of work in one second of waiting";
+}
+
 TEST(ServeCrowd, TheEndIsSoonWhoeverHangs) {
   CountingHub hub(3000000);
   std::vector<PlainClient> hanging;
@@ -187,6 +210,7 @@ TEST(ServeCrowd, TheEndIsSoonWhoeverHangs) {
     const auto server = StartViewer(AnyPort(), &hub, "", "");
     for (int i = 0; i < 3; ++i) hanging.emplace_back(server->port(), 65536);
     EXPECT_EQ(hanging[0].Upgrade(), 101);  // reads nothing
+    ASSERT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 1; }));
     hanging[1].Send("GET / HTTP/1.1\r\n");
   }
   EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 0; }));

@@ -172,8 +172,8 @@ TEST(Serve, WhatCannotBeServedIsSaid) {
   EXPECT_THAT(complaint(ErrorKind::kInput, settings, nullptr, "/none"),
               HasSubstr("/none: there is no such file"));
   EXPECT_THAT(complaint(ErrorKind::kInput, settings, nullptr, "/dev/zero"), HasSubstr("/dev/zero"));
-  settings.host = "192.0.2.1";  // for documentation: nobody's
-  EXPECT_THAT(complaint(ErrorKind::kUsage, settings, &hub, ""), HasSubstr("192.0.2.1"));
+  settings.host = "198.51.100.7";  // for documentation: nobody's
+  EXPECT_THAT(complaint(ErrorKind::kUsage, settings, &hub, ""), HasSubstr("198.51.100.7"));
   settings.host = "no host";
   EXPECT_THAT(complaint(ErrorKind::kUsage, settings, &hub, ""), HasSubstr("no host"));
   settings.host = "";

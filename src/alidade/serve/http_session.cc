@@ -19,6 +19,7 @@ namespace http = boost::beast::http;
 namespace asio = boost::asio;
 
 constexpr uint32_t kMostHeader = 8192;             // bytes: browsers send 1000
+constexpr size_t kMostBuffered = 16384;            // bytes: a header, and what was sent after it
 constexpr size_t kPartBytes = size_t{256} << 10;   // of a file, read and sent at a time
 constexpr auto kLinger = std::chrono::seconds(1);  // for the other side to read why it was refused
 constexpr std::string_view kText = "text/plain; charset=utf-8";
@@ -34,7 +35,7 @@ std::optional<std::string_view> Only(const http::fields& fields, http::field nam
 HttpSession::HttpSession(asio::ip::tcp::socket socket, ServerCore& core)
     : core_(core),
       stream_(std::move(socket)),
-      buffer_(2 * kMostHeader),
+      buffer_(kMostBuffered),
       active_(std::chrono::steady_clock::now()) {}
 
 void HttpSession::Start() { Read(); }

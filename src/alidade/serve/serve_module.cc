@@ -4,7 +4,9 @@
 
 #include "alidade/serve/server.h"
 
-using namespace alidade;
+using alidade::Server;
+using alidade::ServeTask;
+using alidade::ViewerServer;
 
 extern "C" __attribute__((visibility("default"))) ViewerServer* alidade_serve_start(
     const ServeTask& task, std::string* problem) try {

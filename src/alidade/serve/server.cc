@@ -30,7 +30,7 @@ constexpr auto kGoodbye = std::chrono::seconds(2);      // at the end, for what 
 
 asio::ip::address AddressOf(const std::string& host, asio::io_context& io) {
   error_code error;
-  const asio::ip::address address = asio::ip::make_address(host, error);
+  asio::ip::address address = asio::ip::make_address(host, error);
   if (!error) return address;
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(host, "", error);
