@@ -35,6 +35,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
   alidade::AddViewCommand(app, action);
+  alidade::AddCompareCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddBenchCommand(app, action);
 }
@@ -64,6 +65,7 @@ int Run(int argc, char** argv) {
       "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
       "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
       "  alidade run my_recording --viewer           watch it in a browser\n"
+      "  alidade compare result_a result_b           two runs beside each other\n"
       "  alidade info alidade-out/my_recording       what is in a map\n"
       "  alidade run --help                          all of a command's options\n"
       "\nExit status: 0 done, 2 usage, 3 input, 4 nothing could be mapped, 70 a bug of ours, 130 "

@@ -40,7 +40,7 @@ TEST(Drawings, ForwardIsUpAndRightIsRightOnThePage) {
   PlaceDrawing place;
   place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 2), CameraAt(1, 0, 2)}};
   place.unit = "m";
-  const auto p = PathPoints(DrawFromAbove(place));
+  const auto p = PathPoints(DrawPlace(place, PlaceView::kAbove));
   ASSERT_EQ(p.size(), 3u);
   EXPECT_NEAR(p[1].x(), p[0].x(), 0.11);
   EXPECT_LT(p[1].y(), p[0].y());
@@ -60,7 +60,7 @@ TEST(Drawings, TiltedCameraIsStillSeenFromAbove) {
     if (turn == 0) place.path.emplace_back();
     place.path[0].push_back({Y * R, {std::sin(yaw), 0, 1 - std::cos(yaw)}});
   }
-  const auto p = PathPoints(DrawFromAbove(place));
+  const auto p = PathPoints(DrawPlace(place, PlaceView::kAbove));
   ASSERT_EQ(p.size(), 12u);
   const Eigen::Vector2d middle = 0.5 * (p[0] + p[6]);
   for (const auto& q : p) EXPECT_NEAR((q - middle).norm(), (p[0] - middle).norm(), 0.3);
@@ -69,11 +69,12 @@ TEST(Drawings, TiltedCameraIsStillSeenFromAbove) {
 TEST(Drawings, EachStretchIsALineOfItsOwn) {
   PlaceDrawing place;
   place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}, {CameraAt(1, 0, 1), CameraAt(1, 0, 2)}};
-  EXPECT_EQ(Count(DrawFromAbove(place), "<polyline class=\"path\""), 2);
+  EXPECT_EQ(Count(DrawPlace(place, PlaceView::kAbove), "<polyline class=\"path\""), 2);
 }
 
 TEST(Drawings, NothingAtAllCanBeDrawn) {
-  EXPECT_THAT(DrawFromAbove({}), HasSubstr("</svg>"));
+  EXPECT_THAT(DrawPlace({}, PlaceView::kAbove), HasSubstr("</svg>"));
+  EXPECT_THAT(DrawPlace({}, PlaceView::kSide), HasSubstr("</svg>"));
   EXPECT_THAT(DrawTimeline({}), HasSubstr("</svg>"));
   EXPECT_THAT(DrawSeries({}, 0, "ms"), HasSubstr("</svg>"));
   EXPECT_THAT(RenderReport({}), HasSubstr("</html>"));
@@ -85,7 +86,7 @@ TEST(Drawings, FarOffLandmarksDoNotShrinkThePlace) {
   place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
   for (int i = 0; i < 100; ++i) place.landmarks.emplace_back(0.02 * i - 1, 0, 0.02 * i - 1);
   place.landmarks.emplace_back(0, 0, 1e6);
-  const auto p = PathPoints(DrawFromAbove(place));
+  const auto p = PathPoints(DrawPlace(place, PlaceView::kAbove));
   EXPECT_GT((p[1] - p[0]).norm(), 100);
 }
 

@@ -9,7 +9,7 @@
 #include "alidade/base/log.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
-#include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/truth.h"
 
 namespace alidade {
 namespace {
@@ -18,16 +18,6 @@ std::vector<StreamTruth> TruthOf(const Trajectory& trajectory) {
   std::vector<StreamTruth> truth;
   for (const StampedPose& pose : trajectory) truth.push_back({pose.time, pose.T_world_camera});
   return truth;
-}
-
-// What lies beside a recording as its truth; empty: nothing that can be read.
-std::vector<StreamTruth> TruthBeside(const std::string& source) {
-  if (!IsFolder(source)) return {};
-  try {
-    return TruthOf(ReadTrajectory(source));
-  } catch (const Error&) {
-    return {};
-  }
 }
 
 StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRecord& record) {
@@ -39,7 +29,7 @@ StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRec
   source.frames = record.source.frames;
   source.live = record.source.kind == "camera";
   source.camera = slam.camera();
-  source.truth = TruthBeside(record.source_path);
+  source.truth = TruthOf(TruthBeside(record.source_path));
   return source;
 }
 

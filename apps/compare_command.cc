@@ -1,0 +1,45 @@
+// alidade compare: several runs beside each other, as one HTML file.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "alidade/io/files/file.h"
+#include "alidade/run/comparison.h"
+#include "commands.h"
+
+namespace alidade {
+namespace {
+
+struct CompareArguments {
+  std::vector<std::string> results;
+  std::string out = "compare.html";
+};
+
+int Compare(const CompareArguments& arguments) {
+  AtomicWriteFile(arguments.out, CompareResults(arguments.results));
+  std::printf("%zu runs compared in %s\n", arguments.results.size(), arguments.out.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddCompareCommand(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("compare", "Several runs beside each other, as a page");
+  auto arguments = std::make_shared<CompareArguments>();
+  command->add_option("RESULT", arguments->results, "Folders that `run` left, two or more")
+      ->required();
+  command->add_option("--out", arguments->out, "The page: one HTML file that needs no other")
+      ->type_name("FILE")
+      ->capture_default_str();
+  command->footer(
+      "\nExamples:\n"
+      "  alidade compare alidade-out/kitchen alidade-out/kitchen-inline\n"
+      "  alidade compare before after --out change.html\n"
+      "\nErrors are told where the truth is known: groundtruth.txt in the result, or the truth "
+      "beside the recording.");
+  command->callback([arguments, &action] { action = [arguments] { return Compare(*arguments); }; });
+}
+
+}  // namespace alidade

@@ -1,0 +1,36 @@
+// What a run left behind, read again (docs/formats.md).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alidade/evaluation/ate.h"
+#include "alidade/view/plots.h"
+
+namespace alidade {
+
+struct ResultFolder {
+  std::string path;
+  std::string source, sensor;
+  // Of stats.json; what it does not say, or older versions did not, is empty.
+  std::optional<double> frames, tracked, coverage, initialised_at, keyframes, landmarks, loops,
+      relocalisations, maps, cpu_s, peak_mb;
+  std::vector<MedianBar> milliseconds;  // one for each of kResultStages
+  TimeSpan span;                        // of the recording, seconds
+  std::optional<double> first_pose;     // in any map, seconds
+  std::vector<std::array<double, 2>> lost_spans;
+  Trajectory trajectory;  // of the map with the most frames; empty: nothing was mapped
+  Trajectory truth;       // groundtruth.txt, or what lies beside the recording; empty: not known
+
+  bool mono() const { return sensor == "mono"; }
+};
+
+inline constexpr std::array kResultStages = {"frame", "extract",   "track",  "map",
+                                             "loop",  "semidense", "detect", "dynamics"};
+
+// Throws Error (input) for a folder without a run's stats.json, or with one that is none.
+ResultFolder ReadResultFolder(const std::string& path);
+
+}  // namespace alidade

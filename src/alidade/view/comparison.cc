@@ -1,0 +1,110 @@
+#include "alidade/view/comparison.h"
+
+#include <algorithm>
+
+#include "alidade/view/page.h"
+#include "alidade/view/svg.h"
+
+namespace alidade {
+namespace {
+
+std::string Chip(const ComparedRun& run, size_t number) {
+  return "<span class=\"chip " + ClassOfRun(number) + "\"></span>" + EscapeHtml(run.name);
+}
+
+std::string Measures(const RunComparison& comparison) {
+  std::string html =
+      "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"figures\">\n"
+      "<table class=\"compared\">\n<thead><tr><td></td>";
+  for (size_t i = 0; i < comparison.runs.size(); ++i)
+    html += "<th scope=\"col\">" + Chip(comparison.runs[i], i) + "</th>";
+  html += "</tr></thead>\n<tbody>\n";
+  for (size_t row = 0; row < comparison.measures.size(); ++row) {
+    html += "<tr><th scope=\"row\">" + EscapeHtml(comparison.measures[row]) + "</th>";
+    for (const ComparedRun& run : comparison.runs) html += Cell("td", run.values[row]);
+    html += "</tr>\n";
+  }
+  return html + "</tbody></table>\n</div>\n";
+}
+
+std::string Legend(const RunComparison& comparison, bool with_ends) {
+  std::string html = "<p class=\"soft legend\">";
+  for (size_t i = 0; i < comparison.runs.size(); ++i)
+    html += "<span>" + Chip(comparison.runs[i], i) + "</span> ";
+  if (with_ends) {
+    if (!comparison.truth.empty()) html += "<span>dashed: the truth</span> ";
+    html +=
+        "<span><span class=\"key\" style=\"background:#1a9d50;margin-left:0\"></span>start</span> "
+        "<span><span class=\"key\" style=\"background:#d43a2f;margin-left:0\"></span>end</span>";
+  }
+  return html + "</p>\n";
+}
+
+std::string Paths(const RunComparison& comparison) {
+  std::vector<DrawnPath> paths;
+  for (const ComparedRun& run : comparison.runs) paths.push_back(run.path);
+  const auto drawn = [&](PlaceView view) {
+    return "<div class=\"framed\">" + DrawPaths(paths, comparison.truth, view, comparison.unit) +
+           "</div>\n";
+  };
+  return "<h2>From above</h2>\n" + drawn(PlaceView::kAbove) + Legend(comparison, true) +
+         "<h2>From the side</h2>\n" + drawn(PlaceView::kSide);
+}
+
+std::string Errors(const RunComparison& comparison) {
+  std::vector<Curve> curves;
+  bool any = false;
+  for (const ComparedRun& run : comparison.runs) {
+    curves.push_back(run.error);
+    any = any || !run.error.empty();
+  }
+  if (!any) return "";
+  return "<h2>Distance to the truth</h2>\n" +
+         DrawCurves(curves, comparison.seconds, "s", "m", "distance to the truth over time") +
+         Legend(comparison, false);
+}
+
+std::string Stage(const RunComparison& comparison, size_t stage) {
+  std::vector<std::string> names;
+  std::vector<MedianBar> bars;
+  for (const ComparedRun& run : comparison.runs) {
+    names.push_back(run.name);
+    bars.push_back(run.milliseconds[stage]);
+  }
+  if (std::all_of(bars.begin(), bars.end(), [](const MedianBar& b) { return b.median < 0; }))
+    return "";
+  return "<h3>" + EscapeHtml(comparison.stages[stage]) + "</h3>\n" + DrawMedians(names, bars, "ms");
+}
+
+std::string Times(const RunComparison& comparison) {
+  if (comparison.stages.empty()) return "";
+  std::string more;
+  for (size_t stage = 1; stage < comparison.stages.size(); ++stage)
+    more += Stage(comparison, stage);
+  return "<h2>Milliseconds</h2>\n<p class=\"soft\">Full colour: to the median; lighter: to the "
+         "95th "
+         "percentile. Each part has a scale of its own.</p>\n" +
+         Stage(comparison, 0) + "<details>\n<summary>Parts</summary>\n" + more + "</details>\n";
+}
+
+}  // namespace
+
+std::string RenderComparison(const RunComparison& comparison) {
+  std::vector<std::string> names;
+  std::vector<std::vector<FateSpan>> fates;
+  for (const ComparedRun& run : comparison.runs) {
+    names.push_back(run.name);
+    fates.push_back(run.fates);
+  }
+  std::string body = Measures(comparison);
+  if (!comparison.notes.empty()) body += HtmlList("Notes", comparison.notes);
+  body += Paths(comparison) + Errors(comparison);
+  body += "<h2>Frames</h2>\n" + DrawSpans(names, fates, comparison.seconds) +
+          "<p class=\"soft\"><span class=\"key\" style=\"background:var(--line)\"></span>starting"
+          "<span class=\"key\" style=\"background:#1a9d50\"></span>tracked"
+          "<span class=\"key\" style=\"background:#d43a2f\"></span>lost</p>\n";
+  body += Times(comparison);
+  return HtmlPage(std::to_string(comparison.runs.size()) + " runs compared", body);
+}
+
+}  // namespace alidade
