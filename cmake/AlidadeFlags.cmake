@@ -42,7 +42,7 @@ if(ALIDADE_SANITIZE)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # The sanitizers' own code makes GCC see uninitialised values inside Eigen where there are none.
     # Warnings are what the other builds are for: here they would be of code nobody wrote.
-    target_compile_options(alidade_flags INTERFACE -Wno-maybe-uninitialized -Wno-error)
+    target_compile_options(alidade_flags INTERFACE -Wno-maybe-uninitialized -Wno-tsan -Wno-error)
   endif()
   target_link_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE})
 endif()
