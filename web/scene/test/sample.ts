@@ -1,10 +1,10 @@
 // A stream without a program: a camera goes round a room twice, its map drifts until a loop closes, keyframes and landmarks are
 // culled, it is lost for a while behind a white sheet. World: x right, y down, z forward, as of the first keyframe.
-import { deflateSync } from 'node:zlib';
 import type { Culled, DepthCloud, Frame, KeyFrame, MapChange, Message, PathFrame, Pose } from '../src/messages.ts';
 import { NONE } from '../src/messages.ts';
 import { compose, inverse, rotate, transform } from '../src/pose.ts';
 import { encode } from './encode.ts';
+import { png } from './png.ts';
 
 export interface SampleSettings {
   frames?: number;
@@ -380,28 +380,4 @@ function packLandmarks(points: readonly Point[]): DataView {
     p.forEach((value, k) => view.setFloat32(20 * i + 8 + 4 * k, value, true));
   });
   return view;
-}
-
-const CRC = Uint32Array.from({ length: 256 }, (_, n) => {
-  for (let k = 0; k < 8; ++k) n = n & 1 ? 0xedb88320 ^ (n >>> 1) : n >>> 1;
-  return n;
-});
-
-function png(width: number, height: number, rows: Uint8Array): Uint8Array<ArrayBuffer> {
-  const chunk = (type: string, data: Uint8Array) => {
-    const out = Buffer.alloc(12 + data.length);
-    out.writeUInt32BE(data.length, 0);
-    out.write(type, 4, 'latin1');
-    out.set(data, 8);
-    let crc = 0xffffffff;
-    for (const byte of out.subarray(4, 8 + data.length)) crc = CRC[(crc ^ byte) & 255] ^ (crc >>> 8);
-    out.writeUInt32BE(~crc >>> 0, 8 + data.length);
-    return out;
-  };
-  const head = Buffer.alloc(13);
-  head.writeUInt32BE(width, 0);
-  head.writeUInt32BE(height, 4);
-  head.set([8, 2, 0, 0, 0], 8);
-  const signature = Buffer.from([137, 80, 78, 71, 13, 10, 26, 10]);
-  return new Uint8Array(Buffer.concat([signature, chunk('IHDR', head), chunk('IDAT', deflateSync(rows, { level: 1 })), chunk('IEND', new Uint8Array(0))]));
 }

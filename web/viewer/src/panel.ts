@@ -3,7 +3,7 @@ import { LAYERS } from '@alidade/scene';
 import type { Alignment, Event, LayerName, State } from '@alidade/scene';
 import { byId, make, write } from './dom.ts';
 import type { Player } from './player.ts';
-import { clock, eventText, reasonText, STATE_WORDS } from './words.ts';
+import { clock, endText, eventText, reasonText, STATE_WORDS } from './words.ts';
 
 const LAYER_WORDS: Record<LayerName, string> = {
   path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Covisibility', loops: 'Loops',
@@ -30,9 +30,10 @@ export class Panel {
     for (const [name, element] of this.counts) write(element, String(numbers[name]));
     const name = latest?.state ?? 'initialising';
     if (document.body.dataset.state !== name) document.body.dataset.state = name;
-    write(byId('state-word'), latest ? STATE_WORDS[name] : 'Waiting');
-    const over = state.playback?.finished && this.player().attached ? 'The run has ended.' : '';
-    write(byId('state-reason'), !latest ? 'for the first frame' : over || (now ? reasonText(now) : ''));
+    const over = state.playback?.finished ? endText(state) : null;
+    document.body.classList.toggle('ended', over !== null);
+    write(byId('state-word'), over?.word ?? (latest ? STATE_WORDS[name] : 'Waiting'));
+    write(byId('state-reason'), over?.reason ?? (!latest ? 'for the first frame' : now ? reasonText(now) : ''));
     write(byId('source'), hello?.source ?? '');
     const sensors: Record<string, string> = { mono: 'one camera', stereo: 'stereo pair', rgbd: 'RGB-D camera' };
     const maps = frame && frame.maps > 1 ? `${frame.maps} maps` : '';

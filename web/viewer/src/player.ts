@@ -124,6 +124,7 @@ export class Player {
   private show(index: number): void {
     const from = this.shown === this.latest ? undefined : this.shown;
     this.shown = this.history.at(index, from, this.index);
+    this.shown.hello = this.latest.hello; // the truth of a rendered recording is told at its end
     this.index = index;
   }
 }

@@ -1,5 +1,5 @@
 // What the program says, for people: what is going on, and what to do about it.
-import type { Event, Frame, TrackingState } from '@alidade/scene';
+import type { Event, Frame, State, TrackingState } from '@alidade/scene';
 
 export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
 
@@ -23,6 +23,15 @@ export function advice(reason: string): string {
 export function reasonText(frame: Frame): string {
   if (frame.state === 'tracking') return '';
   return [sentence(frame.reason), advice(frame.reason)].filter(Boolean).join(' ');
+}
+
+// When there is nothing more to come.
+export function endText({ hello, frame, latest, keyframes }: State): { word: string; reason: string } {
+  if (!frame && hello && hello.frames < 0 && !hello.live) return { word: 'Map', reason: 'As it was saved.' };
+  const why = sentence(frame?.reason ?? '');
+  if (latest?.state === 'tracking') return { word: 'Ended', reason: 'Tracked to the last frame.' };
+  if (keyframes.size === 0) return { word: 'Ended', reason: `It did not start. ${why}`.trimEnd() };
+  return { word: 'Ended', reason: `Lost at the last frame. ${why}`.trimEnd() };
 }
 
 function sentence(text: string): string {

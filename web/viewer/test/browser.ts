@@ -1,8 +1,11 @@
 // Chromium for the tests of the page, and what they look at.
-import { existsSync } from 'node:fs';
+import { existsSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { inflateSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
+
+declare const WEB: string; // by tools/test.mjs
 
 export const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 export const SKIP = existsSync(CHROMIUM) ? false : `no ${CHROMIUM}`;
@@ -29,6 +32,19 @@ export async function open(browser: Browser, address: string, options: BrowserCo
   await before?.(page);
   await page.goto(address);
   return { page, problems, requests };
+}
+
+export const count = async (page: Page, name: string) => Number(await page.textContent(`[data-count=${name}]`));
+export const frames = (page: Page, least: number) =>
+  page.waitForFunction((n) => Number(document.querySelector('[data-count=frames]')!.textContent) >= n, least, { timeout: 120e3 });
+
+// What axe finds wrong with the page as it is now.
+export async function violations(page: Page): Promise<string[]> {
+  await page.evaluate(readFileSync(join(WEB, 'node_modules/axe-core/axe.min.js'), 'utf8'));
+  return page.evaluate(async () => {
+    const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { html: string; failureSummary: string }[] }[] }> } }).axe.run();
+    return found.violations.map(({ id, impact, nodes }) => `${impact} ${id}: ${nodes.map((node) => node.html + node.failureSummary).join(' | ')}`);
+  });
 }
 
 export interface Picture { width: number; height: number; at(x: number, y: number): [number, number, number] }

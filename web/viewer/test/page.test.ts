@@ -1,15 +1,12 @@
 // The page in a real browser, with the sample's stream: what is drawn is what the sample says.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
-import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import type { Browser, Page } from 'playwright-core';
+import type { Browser } from 'playwright-core';
 import type { LayerName } from '@alidade/scene';
-import { CHROMIUM, differing, launch, open, sceneOnly, SKIP } from './browser.ts';
+import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from './browser.ts';
 import { startServer } from './server.ts';
 import type { Server, ServerSettings } from './server.ts';
 
-declare const WEB: string; // by tools/test.mjs
 const options = { skip: SKIP, timeout: 120e3 };
 const SMALL = { frames: 300, depthPoints: 200, landmarks: 2500 };
 
@@ -27,10 +24,6 @@ async function serve(settings: ServerSettings): Promise<Server> {
   servers.push(server);
   return server;
 }
-
-const count = async (page: Page, name: string) => Number(await page.textContent(`[data-count=${name}]`));
-const frames = (page: Page, least: number) =>
-  page.waitForFunction((n) => Number(document.querySelector('[data-count=frames]')!.textContent) >= n, least);
 
 // The page's own view of things, as a test may ask for it.
 interface Debug {
@@ -248,7 +241,6 @@ test('without WebGL the page says so, and shows the rest', options, async () => 
 });
 
 test('axe finds nothing serious: light, dark, narrow, with its dialogs', options, async () => {
-  const axe = readFileSync(join(WEB, 'node_modules/axe-core/axe.min.js'), 'utf8');
   const server = await serve({ sample: SMALL, speed: 0 });
   for (const [width, colorScheme] of [[1280, 'light'], [1280, 'dark'], [412, 'light'], [412, 'dark']] as const) {
     const { page } = await open(browser, server.address, { viewport: { width, height: 860 }, colorScheme });
@@ -256,14 +248,7 @@ test('axe finds nothing serious: light, dark, narrow, with its dialogs', options
     server.advance(20);
     await frames(page, server.frame());
     if (width < 700) await page.click('#panel-toggle');
-    const run = async (what: string) => {
-      await page.evaluate(axe);
-      const violations = await page.evaluate(async () => {
-        const found = await (window as unknown as { axe: { run(): Promise<{ violations: { id: string; impact: string; nodes: { html: string; failureSummary: string }[] }[] }> } }).axe.run();
-        return found.violations.map(({ id, impact, nodes }) => `${impact} ${id}: ${nodes.map((node) => node.html + node.failureSummary).join(' | ')}`);
-      });
-      assert.deepEqual(violations, [], `${what}, ${width}, ${colorScheme}`);
-    };
+    const run = async (what: string) => assert.deepEqual(await violations(page), [], `${what}, ${width}, ${colorScheme}`);
     await run('page');
     await page.click('#about-open');
     await run('about');
