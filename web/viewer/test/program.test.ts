@@ -32,20 +32,14 @@ function assertClean({ problems, requests }: Opened, address: string): void {
   assert.deepEqual(requests.filter((url) => !own(url)), []);
 }
 
-// How many shades of grey, and colours, the camera picture has: one that is not drawn has few.
-const shades = (page: Page) => page.evaluate(() => {
-  const canvas = document.getElementById('picture-canvas') as HTMLCanvasElement;
-  const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
-  const seen = new Set<number>();
-  for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255 && data[i] === data[i + 1] && data[i] === data[i + 2]) seen.add(data[i]);
-  return seen.size;
-});
-
+// How many colours the camera picture has: one that is not drawn has those of the features. Read off a copy, which may be read.
 const colours = (page: Page) => page.evaluate(() => {
   const canvas = document.getElementById('picture-canvas') as HTMLCanvasElement;
-  const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+  const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
+  copy.drawImage(canvas, 0, 0);
+  const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
   const seen = new Set<number>();
-  for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255) seen.add((data[i] >> 2 << 12) | (data[i + 1] >> 2 << 6) | data[i + 2] >> 2);
+  for (let i = 0; i < data.length; i += 4) if (data[i + 3] === 255) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
   return seen.size;
 });
 
@@ -59,8 +53,8 @@ async function assertGrows(page: Page): Promise<void> {
   }, before, { timeout: 300e3 });
   await page.waitForFunction(() => (window as unknown as { alidade: { state: State } }).alidade.state.pictured !== null);
   await page.waitForTimeout(500);
-  const [grey, all] = [await shades(page), await colours(page)];
-  assert.ok(Math.max(grey, all) > 60, `the camera picture has ${grey} shades, ${all} colours`);
+  const seen = await colours(page);
+  assert.ok(seen > 1000, `the camera picture has ${seen} colours`);
 }
 
 const stateWord = (page: Page) => page.textContent('#state-word');
@@ -218,7 +212,7 @@ test('the page comes with its policy', options, async () => {
   const { headers } = await fetch(program.address);
   const policy = headers.get('content-security-policy') ?? '';
   assert.match(policy, /default-src 'none'/);
-  assert.doesNotMatch(policy, /unsafe/);
+  assert.doesNotMatch(policy, /'unsafe-|\*|https?:/);
   assert.equal(headers.get('x-content-type-options'), 'nosniff');
   program.kill('SIGINT');
   assert.equal(await program.ended, 0);
