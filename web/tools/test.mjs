@@ -12,6 +12,10 @@ const words = rest.filter((word) => !word.startsWith('--'));
 const options = rest.filter((word) => word.startsWith('--'));
 const names = readdirSync(join(web, folder))
   .filter((name) => name.endsWith('.test.ts') && words.every((word) => name.includes(word)));
+if (names.length === 0) {
+  console.error(`${folder}: no test file's name holds ${words.join(', ')}`);
+  process.exit(2);
+}
 const outdir = join(web, '.test', folder);
 rmSync(outdir, { recursive: true, force: true });
 await build({

@@ -58,7 +58,7 @@ export class Plot {
     this.chart = new uPlot({
       width, height: 110, series, legend: { show: false }, cursor: { show: false },
       scales: { x: { time: false }, y: { range: (_, __, most) => [0, nice(Number.isFinite(most) ? most : 10)] } },
-      axes: [{ ...axis, size: 18, gap: 2, grid: { show: false }, values: (_, ticks) => ticks.map(String) }, { ...axis, size: 30, gap: 2 }],
+      axes: [{ ...axis, size: 18, gap: 2, grid: { show: false }, values: (_, ticks) => ticks.map(String) }, { ...axis, size: widthOf, gap: 2 }],
     }, [[0], ...SERIES.map(() => [null])] as uPlot.AlignedData, this.place);
     this.dirty = true;
     this.draw();
@@ -77,4 +77,9 @@ export class Plot {
 function nice(most: number): number {
   const power = 10 ** Math.floor(Math.log10(Math.max(1, most)));
   return [1, 2, 5, 10].map((k) => k * power).find((end) => end >= most) ?? most;
+}
+
+// Of an axis with these labels, pixels.
+function widthOf(_: uPlot, labels: string[] | null): number {
+  return Math.max(30, 10 + 7 * Math.max(0, ...(labels ?? []).map((label) => label.length)));
 }
