@@ -10,6 +10,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/run/truth.h"
+#include "alidade/system/health.h"
 
 namespace alidade {
 namespace {
@@ -99,6 +100,14 @@ void StreamFeed::Wait(bool (*interrupted)()) {
 }
 
 void StreamFeed::Frame(const SourceFrame& frame, const TrackResult& result) {
+  try {
+    Show(frame, result);
+  } catch (...) {
+    Fail();
+  }
+}
+
+void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   Shown shown;
   StreamFrame& told = shown.frame;
   told.number = frame.number;
@@ -120,10 +129,11 @@ void StreamFeed::Frame(const SourceFrame& frame, const TrackResult& result) {
     std::unique_lock<std::mutex> lock(queue_mutex_);
     const auto most = static_cast<size_t>(settings_.waiting);
     if (file_path_) {
-      changed_.wait(lock, [&] { return queue_.size() < most; });
+      changed_.wait(lock, [&] { return failed_ || queue_.size() < most; });
     } else if (queue_.size() >= most) {
       queue_.pop_front();
     }
+    if (failed_) return;
     queue_.push_back(std::move(shown));
   }
   changed_.notify_all();
@@ -136,14 +146,33 @@ void StreamFeed::Run() {
       std::unique_lock<std::mutex> lock(queue_mutex_);
       working_ = false;
       changed_.notify_all();
-      changed_.wait(lock, [&] { return stop_ || !queue_.empty(); });
-      if (stop_) return;
+      changed_.wait(lock, [&] { return stop_ || failed_ || !queue_.empty(); });
+      if (stop_ || failed_) return;
       shown = std::move(queue_.front());
       queue_.pop_front();
       working_ = true;
     }
     changed_.notify_all();
-    Encode(shown);
+    try {
+      Encode(shown);
+    } catch (...) {
+      Fail();
+    }
+  }
+}
+
+void StreamFeed::Fail() noexcept {
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    if (std::exchange(failed_, true)) return;
+    queue_.clear();
+    working_ = paused_ = false;
+  }
+  changed_.notify_all();
+  try {
+    LogWarning("the stream stopped (" + WhatOf(std::current_exception()) +
+               "); the run goes on without it");
+  } catch (...) {  // no memory even for that
   }
 }
 
@@ -188,6 +217,18 @@ void StreamFeed::Drain() {
 
 void StreamFeed::Finished() {
   Drain();
+  try {
+    TellEnd();
+  } catch (...) {
+    Fail();
+  }
+}
+
+void StreamFeed::TellEnd() {
+  {
+    const std::lock_guard<std::mutex> lock(queue_mutex_);
+    if (failed_) return;
+  }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->End(slam_->Snapshot()));
   if (!record_->truth.empty()) {  // of a rendered source, which tells it frame by frame

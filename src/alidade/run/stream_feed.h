@@ -1,5 +1,6 @@
 // A run as a stream: shown each frame, it encodes what happened in a thread of its own, adds the
-// picture, and gives the messages to those who joined, and to a file.
+// picture, and gives the messages to those who joined, and to a file. Where that fails (no memory),
+// a warning says so, the stream ends there, and the run goes on.
 #pragma once
 
 #include <atomic>
@@ -55,10 +56,13 @@ class StreamFeed : public RunWatcher, public StreamHub {
   int frames() const { return frames_; }
 
  private:
+  void Fail() noexcept;  // by the exception that is being handled
   struct Shown {
     StreamFrame frame;
     cv::Mat image;  // to be coded; empty: no picture
   };
+  void Show(const SourceFrame& frame, const TrackResult& result);
+  void TellEnd();
   void Run();
   void Encode(Shown& shown);
   void Tell(std::vector<std::string> messages);  // with encoder_mutex_ held
@@ -83,7 +87,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   mutable std::mutex queue_mutex_;
   std::condition_variable changed_;
   std::deque<Shown> queue_;
-  bool working_ = false, stop_ = false;
+  bool working_ = false, stop_ = false, failed_ = false;
   bool paused_ = false;
   int steps_ = 0;  // frames that may pass while paused
 

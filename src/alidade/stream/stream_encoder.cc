@@ -197,6 +197,8 @@ void StreamEncoder::TellMap(const MapSnapshot& map, int number, double time,
   const MapNews news = told_.Update(map);
   for (const ToldCull& cull : news.culled) path_->Cull(cull);
   if (!news.empty()) messages.push_back(EncodeNews(news));
+  if (!news.keyframes.empty() || !news.culled.empty())
+    maps_ = static_cast<uint32_t>(map.Maps().size());
   const auto event = [&](stream::EventKind kind, const std::string& text,
                          uint32_t a = KeyFrameId::kNone, uint32_t b = KeyFrameId::kNone) {
     messages.push_back(EncodeEvent(kind, number, time, text, a, b));
@@ -299,7 +301,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   made.add_keyframes(static_cast<uint32_t>(map.keyframe_count()));
   made.add_landmarks(static_cast<uint32_t>(map.landmark_count()));
   made.add_matches(static_cast<uint32_t>(result.matches));
-  made.add_maps(static_cast<uint32_t>(map.Maps().size()));
+  made.add_maps(maps_);
   made.add_found_share(static_cast<float>(result.quality.found_share));
   made.add_ms(ms);
   made.add_features(packed);

@@ -106,6 +106,7 @@ class StreamEncoder {
   std::string warning_;
   bool tracked_ = false;             // ever
   std::vector<std::string> events_;  // so far, for those who join late
+  uint32_t maps_ = 0;                // as told
   int last_number_ = 0;
   double last_time_ = 0;
 };
