@@ -30,7 +30,7 @@ int RunAndTell(const RunOptions& options) {
   std::unique_ptr<ViewerServer> server;
   if (options.record || options.viewer) {
     CheckRunOptions(options);
-    feed.emplace("alidade " ALIDADE_VERSION, options.record);
+    feed.emplace("alidade " ALIDADE_VERSION, options.record, SettingsFrom(options).stream);
     watchers.push_back(&*feed);
   }
   if (options.viewer) {

@@ -256,7 +256,7 @@ class Study {
 SlamSettings SettingsOf(const DynamicOptions& options) {
   RunOptions run;
   run.settings = options.settings;
-  return SettingsFrom(run);
+  return SettingsFrom(run).slam;
 }
 
 }  // namespace

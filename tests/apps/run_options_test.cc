@@ -44,6 +44,29 @@ TEST_F(RunOptions, UnknownSettingNamesTheNearest) {
   ExpectError(2, {"--set", "tracker.min_tracked=many"}, "'many' is not a whole number");
 }
 
+TEST_F(RunOptions, SettingsOfTheStreamAreGivenAndListedAsAllOthers) {
+  const std::string file =
+      results_.Write("settings.yaml", "stream:\n  picture_width: 200\n  waiting: 4\nseed: 5\n");
+  ASSERT_EQ(Run({"--last", "3", "--config", file, "--set", "stream.waiting=5", "--record"}).status,
+            0);
+  const nlohmann::json settings = Settings();
+  EXPECT_EQ(settings["stream.picture_width"], 200);
+  EXPECT_EQ(settings["stream.waiting"], 5);
+  EXPECT_EQ(settings["stream.pictures_hz"], 10);  // as it is by itself
+  EXPECT_EQ(settings["seed"], 5);
+  EXPECT_THAT(ReadText(results_ / "out/report.html"), HasSubstr("stream.picture_width"));
+  const size_t with_pictures = std::filesystem::file_size(results_ / "out/run.stream");
+  ASSERT_EQ(Run({"--last", "3", "--set", "stream.pictures_hz=0", "--record"}).status, 0);
+  EXPECT_LT(std::filesystem::file_size(results_ / "out/run.stream"), with_pictures);
+}
+
+TEST_F(RunOptions, SettingsOfTheStreamThatCannotBeAreRefused) {
+  ExpectError(2, {"--set", "stream.picture_widht=200"}, "did you mean 'stream.picture_width'");
+  ExpectError(2, {"--set", "stream.waiting=few"}, "'few' is not a whole number");
+  ExpectError(2, {"--set", "stream.picture_quality=0"}, "stream.picture_quality must be within");
+  ExpectError(2, {"--set", "stream.edge_shared=0", "--record"}, "stream.edge_shared must be");
+}
+
 TEST_F(RunOptions, AMapThatCannotBeReadIsSaid) {
   ExpectError(3, {"--load", results_ / "none.alidade"}, "none.alidade");
 }

@@ -1,15 +1,15 @@
-#include "alidade/system/settings.h"
-#include "fuzz/targets.h"
+#include "alidade/run/run_settings.h"
 #include "alidade/run/settings_file.h"
+#include "fuzz/targets.h"
 
 namespace alidade::fuzz {
 
 // Settings that can be are written into maps and stats.json, and can be set to what is written.
 void Config(std::string_view bytes) {
-  SlamSettings settings;
+  RunSettings settings;
   ApplySettingsText(std::string(bytes), "settings.yaml", settings);
   settings.Check();
-  SlamSettings again;
+  RunSettings again;
   for (const auto& [name, value] : settings.All()) {
     try {
       again.Set(name, value);

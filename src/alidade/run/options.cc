@@ -43,14 +43,15 @@ SourceOptions SourceOptionsFrom(const RunOptions& options) {
   return source;
 }
 
-SlamSettings SettingsFrom(const RunOptions& options) {
-  SlamSettings settings;
+RunSettings SettingsFrom(const RunOptions& options) {
+  RunSettings all;
+  SlamSettings& settings = all.slam;
   settings.ApplyProfile(options.profile);
-  if (options.config) ApplySettingsFile(*options.config, settings);
+  if (options.config) ApplySettingsFile(*options.config, all);
   for (const std::string& assignment : options.settings) {
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos) ThrowUsage("--set " + assignment + ": expected name=value");
-    settings.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
+    all.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
   }
   if (options.seed) settings.seed = *options.seed;
   if (options.semidense) settings.semidense.enabled = true;
@@ -66,8 +67,8 @@ SlamSettings SettingsFrom(const RunOptions& options) {
     ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
   if (mode == DynamicsMode::kOff && options.write_masks)
     ThrowUsage("--write-masks needs --dynamics geometry or full: nothing is left out without");
-  settings.Check();
-  return settings;
+  all.Check();
+  return all;
 }
 
 bool ThreadedFrom(const RunOptions& options, bool live) {

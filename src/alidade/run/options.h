@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "alidade/io/files/open_source.h"
-#include "alidade/system/settings.h"
+#include "alidade/run/run_settings.h"
 
 namespace alidade {
 
@@ -47,7 +47,7 @@ SourceOptions SourceOptionsFrom(const RunOptions& options);
 // Profile, then the file of --config, then each --set, then the flags (--seed, --semidense): the
 // later one holds. The sensor
 // and the schedule are the source's to say. Throws Error (usage, or input for the file).
-SlamSettings SettingsFrom(const RunOptions& options);
+RunSettings SettingsFrom(const RunOptions& options);
 
 // Whether stages run on their own threads: as asked, else only for a live camera.
 bool ThreadedFrom(const RunOptions& options, bool live);

@@ -9,6 +9,7 @@
 
 #include "alidade/io/frame_source.h"
 #include "alidade/io/trajectory.h"
+#include "alidade/run/stream_settings.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
@@ -17,6 +18,7 @@ struct RunRecord {
   std::string source_path;  // as typed
   SourceInfo source;
   SlamSettings settings;
+  StreamFeedSettings stream;  // of who tells the run, if somebody does
   std::string profile;
   int threads = 0;
 

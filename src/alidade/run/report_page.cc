@@ -1,6 +1,7 @@
 #include <cstdio>
 
 #include "alidade/base/timing.h"
+#include "alidade/run/run_settings.h"
 #include "alidade/run/stats.h"
 
 namespace alidade {
@@ -106,7 +107,8 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results,
   report.settings = {{"profile", record.profile},
                      {"schedule", record.settings.threaded ? "threaded" : "inline"},
                      {"threads", std::to_string(record.threads)}};
-  for (const auto& setting : record.settings.All()) report.settings.push_back(setting);
+  for (const auto& setting : RunSettings{record.settings, record.stream}.All())
+    report.settings.push_back(setting);
   return RenderReport(report);
 }
 

@@ -62,7 +62,9 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   RunRecord& record = outcome.record;
   record.source_path = options.source;
   record.profile = options.profile;
-  record.settings = SettingsFrom(options);
+  const RunSettings settings = SettingsFrom(options);
+  record.settings = settings.slam;
+  record.stream = settings.stream;
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
 

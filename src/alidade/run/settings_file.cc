@@ -12,7 +12,7 @@ std::string At(const std::string& path, const YAML::Node& node) {
 }
 
 void Apply(const std::string& path, const YAML::Node& map, const std::string& prefix,
-           SlamSettings& settings) {
+           RunSettings& settings) {
   for (const auto& entry : map) {
     const std::string where = At(path, entry.first);
     if (!entry.first.IsScalar()) ThrowUsage(where + "expected `name: value`");
@@ -33,11 +33,11 @@ void Apply(const std::string& path, const YAML::Node& map, const std::string& pr
 
 }  // namespace
 
-void ApplySettingsFile(const std::string& path, SlamSettings& settings) {
+void ApplySettingsFile(const std::string& path, RunSettings& settings) {
   ApplySettingsText(ReadFile(path, kMostConfigBytes), path, settings);
 }
 
-void ApplySettingsText(const std::string& text, const std::string& name, SlamSettings& settings) {
+void ApplySettingsText(const std::string& text, const std::string& name, RunSettings& settings) {
   Apply(name, YamlFile(text, name).root(), "", settings);
 }
 

@@ -3,15 +3,15 @@
 
 #include <string>
 
-#include "alidade/system/settings.h"
+#include "alidade/run/run_settings.h"
 
 namespace alidade {
 
 // Sets what the file names, nested (`tracker:` / `  min_tracked: 30`) or dotted
 // (`tracker.min_tracked: 30`). Throws Error with file:line: kInput when it cannot be read or is no
 // YAML, kUsage for a name or value that cannot be.
-void ApplySettingsFile(const std::string& path, SlamSettings& settings);
+void ApplySettingsFile(const std::string& path, RunSettings& settings);
 // The same of a file's text; `name` is what it is called in errors.
-void ApplySettingsText(const std::string& text, const std::string& name, SlamSettings& settings);
+void ApplySettingsText(const std::string& text, const std::string& name, RunSettings& settings);
 
 }  // namespace alidade

@@ -47,18 +47,6 @@ StreamMilliseconds Since(const LatestTimes& before, const LatestTimes& now) {
 
 }  // namespace
 
-void StreamFeedSettings::Check() const {
-  stream.Check();
-  const auto check = [](bool good, const char* name, const char* range) {
-    if (!good) ThrowUsage("stream." + std::string(name) + " must be " + range);
-  };
-  check(picture_width >= 16 && picture_width <= 8192, "picture_width", "within 16…8192");
-  check(picture_quality >= 1 && picture_quality <= 100, "picture_quality", "within 1…100");
-  check(pictures_hz >= 0, "pictures_hz", "at least 0");
-  check(whole_seconds > 0, "whole_seconds", "above 0");
-  check(waiting >= 1, "waiting", "at least 1");
-}
-
 StreamFeed::StreamFeed(std::string program, std::optional<std::string> file,
                        const StreamFeedSettings& settings)
     : program_(std::move(program)), file_path_(std::move(file)), settings_(settings) {

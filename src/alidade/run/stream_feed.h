@@ -15,22 +15,12 @@
 #include <vector>
 
 #include "alidade/run/stream_file.h"
+#include "alidade/run/stream_settings.h"
 #include "alidade/run/watcher.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/stream/stream_hub.h"
 
 namespace alidade {
-
-struct StreamFeedSettings {
-  StreamSettings stream;
-  int picture_width = 400;    // pixels; the camera's picture is scaled down to it
-  int picture_quality = 70;   // of JPEG, 1…100: 11-14 kB at 320 pixels
-  double pictures_hz = 10;    // pictures a second, at most: by the recording's clock
-  double whole_seconds = 10;  // of a file, between two whole states: what a reader may begin at
-  int waiting = 8;            // frames that wait to be encoded; of more, the newest counts (with a
-                              // file: the run waits)
-  void Check() const;         // throws Error (usage) naming the field that cannot be
-};
 
 class StreamFeed : public RunWatcher, public StreamHub {
  public:

@@ -15,6 +15,7 @@ void StreamSettings::Check() const {
   check(depth_points >= 0 && depth_points <= 1000000, "depth_points", "within 0…1000000");
   check(outline_tolerance >= 0 && outline_tolerance <= 100, "outline_tolerance", "within 0…100");
   check(path_frames >= 100, "path_frames", "at least 100");
+  check(detection_seconds >= 0, "detection_seconds", "at least 0");
 }
 
 }  // namespace alidade

@@ -17,7 +17,10 @@ struct StreamSettings {
   // Frames of the path that are kept for those who join late. Of more, every other one of the older
   // half is forgotten, again and again.
   int path_frames = 36000;  // 20 minutes at 30 per second
-  void Check() const;       // throws Error (usage) naming the field that cannot be
+  // An older answer of the detector is not told, seconds: people walk on, 2 m by then. Networks
+  // need 0.05 to 0.5 s.
+  double detection_seconds = 2;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 }  // namespace alidade

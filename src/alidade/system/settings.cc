@@ -1,43 +1,22 @@
 #include "alidade/system/settings.h"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
-#include <sstream>
 #include <type_traits>
 
 #include "alidade/base/error.h"
 #include "alidade/base/nearest_name.h"
-#include "alidade/io/text.h"
+#include "alidade/system/setting_text.h"
 #include "alidade/system/settings_fields.h"
 
 namespace alidade {
 namespace {
 
 template <typename Value>
-Value ParseNumber(const std::string& name, const std::string& text) {
-  const bool whole = std::is_integral_v<Value>;
-  double number = alidade::ParseNumber(text).value_or(std::nan(""));
-  if constexpr (!whole) number = static_cast<Value>(number);  // beyond a float's range: infinite
-  if (!std::isfinite(number) || (whole && number != std::floor(number))) {
-    ThrowUsage("setting " + name + ": '" + text + "' is not " +
-               (whole ? "a whole number" : "a number"));
-  }
-  if (whole && (number < (std::is_unsigned_v<Value> ? 0.0 : -2147483648.0) ||
-                number > (std::is_unsigned_v<Value> ? 9e15 : 2147483647.0))) {
-    ThrowUsage("setting " + name + ": " + text + " is out of range");
-  }
-  return static_cast<Value>(number);
-}
-
-template <typename Value>
 Value Parse(const std::string& name, const std::string& text) {
-  if constexpr (std::is_same_v<Value, std::string>) {
-    return text;
-  } else if constexpr (std::is_same_v<Value, DynamicsMode>) {
+  if constexpr (std::is_same_v<Value, DynamicsMode>) {
     return DynamicsModeNamed("setting " + name, text);
   } else {
-    return ParseNumber<Value>(name, text);
+    return ParseSetting<Value>(name, text);
   }
 }
 
@@ -45,21 +24,8 @@ template <typename Value>
 std::string Format(const Value& value) {
   if constexpr (std::is_same_v<Value, DynamicsMode>) {
     return NameOf(value);
-  } else if constexpr (std::is_same_v<Value, float>) {  // as it is written: 0.3, not 0.3000000119
-    std::string text;
-    for (int digits = 6; digits <= 9; ++digits) {
-      std::ostringstream out;
-      out.precision(digits);
-      out << value;
-      text = out.str();
-      if (std::strtof(text.c_str(), nullptr) == value) break;
-    }
-    return text;
   } else {
-    std::ostringstream out;
-    out.precision(10);
-    out << value;
-    return out.str();
+    return FormatSetting(value);
   }
 }
 

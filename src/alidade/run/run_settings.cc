@@ -1,0 +1,27 @@
+#include "alidade/run/run_settings.h"
+
+#include <algorithm>
+
+namespace alidade {
+
+void RunSettings::Check() const {
+  slam.Check();
+  stream.Check();
+}
+
+void RunSettings::Set(const std::string& name, const std::string& value) {
+  if (name.rfind("stream.", 0) == 0) {
+    stream.Set(name, value);
+  } else {
+    slam.Set(name, value);
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> RunSettings::All() const {
+  auto all = slam.All();
+  for (auto& setting : stream.All()) all.push_back(std::move(setting));
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace alidade

@@ -1,0 +1,23 @@
+// All settings of a run, by name: the system's, and those of the stream.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/run/stream_settings.h"
+#include "alidade/system/settings.h"
+
+namespace alidade {
+
+struct RunSettings {
+  SlamSettings slam;
+  StreamFeedSettings stream;  // stream.…
+  void Check() const;         // throws Error (usage) naming the field that cannot be
+
+  // As SlamSettings::Set() and All().
+  void Set(const std::string& name, const std::string& value);
+  std::vector<std::pair<std::string, std::string>> All() const;
+};
+
+}  // namespace alidade

@@ -1,0 +1,64 @@
+#include "alidade/run/stream_settings.h"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "alidade/base/error.h"
+#include "alidade/base/nearest_name.h"
+#include "alidade/system/setting_text.h"
+
+namespace alidade {
+namespace {
+
+// `visit(name, field)` for every field; `Settings` is StreamFeedSettings, const or not.
+template <typename Settings, typename Visit>
+void VisitStream(Settings& s, Visit&& visit) {
+  visit("stream.depth_points", s.stream.depth_points);
+  visit("stream.detection_seconds", s.stream.detection_seconds);
+  visit("stream.edge_shared", s.stream.edge_shared);
+  visit("stream.landmark_tolerance", s.stream.landmark_tolerance);
+  visit("stream.outline_tolerance", s.stream.outline_tolerance);
+  visit("stream.path_frames", s.stream.path_frames);
+  visit("stream.picture_quality", s.picture_quality);
+  visit("stream.picture_width", s.picture_width);
+  visit("stream.pictures_hz", s.pictures_hz);
+  visit("stream.waiting", s.waiting);
+  visit("stream.whole_seconds", s.whole_seconds);
+}
+
+}  // namespace
+
+void StreamFeedSettings::Check() const {
+  stream.Check();
+  const auto check = [](bool good, const char* name, const char* range) {
+    if (!good) ThrowUsage("stream." + std::string(name) + " must be " + range);
+  };
+  check(picture_width >= 16 && picture_width <= 8192, "picture_width", "within 16…8192");
+  check(picture_quality >= 1 && picture_quality <= 100, "picture_quality", "within 1…100");
+  check(pictures_hz >= 0, "pictures_hz", "at least 0");
+  check(whole_seconds > 0, "whole_seconds", "above 0");
+  check(waiting >= 1, "waiting", "at least 1");
+}
+
+void StreamFeedSettings::Set(const std::string& name, const std::string& value) {
+  bool known = false;
+  std::vector<std::string> names;
+  VisitStream(*this, [&](const char* field, auto& member) {
+    names.push_back(field);
+    if (name != field) return;
+    known = true;
+    member = ParseSetting<std::decay_t<decltype(member)>>(name, value);
+  });
+  if (!known) ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
+}
+
+std::vector<std::pair<std::string, std::string>> StreamFeedSettings::All() const {
+  std::vector<std::pair<std::string, std::string>> all;
+  VisitStream(*this, [&](const char* field, const auto& member) {
+    all.push_back({field, FormatSetting(member)});
+  });
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+}  // namespace alidade
