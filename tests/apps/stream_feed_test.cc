@@ -6,7 +6,10 @@
 #include <new>
 
 #include "alidade/run/run.h"
+#include "alidade/stream/stream_scene.h"
+#include "alidade/synth/recording.h"
 #include "support/program.h"
+#include "support/scripted_detector.h"
 
 namespace alidade::stream_feed_test {
 namespace {
@@ -46,6 +49,65 @@ TEST(StreamFeed, ThatFailsIsWarnedOfAndTheRunIsTheSame) {
   int kept = 0;
   while (reader.Next()) ++kept;
   EXPECT_GE(kept, 7);
+}
+
+// The n-th answer is a box n pixels from the left.
+TEST(StreamFeed, TellsWhatTheDetectorFoundAndHowLongAgo) {
+  constexpr int kFrames = 30;
+  constexpr double kInterval = 0.1;  // seconds
+  SynthSettings small;
+  small.width = 320;
+  small.height = 240;
+  const SynthRecording room(small);
+  RunRecord record;
+  SlamSettings& settings = record.settings;
+  settings.ApplyProfile("phone");
+  settings.sensor = Sensor::kRgbd;
+  settings.dynamics.mode = DynamicsMode::kFull;
+  settings.dynamics.detector_every_frames = 6;
+  settings.dynamics.detector_latency_frames = 4;
+  int answers = 0;
+  const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat&) {
+    const auto x = static_cast<float>(++answers);
+    return std::vector<Detection>{{2, 0.5f, {x, 2, 30, 40}}, {99, 0.25f, {x, 50, 9, 9}}};
+  });
+  Slam slam(room.camera(), settings, detector);
+  EXPECT_FALSE(slam.Detections());
+  const TempFolder folder;
+  StreamFeed feed("test", "");  // with a file every frame is told
+  std::vector<std::string> messages;
+  feed.Join([&](const std::shared_ptr<const std::string>& m) { messages.push_back(*m); });
+  feed.Begin(slam, record, folder.path());
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame rendered = room.Render(2 * i);
+    SourceFrame frame;
+    frame.time = kInterval * i;
+    frame.number = i;
+    frame.image = rendered.image;
+    feed.Frame(frame, slam.Track({frame.time, rendered.image, {}, rendered.depth}));
+  }
+  feed.Finished();
+  feed.End({}, folder.path());
+  StreamScene scene;
+  int told = 0;
+  for (const std::string& message : messages) {
+    const int before = scene.frames;
+    scene.Take(message);
+    if (scene.frames == before) continue;
+    const int of = told++ - settings.dynamics.detector_latency_frames;
+    if (of < 0) {
+      EXPECT_TRUE(scene.boxes.empty());
+      EXPECT_LT(scene.detection_age, 0);
+      continue;
+    }
+    const int answered = of / 6 * 6;  // frame
+    ASSERT_EQ(scene.boxes.size(), 2u) << told;
+    EXPECT_EQ(scene.boxes[0].x, answered / 6 + 1);
+    EXPECT_EQ(scene.boxes[0].label, "toaster");
+    EXPECT_EQ(scene.boxes[1].label, "");  // a class without a name
+    EXPECT_NEAR(scene.detection_age, kInterval * (told - 1 - answered), 1e-5);
+  }
+  EXPECT_EQ(told, kFrames);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // What the stream tells gives the map back: to one who read all of it, and to one who came late.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
 
 #include "alidade/base/error.h"
@@ -240,6 +241,90 @@ TEST(Stream, DamagedMessagesAreRefused) {
     }
   }
   EXPECT_GT(refused, 100);
+}
+
+// Those that show a landmark of the last keyframes are told as new, also when the keyframe made it
+// of what the tracker had not matched.
+TEST(Stream, TellsWhatBecameOfFeatures) {
+  constexpr int kNew = 2;  // keyframes
+  Streamed run(Phone(false));
+  int keyframes = 0, others = 0;
+  for (int number = 0; number <= 90; number += 2) {
+    run.Play({number});
+    if (run.slam.Trajectory().back().tracked == false) continue;
+    const MapSnapshot map = run.slam.Snapshot();
+    std::set<std::pair<int, int>> fresh;  // by place, a hundredth of a pixel
+    const auto place = [](double x, double y) {
+      return std::pair(static_cast<int>(std::lround(25 * x)),
+                       static_cast<int>(std::lround(25 * y)));
+    };
+    int matched = 0;
+    for (const SceneFeature& feature : run.scene.features) {
+      if (feature.use == static_cast<int>(stream::Use::fresh))
+        fresh.insert(place(feature.x, feature.y));
+      matched += feature.use == static_cast<int>(stream::Use::matched);
+    }
+    const KeyFrame& newest = *map.Find(KeyFrameId{map.next_keyframe() - 1});
+    if (newest.frame->number != run.played - 1) {
+      if (keyframes <= kNew) continue;  // all is new
+      ++others;
+      EXPECT_GT(matched, 0);
+      continue;
+    }
+    ++keyframes;
+    int young = 0;
+    for (size_t k = 0; k < newest.landmarks.size(); ++k) {
+      const Landmark* landmark = map.Find(newest.landmarks[k]);
+      if (!landmark || static_cast<int>(newest.id.value - landmark->born.value) >= kNew) continue;
+      ++young;
+      const Keypoint& keypoint = newest.frame->keypoints[k];
+      EXPECT_EQ(fresh.count(place(UnpackPlace(PackPlace(keypoint.raw_x, run.slam.camera().width),
+                                              run.slam.camera().width),
+                                  UnpackPlace(PackPlace(keypoint.raw_y, run.slam.camera().height),
+                                              run.slam.camera().height))),
+                1u);
+    }
+    EXPECT_GE(young, 20);  // a keyframe that adds nothing would not have been made
+    if (keyframes > kNew) {
+      EXPECT_GT(matched, 0);
+    }
+  }
+  EXPECT_GE(keyframes, 5);
+  EXPECT_GE(others, 5);
+}
+
+TEST(Stream, TellsWhatWasFoundAndLeftOut) {
+  StreamSettings settings;
+  settings.detection_seconds = 0.5;
+  StreamEncoder encoder(
+      {"test", "none", "mono", "map units", -1, false, Camera::FromFieldOfView(640, 480, 60), {}},
+      settings);
+  StreamScene scene;
+  scene.Take(encoder.Hello());
+  StreamFrame frame;
+  const auto show = [&] {
+    for (const std::string& message : encoder.Add(frame)) scene.Take(message);
+    ++frame.number;
+  };
+  show();
+  EXPECT_LT(scene.detection_age, 0);
+  EXPECT_TRUE(scene.boxes.empty());
+  frame.detections = {{{10, 20, 100, 200}, 0.75f, "person"}};
+  frame.detection_age = 0.25;
+  frame.mover_mask = cv::Mat::zeros(480, 640, CV_8U);
+  frame.mover_mask(cv::Rect(50, 60, 80, 90)) = 255;
+  show();
+  ASSERT_EQ(scene.boxes.size(), 1u);
+  EXPECT_EQ(scene.boxes[0].x, 10);
+  EXPECT_EQ(scene.boxes[0].height, 200);
+  EXPECT_EQ(scene.boxes[0].score, 0.75f);
+  EXPECT_EQ(scene.boxes[0].label, "person");
+  EXPECT_EQ(scene.detection_age, 0.25f);
+  EXPECT_EQ(scene.outlines, 1);
+  frame.detection_age = 0.6;  // people have walked on
+  show();
+  EXPECT_TRUE(scene.boxes.empty());
+  EXPECT_EQ(scene.detection_age, 0.6f);
 }
 
 TEST(Packing, KeepsPlacesAndDepthsToTheirSteps) {

@@ -109,6 +109,12 @@ void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   told.features = slam_->Features();
   told.mover_mask = slam_->MoverMask();
   told.map = slam_->Snapshot();
+  if (const auto seen = slam_->Detections()) {
+    told.detection_age = seen->seconds_ago;
+    for (size_t i = 0; i < seen->detections.size(); ++i)
+      told.detections.push_back(
+          {seen->detections[i].box, seen->detections[i].score, seen->names[i]});
+  }
   if (settings_.pictures_hz > 0 && !(frame.time - picture_time_ < 1 / settings_.pictures_hz)) {
     picture_time_ = frame.time;
     shown.image = frame.color.empty() ? frame.image : frame.color;

@@ -42,6 +42,7 @@ void PackFeature(const FeatureUse& feature, const Camera& camera, std::vector<ui
   Append(PackPlace(feature.x, camera.width), bytes);
   Append(PackPlace(feature.y, camera.height), bytes);
   const stream::Use use = feature.static_probability < 0.5f ? stream::Use::moving
+                          : feature.fresh                   ? stream::Use::fresh
                           : feature.matched                 ? stream::Use::matched
                                                             : stream::Use::free;
   bytes.push_back(static_cast<uint8_t>(use));

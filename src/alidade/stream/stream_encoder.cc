@@ -268,7 +268,9 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   for (const FeatureUse& feature : frame.features) PackFeature(feature, source_.camera, features);
   const auto packed = builder.CreateVector(features);
   std::vector<fb::Offset<stream::Detection>> detections;
+  const bool stale = frame.detection_age > settings_.detection_seconds;
   for (const StreamBox& d : frame.detections) {
+    if (stale) break;
     detections.push_back(stream::CreateDetectionDirect(builder, d.box.x, d.box.y, d.box.width,
                                                        d.box.height, d.score, d.label.c_str()));
   }
@@ -306,6 +308,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   made.add_ms(ms);
   made.add_features(packed);
   made.add_detections(boxes);
+  made.add_detection_age(static_cast<float>(frame.detection_age));
   made.add_outlines(outlines);
   if (!picture.IsNull()) made.add_picture(picture);
   return Finish(builder, made.Finish(), stream::Body::Frame);

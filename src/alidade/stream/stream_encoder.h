@@ -39,7 +39,8 @@ struct StreamPicture {
 // dynamics; below 0: not run.
 using StreamMilliseconds = std::array<float, 8>;
 
-// What a detector found, in pixels of the picture.
+// What a detector found, in pixels of the camera's picture, from edge to edge: the first one covers
+// 0 to 1.
 struct StreamBox {
   cv::Rect2f box;
   float score = 0;  // 0…1
@@ -56,6 +57,7 @@ struct StreamFrame {
   std::vector<FeatureUse> features;
   cv::Mat mover_mask;  // CV_8U, 255 where left out; empty: nothing
   std::vector<StreamBox> detections;
+  double detection_age = -1;  // seconds since the frame they are of; below 0: no answer so far
   StreamPicture picture;
   MapSnapshot map;  // taken after it
 };

@@ -132,6 +132,22 @@ void TakeFrame(const stream::Frame& told, StreamScene& scene) {
   scene.told_keyframes = told.keyframes();
   scene.told_landmarks = told.landmarks();
   scene.matches = told.matches();
+  scene.features.clear();
+  for (size_t i = 0; told.features() && i < told.features()->size(); i += kPackedFeature) {
+    const uint8_t* bytes = told.features()->data() + i;
+    const auto place = [](const uint8_t* at) { return static_cast<uint16_t>(at[0] | at[1] << 8); };
+    scene.features.push_back({UnpackPlace(place(bytes), scene.width),
+                              UnpackPlace(place(bytes + 2), scene.height), bytes[4]});
+  }
+  scene.boxes.clear();
+  if (told.detections()) {
+    for (const stream::Detection* box : *told.detections()) {
+      scene.boxes.push_back({box->x(), box->y(), box->width(), box->height(), box->score(),
+                             box->label() ? box->label()->str() : ""});
+    }
+  }
+  scene.detection_age = told.detection_age();
+  scene.outlines = told.outlines() ? static_cast<int>(told.outlines()->size()) : 0;
 }
 
 }  // namespace

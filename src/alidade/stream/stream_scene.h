@@ -39,6 +39,19 @@ struct SceneFrame {
   Se3 T_reference_camera;
 };
 
+// A feature of the last frame.
+struct SceneFeature {
+  double x = 0, y = 0;  // pixels
+  int use = 0;          // stream::Use
+};
+
+// What a detector found; pixels, from edge to edge.
+struct SceneBox {
+  float x = 0, y = 0, width = 0, height = 0;
+  float score = 0;
+  std::string label;
+};
+
 struct SceneEvent {
   int kind = 0;  // stream::EventKind
   int number = 0;
@@ -60,6 +73,12 @@ class StreamScene {
   std::vector<SceneEvent> events;
   int frames = 0;                                                // messages of frames
   uint32_t told_keyframes = 0, told_landmarks = 0, matches = 0;  // counts of the last frame
+
+  // Of the last frame.
+  std::vector<SceneFeature> features;
+  std::vector<SceneBox> boxes;
+  float detection_age = -1;  // seconds; below 0: the detector has not answered
+  int outlines = 0;          // of what was left out
 
   Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world
   Se3 PoseOf(const SceneFrame& frame) const;  // T_world_camera; needs a reference

@@ -26,10 +26,24 @@ void MoverWatch::Begin(const FrameInput& prepared, int number) {
   if (!filter_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
+  const std::optional<FrameDetections> arrived = detections_.Take(number);
+  Remember(arrived, number, prepared.time);
   const Stopwatch advancing;
   filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
-                   detections_.Take(number));
+                   arrived);
   present_ms_ += advancing.Milliseconds();
+}
+
+void MoverWatch::Remember(const std::optional<FrameDetections>& arrived, int number, double time) {
+  constexpr size_t kWaiting = 1000;  // frames: 33 s at 30 a second; no detector takes so long
+  now_ = time;
+  if (settings_.mode != DynamicsMode::kFull) return;
+  offered_.push_back({number, time});
+  if (offered_.size() > kWaiting) offered_.pop_front();
+  if (!arrived) return;
+  while (offered_.size() > 1 && offered_.front().first < arrived->number) offered_.pop_front();
+  answer_time_ = offered_.front().second;
+  answer_ = std::make_shared<const FrameDetections>(*arrived);
 }
 
 cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }

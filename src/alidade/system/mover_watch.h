@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -36,6 +37,10 @@ class MoverWatch {
 
   bool on() const { return filter_.has_value(); }
   void Begin(const FrameInput& prepared, int number);  // before there are features
+  // The detector's newest answer, and how old the picture was that it is of when the present frame
+  // came, seconds; null: none so far.
+  const std::shared_ptr<const FrameDetections>& detections() const { return answer_; }
+  double detections_age() const { return now_ - answer_time_; }
   cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers; empty: none
   // What the features are worth, before the pose is made of them; the frame's picture, if it has
   // one, gets the mask. `guess`: null when there is none.
@@ -56,16 +61,22 @@ class MoverWatch {
   cv::Mat BeliefOfCells() const { return filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
   // Any thread may ask. One for each frame; one for each the detector was given.
   const SampleLog& milliseconds() const { return milliseconds_; }
+  const std::vector<std::string>& class_names() const { return class_names_; }  // the detector's
   const SampleLog& detector_milliseconds() const { return detections_.milliseconds(); }
   std::vector<StageHealth> health() const;
   bool any_stopped() const { return filter_failed_ || detections_.failure(); }
 
  private:
+  void Remember(const std::optional<FrameDetections>& arrived, int number, double time);
+
   DetectionFeed detections_;
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
   WorldId world_;                        // of the last pose
   int doubtful_ = 0;                     // frames whose pose follows a mover, less the others
-  double present_ms_ = 0;                // of the present frame, so far
+  std::deque<std::pair<int, double>> offered_;  // frames, and their times: not answered yet
+  std::shared_ptr<const FrameDetections> answer_;
+  double answer_time_ = 0, now_ = 0;  // of the frames, seconds
+  double present_ms_ = 0;             // of the present frame, so far
   SampleLog milliseconds_;
 
   Camera camera_;

@@ -96,6 +96,7 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
   last_ = {};
+  last_keyframe_ = {};
   last_.frame = frame;
   const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   // Only while a map is to be started may a frame yet become a keyframe.
@@ -121,6 +122,7 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
   const std::shared_ptr<const Picture> picture = placed.frame->picture;
   LeaveOutMovers(placed, camera_);
   const KeyFrameId id = workers_.mapper().Insert(placed.frame, anchor, placed.matches);
+  last_keyframe_ = id;
   const MapSnapshot map = workers_.map().Snapshot();
   const KeyFrame& keyframe = *map.Find(id);
   placed.T_camera_world = keyframe.T_camera_world;

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,17 @@ struct FeatureUse {
   float x = 0, y = 0;            // raw pixels
   float static_probability = 1;  // 0…1
   bool matched = false;          // the pose agrees with the landmark it shows
+  // The landmark it shows is new: made with the newest keyframe or the one before (a mapper in its
+  // own thread is one behind). If the frame is that keyframe, the pose may know nothing of it yet.
+  bool fresh = false;
+};
+
+// What the detector answered last.
+struct ShownDetections {
+  int frames_ago = 0;      // how many frames before the last one it was given the picture, …
+  double seconds_ago = 0;  // … and how long before it that one was taken, by the images' clock
+  std::vector<Detection> detections;  // pixels of that picture, which is of the camera's size
+  std::vector<std::string> names;     // of each: what its class is called
 };
 
 // Milliseconds, one sample per frame (map, loop, semidense: per keyframe). Of more than 262,144
@@ -159,6 +171,8 @@ class Slam {
   // the camera's size; empty without dynamics).
   std::vector<FeatureUse> Features() const;
   cv::Mat MoverMask() const;
+  // The newest answer that had come by then; nothing before the first one, and without a detector.
+  std::optional<ShownDetections> Detections() const;
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   LatestTimes Latest() const;

@@ -37,7 +37,10 @@ class Slam::Impl {
   struct Shown {
     std::shared_ptr<const Frame> frame;
     std::vector<LandmarkId> matches;
-    cv::Mat belief_of_cells;  // of standing still; empty without dynamics
+    cv::Mat belief_of_cells;                            // of standing still; empty without dynamics
+    KeyFrameId keyframe;                                // it became; none: it did not
+    std::shared_ptr<const FrameDetections> detections;  // the newest; null: none so far
+    double detections_age = 0;                          // seconds
   };
   std::shared_ptr<const Shown> shown() const {
     const std::lock_guard<std::mutex> lock(shown_mutex_);
@@ -51,8 +54,9 @@ class Slam::Impl {
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;
-  PlacedFrame last_;  // the present frame, as it was tracked
-  YoungMap young_;    // of one camera
+  PlacedFrame last_;          // the present frame, as it was tracked
+  KeyFrameId last_keyframe_;  // it became
+  YoungMap young_;            // of one camera
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
   CameraClock clock_;

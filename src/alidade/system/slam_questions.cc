@@ -1,16 +1,20 @@
 // What any thread may ask beside Track(): answered from what is published and never changes again.
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "alidade/map/map_file.h"
+#include "alidade/system/movers.h"
 #include "alidade/system/slam_impl.h"
 
 namespace alidade {
 
 void Slam::Impl::Show() {
-  const auto shown =
-      std::make_shared<Shown>(Shown{last_.frame, last_.matches, movers_.BeliefOfCells()});
+  const auto shown = std::make_shared<Shown>(Shown{last_.frame, last_.matches,
+                                                   movers_.BeliefOfCells(), last_keyframe_,
+                                                   movers_.detections(), movers_.detections_age()});
   const std::lock_guard<std::mutex> lock(shown_mutex_);
   shown_ = shown;
 }
@@ -25,12 +29,43 @@ std::vector<FeatureUse> Slam::Features() const {
   std::vector<FeatureUse> features;
   const auto last = impl_->shown();
   if (!last) return features;
+  const MapSnapshot map = impl_->workers_.map().Snapshot();
+  constexpr uint32_t kNew = 2;  // keyframes
+  const auto is_new = [&](LandmarkId id) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    return landmark && map.next_keyframe() - 1 - landmark->born.value < kNew;
+  };
   for (size_t k = 0; k < last->frame->keypoints.size(); ++k) {
     const Keypoint& keypoint = last->frame->keypoints[k];
+    const LandmarkId shows = k < last->matches.size() ? last->matches[k] : LandmarkId{};
     features.push_back({keypoint.raw_x, keypoint.raw_y, last->frame->Static(static_cast<int>(k)),
-                        k < last->matches.size() && last->matches[k].valid()});
+                        shows.valid(), is_new(shows)});
+  }
+  // A keyframe's features are those that may enter the map, in the frame's order.
+  const KeyFrame* keyframe = last->keyframe.valid() ? map.Find(last->keyframe) : nullptr;
+  if (!keyframe) return features;
+  const std::vector<int> kept = MappableKeypoints(*last->frame);
+  if (kept.size() != keyframe->landmarks.size()) return features;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    FeatureUse& feature = features[static_cast<size_t>(kept[i])];
+    feature.fresh = feature.fresh || is_new(keyframe->landmarks[i]);
   }
   return features;
+}
+
+std::optional<ShownDetections> Slam::Detections() const {
+  const auto last = impl_->shown();
+  if (!last || !last->detections) return {};
+  ShownDetections shown{last->frame->number - last->detections->number,
+                        last->detections_age,
+                        last->detections->detections,
+                        {}};
+  const std::vector<std::string>& names = impl_->movers_.class_names();
+  for (const Detection& d : shown.detections) {
+    const auto index = static_cast<size_t>(d.class_id);
+    shown.names.push_back(d.class_id >= 0 && index < names.size() ? names[index] : "");
+  }
+  return shown;
 }
 
 cv::Mat Slam::MoverMask() const {

@@ -68,6 +68,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   }
   tracker_.KeyFrameInserted(frame->number);
   Place(begun->placed, begun->id, begun->map);
+  last_keyframe_ = begun->id;
   result.matches = begun->placed.inliers;
   return true;
 }

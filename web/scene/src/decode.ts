@@ -50,6 +50,11 @@ function pose(p: fb.Pose): Pose {
   return values;
 }
 
+function finite(value: number, what: string): number {
+  if (!Number.isFinite(value)) throw new DecodeError(`${what}: ${value}`);
+  return value;
+}
+
 function scale(value: number): number {
   if (!(value > 0 && value < Infinity)) throw new DecodeError(`a scale of ${value}`);
   return value;
@@ -99,8 +104,10 @@ function frame(body: fb.Frame): Frame {
     foundShare: body.foundShare(), ms: [...(body.msArray() ?? [])],
     features: records(body.featuresArray(), 6, 'features'),
     detections: list(body.detectionsLength(), (i) => body.detections(i), (d) => ({
-      x: d.x(), y: d.y(), width: d.width(), height: d.height(), score: d.score(), label: d.label() ?? '',
+      x: finite(d.x(), 'a box'), y: finite(d.y(), 'a box'), width: finite(d.width(), 'a box'), height: finite(d.height(), 'a box'),
+      score: finite(d.score(), 'a score'), label: d.label() ?? '',
     })),
+    detectionAge: finite(body.detectionAge(), 'age of detections'),
     outlines: list(body.outlinesLength(), (i) => body.outlines(i), (o) => new Uint16Array(o.pointsArray() ?? [])),
     picture: picture && {
       width: picture.width(), height: picture.height(), type: picture.type() ?? '',

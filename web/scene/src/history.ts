@@ -188,5 +188,5 @@ export class History {
 }
 
 function bare(frame: Frame): Frame {
-  return { ...frame, picture: null, features: new Uint8Array(0), detections: [], outlines: [] };
+  return { ...frame, picture: null, features: new Uint8Array(0), detections: [], detectionAge: -1, outlines: [] };
 }

@@ -35,7 +35,7 @@ export interface Hello {
   truth: TruePose[];
 }
 
-export interface Detection { x: number; y: number; width: number; height: number; score: number; label: string } // pixels
+export interface Detection { x: number; y: number; width: number; height: number; score: number; label: string } // pixels, from edge to edge: the first one covers 0 to 1
 export interface Picture { width: number; height: number; type: string; bytes: Uint8Array<ArrayBuffer> }
 
 export interface Frame {
@@ -50,6 +50,7 @@ export interface Frame {
   ms: number[]; // of STAGES; -1: not run
   features: Uint8Array; // 6 bytes each: x u16, y u16, use u8, static probability u8
   detections: Detection[];
+  detectionAge: number; // seconds from the frame they were found in to this one; below 0: the detector has not answered
   outlines: Uint16Array[]; // x, y, x, y, … of a closed polygon
   picture: Picture | null;
 }

@@ -103,6 +103,7 @@ function frame(b: Builder, m: Frame): Offset {
   fb.Frame.addDetections(b, detections);
   fb.Frame.addOutlines(b, outlines);
   if (picture) fb.Frame.addPicture(b, picture);
+  fb.Frame.addDetectionAge(b, m.detectionAge);
   return fb.Frame.endFrame(b);
 }
 

@@ -51,6 +51,7 @@ export class Sample {
   readonly clouds = new Map<number, DepthCloud>();
   readonly path: PathFrame[] = [];
   readonly events: Message[] = []; // so far
+  told: Frame | null = null; // last
   private readonly room: [number, number, number][] = [];
   private readonly inMap = new Map<number, number>(); // room point → landmark
   private readonly truth: Pose[] = [];
@@ -112,7 +113,7 @@ export class Sample {
     }
     if (i === this.frames - 1) event('finished', '');
     this.events.push(...messages);
-    const frame = this.frame(i, lost ? 'lost' : waiting ? 'initialising' : 'tracking', keyframe, fresh);
+    const frame = this.told = this.frame(i, lost ? 'lost' : waiting ? 'initialising' : 'tracking', keyframe, fresh);
     return [...(keyframe ? [change] : []), ...messages, frame];
   }
 
@@ -334,6 +335,7 @@ export class Sample {
       foundShare: tracking ? 0.8 : 0, ms: [track + extract + 1, extract, track, keyframe ? ms(22) : -1, -1, keyframe ? ms(30) : -1, -1, -1],
       features: new Uint8Array(packed.buffer),
       detections: someone ? [{ x: 215, y: 66, width: 72, height: 168, score: 0.83, label: 'person' }] : [],
+      detectionAge: someone ? 0.25 : i % 200 > 20 ? 0 : -1,
       outlines: someone ? [ellipse(251, 150, 34, 82)] : [],
       picture: this.settings.pictures ? this.picture(i, state === 'lost', someone) : null,
     };
