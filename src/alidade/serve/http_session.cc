@@ -114,9 +114,10 @@ void HttpSession::OnRequest() {
   if (is_stream) return Upgrade();
   if (is_file) return SendFile();
   if (path == "/info.json") return Send(200, "application/json", task.info);
-  const auto page = FindPage(path, PageFiles());
+  const auto accepted = Only(request, http::field::accept_encoding);
+  const auto page = FindPage(path, PageFiles(), AcceptsGzip(accepted.value_or("")));
   if (!page) return Send(404, kText, "there is no such page\n");
-  Send(200, page->type, page->bytes);
+  Send(200, page->type, page->bytes, page->gzipped);
 }
 
 void HttpSession::Upgrade() {
@@ -130,8 +131,8 @@ void HttpSession::Upgrade() {
   client->Start(request);
 }
 
-void HttpSession::Send(int status, std::string_view type, std::string_view body) {
-  head_ = ResponseHead(status, type, body.size(), keep_alive_);
+void HttpSession::Send(int status, std::string_view type, std::string_view body, bool gzipped) {
+  head_ = ResponseHead(status, type, body.size(), keep_alive_, gzipped);
   Wake();
   const std::array<asio::const_buffer, 2> buffers = {
       asio::buffer(head_), asio::buffer(body.data(), head_only_ ? 0 : body.size())};

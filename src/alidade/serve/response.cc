@@ -57,7 +57,8 @@ std::string_view TypeOf(std::string_view name) {
 
 }  // namespace
 
-std::string ResponseHead(int status, std::string_view type, uint64_t length, bool keep_alive) {
+std::string ResponseHead(int status, std::string_view type, uint64_t length, bool keep_alive,
+                         bool gzipped) {
   std::string head = "HTTP/1.1 " + std::to_string(status) + " ";
   const auto line = [&](std::string_view name, std::string_view value) {
     head.append(name).append(": ").append(value).append("\r\n");
@@ -65,6 +66,7 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   head.append(Words(status)).append("\r\n");
   line("Content-Type", type);
   line("Content-Length", std::to_string(length));
+  if (gzipped) line("Content-Encoding", "gzip");
   line("Connection", keep_alive ? "keep-alive" : "close");
   line("Cache-Control", "no-store");
   line("Content-Security-Policy", kContentPolicy);
@@ -75,11 +77,38 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   return head + "\r\n";
 }
 
-std::optional<Answer> FindPage(std::string_view path, const std::vector<PageFile>& files) {
+bool AcceptsGzip(std::string_view accepted) {
+  while (!accepted.empty()) {
+    const size_t comma = accepted.find(',');
+    std::string one;
+    for (const char c : accepted.substr(0, comma)) {
+      if (c != ' ' && c != '\t') one += c;
+    }
+    accepted.remove_prefix(comma == std::string_view::npos ? accepted.size() : comma + 1);
+    if (one == "gzip") return true;
+    if (one.rfind("gzip;q=", 0) == 0)  // 0, 0.0, 0.00 and 0.000: not
+      return one.find_first_of("123456789", 7) != std::string::npos;
+  }
+  return false;
+}
+
+std::optional<Answer> FindPage(std::string_view path, const std::vector<PageFile>& files,
+                               bool may_gzip) {
   if (path.empty() || path.front() != '/') return std::nullopt;
   const std::string_view name = path == "/" ? "index.html" : path.substr(1);
-  for (const PageFile& file : files) {
-    if (file.name == name) return Answer{TypeOf(name), file.bytes};
+  constexpr std::string_view kGzipped = ".gz";
+  const auto find = [&files](const std::string& wanted) -> const PageFile* {
+    for (const PageFile& file : files) {
+      if (file.name == wanted) return &file;
+    }
+    return nullptr;
+  };
+  const bool own =
+      name.size() < kGzipped.size() || name.substr(name.size() - kGzipped.size()) != kGzipped;
+  const PageFile* plain = own ? find(std::string(name)) : nullptr;
+  if (plain) {
+    const PageFile* small = may_gzip ? find(std::string(name) + ".gz") : nullptr;
+    return Answer{TypeOf(name), (small ? small : plain)->bytes, small != nullptr};
   }
   if (name == "index.html") return Answer{TypeOf(name), kPlainPage};
   return std::nullopt;

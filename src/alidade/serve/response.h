@@ -9,18 +9,22 @@
 
 namespace alidade {
 
-// The strictest that the page runs with; workers and WebAssembly are the phone's page's.
+// The strictest that the page runs with: own scripts, styles, icon and stream, and nothing else.
 inline constexpr std::string_view kContentPolicy =
     "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
-    "script-src 'self' 'wasm-unsafe-eval'; style-src 'self'; img-src 'self' blob:; "
-    "connect-src 'self'; worker-src 'self'; require-trusted-types-for 'script'; trusted-types w";
+    "script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
+    "require-trusted-types-for 'script'; trusted-types 'none'";
 
-// `length`: bytes of the body. Nothing is kept in a browser's cache: the next program at this
-// address may be another version.
-std::string ResponseHead(int status, std::string_view type, uint64_t length, bool keep_alive);
+// `length`: bytes of the body, compressed if it is. Nothing is kept in a browser's cache: the next
+// program at this address may be another version.
+std::string ResponseHead(int status, std::string_view type, uint64_t length, bool keep_alive,
+                         bool gzipped = false);
+
+// Whether a request whose Accept-Encoding is `accepted` may be answered compressed.
+bool AcceptsGzip(std::string_view accepted);
 
 struct PageFile {
-  std::string_view name;  // index.html
+  std::string_view name;  // index.html; index.html.gz is the same compressed
   std::string_view bytes;
 };
 
@@ -30,9 +34,12 @@ const std::vector<PageFile>& PageFiles();
 struct Answer {
   std::string_view type;
   std::string_view bytes;
+  bool gzipped = false;
 };
 
-// The file at "/" or "/name"; at "/" a plain page when the page was not built.
-std::optional<Answer> FindPage(std::string_view path, const std::vector<PageFile>& files);
+// The file at "/" or "/name", compressed where it may be and is there; at "/" a plain page when the
+// page was not built.
+std::optional<Answer> FindPage(std::string_view path, const std::vector<PageFile>& files,
+                               bool may_gzip = false);
 
 }  // namespace alidade

@@ -13,7 +13,7 @@ import type { SampleSettings } from '../../scene/test/sample.ts';
 declare const WEB: string; // by tools/test.mjs
 
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self'; style-src 'self'; " +
-  "img-src 'self' blob:; connect-src 'self'; require-trusted-types-for 'script'; trusted-types 'none'";
+  "img-src 'self'; connect-src 'self'; require-trusted-types-for 'script'; trusted-types 'none'";
 
 const TYPES: Record<string, string> = {
   html: 'text/html; charset=utf-8', js: 'text/javascript', css: 'text/css', svg: 'image/svg+xml', txt: 'text/plain; charset=utf-8',
