@@ -1,5 +1,6 @@
 // Poses of keyframes in a texture, one slot each, so that moving the map moves points, edges and the path without touching them:
-// what is drawn carries a slot and a place in that slot's keyframe. Slot 0 is the world, slot 1 is nowhere (not drawn).
+// what is drawn carries a slot and a place in that slot's keyframe. Slot 0 is the world, slot 1 is nowhere (not drawn). Keyframes of
+// other maps than the one the camera is in are drawn faintly, each map in its own world: how they lie to each other is not known.
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from 'three';
 import { IDENTITY } from './pose.ts';
 import type { Pose } from './messages.ts';
@@ -7,9 +8,11 @@ import type { State } from './state.ts';
 
 export const WORLD = 0;
 export const NOWHERE = 1;
-const WIDTH = 1024; // texels; two for each slot: quaternion · translation and scale (0: hidden)
+const WIDTH = 1024; // texels; two for each slot: quaternion · translation and scale (0: hidden; below 0: faint)
 
-// GLSL. `place` gives world coordinates of p in a slot, and whether it is to be seen.
+const FAINT = 0.3; // of full strength
+
+// GLSL. `place` gives world coordinates of p in a slot, and how strongly it is to be seen: 0…1.
 export const PLACE = /* glsl */ `
 uniform highp sampler2D poses;
 vec4 texelOf(int slot, int half_) {
@@ -20,11 +23,11 @@ vec3 turn(vec4 q, vec3 p) {
   vec3 c = 2.0 * cross(q.xyz, p);
   return p + q.w * c + cross(q.xyz, c);
 }
-vec3 place(float slot, vec3 p, bool scaled, out bool seen) {
+vec3 place(float slot, vec3 p, bool scaled, out float strength) {
   vec4 q = texelOf(int(slot), 0);
   vec4 t = texelOf(int(slot), 1);
-  seen = t.w > 0.0;
-  return turn(q, (scaled ? t.w : 1.0) * p) + t.xyz;
+  strength = t.w == 0.0 ? 0.0 : t.w > 0.0 ? 1.0 : ${FAINT};
+  return turn(q, (scaled ? abs(t.w) : 1.0) * p) + t.xyz;
 }`;
 
 export class Anchors {
@@ -49,15 +52,11 @@ export class Anchors {
     return slot;
   }
 
-  // Shows the keyframes of `map`.
-  update(state: State, map: number): void {
-    for (const [id, slot] of this.slots) {
-      const keyframe = state.keyframes.get(id);
-      if (keyframe && keyframe.map === map) this.put(slot, keyframe.T_world_camera, keyframe.scale);
-      else this.data[8 * slot + 7] = 0;
-    }
-    for (const keyframe of state.keyframes.values()) {
-      if (!this.slots.has(keyframe.id)) this.put(this.slot(keyframe.id), keyframe.T_world_camera, keyframe.map === map ? keyframe.scale : 0);
+  // Shows the keyframes of `map`, those of others faintly or not at all.
+  update(state: State, map: number, others: boolean): void {
+    for (const [id, slot] of this.slots) if (!state.keyframes.has(id)) this.data[8 * slot + 7] = 0;
+    for (const { id, map: of, T_world_camera, scale } of state.keyframes.values()) {
+      this.put(this.slot(id), T_world_camera, of === map ? scale : others ? -scale : 0);
     }
     this.uniform.value.needsUpdate = true;
   }

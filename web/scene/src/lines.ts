@@ -19,15 +19,17 @@ uniform float width;
 uniform bool scaled;
 out float across;
 out float mixed;
+out float strong;
 void main() {
-  bool a_seen, b_seen;
+  float a_strength, b_strength;
   vec2 corner = vec2(float(gl_VertexID >> 1 & 1), float((gl_VertexID + 1) >> 1 & 1) * 2.0 - 1.0); // which end, which side
-  vec4 a = modelViewMatrix * vec4(place(fromSlot, position, scaled, a_seen), 1.0);
-  vec4 b = modelViewMatrix * vec4(place(toSlot, to, scaled, b_seen), 1.0);
+  vec4 a = modelViewMatrix * vec4(place(fromSlot, position, scaled, a_strength), 1.0);
+  vec4 b = modelViewMatrix * vec4(place(toSlot, to, scaled, b_strength), 1.0);
   // What is behind the eye is cut off at a small distance, or it would turn over.
   const float near = -0.001;
   bool perspective = projectionMatrix[3][3] == 0.0;
-  if (!a_seen || !b_seen || (perspective && a.z > near && b.z > near)) {
+  strong = min(a_strength, b_strength);
+  if (strong == 0.0 || (perspective && a.z > near && b.z > near)) {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     return;
   }
@@ -48,6 +50,7 @@ void main() {
 const FRAGMENT = /* glsl */ `
 in float across;
 in float mixed;
+in float strong;
 uniform float width;
 uniform vec3 ink;
 uniform vec3 other;
@@ -55,7 +58,7 @@ uniform float opacity;
 out vec4 result;
 void main() {
   float soft = clamp(0.5 * width + 0.5 - abs(across), 0.0, 1.0);
-  result = vec4(mix(ink, other, mixed), soft * opacity);
+  result = vec4(mix(ink, other, mixed), soft * opacity * strong);
 }`;
 
 export class LineLayer {

@@ -8,16 +8,18 @@ ${PLACE}
 in float slot;
 in float colour;
 uniform vec3 ink;
+uniform vec3 ground;
 uniform bool coloured;
 uniform float size;
 out vec3 shade;
 void main() {
-  bool seen;
-  vec3 p = place(slot, position, true, seen);
-  gl_Position = seen ? projectionMatrix * modelViewMatrix * vec4(p, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+  float strength;
+  vec3 p = place(slot, position, true, strength);
+  gl_Position = strength > 0.0 ? projectionMatrix * modelViewMatrix * vec4(p, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
   gl_PointSize = size;
   int c = int(colour);
   shade = coloured ? vec3(float(c >> 11), float(c >> 5 & 63) * 0.492, float(c & 31)) / 31.0 : ink;
+  shade = mix(ground, shade, strength);
 }`;
 
 const FRAGMENT = /* glsl */ `
@@ -39,12 +41,13 @@ export class PointLayer {
   constructor(anchors: Anchors, private readonly coloured: boolean, size: number) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT,
-      uniforms: { poses: anchors.uniform, ink: { value: new Color() }, coloured: { value: coloured }, size: { value: size } },
+      uniforms: { poses: anchors.uniform, ink: { value: new Color() }, ground: { value: new Color() }, coloured: { value: coloured }, size: { value: size } },
     });
     this.object = new Points(new BufferGeometry(), material);
     this.object.frustumCulled = false; // positions are those in keyframes
   }
 
+  set ground(colour: string) { this.object.material.uniforms.ground.value.setStyle(colour); }
   set ink(colour: string) { this.object.material.uniforms.ink.value.setStyle(colour); }
   set size(pixels: number) { this.object.material.uniforms.size.value = pixels; }
 

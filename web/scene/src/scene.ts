@@ -19,7 +19,7 @@ ColorManagement.enabled = false; // colours are the page's own
 
 const LEANING = 0.1; // radians
 
-export const LAYERS = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera'] as const;
+export const LAYERS = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera', 'others'] as const;
 export type LayerName = (typeof LAYERS)[number];
 
 export interface Colours { page: string; ink: string; soft: string; path: string; dot: string; loop: string; truth: string; camera: string; worst: string }
@@ -36,14 +36,14 @@ export class Scene {
   private readonly anchors = new Anchors();
   private readonly resolution = { value: new Vector2(1, 1) };
   private readonly points: { landmarks: PointLayer; cloud: PointLayer };
-  private readonly lines: Record<Exclude<LayerName, 'landmarks' | 'cloud'>, LineLayer>;
+  private readonly lines: Record<Exclude<LayerName, 'landmarks' | 'cloud' | 'others'>, LineLayer>;
   private readonly landmarkUpload: LandmarkUpload;
   private readonly cloudUpload: CloudUpload;
   private readonly pathUpload: PathUpload;
   private readonly thinning: Thinning | undefined;
   private drawn: { keyframes: unknown; path: unknown; frame: unknown; map: bigint; active: number } | null = null;
   private state: State | null = null;
-  private active = NONE; // the map that is shown
+  private active = NONE; // the map the camera is in
   private placed = false;
   private covered = { left: 0, right: 0 };
   private levelled = 0; // keyframes when `up` was last asked for
@@ -68,7 +68,7 @@ export class Scene {
       covisibility: line(1, 0.35), keyframes: line(1, 0.8, false), loops: line(2.5, 1), truth: line(1.5, 0.9), path: line(2.5, 1),
       camera: line(2.5, 1, false),
     };
-    const layers: Record<string, { visible: boolean }> = {};
+    const layers: Record<string, { visible: boolean }> = { others: { visible: true } };
     [...Object.entries(this.points), ...Object.entries(this.lines)].forEach(([name, layer], order) => {
       const holder = new Group();
       layer.object.renderOrder = order;
@@ -87,6 +87,7 @@ export class Scene {
   colours(c: Colours): void {
     this.renderer.setClearColor(c.page, 1);
     this.points.landmarks.ink = c.dot;
+    this.points.landmarks.ground = this.points.cloud.ground = c.page;
     this.lines.path.ink(c.path, c.worst);
     this.lines.keyframes.ink(c.path);
     this.lines.covisibility.ink(c.dot);
@@ -98,8 +99,8 @@ export class Scene {
 
   show(layer: LayerName, visible: boolean): void {
     this.layers[layer].visible = visible;
-    if (layer === 'truth' && this.state) {
-      this.drawn = null; // the path is coloured by its errors
+    if ((layer === 'truth' || layer === 'others') && this.state) {
+      this.drawn = null; // the path is coloured by its errors; poses say what is faint
       this.update(this.state);
     }
     this.invalidate();
@@ -140,7 +141,7 @@ export class Scene {
     const drawn = this.drawn;
     const mapChanged = !drawn || drawn.keyframes !== state.keyframes || drawn.map !== state.mapVersion || drawn.active !== this.active;
     if (mapChanged) {
-      this.anchors.update(state, this.active);
+      this.anchors.update(state, this.active, this.layers.others.visible);
       const size = typicalDistance(state, this.active);
       this.view.setSize(size);
       drawFrusta(this.lines.keyframes, state, this.anchors, 0.05 * size);
@@ -163,6 +164,8 @@ export class Scene {
   forget(): void {
     this.placed = false;
     this.levelled = 0;
+    this.view.touched = false;
+    this.state = null;
     this.active = NONE;
     this.drawn = null;
     this.overlay(null);

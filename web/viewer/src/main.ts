@@ -74,7 +74,9 @@ function receive(bytes: Uint8Array): void {
 function reset(): void {
   player.reset();
   panel.reset();
-  picture.reset();
+  picture.forget();
+  plot.forget();
+  timeline.refresh();
   scene?.forget();
   panel.error(null, player.latest);
   aligned = { version: -1n, length: 0, time: 0 };

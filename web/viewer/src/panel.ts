@@ -7,7 +7,7 @@ import { clock, endText, eventText, reasonText, STATE_WORDS } from './words.ts';
 
 const LAYER_WORDS: Record<LayerName, string> = {
   path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Covisibility', loops: 'Loops',
-  truth: 'Truth', camera: 'Camera',
+  truth: 'Truth', camera: 'Camera', others: 'Other maps',
 };
 const EVENTS_SHOWN = 200;
 

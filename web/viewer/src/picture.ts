@@ -1,15 +1,20 @@
 // The camera picture with its features, boxes and outlines.
 import { USES } from '@alidade/scene';
 import type { Frame, State } from '@alidade/scene';
-import { byId } from './dom.ts';
+import { byId, write } from './dom.ts';
+import { boxes, features, OLD, outlines } from './picture_marks.ts';
+import type { Canvas } from './picture_marks.ts';
 
 const kPictureSeconds = 1; // programs send some ten a second
+const MARKS = [...USES, 'things'] as const;
+type Mark = (typeof MARKS)[number];
 
 export class Picture {
   private readonly section = byId('picture');
   private readonly canvas = byId('picture-canvas') as HTMLCanvasElement;
   private readonly none = byId('picture-none');
-  private readonly uses = USES.map((use) => byId('use-' + use));
+  private readonly counts = MARKS.map((mark) => byId('use-' + mark));
+  private readonly visible = new Set<Mark>(MARKS);
   private image: ImageBitmap | null = null;
   private imageOf: Frame | null = null; // whose picture is shown
   private decoding: Frame | null = null;
@@ -19,6 +24,17 @@ export class Picture {
   constructor() {
     new ResizeObserver(() => this.draw()).observe(this.canvas);
     this.movable();
+    for (const button of document.querySelectorAll<HTMLElement>('[data-mark]')) {
+      button.addEventListener('click', () => this.show(button.dataset.mark as Mark, button.getAttribute('aria-pressed') !== 'true'));
+    }
+  }
+
+  // A kind of mark is drawn, or is not.
+  show(mark: Mark, visible: boolean): void {
+    if (visible) this.visible.add(mark);
+    else this.visible.delete(mark);
+    document.querySelector(`[data-mark=${mark}]`)!.setAttribute('aria-pressed', String(visible));
+    this.draw();
   }
 
   get hidden(): boolean { return this.section.classList.contains('hidden'); }
@@ -30,16 +46,20 @@ export class Picture {
   update(state: State): void {
     // The latest picture, with its own features, unless pictures have ceased.
     const { pictured } = state;
-    const age = pictured && state.frame ? state.frame.time - pictured.time : -1;
-    const frame = age >= 0 && age < kPictureSeconds ? pictured : state.frame;
+    const since = pictured && state.frame ? state.frame.time - pictured.time : -1;
+    const frame = since >= 0 && since < kPictureSeconds ? pictured : state.frame;
     const camera = state.hello?.camera;
     const width = camera?.width || frame?.picture?.width || 4;
     const height = camera?.height || frame?.picture?.height || 3;
     if (this.shown?.frame === frame && this.shown?.width === width) return;
     this.shown = { frame, width, height };
-    const counts = USES.map(() => 0);
-    if (frame) for (let at = 4; at < frame.features.length; at += 6) if (frame.features[at] < counts.length) ++counts[frame.features[at]];
-    this.uses.forEach((element, use) => { element.textContent = String(counts[use]); });
+    const counts = MARKS.map(() => 0);
+    if (frame) for (let at = 4; at < frame.features.length; at += 6) if (frame.features[at] < USES.length) ++counts[frame.features[at]];
+    counts[USES.length] = frame?.detections.length ?? 0;
+    this.counts.forEach((element, mark) => write(element, String(counts[mark])));
+    const age = frame?.detectionAge ?? -1;
+    write(byId('things-age'), frame && frame.detections.length > 0 && age > OLD ? `${age.toFixed(1)} s ago` : '');
+    if (age >= 0) document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = false; // a detector runs
     if (frame?.picture) void this.decode(frame);
     else this.draw();
   }
@@ -48,7 +68,16 @@ export class Picture {
     this.image?.close();
     this.image = null;
     this.imageOf = null;
+    this.wanted = null;
     this.shown = null;
+  }
+
+  // Another run: nothing of the old one is left.
+  forget(): void {
+    this.reset();
+    this.canvas.getContext('2d')!.clearRect(0, 0, this.canvas.width, this.canvas.height);
+    this.counts.forEach((element) => write(element, '0'));
+    document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = true;
   }
 
   // One at a time; of those that come meanwhile only the latest. A picture is shown with the features of its own frame.
@@ -61,6 +90,10 @@ export class Picture {
       try {
         const { bytes, type } = next.picture!;
         const image = await createImageBitmap(new Blob([bytes], { type }));
+        if (this.wanted === null) { // forgotten meanwhile
+          image.close();
+          break;
+        }
         this.image?.close();
         this.image = image;
         this.imageOf = next;
@@ -91,34 +124,10 @@ export class Picture {
     if (!frame) return;
     if (hasPicture) draw.drawImage(this.image!, 0, 0, w, h);
     const style = getComputedStyle(document.documentElement);
-    const colour = (name: string) => style.getPropertyValue(name);
-    this.drawOutlines(draw, frame, w, h, colour('--moving'));
-    drawFeatures(draw, frame, w, h, ratio, colour);
-    draw.lineWidth = 1.5 * ratio;
-    draw.font = `${11 * ratio}px system-ui, sans-serif`;
-    for (const box of frame.detections) {
-      const [x, y] = [((box.x + 0.5) * w) / width, ((box.y + 0.5) * h) / height];
-      draw.strokeStyle = colour('--moving');
-      draw.strokeRect(x, y, (box.width * w) / width, (box.height * h) / height);
-      const text = `${box.label} ${Math.round(100 * box.score)} %`;
-      const long = draw.measureText(text).width + 8 * ratio;
-      draw.fillStyle = colour('--moving');
-      draw.fillRect(x, Math.max(0, y - 15 * ratio), long, 15 * ratio);
-      draw.fillStyle = '#fff';
-      draw.fillText(text, x + 4 * ratio, Math.max(11 * ratio, y - 4 * ratio));
-    }
-  }
-
-  private drawOutlines(draw: CanvasRenderingContext2D, frame: Frame, w: number, h: number, colour: string): void {
-    for (const points of frame.outlines) {
-      draw.beginPath();
-      for (let i = 0; i + 1 < points.length; i += 2) draw.lineTo((points[i] * w) / 65536, (points[i + 1] * h) / 65536);
-      draw.closePath();
-      draw.globalAlpha = 0.25;
-      draw.fillStyle = colour;
-      draw.fill();
-      draw.globalAlpha = 1;
-    }
+    const on: Canvas = { draw, w, h, ratio, colour: (name) => style.getPropertyValue(name) };
+    if (this.visible.has('moving')) outlines(on, frame);
+    features(on, frame, this.visible);
+    if (this.visible.has('things')) boxes(on, frame, width, height);
   }
 
   private movable(): void {
@@ -149,37 +158,4 @@ export class Picture {
     });
     byId('picture-hide').addEventListener('click', () => { this.hidden = true; });
   }
-}
-
-// Told apart by form as well as by colour: tracked are squares, new ones rings, unused ones dots, moving ones crosses.
-function drawFeatures(draw: CanvasRenderingContext2D, frame: Frame, w: number, h: number, ratio: number, colour: (name: string) => string): void {
-  const { features } = frame;
-  const view = new DataView(features.buffer, features.byteOffset, features.byteLength);
-  const r = 2 * ratio;
-  const forms: ((x: number, y: number) => void)[] = [
-    (x, y) => draw.rect(x - ratio / 2, y - ratio / 2, ratio, ratio),
-    (x, y) => draw.rect(x - r, y - r, 2 * r, 2 * r),
-    (x, y) => {
-      draw.moveTo(x + 1.6 * r, y);
-      draw.arc(x, y, 1.6 * r, 0, 2 * Math.PI);
-    },
-    (x, y) => {
-      draw.moveTo(x - 1.5 * r, y - 1.5 * r);
-      draw.lineTo(x + 1.5 * r, y + 1.5 * r);
-      draw.moveTo(x - 1.5 * r, y + 1.5 * r);
-      draw.lineTo(x + 1.5 * r, y - 1.5 * r);
-    },
-  ];
-  USES.forEach((use, number) => {
-    draw.beginPath();
-    for (let at = 0; at + 6 <= features.length; at += 6) {
-      if (features[at + 4] === number) forms[number]((view.getUint16(at, true) * w) / 65536, (view.getUint16(at + 2, true) * h) / 65536);
-    }
-    draw.lineWidth = 3 * ratio;
-    draw.strokeStyle = 'rgba(0,0,0,.45)';
-    if (use !== 'free') draw.stroke();
-    draw.lineWidth = 1.4 * ratio;
-    draw.strokeStyle = colour(`--${use}`);
-    draw.stroke();
-  });
 }

@@ -34,6 +34,13 @@ export class Plot {
     this.dirty = true;
   }
 
+  // Another run: nothing of the old one is left.
+  forget(): void {
+    this.frames = [];
+    this.shown = '';
+    this.dirty = true;
+  }
+
   // Coloured anew, as after light has become dark.
   make(): void {
     const width = this.place.clientWidth;

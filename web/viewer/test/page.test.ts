@@ -4,6 +4,7 @@ import { after, before, test } from 'node:test';
 import type { Browser } from 'playwright-core';
 import type { LayerName } from '@alidade/scene';
 import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from './browser.ts';
+import { encode } from '../../scene/test/encode.ts';
 import { startServer } from './server.ts';
 import type { Server, ServerSettings } from './server.ts';
 
@@ -34,6 +35,7 @@ interface Debug {
     path: { length: number };
     frame: { number: number } | null;
   };
+  player: { history: { frames: unknown[]; events: unknown[] } };
   project(p: readonly number[]): { x: number; y: number } | null;
   scene: { fit(): void };
 }
@@ -113,6 +115,87 @@ test('landmarks are drawn where they are: a dot within 2 pixels of each, nothing
   await page.context().close();
 });
 
+test('the camera picture shows what became of features, boxes and outlines, each as long as it is wanted', options, async () => {
+  const server = await serve({ sample: { ...SMALL, pictures: false }, speed: 0, start: 149 });
+  const { page, problems } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(1);
+  await frames(page, 150);
+  const uses = [0, 0, 0, 0];
+  const { features, detections, outlines } = server.sample.told!;
+  for (let at = 4; at < features.length; at += 6) ++uses[features[at]];
+  assert.ok(detections.length === 1 && outlines.length === 1 && uses[1] > 20 && uses[3] > 3, `${uses}`);
+  for (const [use, name] of ['free', 'matched', 'fresh', 'moving'].entries()) assert.equal(await page.textContent(`#use-${name}`), String(uses[use]));
+  assert.equal(await page.textContent('#use-things'), '1');
+  assert.equal(await page.textContent('#things-age'), '0.3 s ago'); // 0.25
+  // How many pixels of the canvas other than without it; the marks are drawn alone, one after the other.
+  const pixels = () => page.evaluate(() => {
+    const canvas = document.getElementById('picture-canvas') as HTMLCanvasElement;
+    const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
+    copy.drawImage(canvas, 0, 0);
+    const { data } = copy.getImageData(0, 0, canvas.width, canvas.height);
+    let count = 0;
+    for (let i = 3; i < data.length; i += 4) count += Number(data[i] > 0);
+    return { count, all: canvas.width * canvas.height, box: [...copy.getImageData(Math.round((215 * canvas.width) / 320), Math.round((200 * canvas.height) / 240), 1, 1).data] };
+  });
+  const marks = ['matched', 'fresh', 'free', 'moving', 'things'];
+  for (const mark of marks) await page.click(`[data-mark=${mark}]`);
+  assert.equal((await pixels()).count, 0);
+  for (const mark of marks) {
+    await page.click(`[data-mark=${mark}]`);
+    assert.equal(await page.getAttribute(`[data-mark=${mark}]`, 'aria-pressed'), 'true');
+    const { count, all } = await pixels();
+    const told = mark === 'things' ? 1 : uses[['free', 'matched', 'fresh', 'moving'].indexOf(mark)];
+    assert.ok(told === 0 ? count === 0 : count > 2 * told && count < 0.3 * all, `${mark}: ${count} pixels`);
+    await page.click(`[data-mark=${mark}]`);
+  }
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
+test('all maps are drawn, others than the one the camera is in faintly', options, async () => {
+  const server = await serve({ sample: SMALL, speed: 0, start: 120 });
+  const { page, problems } = await open(browser, server.address);
+  await page.waitForFunction(() => document.body.dataset.connection === 'open');
+  server.advance(1);
+  await frames(page, 121);
+  for (const name of ['path', 'keyframes', 'cloud', 'covisibility', 'loops', 'truth', 'camera']) await page.setChecked(`[data-layer=${name}]`, false);
+  await page.keyboard.press('2');
+  await page.keyboard.press('f');
+  await page.waitForTimeout(1500);
+  const one = await sceneOnly(page);
+  // Another map: its one keyframe has landmarks around the origin.
+  const keyframe = { ...server.sample.keyframes.get(0)!, id: 5000, map: 7, parent: 0xffffffff, covisible: [], loops: [] };
+  const landmarks = new DataView(new ArrayBuffer(20 * 400));
+  for (let i = 0; i < 400; ++i) {
+    landmarks.setUint32(20 * i, 900000 + i, true);
+    landmarks.setUint32(20 * i + 4, 5000, true);
+    [0.1 * (i % 20) - 1, 0.1 * Math.floor(i / 20) - 1, 1.5].forEach((value, k) => landmarks.setFloat32(20 * i + 8 + 4 * k, value, true));
+  }
+  server.send(encode({
+    kind: 'map', version: 10n ** 6n, whole: false, keyframes: [keyframe], moves: [], landmarks, removedLandmarks: new Uint32Array(0), culled: [], depth: [], path: [],
+  }));
+  await page.waitForFunction(() => window.alidade.state.keyframes.has(5000));
+  const two = await sceneOnly(page);
+  assert.ok(differing(two, one) > 300, `${differing(two, one)}`);
+  // Fainter: nearer to the ground than what is drawn of the first.
+  const ground = one.at(2, 2);
+  const strength = (p: number[]) => Math.hypot(...p.map((value, k) => value - ground[k]));
+  let full = 0;
+  const more: number[] = []; // pixels that were ground before
+  for (let y = 0; y < one.height; ++y) for (let x = 0; x < one.width; ++x) {
+    full = Math.max(full, strength(one.at(x, y)));
+    if (strength(one.at(x, y)) === 0 && strength(two.at(x, y)) > 0) more.push(strength(two.at(x, y)));
+  }
+  const faint = more.filter((value) => value > 0.1 * full && value < 0.5 * full).length;
+  // The view comes to rest by less than is worth drawing: a dot in fifty is one pixel on.
+  assert.ok(faint > 300 && faint > 0.9 * more.length, `${faint} of ${more.length}`);
+  await page.setChecked('[data-layer=others]', false);
+  assert.ok(differing(await sceneOnly(page), one) < 0.2 * faint);
+  assert.deepEqual(problems, []);
+  await page.context().close();
+});
+
 test('after a loop was closed the page has the poses of the map', options, async () => {
   const server = await serve({ sample: SMALL, speed: 0 });
   const { page } = await open(browser, server.address);
@@ -178,18 +261,29 @@ test('a program that ends is noticed; one that starts again is shown', options, 
   const server = await serve({ sample: SMALL, speed: 0 });
   const { page } = await open(browser, server.address);
   await page.waitForFunction(() => document.body.dataset.connection === 'open');
-  server.advance(50);
-  await frames(page, 50);
+  server.advance(160);
+  await frames(page, 160);
+  await page.fill('#seek', '120'); // somebody looks at the past, and turns the view
+  await page.waitForFunction(() => document.body.dataset.shown === 'past');
+  await page.click('[data-view=orbit]');
   await server.close();
   await page.waitForSelector('#notice:not([hidden])');
   assert.match((await page.textContent('#notice'))!, /No connection/);
-  assert.equal(await count(page, 'frames'), 50); // what was told stays
-  const again = await serve({ sample: { ...SMALL, seed: 5 }, speed: 0, port: server.port });
+  assert.equal(await count(page, 'frames'), 121); // what was told stays
+  const again = await serve({ sample: { ...SMALL, seed: 5, pictures: false }, speed: 0, port: server.port });
   await page.waitForFunction(() => document.body.dataset.connection === 'open', undefined, { timeout: 30e3 });
   again.advance(20);
   await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '20');
   assert.equal(await page.isHidden('#notice'), true);
   assert.equal(await page.evaluate(() => window.alidade.state.path.length), 20);
+  // Nothing of the old run is left: its past, events, picture, map.
+  assert.equal(await page.getAttribute('body', 'data-shown'), 'now');
+  assert.equal(await page.evaluate(() => window.alidade.player.history.frames.length), 20);
+  assert.equal(await page.evaluate(() => window.alidade.state.landmarks.size), again.sample.points.size);
+  assert.deepEqual(await page.locator('#events .event span').allTextContents(), await page.evaluate(() => window.alidade.player.history.events.length).then((n) => [
+    'Started: map 0 begins', 'Not started: the camera hardly moves'].slice(0, n)));
+  assert.equal(await page.isVisible('#picture-none'), true);
+  assert.equal(await page.isVisible('[data-mark=things]'), false);
   await page.context().close();
 });
 
