@@ -52,13 +52,16 @@ export class Anchors {
     return slot;
   }
 
-  // Shows the keyframes of `map`, those of others faintly or not at all.
-  update(state: State, map: number, others: boolean): void {
+  // Shows the keyframes of `map`, those of others faintly or not at all. Whether there are others.
+  update(state: State, map: number, others: boolean): boolean {
+    let several = false;
     for (const [id, slot] of this.slots) if (!state.keyframes.has(id)) this.data[8 * slot + 7] = 0;
     for (const { id, map: of, T_world_camera, scale } of state.keyframes.values()) {
       this.put(this.slot(id), T_world_camera, of === map ? scale : others ? -scale : 0);
+      if (of !== map) several = true;
     }
     this.uniform.value.needsUpdate = true;
+    return several;
   }
 
   dispose(): void {

@@ -44,6 +44,7 @@ export class Scene {
   private drawn: { keyframes: unknown; path: unknown; frame: unknown; map: bigint; active: number } | null = null;
   private state: State | null = null;
   private active = NONE; // the map the camera is in
+  several = false; // there are other maps than the active one
   private placed = false;
   private covered = { left: 0, right: 0 };
   private levelled = 0; // keyframes when `up` was last asked for
@@ -141,7 +142,7 @@ export class Scene {
     const drawn = this.drawn;
     const mapChanged = !drawn || drawn.keyframes !== state.keyframes || drawn.map !== state.mapVersion || drawn.active !== this.active;
     if (mapChanged) {
-      this.anchors.update(state, this.active, this.layers.others.visible);
+      this.several = this.anchors.update(state, this.active, this.layers.others.visible);
       const size = typicalDistance(state, this.active);
       this.view.setSize(size);
       drawFrusta(this.lines.keyframes, state, this.anchors, 0.05 * size);

@@ -191,6 +191,7 @@ function update(): void {
   plot.draw();
   timeline.update();
   scene?.update(shown);
+  switches.get('others')!.parentElement!.hidden = !scene?.several;
 }
 
 // The truth is laid over the map again when the map has moved or the path has grown by some, at most once a second.

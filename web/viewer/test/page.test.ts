@@ -163,6 +163,7 @@ test('all maps are drawn, others than the one the camera is in faintly', options
   await page.keyboard.press('2');
   await page.keyboard.press('f');
   await page.waitForTimeout(1500);
+  assert.equal(await page.isVisible('[data-layer=others]'), false); // there is but one map
   const one = await sceneOnly(page);
   // Another map: its one keyframe has landmarks around the origin.
   const keyframe = { ...server.sample.keyframes.get(0)!, id: 5000, map: 7, parent: 0xffffffff, covisible: [], loops: [] };
