@@ -9,6 +9,7 @@
 
 #include "alidade/io/frame_source.h"
 #include "alidade/io/trajectory.h"
+#include "alidade/run/untracked.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
@@ -28,6 +29,7 @@ struct RunRecord {
   int dropped = 0;  // bad ones
   int dark = 0;     // black ones among those that were not tracked
   std::map<std::string, int> untracked_reasons;
+  UntrackedLog untracked;
   std::string first_problem;  // of a bad frame
   Trajectory truth;           // of rendered recordings
 

@@ -11,7 +11,7 @@ constexpr char kStyle[] = R"(<style>
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--page:#14171b;--soft:#98a2ad;--line:#333a42;--path:#5aa9ff;--dot:#77818c;
 --run0:#5ab4e8;--run1:#ff8a3d;--run2:#2fc79b;--run3:#e08fc2;--run4:#e5b83a;--run5:#a5a8ff}}
 body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--page);max-width:940px;margin:2rem auto;padding:0 1rem}
-h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}
+h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}h3{font-size:1rem;margin:1.2rem 0 .4rem}
 .soft{color:var(--soft)}svg{width:100%;height:auto;display:block}.framed{border:1px solid var(--line);border-radius:6px}
 table{border-collapse:collapse}td,th{padding:.15rem 1.2rem .15rem 0;text-align:left;vertical-align:top}
 th{font-weight:600;color:var(--soft)}.numbers td+td,.numbers th+th{text-align:right;font-variant-numeric:tabular-nums}
@@ -24,6 +24,9 @@ text{font-size:12px;fill:var(--soft);stroke:var(--page);stroke-width:3px;paint-o
 .grid{stroke:var(--line)}.series{stroke:var(--path)}
 .shape{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}.shape figure{margin:0}
 .shape figure:first-child{grid-column:1/-1}.shape img{width:100%;display:block;border-radius:6px}
+figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem;margin-top:1rem}
+.stages text{font-size:13px}.bar{fill:var(--path);opacity:.75}.median,.p95{stroke:var(--ink);stroke-width:1.5}.p95{stroke-dasharray:4 3}
+@media(max-width:600px){.stages{grid-template-columns:1fr}.stages text{font-size:15px}.shape{grid-template-columns:1fr}}
 .key{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin:0 .3em 0 1em}.key:first-child{margin-left:0}
 .run0{--own:var(--run0)}.run1{--own:var(--run1)}.run2{--own:var(--run2)}.run3{--own:var(--run3)}.run4{--own:var(--run4)}.run5{--own:var(--run5)}
 .curve{stroke:var(--own);stroke-width:2}.truth{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 4}

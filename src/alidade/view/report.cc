@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "alidade/base/timing.h"
+#include "alidade/view/histogram.h"
 #include "alidade/view/page.h"
 #include "alidade/view/svg.h"
 
@@ -34,10 +35,24 @@ std::string TimingTable(
   return html + "</table>\n";
 }
 
+// How long each stage took how often.
+std::string Histograms(
+    const std::vector<std::pair<std::string, std::vector<double>>>& milliseconds) {
+  std::string html = "<div class=\"stages\">\n";
+  for (const auto& [name, samples] : milliseconds) {
+    if (samples.empty()) continue;
+    html += "<figure>" + DrawHistogram(samples, "ms", "histogram: milliseconds of " + name) +
+            Cell("figcaption", name) + "</figure>\n";
+  }
+  return html +
+         "</div>\n<p class=\"soft\">How often each took how long; line: median, dashed: 95 % are "
+         "below, last bar: with all that took longer.</p>\n";
+}
+
 std::string Timing(const RunReport& report) {
   if (report.milliseconds.empty() || report.milliseconds.front().second.empty()) return "";
   const std::vector<double>& frames = report.milliseconds.front().second;
-  return "<h2>Time</h2>\n" + TimingTable(report.milliseconds) +
+  return "<h2>Time</h2>\n" + TimingTable(report.milliseconds) + Histograms(report.milliseconds) +
          "<p class=\"soft\">Each frame, as its caller waits:</p>\n" +
          DrawSeries(frames, 1.5 * Summarise(frames).p95, "ms");
 }
@@ -60,6 +75,41 @@ std::string Shape(const std::vector<ReportPicture>& pictures) {
   return html + "</div>\n";
 }
 
+std::string Legend(bool with_truth) {
+  return std::string(
+             "<p class=\"soft legend\"><span><span class=\"key\" "
+             "style=\"background:#1a9d50\"></span>start</span> "
+             "<span><span class=\"key\" style=\"background:#d43a2f\"></span>end</span> "
+             "<span><span class=\"key\" style=\"background:var(--path)\"></span>path and "
+             "keyframes</span> "
+             "<span><span class=\"key\" style=\"background:var(--dot)\"></span>landmarks"
+             "</span>") +
+         (with_truth ? " <span>dashed: the truth</span>" : "") + "</p>\n";
+}
+
+// Each map from above and from the side.
+std::string Maps(const std::vector<ReportMap>& maps) {
+  std::string html;
+  for (size_t i = 0; i < maps.size(); ++i) {
+    const bool many = maps.size() > 1;
+    const auto heading = [&](const char* words) {
+      return many ? std::string("<h3>") + words + "</h3>\n"
+                  : std::string("<h2>") + words + "</h2>\n";
+    };
+    if (many) {
+      html += "<h2>Map " + std::to_string(i + 1) + " of " + std::to_string(maps.size()) +
+              "</h2>\n<p class=\"soft\">" + EscapeHtml(maps[i].caption) + "</p>\n";
+    }
+    const PlaceDrawing& place = maps[i].place;
+    html += heading("From above") + "<div class=\"framed\">" + DrawPlace(place, PlaceView::kAbove) +
+            "</div>\n";
+    if (i == 0) html += Legend(!place.truth.empty());
+    html += heading("From the side") + "<div class=\"framed\">" +
+            DrawPlace(place, PlaceView::kSide) + "</div>\n";
+  }
+  return html;
+}
+
 }  // namespace
 
 std::string Base64(const std::string& bytes) {
@@ -80,13 +130,12 @@ std::string Base64(const std::string& bytes) {
 std::string RenderReport(const RunReport& report) {
   std::string html = PairTable(report.facts);
   html += HtmlList("Warnings", report.warnings);
-  html += "<h2>From above</h2>\n<div class=\"framed\">" +
-          DrawPlace(report.place, PlaceView::kAbove) +
-          "</div>\n<p class=\"soft\"><span class=\"key\" style=\"background:#1a9d50\"></span>start"
-          "<span class=\"key\" style=\"background:#d43a2f\"></span>end"
-          "<span class=\"key\" style=\"background:var(--path)\"></span>path and keyframes"
-          "<span class=\"key\" style=\"background:var(--dot)\"></span>landmarks</p>\n";
+  html += Maps(report.maps);
   html += Shape(report.shape);
+  if (!report.error.empty()) {
+    html += "<h2>Distance to the truth</h2>\n" +
+            DrawCurves({report.error}, report.seconds, "s", "m", "distance to the truth over time");
+  }
   html += "<h2>Frames</h2>\n" + DrawTimeline(report.frames) +
           "<p class=\"soft\"><span class=\"key\" style=\"background:var(--line)\"></span>starting"
           "<span class=\"key\" style=\"background:#1a9d50\"></span>tracked"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/view/drawings.h"
+#include "alidade/view/plots.h"
 
 namespace alidade {
 
@@ -16,15 +17,23 @@ struct ReportPicture {
   std::string bytes;
 };
 
+// One map of a run: a world of its own.
+struct ReportMap {
+  std::string caption;
+  PlaceDrawing place;
+};
+
 struct RunReport {
   std::string title;                                       // of the recording
   std::vector<std::pair<std::string, std::string>> facts;  // name and value, in the order shown
-  PlaceDrawing place;
+  std::vector<ReportMap> maps;
   std::vector<ReportPicture> shape;  // views of the semi-dense cloud; empty: there is none
   std::vector<FrameFate> frames;
   std::vector<std::pair<std::string, std::vector<double>>> milliseconds;  // of each stage; first:
                                                                           // of whole frames
-  std::vector<std::string> lost_spans;                                    // in words
+  std::vector<std::string> lost_spans;  // in words, with what helps
+  Curve error;         // distance to the truth, metres over seconds; empty: not known
+  double seconds = 0;  // how long the recording is
   std::vector<std::string> warnings;
   std::vector<std::pair<std::string, std::string>> settings;
 };
