@@ -143,6 +143,22 @@ TEST(Report, EveryMapIsDrawnFromAboveAndFromTheSide) {
   EXPECT_THAT(html, HasSubstr("Map 2 of 2</h2>\n<p class=\"soft\">12 frames"));
 }
 
+TEST(Report, CloudIsThinnedAndItsPictureStaysWhereThereAreNoScripts) {
+  RunReport report;
+  EXPECT_THAT(RenderReport(report), Not(HasSubstr("<canvas")));
+  report.cloud.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
+  for (int i = 0; i < 60000; ++i)
+    report.cloud.cloud.points.emplace_back(i % 100 / 100.f, i / 100 % 100 / 100.f, i / 10000 / 6.f);
+  report.cloud_picture = {"the place", "image/jpeg", "Man"};
+  const std::string html = RenderReport(report);
+  EXPECT_THAT(html, HasSubstr("alt=\"the place\" src=\"data:image/jpeg;base64,TWFu\""));
+  EXPECT_THAT(html, HasSubstr("data-points=\"50000\" data-path=\"2\" data-colored=\"0\""));
+  EXPECT_LT(html.size(), 1u << 20);
+  // 6 bytes for each point and pose, in base64.
+  const size_t begin = html.find('>', html.find("data-points")) + 1;
+  EXPECT_EQ(html.find('<', begin) - begin, 6 * 50002 / 3 * 4u);
+}
+
 TEST(Report, PicturesAreWithinThePage) {
   RunReport report;
   report.shape = {{"from above", "image/png", "Man"}, {"a<b", "image/jpeg", "Ma"}};

@@ -159,6 +159,7 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
     record.dark += cv::mean(frame.image)[0] < kBlack;
   } else if (result.keyframe) {
     record.untracked.AddKeyFrame(frame.image);
+    record.album.Add(static_cast<int>(record.stamps.size()) - 1, frame, slam);
   } else {
     record.untracked.Tracked();
   }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "alidade/base/timing.h"
 #include "alidade/run/stats.h"
@@ -157,13 +158,19 @@ std::vector<ReportMap> MapsOf(const RunRecord& record, const RunResults& results
 }  // namespace
 
 std::string ReportHtml(const RunRecord& record, const RunResults& results,
-                       const std::vector<ReportPicture>& shape) {
+                       ReportPictures pictures) {
   const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
   RunReport report;
   report.title = record.source.name;
   report.facts = FactsOf(record, results, unit);
   report.maps = MapsOf(record, results, unit);
-  report.shape = shape;
+  report.cloud = std::move(pictures.shape.scene);
+  report.shape = std::move(pictures.shape.pictures);
+  if (!report.shape.empty()) {
+    report.cloud_picture = std::move(report.shape.front());
+    report.shape.erase(report.shape.begin());
+  }
+  report.keyframes = std::move(pictures.keyframes);
   report.frames = FatesOf(results.frames);
   report.milliseconds = {{"frame", results.times.frame}, {"extract", results.times.extract},
                          {"track", results.times.track}, {"map", results.times.map},

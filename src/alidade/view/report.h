@@ -1,10 +1,12 @@
-// A run as one HTML file: no script, nothing loaded from elsewhere, fit to be mailed.
+// A run as one HTML file: nothing loaded from elsewhere, all that matters readable without scripts,
+// fit to be mailed.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "alidade/view/cloud_picture.h"
 #include "alidade/view/drawings.h"
 #include "alidade/view/plots.h"
 
@@ -17,6 +19,13 @@ struct ReportPicture {
   std::string bytes;
 };
 
+// A keyframe: its picture with the features found in it, and the depth known there (no bytes:
+// none).
+struct ReportKeyframe {
+  std::string caption;
+  ReportPicture features, depth;
+};
+
 // One map of a run: a world of its own.
 struct ReportMap {
   std::string caption;
@@ -27,7 +36,10 @@ struct RunReport {
   std::string title;                                       // of the recording
   std::vector<std::pair<std::string, std::string>> facts;  // name and value, in the order shown
   std::vector<ReportMap> maps;
-  std::vector<ReportPicture> shape;  // views of the semi-dense cloud; empty: there is none
+  CloudScene cloud;                  // to be turned; empty: there is none
+  ReportPicture cloud_picture;       // of it, where it cannot be
+  std::vector<ReportPicture> shape;  // further views of the semi-dense cloud; empty: there are none
+  std::vector<ReportKeyframe> keyframes;
   std::vector<FrameFate> frames;
   std::vector<std::pair<std::string, std::vector<double>>> milliseconds;  // of each stage; first:
                                                                           // of whole frames
