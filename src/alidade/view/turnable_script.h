@@ -25,7 +25,7 @@ inline constexpr char kTurnableScript[] = R"script(
   gl.attachShader(program, shader(gl.VERTEX_SHADER, `attribute vec3 p; attribute vec3 c;
     uniform mat4 view; uniform float size, least; varying vec3 color;
     void main() { color = c; gl_Position = view * vec4(p - 0.5, 1.0);
-      gl_PointSize = max(least, size / gl_Position.w); }`));
+      gl_PointSize = clamp(size / gl_Position.w, least, 2.0 * least); }`));
   gl.attachShader(program, shader(gl.FRAGMENT_SHADER,
     `precision mediump float; varying vec3 color; void main() { gl_FragColor = vec4(color, 1.0); }`));
   gl.bindAttribLocation(program, 0, 'p');
@@ -45,14 +45,16 @@ inline constexpr char kTurnableScript[] = R"script(
 
   const VIEWS = {behind: {turn: -0.3, tilt: 0.45}, above: {turn: 0, tilt: 1.57}, side: {turn: -1.57, tilt: 0.1}};
   const LENS = 1.6;  // of the narrower side: 64 degrees
-  const home = (() => {  // the middle of the points, from where nine tenths of them are in sight
+  const home = (() => {  // the middle of the points; nine tenths of them and the path are in sight
     const all = new Uint16Array(bytes.buffer, 0, 3 * (count + poses)), step = 1 + Math.floor(count / 2000);
     const some = [];
-    for (let i = 0; i < count + poses; i += step) some.push([0, 1, 2].map((k) => all[3 * i + k] / 65535 - 0.5));
+    for (let i = 0; i < count; i += step) some.push([0, 1, 2].map((k) => all[3 * i + k] / 65535 - 0.5));
     const rank = (values, share) => values.sort((a, b) => a - b)[Math.floor(share * (values.length - 1))];
     const at = [0, 1, 2].map((k) => (rank(some.map((p) => p[k]), 0.1) + rank(some.map((p) => p[k]), 0.9)) / 2);
-    const radius = rank(some.map((p) => Math.hypot(p[0] - at[0], p[1] - at[1], p[2] - at[2])), 0.9);
-    return {at, far: Math.min(3, Math.max(0.1, 1.1 * LENS * radius))};
+    for (let i = count; i < count + poses; ++i) some.push([0, 1, 2].map((k) => all[3 * i + k] / 65535 - 0.5));
+    const radii = some.map((p) => Math.hypot(p[0] - at[0], p[1] - at[1], p[2] - at[2]));
+    const radius = Math.max(rank(radii.slice(0, -poses), 0.9), ...radii.slice(-poses).filter((_, i) => i % (1 + Math.floor(poses / 1000)) === 0));
+    return {at, far: Math.min(3, Math.max(0.1, 2 * radius))};
   })();
   const eye = {turn: 0, tilt: 0, ...home};
   let asked = 0;
