@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <string>
 
+#include "alidade/run/results.h"
+
 namespace alidade {
 namespace {
 
@@ -79,10 +81,22 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   } else if (record.settings.semidense.enabled && !record.settings.localise) {
     shape = ", no shape (too little was seen from new keyframes)";
   }
-  std::printf("%d of %d frames tracked, %d keyframes, %d landmarks%s, path %.2f %s\n%s in %s\n",
-              summary.tracked, summary.frames, summary.keyframes, summary.landmarks, shape.c_str(),
-              summary.path_length, record.settings.sensor == Sensor::kMono ? "map units" : "m",
-              record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+  // Where it began and what went wrong, when it is not all of the recording.
+  std::string tracked;
+  if (summary.first_tracked && !record.numbers.empty() &&
+      *summary.first_tracked != record.numbers.front())
+    tracked += " from frame " + std::to_string(*summary.first_tracked) + " on";
+  if (!summary.lost_spans.empty()) tracked += ", lost " + LostInAll(summary.lost_spans);
+  const std::string maps =
+      summary.maps > 1 ? " in " + std::to_string(summary.maps) + " maps" : std::string();
+  std::printf(
+      "%d of %d frames tracked%s; %d keyframes, %d landmarks%s%s, path %.2f %s%s\n"
+      "%s in %s\n",
+      summary.tracked, summary.frames, tracked.c_str(), summary.keyframes, summary.landmarks,
+      maps.c_str(), shape.c_str(), summary.path_length,
+      record.settings.sensor == Sensor::kMono ? "map units" : "m",
+      summary.maps > 1 ? " in the largest" : "",
+      record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
 }
 
 }  // namespace alidade

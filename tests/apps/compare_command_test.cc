@@ -126,5 +126,12 @@ TEST_F(CompareCommand, WhatCannotBeComparedIsOneLine) {
   }
 }
 
+TEST_F(CompareCommand, ReportOfARenderedRunTellsItsErrors) {
+  const std::string report = ReadText(deep_ + "/report.html");
+  EXPECT_THAT(report, HasSubstr("From the side"));
+  EXPECT_THAT(report, HasSubstr(Printed("%.6f m", Rmse(deep_, "se3"))));
+  EXPECT_THAT(report, HasSubstr("distance to the truth over time"));
+}
+
 }  // namespace
 }  // namespace alidade::compare_command_test

@@ -72,11 +72,14 @@ TEST_F(SemiDenseRun, ReportShowsItAndStillNeedsNothingElse) {
   ASSERT_EQ(Run("out").status, 0);
   const std::string report = Text("out/report.html");
   EXPECT_THAT(report, HasSubstr("<h2>Shape</h2>"));
-  EXPECT_EQ(CountOf(report, "src="), 4);
-  EXPECT_EQ(CountOf(report, "src=\"data:image/jpeg;base64,/9j/"), 4);  // how a JPEG begins
-  for (const char* outside : {"http:", "https:", "href=", "@import", "url(", "<script"}) {
-    EXPECT_THAT(report, Not(HasSubstr(outside)));
-  }
+  for (const char* view : {"from behind the first camera", "as the first camera looked",
+                           "from its right", "from above"})
+    EXPECT_EQ(CountOf(report, std::string("<img alt=\"") + view + "\""), 1) << view;
+  EXPECT_EQ(CountOf(report, "src="),
+            CountOf(report, "src=\"data:image/jpeg;base64,/9j/"));  // how a JPEG begins
+  EXPECT_EQ(CountOf(report, "data-colored=\"1\""), 1);
+  for (const char* outside : {"http:", "https:", "href=", "@import", "url("})
+    EXPECT_EQ(CountOf(report, outside), 0) << outside;
 }
 
 TEST_F(SemiDenseRun, IsTheSameEveryTimeAndTheTrajectoryIsWhatItIsWithout) {

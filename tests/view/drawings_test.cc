@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <regex>
 
+#include "alidade/view/histogram.h"
 #include "alidade/view/report.h"
 
 namespace alidade::drawings_test {
@@ -77,6 +78,7 @@ TEST(Drawings, NothingAtAllCanBeDrawn) {
   EXPECT_THAT(DrawPlace({}, PlaceView::kSide), HasSubstr("</svg>"));
   EXPECT_THAT(DrawTimeline({}), HasSubstr("</svg>"));
   EXPECT_THAT(DrawSeries({}, 0, "ms"), HasSubstr("</svg>"));
+  EXPECT_THAT(DrawHistogram({}, "ms", ""), HasSubstr("</svg>"));
   EXPECT_THAT(RenderReport({}), HasSubstr("</html>"));
   EXPECT_THAT(RenderReport({}), Not(HasSubstr("nan")));
 }
@@ -98,6 +100,25 @@ TEST(Drawings, TimelineBarsAreAsLongAsTheirFrames) {
   EXPECT_THAT(svg, HasSubstr("class=\"lost\" x=\"675.00\" y=\"0\" width=\"225.00\""));
 }
 
+TEST(Histogram, BarsAreAsTallAsTheyAreFull) {
+  std::vector<double> values(300, 1.0);
+  values.insert(values.end(), 100, 3.0);
+  values.push_back(1000);  // one of 401: not where the axis ends
+  const std::string svg = DrawHistogram(values, "ms", "times");
+  std::vector<double> tall;
+  const std::regex bar("class=\"bar\" [^/]*height=\"([0-9.]+)\"");
+  for (std::sregex_iterator it(svg.begin(), svg.end(), bar), end; it != end; ++it)
+    tall.push_back(std::stod((*it)[1]));
+  ASSERT_EQ(tall.size(), 2u);  // the last has the long one as well
+  EXPECT_NEAR(tall[1] / tall[0], 101.0 / 300, 0.01);
+}
+
+TEST(Report, EachStageThatRanHasAHistogram) {
+  RunReport report;
+  report.milliseconds = {{"frame", {1, 2, 3}}, {"map", {4, 5}}, {"loop", {}}};
+  EXPECT_EQ(Count(RenderReport(report), "aria-label=\"histogram: "), 2);
+}
+
 TEST(Report, WordsOfOthersCannotBecomeMarkup) {
   RunReport report;
   report.title = "<script>alert(1)</script>";
@@ -105,6 +126,37 @@ TEST(Report, WordsOfOthersCannotBecomeMarkup) {
   const std::string html = RenderReport(report);
   EXPECT_THAT(html, Not(HasSubstr("<script>")));
   EXPECT_THAT(html, HasSubstr("a &amp; b &lt; c"));
+}
+
+TEST(Report, EveryMapIsDrawnFromAboveAndFromTheSide) {
+  RunReport report;
+  PlaceDrawing place;
+  place.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
+  report.maps = {{"40 frames", place}};
+  EXPECT_EQ(Count(RenderReport(report), "<polyline class=\"path\""), 2);
+  EXPECT_THAT(RenderReport(report), Not(HasSubstr("40 frames")));
+  place.truth = {{CameraAt(0, 0.1, 0), CameraAt(0, 0.1, 1)}};
+  report.maps.push_back({"12 frames", place});
+  const std::string html = RenderReport(report);
+  EXPECT_EQ(Count(html, "<polyline class=\"path\""), 4);
+  EXPECT_EQ(Count(html, "<polyline class=\"truth\""), 2);
+  EXPECT_THAT(html, HasSubstr("Map 2 of 2</h2>\n<p class=\"soft\">12 frames"));
+}
+
+TEST(Report, CloudIsThinnedAndItsPictureStaysWhereThereAreNoScripts) {
+  RunReport report;
+  EXPECT_THAT(RenderReport(report), Not(HasSubstr("<canvas")));
+  report.cloud.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
+  for (int i = 0; i < 60000; ++i)
+    report.cloud.cloud.points.emplace_back(i % 100 / 100.f, i / 100 % 100 / 100.f, i / 10000 / 6.f);
+  report.cloud_picture = {"the place", "image/jpeg", "Man"};
+  const std::string html = RenderReport(report);
+  EXPECT_THAT(html, HasSubstr("alt=\"the place\" src=\"data:image/jpeg;base64,TWFu\""));
+  EXPECT_THAT(html, HasSubstr("data-points=\"50000\" data-path=\"2\" data-colored=\"0\""));
+  EXPECT_LT(html.size(), 1u << 20);
+  // 6 bytes for each point and pose, in base64.
+  const size_t begin = html.find('>', html.find("data-points")) + 1;
+  EXPECT_EQ(html.find('<', begin) - begin, 6 * 50002 / 3 * 4u);
 }
 
 TEST(Report, PicturesAreWithinThePage) {

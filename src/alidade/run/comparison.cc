@@ -136,15 +136,6 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
           {"peak memory", result.peak_mb ? Figure("%.0f MB", result.peak_mb) : kNone}};
 }
 
-// Of the truth what lies within the recording.
-DrawnPath TruthPath(const ResultFolder& result) {
-  Trajectory within;
-  for (const StampedPose& pose : result.truth) {
-    if (pose.time >= result.span.first && pose.time <= result.span.last) within.push_back(pose);
-  }
-  return PathOf(within);
-}
-
 }  // namespace
 
 std::string CompareResults(const std::vector<std::string>& folders) {
@@ -167,7 +158,10 @@ std::string CompareResults(const std::vector<std::string>& folders) {
   }
   const Layout layout(results.front(), errors.front());
   page.unit = layout.unit();
-  if (errors.front()) page.truth = TruthPath(results.front());
+  if (errors.front()) {
+    const TimeSpan& span = results.front().span;
+    page.truth = PathOf(Between(results.front().truth, span.first, span.last));
+  }
   for (size_t i = 0; i < results.size(); ++i) {
     const ResultFolder& result = results[i];
     ComparedRun run;

@@ -153,7 +153,15 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
   if (masks) masks->Write(frame, slam.MoverMask());
   if (result.state != TrackState::kTracking) {
     ++record.untracked_reasons[result.reason];
+    record.untracked.Add(
+        frame.time, result.reason, frame.image,
+        static_cast<double>(slam.Features().size()) / record.settings.tracker.extractor.features);
     record.dark += cv::mean(frame.image)[0] < kBlack;
+  } else if (result.keyframe) {
+    record.untracked.AddKeyFrame(frame.image);
+    record.album.Add(static_cast<int>(record.stamps.size()) - 1, frame, slam);
+  } else {
+    record.untracked.Tracked();
   }
   for (RunWatcher* watcher : watchers) watcher->Frame(frame, result);
 }

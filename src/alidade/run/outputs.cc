@@ -1,10 +1,11 @@
 #include "alidade/run/outputs.h"
 
 #include <exception>
-#include <vector>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/cloud.h"
+#include "alidade/run/keyframe_pictures.h"
 #include "alidade/run/results.h"
 #include "alidade/run/semidense_outputs.h"
 #include "alidade/run/shape_views.h"
@@ -13,14 +14,14 @@
 namespace alidade {
 namespace {
 
-std::string LandmarksPly(const RunResults& results) {
+Cloud LandmarksOf(const RunResults& results) {
   Cloud cloud;
   for (LandmarkId id : results.map.Landmarks()) {  // others lie in worlds of their own
     if (results.map.MapOf(results.map.Find(id)->reference) != results.maps.front().id) continue;
     cloud.points.push_back(
         (results.R_camera_rectified * results.map.Find(id)->p_world).cast<float>());
   }
-  return EncodePly(cloud, CloudFormat::kAscii);
+  return cloud;
 }
 
 }  // namespace
@@ -29,7 +30,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
                         bool with_map, MaskWriter* masks) {
   RunResults results;
   Cloud shape;
-  std::vector<ReportPicture> views;
+  Cloud landmarks;
+  ReportPictures pictures;
   bool useful = false;
   std::exception_ptr failure;  // the first that is neither the disk's fault nor the folder's
   // What there is no memory for is left out, and the next is tried.
@@ -59,15 +61,27 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     attempt([&] {
       if (with_map) folder.Write("map.alidade", slam.SaveMap());
     });
-    attempt([&] { folder.Write("landmarks.ply", LandmarksPly(results)); });
+    attempt([&] {
+      landmarks = LandmarksOf(results);
+      folder.Write("landmarks.ply", EncodePly(landmarks, CloudFormat::kAscii));
+    });
     attempt([&] {
       if (!record.settings.semidense.enabled) return;
       const double voxel = record.settings.semidense.voxel;
       shape = WriteSemiDense(folder, results, slam.camera(), voxel);
       if (!shape.points.empty())
-        views = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
+        pictures.shape = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
     });
-    attempt([&] { folder.Write("report.html", ReportHtml(record, results, views)); });
+    // Without its pictures a report is still one.
+    attempt([&] {
+      if (pictures.shape.scene.cloud.points.empty() && !landmarks.points.empty())
+        pictures.shape = LandmarkViews(results, std::move(landmarks));
+    });
+    attempt([&] {
+      pictures.keyframes =
+          DrawKeyframes(record.album, results, slam, record.first_time.value_or(0));
+    });
+    attempt([&] { folder.Write("report.html", ReportHtml(record, results, std::move(pictures))); });
     attempt([&] {
       if (masks) masks->Finish();
     });
@@ -82,6 +96,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
           results.map.keyframe_count(),
           results.map.landmark_count(),
           static_cast<int>(results.map.Maps().size()),
+          results.initialised_at,
+          results.lost_spans,
           shape.points.size(),
           PathLength(results.maps.front().trajectory)};
 }

@@ -1,6 +1,10 @@
 // The folder `alidade run` leaves behind (docs/formats.md).
 #pragma once
 
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "alidade/run/mask_writer.h"
 #include "alidade/run/output_folder.h"
 #include "alidade/run/record.h"
@@ -10,8 +14,10 @@ namespace alidade {
 struct RunSummary {
   int frames = 0, tracked = 0;
   int keyframes = 0, landmarks = 0, maps = 0;
-  size_t shape_points = 0;  // of semidense.ply
-  double path_length = 0;   // metres (mono: map units)
+  std::optional<int> first_tracked;               // its number in the recording
+  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
+  size_t shape_points = 0;                        // of semidense.ply
+  double path_length = 0;  // through the largest map, metres (mono: map units)
 };
 
 // Writes everything. Throws Error (input) when a file cannot be written; what stays then is whole,

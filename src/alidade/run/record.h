@@ -9,7 +9,9 @@
 
 #include "alidade/io/frame_source.h"
 #include "alidade/io/trajectory.h"
+#include "alidade/run/keyframe_album.h"
 #include "alidade/run/stream_settings.h"
+#include "alidade/run/untracked.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
@@ -30,6 +32,8 @@ struct RunRecord {
   int dropped = 0;  // bad ones
   int dark = 0;     // black ones among those that were not tracked
   std::map<std::string, int> untracked_reasons;
+  UntrackedLog untracked;
+  KeyframeAlbum album;
   std::string first_problem;  // of a bad frame
   Trajectory truth;           // of rendered recordings
 

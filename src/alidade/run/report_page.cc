@@ -1,8 +1,11 @@
+#include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include "alidade/base/timing.h"
 #include "alidade/run/run_settings.h"
 #include "alidade/run/stats.h"
+#include "alidade/run/truth.h"
 
 namespace alidade {
 namespace {
@@ -13,17 +16,22 @@ std::string Format(const char* format, double value) {
   return text;
 }
 
-PlaceDrawing PlaceOf(const RunResults& results, const std::string& unit) {
+// Landmarks of all maps that are drawn: more do not show, but make the page large.
+constexpr size_t kMostLandmarks = 8000;
+
+PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
   PlaceDrawing place;
   place.unit = unit;
-  place.path = PathOf(results);
-  // The largest map: others lie in worlds of their own.
-  const MapResults& map = results.maps.front();
+  place.path = PathOf(results, number);
+  const MapResults& map = results.maps[number];
   for (const StampedPose& pose : map.keyframes) {
     place.keyframes.push_back(pose.T_world_camera.t);
   }
-  for (LandmarkId id : results.map.Landmarks()) {
+  const size_t step = 1 + static_cast<size_t>(results.map.landmark_count()) / kMostLandmarks;
+  size_t counted = 0;
+  for (LandmarkId id : results.map.Landmarks()) {  // of other maps they lie in other worlds
     if (results.map.MapOf(results.map.Find(id)->reference) != map.id) continue;
+    if (counted++ % step != 0) continue;
     place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
   }
   return place;
@@ -50,6 +58,18 @@ int CountWithDepth(const MapSnapshot& map) {
   return count;
 }
 
+// "12 (0.40 s after the start: too little parallax)".
+std::string FirstTracked(const RunRecord& record, const RunResults& results) {
+  if (!results.initialised_at) return "none";
+  std::string words = std::to_string(*results.initialised_at);
+  const auto first = std::find_if(results.frames.begin(), results.frames.end(),
+                                  [](const FramePose& frame) { return frame.tracked; });
+  if (first == results.frames.end() || first == results.frames.begin()) return words;
+  const double start = results.frames.front().time, waited = first->time - start;
+  const std::string why = StartInWords(record.untracked.all(), start, waited);
+  return words + Format(", %.2f s after the start", waited) + (why.empty() ? "" : ": " + why);
+}
+
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
                                                          const RunResults& results,
                                                          const std::string& unit) {
@@ -60,8 +80,10 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
       {"sensor", NameOf(record.settings.sensor)},
       {"frames tracked", std::to_string(tracked) + " of " + std::to_string(record.frames) +
                              Format(" (%.1f %%)", share)},
-      {"first tracked frame",
-       results.initialised_at ? std::to_string(*results.initialised_at) : "none"},
+      {"first tracked frame", FirstTracked(record, results)},
+      {"lost", tracked == 0                 ? "never had a pose"
+               : results.lost_spans.empty() ? "never"
+                                            : LostInAll(results.lost_spans)},
       {"keyframes", std::to_string(results.map.keyframe_count())},
       {"landmarks", std::to_string(results.map.landmark_count())}};
   if (record.settings.semidense.enabled && !record.settings.localise)
@@ -78,7 +100,8 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +
-                                          " (drawn: the one with the most frames)"});
+                                          ", which have no place in common; the first has most "
+                                          "frames, and the path's length is its"});
   }
   if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(record)});
   if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
@@ -86,23 +109,76 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   return facts;
 }
 
+// How far the paths are from the truth, where it is known; each map is laid on it by itself.
+void AddErrors(const RunRecord& record, const RunResults& results, RunReport& report) {
+  if (!record.first_time) return;
+  const Trajectory truth = record.truth.empty() ? TruthBeside(record.source_path) : record.truth;
+  if (truth.empty()) return;
+  const bool mono = record.settings.sensor == Sensor::kMono;
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const Trajectory& estimate = results.maps[i].trajectory;
+    if (estimate.empty()) continue;
+    std::string problem;
+    const auto errors = ErrorsAgainst(truth, estimate, mono,
+                                      TimeSpan{*record.first_time, *record.last_time}, &problem);
+    if (!errors) continue;
+    const std::string of = i == 0 ? "" : " of map " + std::to_string(i + 1);
+    report.facts.push_back(
+        {"ATE RMSE" + of, Format("%.6f m", errors->ate.error.rmse) +
+                              (mono ? ", aligned by Sim(3)" : ", aligned by SE(3)")});
+    if (errors->rpe) {
+      report.facts.push_back({"RPE RMSE in 1 s" + of, Format("%.6f m, ", errors->rpe->trans.rmse) +
+                                                          Format("%.4f°", errors->rpe->rot.rmse)});
+    }
+    report.maps[i].place.truth = PathOf(Between(truth, estimate.front().time, estimate.back().time),
+                                        errors->ate.T_truth_estimate.Inverse());
+    const Curve curve = ErrorCurve(*errors, estimate, *record.first_time);
+    report.error.insert(report.error.end(), curve.begin(), curve.end());
+  }
+  report.seconds = *record.last_time - *record.first_time;
+}
+
+std::vector<ReportMap> MapsOf(const RunRecord& record, const RunResults& results,
+                              const std::string& unit) {
+  std::vector<ReportMap> maps;
+  const double start = record.first_time.value_or(0);
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const MapResults& map = results.maps[i];
+    std::string caption = std::to_string(map.trajectory.size()) + " frames";
+    if (!map.trajectory.empty()) {
+      caption += Format(" from %.2f s", map.trajectory.front().time - start) +
+                 Format(" to %.2f s", map.trajectory.back().time - start);
+    }
+    caption += ", " + std::to_string(map.keyframes.size()) + " keyframes" +
+               Format(", path %.2f ", PathLength(map.trajectory)) + unit;
+    maps.push_back({caption, PlaceOf(results, i, unit)});
+  }
+  return maps;
+}
+
 }  // namespace
 
 std::string ReportHtml(const RunRecord& record, const RunResults& results,
-                       const std::vector<ReportPicture>& shape) {
+                       ReportPictures pictures) {
   const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
   RunReport report;
   report.title = record.source.name;
   report.facts = FactsOf(record, results, unit);
-  report.place = PlaceOf(results, unit);
-  report.shape = shape;
+  report.maps = MapsOf(record, results, unit);
+  report.cloud = std::move(pictures.shape.scene);
+  report.shape = std::move(pictures.shape.pictures);
+  if (!report.shape.empty()) {
+    report.cloud_picture = std::move(report.shape.front());
+    report.shape.erase(report.shape.begin());
+  }
+  report.keyframes = std::move(pictures.keyframes);
   report.frames = FatesOf(results.frames);
   report.milliseconds = {{"frame", results.times.frame}, {"extract", results.times.extract},
                          {"track", results.times.track}, {"map", results.times.map},
                          {"loop", results.times.loop},   {"semidense", results.times.semidense}};
-  for (const auto& [from, to] : results.lost_spans) {
-    report.lost_spans.push_back(Format("%.3f s", from) + Format(" to %.3f s", to));
-  }
+  report.lost_spans =
+      LostInWords(results.lost_spans, record.untracked.all(), record.first_time.value_or(0));
+  AddErrors(record, results, report);
   report.warnings = record.warnings;
   report.settings = {{"profile", record.profile},
                      {"schedule", record.settings.threaded ? "threaded" : "inline"},

@@ -1,6 +1,7 @@
 #include "alidade/run/results.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace alidade {
 namespace {
@@ -72,9 +73,9 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   return results;
 }
 
-std::vector<std::vector<Se3>> PathOf(const RunResults& results) {
+std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number) {
   std::vector<std::vector<Se3>> path;
-  const MapResults& map = results.maps.front();
+  const MapResults& map = results.maps[number];
   bool going_on = false;
   size_t next = 0;  // of the trajectory
   for (const FramePose& frame : results.frames) {
@@ -86,6 +87,15 @@ std::vector<std::vector<Se3>> PathOf(const RunResults& results) {
     going_on = here;
   }
   return path;
+}
+
+std::string LostInAll(const std::vector<std::array<double, 2>>& spans) {
+  double seconds = 0;
+  for (const auto& [from, to] : spans) seconds += to - from;
+  const size_t times = spans.size();
+  char text[64];
+  std::snprintf(text, sizeof(text), ", %.2f s in all", seconds);
+  return (times == 1 ? "once" : times == 2 ? "twice" : std::to_string(times) + " times") + text;
 }
 
 double PathLength(const Trajectory& trajectory) {

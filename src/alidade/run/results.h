@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "alidade/map/map_store.h"
@@ -35,9 +36,12 @@ struct RunResults {
 
 RunResults ResultsOf(const Slam& slam, const RunRecord& record);
 
-// The way of the camera through the first map: T_world_camera, one list for each stretch without a
-// gap.
-std::vector<std::vector<Se3>> PathOf(const RunResults& results);
+// The way of the camera through one of the maps: T_world_camera, one list for each stretch without
+// a gap.
+std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number = 0);
+
+// "twice, 1.30 s in all".
+std::string LostInAll(const std::vector<std::array<double, 2>>& spans);
 
 double PathLength(const Trajectory& trajectory);  // in the trajectory's unit
 

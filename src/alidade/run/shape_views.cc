@@ -40,16 +40,15 @@ double PixelOf(const Cloud& cloud) {
 
 }  // namespace
 
-std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const RunResults& results,
-                                           const Camera& camera, const Cloud& cloud, double voxel) {
+ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, const Camera& camera,
+                           const Cloud& cloud, double voxel) {
   // Whoever wants few points, or whose map has large units, wants to see the place all the same;
   // and no picture needs every pixel of every keyframe.
   const double pixel = PixelOf(cloud);
-  const CloudScene scene = {
-      voxel > 0 && voxel <= pixel
-          ? cloud
-          : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
-      PathOf(results)};
+  CloudScene scene = {voxel > 0 && voxel <= pixel
+                          ? cloud
+                          : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
+                      PathOf(results)};
   constexpr int kCount = static_cast<int>(std::size(kViews));
   std::vector<cv::Mat> drawn(kCount);
   ParallelFor(kCount,
@@ -58,7 +57,15 @@ std::vector<ReportPicture> WriteShapeViews(OutputFolder& folder, const RunResult
   std::vector<ReportPicture> pictures;
   for (size_t i = 0; i < drawn.size(); ++i)
     pictures.push_back({kViews[i].second, "image/jpeg", EncodeJpeg(drawn[i], kJpegQuality)});
-  return pictures;
+  return {std::move(scene), std::move(pictures)};
+}
+
+ShapeViews LandmarkViews(const RunResults& results, Cloud landmarks) {
+  ShapeViews views{{std::move(landmarks), PathOf(results)}, {}};
+  const cv::Mat drawn = DrawCloud(views.scene, kViews[0].first);
+  views.pictures = {{std::string("landmarks ") + kViews[0].second, "image/jpeg",
+                     EncodeJpeg(drawn, kJpegQuality)}};
+  return views;
 }
 
 }  // namespace alidade

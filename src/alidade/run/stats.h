@@ -6,13 +6,19 @@
 
 #include "alidade/run/record.h"
 #include "alidade/run/results.h"
+#include "alidade/run/shape_views.h"
 #include "alidade/view/report.h"
 
 namespace alidade {
 
+// What a report shows besides drawings. What is empty is left out.
+struct ReportPictures {
+  ShapeViews shape;
+  std::vector<ReportKeyframe> keyframes;
+};
+
 // Both as the bytes of the file. Fields and units: docs/formats.md.
 std::string StatsJson(const RunRecord& record, const RunResults& results);
-std::string ReportHtml(const RunRecord& record, const RunResults& results,
-                       const std::vector<ReportPicture>& shape);
+std::string ReportHtml(const RunRecord& record, const RunResults& results, ReportPictures pictures);
 
 }  // namespace alidade

@@ -35,6 +35,14 @@ Trajectory TruthBeside(const std::string& source) {
   }
 }
 
+Trajectory Between(const Trajectory& trajectory, double first, double last) {
+  Trajectory within;
+  for (const StampedPose& pose : trajectory) {
+    if (pose.time >= first && pose.time <= last) within.push_back(pose);
+  }
+  return within;
+}
+
 std::optional<TruthErrors> ErrorsAgainst(const Trajectory& truth, const Trajectory& estimate,
                                          bool mono, const std::optional<TimeSpan>& span,
                                          std::string* problem) {

@@ -14,6 +14,9 @@ namespace alidade {
 // What lies beside a recording as its truth; empty: nothing that can be read.
 Trajectory TruthBeside(const std::string& source);
 
+// Its poses from `first` to `last` seconds.
+Trajectory Between(const Trajectory& trajectory, double first, double last);
+
 struct TruthErrors {
   AteResult ate;
   std::optional<RpeResult> rpe;  // over one second; none: the run is too short

@@ -7,11 +7,12 @@
 namespace alidade {
 
 std::string DrawPlace(const PlaceDrawing& place, PlaceView view) {
-  const PlacePage page({place.path}, place.landmarks, place.path, view);
+  const PlacePage page({place.path, place.truth}, place.landmarks, place.path, view);
   std::string svg = OpenSvg(kPictureWidth, page.height(),
                             std::string("trajectory and landmarks from ") +
                                 (view == PlaceView::kAbove ? "above" : "the side"));
   svg += page.Dots(place.landmarks, "landmarks");
+  svg += page.Lines(place.truth, "truth");
   svg += page.Lines(place.path, "path");
   svg += page.Dots(place.keyframes, "keyframes");
   if (!place.path.empty()) {

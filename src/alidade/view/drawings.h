@@ -13,7 +13,8 @@ namespace alidade {
 struct PlaceDrawing {
   DrawnPath path;
   std::vector<Eigen::Vector3d> keyframes, landmarks;
-  std::string unit;  // of the scale bar, e.g. "m"
+  std::string unit;      // of the scale bar, e.g. "m"
+  DrawnPath truth = {};  // where it is known
 };
 
 // Cameras are held upright on average, so up is the mean of their up directions. Far-off landmarks

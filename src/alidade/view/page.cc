@@ -11,26 +11,33 @@ constexpr char kStyle[] = R"(<style>
 @media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--page:#14171b;--soft:#98a2ad;--line:#333a42;--path:#5aa9ff;--dot:#77818c;
 --run0:#5ab4e8;--run1:#ff8a3d;--run2:#2fc79b;--run3:#e08fc2;--run4:#e5b83a;--run5:#a5a8ff}}
 body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--page);max-width:940px;margin:2rem auto;padding:0 1rem}
-h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}
+h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}h3{font-size:1rem;margin:1.2rem 0 .4rem}
 .soft{color:var(--soft)}svg{width:100%;height:auto;display:block}.framed{border:1px solid var(--line);border-radius:6px}
 table{border-collapse:collapse}td,th{padding:.15rem 1.2rem .15rem 0;text-align:left;vertical-align:top}
 th{font-weight:600;color:var(--soft)}.numbers td+td,.numbers th+th{text-align:right;font-variant-numeric:tabular-nums}
 text{font-size:12px;fill:var(--soft);stroke:var(--page);stroke-width:3px;paint-order:stroke}
 @media(max-width:600px){text{font-size:24px}td,th{padding-right:.8rem}}
-.wide{overflow-x:auto}path,polyline{fill:none;stroke-linecap:round;stroke-linejoin:round}
+.wide{overflow-x:auto}table:not([class]) td{overflow-wrap:anywhere}details table:not([class]) th{overflow-wrap:anywhere;min-width:9em}path,polyline{fill:none;stroke-linecap:round;stroke-linejoin:round}
 .landmarks{stroke:var(--dot);stroke-width:1.6;opacity:.7}.path{stroke:var(--path);stroke-width:2}
 .keyframes{stroke:var(--path);stroke-width:6}.scale{stroke:var(--soft);stroke-width:2}
 .start{fill:#1a9d50}.end{fill:#d43a2f}.tracked{fill:#1a9d50}.lost{fill:#d43a2f}.starting{fill:var(--line)}
 .grid{stroke:var(--line)}.series{stroke:var(--path)}
-.shape{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}.shape figure{margin:0}
-.shape figure:first-child{grid-column:1/-1}.shape img{width:100%;display:block;border-radius:6px}
+.shape{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}img{width:100%;display:block;border-radius:6px}
+.turn canvas,.turn .live{display:none}.turn.on canvas{display:block;width:100%;aspect-ratio:3/2;border:1px solid var(--line);border-radius:6px;
+box-sizing:border-box;cursor:grab;touch-action:pan-y}.turn.on img,.turn.on .still{display:none}.turn.on .live{display:block;margin:.4rem 0 1rem}
+.turn canvas:focus-visible{outline:2px solid var(--path)}button{font:inherit;color:inherit;background:none;border:1px solid var(--line);border-radius:4px;padding:.1em .6em;cursor:pointer}
+.keyframes-shown{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem}.keyframes-shown div{display:flex;gap:4px}.keyframes-shown img{flex:1;min-width:0;border-radius:3px}
+figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem;margin-top:1rem}
+.stages text{font-size:13px}.bar{fill:var(--path);opacity:.75}.median,.p95{stroke:var(--ink);stroke-width:1.5}.p95{stroke-dasharray:4 3}
+@media(max-width:600px){.stages{grid-template-columns:1fr}.stages text{font-size:15px}.shape,.keyframes-shown{grid-template-columns:1fr}.turn.on canvas{aspect-ratio:1}}
 .key{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin:0 .3em 0 1em}.key:first-child{margin-left:0}
 .run0{--own:var(--run0)}.run1{--own:var(--run1)}.run2{--own:var(--run2)}.run3{--own:var(--run3)}.run4{--own:var(--run4)}.run5{--own:var(--run5)}
 .curve{stroke:var(--own);stroke-width:2}.truth{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 4}
 .again{stroke-dasharray:9 4}.half{fill:var(--own)}.rest{fill:var(--own);opacity:.4}.mark{stroke:var(--own);stroke-width:2}
-.compared td,.compared thead th{font-variant-numeric:tabular-nums}.compared th:first-child{white-space:nowrap}
+.compared td,.compared thead th{font-variant-numeric:tabular-nums}.compared th:first-child,.compared td:first-child{white-space:nowrap;position:sticky;left:0;background:var(--page)}
 .chip{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.4em;background:var(--own)}
-.legend span{margin-right:1.2em;white-space:nowrap}
+.legend>span{margin-right:1.2em;white-space:nowrap}.legend .key{margin-left:0}
+@media(max-width:600px){.compared th:first-child{white-space:normal;min-width:6em}.compared tbody td{min-width:5.5em;max-width:8em;overflow-wrap:anywhere}}
 summary{cursor:pointer;font-weight:600}details{margin-top:2rem}
 </style>
 )";

@@ -5,8 +5,10 @@
 #include <cstdio>
 
 #include "alidade/base/timing.h"
+#include "alidade/view/histogram.h"
 #include "alidade/view/page.h"
 #include "alidade/view/svg.h"
+#include "alidade/view/turnable.h"
 
 namespace alidade {
 namespace {
@@ -20,6 +22,7 @@ std::string Milliseconds(double value) {
 std::string TimingTable(
     const std::vector<std::pair<std::string, std::vector<double>>>& milliseconds) {
   std::string html =
+      "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"milliseconds\">\n"
       "<table class=\"numbers\">\n<tr><th>ms</th><th>median</th><th>mean</th><th>p95</th>"
       "<th>max</th><th>count</th></tr>\n";
   for (const auto& [name, samples] : milliseconds) {
@@ -31,33 +34,96 @@ std::string TimingTable(
     }
     html += Cell("td", std::to_string(s.count)) + "</tr>\n";
   }
-  return html + "</table>\n";
+  return html + "</table>\n</div>\n";
+}
+
+// How long each stage took how often.
+std::string Histograms(
+    const std::vector<std::pair<std::string, std::vector<double>>>& milliseconds) {
+  std::string html = "<div class=\"stages\">\n";
+  for (const auto& [name, samples] : milliseconds) {
+    if (samples.empty()) continue;
+    html += "<figure>" + DrawHistogram(samples, "ms", "histogram: milliseconds of " + name) +
+            Cell("figcaption", name) + "</figure>\n";
+  }
+  return html +
+         "</div>\n<p class=\"soft\">How often each took how long; line: median, dashed: 95 % are "
+         "below, last bar: with all that took longer.</p>\n";
 }
 
 std::string Timing(const RunReport& report) {
   if (report.milliseconds.empty() || report.milliseconds.front().second.empty()) return "";
   const std::vector<double>& frames = report.milliseconds.front().second;
-  return "<h2>Time</h2>\n" + TimingTable(report.milliseconds) +
+  return "<h2>Time</h2>\n" + TimingTable(report.milliseconds) + Histograms(report.milliseconds) +
          "<p class=\"soft\">Each frame, as its caller waits:</p>\n" +
          DrawSeries(frames, 1.5 * Summarise(frames).p95, "ms");
 }
 
-std::string Shape(const std::vector<ReportPicture>& pictures) {
-  if (pictures.empty()) return "";
-  std::string html = "<h2>Shape</h2>\n<div class=\"shape\">\n";
-  for (const ReportPicture& picture : pictures) {
-    const std::string caption = EscapeHtml(picture.caption);
-    html += "<figure><img alt=\"";
-    html += caption;
-    html += "\" src=\"data:";
-    html += picture.type;
-    html += ";base64,";
-    html += Base64(picture.bytes);
-    html += "\"><figcaption class=\"soft\">";
-    html += caption;
-    html += "</figcaption></figure>\n";
-  }
+std::string Figure(const ReportPicture& picture) {
+  return "<figure>" + PictureHtml(picture) + Cell("figcaption", picture.caption) + "</figure>\n";
+}
+
+std::string Shape(const RunReport& report) {
+  const bool turnable = !report.cloud.cloud.points.empty();
+  if (!turnable && report.shape.empty()) return "";
+  // Without further views the cloud is the landmarks'.
+  std::string html = report.shape.empty() ? "<h2>Landmarks</h2>\n" : "<h2>Shape</h2>\n";
+  if (turnable) html += TurnableHtml(report.cloud, report.cloud_picture);
+  if (report.shape.empty()) return html;
+  html += "<div class=\"shape\">\n";
+  for (const ReportPicture& picture : report.shape) html += Figure(picture);
   return html + "</div>\n";
+}
+
+std::string Keyframes(const std::vector<ReportKeyframe>& keyframes) {
+  if (keyframes.empty()) return "";
+  std::string html = "<h2>Keyframes</h2>\n<div class=\"keyframes-shown\">\n";
+  for (const ReportKeyframe& keyframe : keyframes) {
+    html += "<figure><div>" + PictureHtml(keyframe.features);
+    if (!keyframe.depth.bytes.empty()) html += PictureHtml(keyframe.depth);
+    html += "</div>" + Cell("figcaption", keyframe.caption) + "</figure>\n";
+  }
+  return html +
+         "</div>\n<p class=\"soft legend\"><span><span class=\"key\" "
+         "style=\"background:#1fb6e8\"></span>features that show a landmark</span> "
+         "<span><span class=\"key\" style=\"background:#b9c1ca\"></span>others</span> "
+         "<span><span class=\"key\" style=\"background:#d43a2f\"></span>on what moves</span> "
+         "<span>depth: near is bright, far is dark</span></p>\n";
+}
+
+std::string Legend(bool with_truth) {
+  return std::string(
+             "<p class=\"soft legend\"><span><span class=\"key\" "
+             "style=\"background:#1a9d50\"></span>start</span> "
+             "<span><span class=\"key\" style=\"background:#d43a2f\"></span>end</span> "
+             "<span><span class=\"key\" style=\"background:var(--path)\"></span>path and "
+             "keyframes</span> "
+             "<span><span class=\"key\" style=\"background:var(--dot)\"></span>landmarks"
+             "</span>") +
+         (with_truth ? " <span>dashed: the truth</span>" : "") + "</p>\n";
+}
+
+// Each map from above and from the side.
+std::string Maps(const std::vector<ReportMap>& maps) {
+  std::string html;
+  for (size_t i = 0; i < maps.size(); ++i) {
+    const bool many = maps.size() > 1;
+    const auto heading = [&](const char* words) {
+      return many ? std::string("<h3>") + words + "</h3>\n"
+                  : std::string("<h2>") + words + "</h2>\n";
+    };
+    if (many) {
+      html += "<h2>Map " + std::to_string(i + 1) + " of " + std::to_string(maps.size()) +
+              "</h2>\n<p class=\"soft\">" + EscapeHtml(maps[i].caption) + "</p>\n";
+    }
+    const PlaceDrawing& place = maps[i].place;
+    html += heading("From above") + "<div class=\"framed\">" + DrawPlace(place, PlaceView::kAbove) +
+            "</div>\n";
+    if (i == 0) html += Legend(!place.truth.empty());
+    html += heading("From the side") + "<div class=\"framed\">" +
+            DrawPlace(place, PlaceView::kSide) + "</div>\n";
+  }
+  return html;
 }
 
 }  // namespace
@@ -80,13 +146,13 @@ std::string Base64(const std::string& bytes) {
 std::string RenderReport(const RunReport& report) {
   std::string html = PairTable(report.facts);
   html += HtmlList("Warnings", report.warnings);
-  html += "<h2>From above</h2>\n<div class=\"framed\">" +
-          DrawPlace(report.place, PlaceView::kAbove) +
-          "</div>\n<p class=\"soft\"><span class=\"key\" style=\"background:#1a9d50\"></span>start"
-          "<span class=\"key\" style=\"background:#d43a2f\"></span>end"
-          "<span class=\"key\" style=\"background:var(--path)\"></span>path and keyframes"
-          "<span class=\"key\" style=\"background:var(--dot)\"></span>landmarks</p>\n";
-  html += Shape(report.shape);
+  html += Maps(report.maps);
+  html += Shape(report);
+  if (!report.error.empty()) {
+    html += "<h2>Distance to the truth</h2>\n" +
+            DrawCurves({report.error}, report.seconds, "s", "m", "distance to the truth over time");
+  }
+  html += Keyframes(report.keyframes);
   html += "<h2>Frames</h2>\n" + DrawTimeline(report.frames) +
           "<p class=\"soft\"><span class=\"key\" style=\"background:var(--line)\"></span>starting"
           "<span class=\"key\" style=\"background:#1a9d50\"></span>tracked"
