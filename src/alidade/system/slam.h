@@ -36,8 +36,9 @@ struct PoseQuality {
   // with xi = (translation; rotation) ~ N(0, covariance); m², m rad, rad² (monocular: map units).
   // From the normal equations of the pose, scaled by the residuals, so that noise of images and
   // landmarks is in it. It is the error against the map as it stands around the camera; what the
-  // map itself is off by, in its world (drift, until a loop closes), is not in it. Zero: not known,
-  // or the first frame of a map, which is where it is by definition.
+  // map itself is off by, in its world (drift, until a loop closes), is not in it: with one camera,
+  // in the first second or two of a map, motions are off by some four times what this says. Zero:
+  // not known, or the first frame of a map, which is where it is by definition.
   Matrix6d covariance = Matrix6d::Zero();
   int expected = 0;        // landmarks that should be in view
   int inliers = 0;         // of these, found where the pose says
