@@ -47,11 +47,14 @@ TEST_F(RunOptions, UnknownSettingNamesTheNearest) {
 TEST_F(RunOptions, SettingsOfTheStreamAreGivenAndListedAsAllOthers) {
   const std::string file =
       results_.Write("settings.yaml", "stream:\n  picture_width: 200\n  waiting: 4\nseed: 5\n");
-  ASSERT_EQ(Run({"--last", "3", "--config", file, "--set", "stream.waiting=5", "--record"}).status,
+  ASSERT_EQ(Run({"--last", "3", "--config", file, "--set", "stream.waiting=5", "--set",
+                 "look.dark=30", "--record"})
+                .status,
             0);
   const nlohmann::json settings = Settings();
   EXPECT_EQ(settings["stream.picture_width"], 200);
   EXPECT_EQ(settings["stream.waiting"], 5);
+  EXPECT_EQ(settings["look.dark"], 30);
   EXPECT_EQ(settings["stream.pictures_hz"], 10);  // as it is by itself
   EXPECT_EQ(settings["seed"], 5);
   EXPECT_THAT(ReadText(results_ / "out/report.html"), HasSubstr("stream.picture_width"));
@@ -65,6 +68,8 @@ TEST_F(RunOptions, SettingsOfTheStreamThatCannotBeAreRefused) {
   ExpectError(2, {"--set", "stream.waiting=few"}, "'few' is not a whole number");
   ExpectError(2, {"--set", "stream.picture_quality=0"}, "stream.picture_quality must be within");
   ExpectError(2, {"--set", "stream.edge_shared=0", "--record"}, "stream.edge_shared must be");
+  ExpectError(2, {"--set", "look.blurr=0.3"}, "did you mean 'look.blur'");
+  ExpectError(2, {"--set", "look.dark=256"}, "look.dark must be within");
 }
 
 TEST_F(RunOptions, AMapThatCannotBeReadIsSaid) {

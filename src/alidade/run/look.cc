@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/run/setting_group.h"
 
 namespace alidade {
 namespace {
@@ -32,16 +33,33 @@ struct Differences {
   double Blur() const { return all > 0 ? (all - lost) / all : 1; }
 };
 
+// `s` is a LookSettings, const or not.
+constexpr auto kVisit = [](auto& s, auto&& visit) {
+  visit("look.blur", s.blur);
+  visit("look.contrast", s.contrast);
+  visit("look.corners", s.corners);
+  visit("look.dark", s.dark);
+};
+
 }  // namespace
 
 void LookSettings::Check() const {
-  const auto within = [](double value, double most, const char* name) {
-    if (!(value >= 0 && value <= most)) ThrowUsage(std::string("look: ") + name + " cannot be");
+  const auto within = [](double value, int most, const char* name) {
+    if (!(value >= 0 && value <= most))
+      ThrowUsage("look." + std::string(name) + " must be within 0…" + std::to_string(most));
   };
   within(dark, 255, "dark");
   within(blur, 1, "blur");
   within(contrast, 255, "contrast");
   within(corners, 1, "corners");
+}
+
+void LookSettings::Set(const std::string& name, const std::string& value) {
+  SetByName(*this, kVisit, name, value);
+}
+
+std::vector<std::pair<std::string, std::string>> LookSettings::All() const {
+  return AllByName(*this, kVisit);
 }
 
 double BlurOf(const cv::Mat& gray) {

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace alidade {
 
@@ -15,7 +18,11 @@ struct LookSettings {
                           // have 6 to 17, empty walls with their shadows 2
   double corners = 0.25;  // share of the corners wanted below which a sharp picture is bare: a
                           // third is enough to go on
-  void Check() const;  // throws Error naming the field that cannot be
+  void Check() const;     // throws Error (usage) naming the field that cannot be
+
+  // As SlamSettings::Set() and All(); names begin with "look.".
+  void Set(const std::string& name, const std::string& value);
+  std::vector<std::pair<std::string, std::string>> All() const;
 };
 
 // What BlurOf() is of a sharp picture when none was seen: in the middle of those of cameras.

@@ -21,6 +21,7 @@ struct RunRecord {
   SourceInfo source;
   SlamSettings settings;
   StreamFeedSettings stream;  // of who tells the run, if somebody does
+  LookSettings look;          // of frames without a pose
   std::string profile;
   int threads = 0;
 

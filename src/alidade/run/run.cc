@@ -65,6 +65,8 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   const RunSettings settings = SettingsFrom(options);
   record.settings = settings.slam;
   record.stream = settings.stream;
+  record.look = settings.look;
+  record.untracked.set_look(settings.look);
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
 

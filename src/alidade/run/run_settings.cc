@@ -7,11 +7,14 @@ namespace alidade {
 void RunSettings::Check() const {
   slam.Check();
   stream.Check();
+  look.Check();
 }
 
 void RunSettings::Set(const std::string& name, const std::string& value) {
   if (name.rfind("stream.", 0) == 0) {
     stream.Set(name, value);
+  } else if (name.rfind("look.", 0) == 0) {
+    look.Set(name, value);
   } else {
     slam.Set(name, value);
   }
@@ -20,6 +23,7 @@ void RunSettings::Set(const std::string& name, const std::string& value) {
 std::vector<std::pair<std::string, std::string>> RunSettings::All() const {
   auto all = slam.All();
   for (auto& setting : stream.All()) all.push_back(std::move(setting));
+  for (auto& setting : look.All()) all.push_back(std::move(setting));
   std::sort(all.begin(), all.end());
   return all;
 }

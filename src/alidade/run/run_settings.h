@@ -1,10 +1,12 @@
-// All settings of a run, by name: the system's, and those of the stream.
+// All settings of a run, by name: the system's, those of the stream and of how
+// pictures without a pose are judged.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "alidade/run/look.h"
 #include "alidade/run/stream_settings.h"
 #include "alidade/system/settings.h"
 
@@ -13,6 +15,7 @@ namespace alidade {
 struct RunSettings {
   SlamSettings slam;
   StreamFeedSettings stream;  // stream.…
+  LookSettings look;          // look.…
   void Check() const;         // throws Error (usage) naming the field that cannot be
 
   // As SlamSettings::Set() and All().

@@ -24,7 +24,7 @@ ordered_json SettingsJson(const RunRecord& record) {
   ordered_json settings = {{"profile", record.profile},
                            {"schedule", record.settings.threaded ? "threaded" : "inline"},
                            {"threads", record.threads}};
-  for (const auto& [name, value] : RunSettings{record.settings, record.stream}.All()) {
+  for (const auto& [name, value] : RunSettings{record.settings, record.stream, record.look}.All()) {
     const ordered_json parsed = ordered_json::parse(value, nullptr, false);
     settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
   }

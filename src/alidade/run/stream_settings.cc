@@ -1,18 +1,12 @@
 #include "alidade/run/stream_settings.h"
 
-#include <algorithm>
-#include <type_traits>
-
-#include "alidade/base/error.h"
-#include "alidade/base/nearest_name.h"
-#include "alidade/system/setting_text.h"
+#include "alidade/run/setting_group.h"
 
 namespace alidade {
 namespace {
 
-// `visit(name, field)` for every field; `Settings` is StreamFeedSettings, const or not.
-template <typename Settings, typename Visit>
-void VisitStream(Settings& s, Visit&& visit) {
+// `s` is a StreamFeedSettings, const or not.
+constexpr auto kVisit = [](auto& s, auto&& visit) {
   visit("stream.depth_points", s.stream.depth_points);
   visit("stream.detection_seconds", s.stream.detection_seconds);
   visit("stream.edge_shared", s.stream.edge_shared);
@@ -24,7 +18,7 @@ void VisitStream(Settings& s, Visit&& visit) {
   visit("stream.pictures_hz", s.pictures_hz);
   visit("stream.waiting", s.waiting);
   visit("stream.whole_seconds", s.whole_seconds);
-}
+};
 
 }  // namespace
 
@@ -41,24 +35,11 @@ void StreamFeedSettings::Check() const {
 }
 
 void StreamFeedSettings::Set(const std::string& name, const std::string& value) {
-  bool known = false;
-  std::vector<std::string> names;
-  VisitStream(*this, [&](const char* field, auto& member) {
-    names.push_back(field);
-    if (name != field) return;
-    known = true;
-    member = ParseSetting<std::decay_t<decltype(member)>>(name, value);
-  });
-  if (!known) ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
+  SetByName(*this, kVisit, name, value);
 }
 
 std::vector<std::pair<std::string, std::string>> StreamFeedSettings::All() const {
-  std::vector<std::pair<std::string, std::string>> all;
-  VisitStream(*this, [&](const char* field, const auto& member) {
-    all.push_back({field, FormatSetting(member)});
-  });
-  std::sort(all.begin(), all.end());
-  return all;
+  return AllByName(*this, kVisit);
 }
 
 }  // namespace alidade

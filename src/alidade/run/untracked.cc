@@ -104,7 +104,7 @@ void UntrackedLog::AddKeyFrame(const cv::Mat& gray) {
 
 void UntrackedLog::Add(double time, const std::string& reason, const cv::Mat& gray,
                        double corners) {
-  const Look look = alidade::LookOf(gray, corners, sharp_ > 0 ? blur_ / sharp_ : kUsualBlur);
+  const Look look = alidade::LookOf(gray, corners, sharp_ > 0 ? blur_ / sharp_ : kUsualBlur, look_);
   if (!going_on_ || all_.back().reason != reason || all_.back().look != look)
     all_.push_back({time, time, reason, look, 0});
   going_on_ = true;

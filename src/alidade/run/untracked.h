@@ -21,6 +21,8 @@ struct UntrackedFrames {
 // As a run goes on. Grows with the changes there are, not with the frames.
 class UntrackedLog {
  public:
+  void set_look(const LookSettings& settings) { look_ = settings; }
+
   // A keyframe: says how sharp pictures are when all is well.
   void AddKeyFrame(const cv::Mat& gray);
   // A frame without a pose. `corners`: found, as a share of those wanted.
@@ -34,6 +36,7 @@ class UntrackedLog {
   bool going_on_ = false;
   double blur_ = 0;  // sum over keyframes
   int sharp_ = 0;    // how many
+  LookSettings look_;
 };
 
 // "3.10 s to 4.20 s: the picture was blurred. More light, or moving more slowly, helps." Times are
