@@ -30,9 +30,9 @@ int NumberOf(const cv::Mat& image) {
   return number;
 }
 
-std::string WriteVideo(const TempFolder& folder, int frames) {
+std::string WriteVideo(const TempFolder& folder, int frames, double fps = 25) {
   const std::string path = folder / "clip.mp4";
-  cv::VideoWriter writer(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 25,
+  cv::VideoWriter writer(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), fps,
                          {128, 48});
   EXPECT_TRUE(writer.isOpened());
   for (int i = 0; i < frames; ++i) writer.write(Picture(i));
@@ -89,6 +89,38 @@ TEST(VideoSource, TimesOfAVariableRateAreThoseOfTheFile) {
     ASSERT_TRUE(frame) << i;
     EXPECT_NEAR(frame->time, times[static_cast<size_t>(i)], 1e-6);
     EXPECT_EQ(NumberOf(frame->image), i);
+  }
+}
+
+// Half a minute of a phone's video was made a whole one by this.
+TEST(VideoSource, ARepeatedTimeMovesNoOtherWhateverCalibrationIsGiven) {
+  const TempFolder folder;
+  WarningCatcher warnings;
+  const std::string path = WriteVideo(folder, 20, 50);
+  std::string bytes = ReadFile(path);
+  const uint32_t tick = Mp4Number(bytes, Mp4Box(bytes, "stts") + 20);
+  std::vector<uint32_t> durations(20, tick);
+  durations[4] = 0;
+  durations[18] = 2 * tick;
+  SetMp4Durations(bytes, durations);
+  AtomicWriteFile(path, bytes);
+  AtomicWriteFile(folder / "lens.yaml",
+                  "model: pinhole\nwidth: 128\nheight: 48\nfx: 100\nfy: 100\ncx: 64\ncy: 24\n");
+  for (const SourceOptions& options : {SourceOptions{}, SourceOptions{.fov_degrees = 60},
+                                       SourceOptions{.camera_file = folder / "lens.yaml"}}) {
+    const auto source = OpenSource(path, options);
+    double before = -1;
+    for (int i = 0; i < 20; ++i) {
+      const auto frame = source->Next();
+      ASSERT_TRUE(frame) << i;
+      EXPECT_GT(frame->time, before);
+      before = frame->time;
+      if (i == 5) {
+        EXPECT_NEAR(frame->time, 0.09, 1e-6) << "between its neighbours";
+      } else {
+        EXPECT_NEAR(frame->time, 0.02 * (i <= 4 ? i : i == 19 ? 19 : i - 1), 1e-6) << i;
+      }
+    }
   }
 }
 

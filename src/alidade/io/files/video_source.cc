@@ -16,6 +16,10 @@
 namespace alidade {
 namespace {
 
+// Frames on end with a time told before that are taken for slips of the writer. Phones and screen
+// recorders repeat one now and then; after more, the clock is taken to stand still.
+constexpr int kMostRepeated = 2;
+
 class VideoSource : public FrameSource {
  public:
   // `stream` has grabbed its first frame. Without a path (a live camera) there is no seeking.
@@ -68,12 +72,27 @@ class VideoSource : public FrameSource {
     grabbed_ = true;
     if (next_ == static_cast<int>(times_.size())) {
       stream_times_.push_back(stream_->Time());
-      const double step = 1 / info_.camera.fps;
-      // Streams without usable times say 0 for ever.
-      const bool goes_on = times_.empty() || stream_times_.back() > times_.back();
-      times_.push_back(goes_on ? stream_times_.back() : times_.back() + step);
+      times_.push_back(TimeOfNewest());
     }
     return true;
+  }
+
+  // The stream's own time, as long as it goes on. A time that was told before is put between its
+  // neighbours, so that the frames after it keep theirs. A stream whose clock stands still (those
+  // without usable times say 0 for ever) or begins anew goes on by the frame rate.
+  double TimeOfNewest() {
+    const double told = stream_times_.back() + offset_;
+    if (times_.empty()) return told;
+    if (told > times_.back()) {
+      expected_ = told + 1 / info_.camera.fps;
+      repeated_ = 0;
+      return told;
+    }
+    const double next = times_.back() + 1 / info_.camera.fps;
+    if (!expected_) return next;  // the clock has never moved
+    if (++repeated_ <= kMostRepeated) return (times_.back() + *expected_) / 2;
+    offset_ += next - told;
+    return next;
   }
 
   void Advance() {
@@ -119,9 +138,12 @@ class VideoSource : public FrameSource {
   cv::Size raw_size_;
   bool color_;  // frames are to have their colours as well
   std::vector<double> stream_times_,
-      times_;            // seconds, of the frames met so far: as the stream has them, as given
-  int next_ = 0;         // number of the frame the next call gives
-  bool grabbed_ = true;  // it is grabbed already
+      times_;          // seconds, of the frames met so far: as the stream has them, as given
+  double offset_ = 0;  // seconds from the stream's clock to the times given
+  std::optional<double> expected_;  // time of the next frame by the rate, once the clock has moved
+  int repeated_ = 0;                // frames on end whose time was told before
+  int next_ = 0;                    // number of the frame the next call gives
+  bool grabbed_ = true;             // it is grabbed already
   bool warned_ = false;
 };
 
@@ -136,7 +158,8 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
   if (first.empty()) ThrowInput(name + ": not one picture can be read");
   auto [calibration, guessed] = ChooseCalibration(beside, first.size(), options);
   const double fps = stream->FramesPerSecond();
-  if (guessed && std::isfinite(fps) && fps > 0) calibration.fps = fps;
+  // A camera file's rate is for streams that tell none: times do not depend on the calibration.
+  if (std::isfinite(fps) && fps > 0) calibration.fps = fps;
   ImagePreparation preparation(calibration, Sensor::kMono);
   info.camera = preparation.camera();
   info.camera_guessed = guessed;
