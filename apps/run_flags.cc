@@ -28,8 +28,9 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
                      "mono, stereo or rgbd; default: what the recording has");
   command.add_option("--camera", options.camera_file,
                      "Calibration (camera.yaml) instead of the recording's own");
-  command.add_option("--fov", options.fov_degrees,
-                     "Horizontal field of view, degrees, instead of a calibration (66)");
+  command.add_option(
+      "--fov", options.fov_degrees,
+      "Horizontal field of view, degrees, instead of a calibration (66 along the longer side)");
   command.add_option("--profile", options.profile,
                      "desktop (1000 features, full size) or phone (500, 400 pixels wide)");
   command.add_option("--config", options.config, "YAML file of settings");

@@ -146,9 +146,12 @@ TEST(VideoSource, StandsUprightByTheRotationFlag) {
   std::string bytes = ReadFile(path);
   SetMp4QuarterTurn(bytes);
   AtomicWriteFile(path, bytes);
-  const auto frame = OpenSource(path)->Next();
+  const auto source = OpenSource(path);
+  const auto frame = source->Next();
   ASSERT_TRUE(frame);
   ASSERT_EQ(frame->image.size(), cv::Size(48, 128));
+  // The field of view that is assumed is a phone's, along its longer side.
+  EXPECT_NEAR(source->Info().camera.fx, 64 / std::tan(33 * M_PI / 180), 1e-9);
   // Clockwise by a quarter: what was top left is top right.
   EXPECT_LT(cv::mean(frame->image(cv::Rect(28, 4, 16, 56)))[0], 20);
   EXPECT_NEAR(cv::mean(frame->image(cv::Rect(28, 68, 16, 56)))[0], 128, 10);

@@ -10,7 +10,7 @@
 namespace ALIDADE_API alidade {
 
 inline constexpr double kDefaultFovDegrees =
-    66;  // horizontal; most phones' main camera lies between 60 and 70
+    66;  // along the longer side; most phones' main camera lies between 60 and 70
 
 // camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1 p2 k3]`
 // (fisheye: [k1 k2 k3 k4]), `fps`, `depth_factor`, and for a stereo pair `baseline` (metres) or
