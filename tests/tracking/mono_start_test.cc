@@ -121,5 +121,53 @@ TEST(MonoStart, StartsTheSameWayTwice) {
   EXPECT_EQ(a.result->T_b_a.t, b.result->T_b_a.t);
 }
 
+// A camera on a tripod before which a thing moves: keypoints in the middle move as if the camera
+// did, those all about stay where they were.
+SyntheticWorld BeforeAStillCamera(double share_still) {
+  SyntheticWorld world = MakeSyntheticWorld(kWorld);
+  Random random(5);
+  std::vector<Eigen::Vector2d> place(kWorld.points);
+  std::vector<bool> still(kWorld.points);
+  for (size_t p = 0; p < place.size(); ++p) {
+    still[p] = random.Uniform(0, 1) < share_still;
+    place[p] = {random.Uniform(20, world.camera.width - 20),
+                random.Uniform(20, world.camera.height - 20)};
+  }
+  for (SyntheticView& view : world.views) {
+    auto frame = std::make_shared<Frame>(*view.frame);
+    for (size_t k = 0; k < frame->keypoints.size(); ++k) {
+      const int point = view.points[k];
+      if (point < 0 || !still[point]) continue;
+      frame->keypoints[k].x = static_cast<float>(place[point].x() + 0.25 * random.Gaussian());
+      frame->keypoints[k].y = static_cast<float>(place[point].y() + 0.25 * random.Gaussian());
+    }
+    frame->grid = KeypointGrid(frame->keypoints, world.camera.width, world.camera.height);
+    view.frame = frame;
+  }
+  return world;
+}
+
+TEST(MonoStart, AThingThatMovesBeforeAStillCameraIsNoPlace) {
+  const SyntheticWorld world = BeforeAStillCamera(0.25);
+  MonoStartSettings unaware;
+  unaware.max_still_share = 1;
+  MonoStart start(world.camera, {}), fooled(world.camera, unaware);
+  const Start outcome = FeedAll(world, start);
+  EXPECT_FALSE(outcome.result);
+  EXPECT_NE(outcome.reason.find("stand still"), std::string::npos) << outcome.reason;
+  EXPECT_TRUE(FeedAll(world, fooled).result);  // which is why
+}
+
+TEST(MonoStart, TellsTheReasonOfThePairThatCameNearest) {
+  SyntheticWorldSettings settings = kWorld;
+  SyntheticWorldMaker maker(settings);
+  for (int i = 0; i < 20; ++i) maker.Look({ExpSo3({0, 0.01 * i, 0}), {0, 0, 0}});
+  for (int i = 0; i < 2; ++i) maker.Look({ExpSo3({0, 0.2, 0}), {0, 0, 0}});
+  const SyntheticWorld world = maker.Take();
+  MonoStart start(world.camera, {});
+  // The newest reference sees no motion; the older ones see a turn.
+  EXPECT_NE(FeedAll(world, start).reason.find("too little parallax"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace alidade::mono_start_test

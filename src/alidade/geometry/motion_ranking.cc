@@ -34,11 +34,12 @@ void Add(const Se3& start, const RayPairs& rays, std::vector<Hypothesis>& hypoth
   };
   const RefinedMotion refined = RefineMotion(start, rays);
   if (!known(refined.T_b_a, true)) {
-    hypotheses.push_back(
-        {refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma, false});
+    hypotheses.push_back({refined.T_b_a, ScoreMotion(refined.T_b_a, rays), refined.direction_sigma,
+                          refined.noise, false});
   }
   if (!known(start, false)) {
-    hypotheses.push_back({start, ScoreMotion(start, rays), refined.direction_sigma, true});
+    hypotheses.push_back(
+        {start, ScoreMotion(start, rays), refined.direction_sigma, refined.noise, true});
   }
 }
 
@@ -72,7 +73,7 @@ std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPa
   // Bounds of three times the size: these motions carry the noise of the models they were taken
   // from.
   for (const Se3& T_b_a : motions) {
-    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0, true});
+    rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0, 1, true});
     most = std::max(most, rough.back().score.score);
   }
   SortByScore(rough);

@@ -12,6 +12,7 @@ struct Hypothesis {
   Se3 T_b_a;  // |t| = 1
   MotionScore score;
   double direction_sigma = 0;  // of t, radians
+  double noise = 1;            // of the errors (RefinedMotion)
   bool unrefined = false;      // a start from which refinement went far away
 };
 

@@ -129,7 +129,9 @@ RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
     }
   }
   refined.T_b_a = refined.T_b_a.Normalised();
-  const double variance = std::max(0.25, n.squares / std::max(1, n.count - 5));
+  const double found = n.squares / std::max(1, n.count - 5);
+  refined.noise = std::sqrt(found);
+  const double variance = std::max(0.25, found);
   const Eigen::SelfAdjointEigenSolver<Matrix5d> spectrum(n.H);
   const Matrix5d covariance = variance * spectrum.eigenvectors() *
                               spectrum.eigenvalues()

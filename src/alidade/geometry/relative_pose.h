@@ -34,6 +34,7 @@ struct RefinedMotion {
   // Standard deviations left by the noise that was found (not below sigma / 2), radians: of the
   // direction of t in its worst direction, and of the rotation in its worst.
   double direction_sigma = 0, rotation_sigma = 0;
+  double noise = 1;  // standard deviation of the errors within the bound, in sigmas
 };
 
 // Least squares on Sampson's distances (Hartley & Zisserman 11.4.3) of the matches within the

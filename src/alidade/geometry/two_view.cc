@@ -13,18 +13,13 @@
 #include "alidade/geometry/homography.h"
 #include "alidade/geometry/motion_ranking.h"
 #include "alidade/geometry/relative_pose.h"
+#include "alidade/geometry/turned_lens.h"
 #include "alidade/geometry/two_view_ransac.h"
 
 namespace alidade {
 namespace {
 
 constexpr double kOneDegree = std::numbers::pi / 180;
-// Of the matches a motion explains, so many must be beyond what a camera that only turned explains.
-// On made-up scenes a turning camera leaves up to 0.08 for noise, moving ones 0.4 and more.
-constexpr double kMinShareBeyondRotation = 0.2;
-constexpr double kMaxDirectionSigma =
-    3 * kOneDegree;  // of the direction of motion, as left by the noise
-
 // The 50th largest, or the smallest when there are fewer.
 double FiftiethLargest(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -57,17 +52,23 @@ void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
   result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kOneDegree;
 }
 
-// Whether a camera that only turned explains nearly all of the matches that `explained` picks.
+// Whether nearly all of the matches that `explained` picks are among those `turned` names, which a
+// camera that only turned explains.
 template <typename Explained>
-bool OnlyTurned(const Eigen::Matrix3d& start, const RayPairs& rays, Explained explained) {
-  const std::vector<bool> turned = ExplainedByRotation(start, rays);
+bool OnlyTurned(const std::vector<bool>& turned, Explained explained, double min_beyond) {
   int all = 0, beyond = 0;
-  for (size_t i = 0; i < rays.size(); ++i) {
+  for (size_t i = 0; i < turned.size(); ++i) {
     if (!explained(i)) continue;
     ++all;
     beyond += !turned[i];
   }
-  return beyond < kMinShareBeyondRotation * all;
+  return beyond < min_beyond * all;
+}
+
+// The same rays with noise of so many pixels.
+RayPairs WithSigma(RayPairs rays, const Eigen::Vector2d& focal, double sigma) {
+  rays.sigma = focal.cwiseInverse() * sigma;
+  return rays;
 }
 
 TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
@@ -90,6 +91,11 @@ void TwoViewSettings::Check() const {
   require(homography_share > 0 && homography_share < 1,
           "homography_share must lie between 0 and 1");
   require(min_parallax_degrees >= 0, "min_parallax_degrees must not be negative");
+  require(max_direction_sigma_degrees > 0, "max_direction_sigma_degrees must be positive");
+  require(turn_sigma > 0 && std::isfinite(turn_sigma), "turn_sigma must be positive");
+  require(min_beyond_turn >= 0 && min_beyond_turn <= 1, "min_beyond_turn must lie in 0 to 1");
+  require(min_beyond_lens >= 0 && min_beyond_lens <= 1, "min_beyond_lens must lie in 0 to 1");
+  require(lens_uncertainty >= 0 && lens_uncertainty <= 2, "lens_uncertainty must lie in 0 to 2");
   require(min_triangulated > 0, "min_triangulated must be positive");
   require(min_good_share >= 0 && min_good_share <= 1, "min_good_share must lie in 0 to 1");
   require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share must lie in 0 to 1");
@@ -137,8 +143,10 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
                                   ? models.homography
                                   : models.fundamental;
   // The usual case while a start is awaited, so the first to be told.
-  if (OnlyTurned(NearestRotation(H.determinant() < 0 ? -H : H), rays,
-                 [&](size_t i) { return larger.inlier[i]; })) {
+  const Eigen::Matrix3d turn = NearestRotation(H.determinant() < 0 ? -H : H);
+  if (OnlyTurned(
+          ExplainedByRotation(turn, WithSigma(rays, focal, settings.turn_sigma)),
+          [&](size_t i) { return larger.inlier[i]; }, settings.min_beyond_turn)) {
     return Refuse(std::move(result), TwoViewFailure::kLowParallax);
   }
   std::vector<Se3> motions = MotionsFromHomography(H);
@@ -153,10 +161,28 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   }
   result.T_b_a = best.T_b_a;
   Place(camera, a, b, settings.sigma, result);
-  if (OnlyTurned(best.T_b_a.R, rays, [&](size_t i) { return best.score.gain[i] > 0; }) ||
+  const auto explained = [&](size_t i) { return best.score.gain[i] > 0; };
+  const RayPairs noisy =
+      WithSigma(rays, focal, std::max(settings.turn_sigma, best.noise * settings.sigma));
+  if (OnlyTurned(ExplainedByRotation(best.T_b_a.R, noisy), explained, settings.min_beyond_turn) ||
       result.parallax_degrees < settings.min_parallax_degrees ||
-      best.direction_sigma > kMaxDirectionSigma) {
+      best.direction_sigma > settings.max_direction_sigma_degrees * kOneDegree) {
     return Refuse(std::move(result), TwoViewFailure::kLowParallax);
+  }
+  if (settings.lens_uncertainty > 0) {
+    RayPairs good = noisy;
+    good.a.clear();
+    good.b.clear();
+    for (size_t i = 0; i < noisy.size(); ++i) {
+      if (!explained(i)) continue;
+      good.a.push_back(noisy.a[i]);
+      good.b.push_back(noisy.b[i]);
+    }
+    const std::vector<bool> turned =
+        ExplainedByTurnedLens(best.T_b_a.R, good, settings.lens_uncertainty);
+    if (OnlyTurned(
+            turned, [](size_t) { return true; }, settings.min_beyond_lens))
+      return Refuse(std::move(result), TwoViewFailure::kUnknownLens);
   }
   for (size_t i = 1; i < ranked.size(); ++i) {
     if (IsRival(best, ranked[i], settings.max_rival_share)) {

@@ -30,6 +30,10 @@ std::string BugOf(const RunRecord& record) {
   return bugs;
 }
 
+// Relative uncertainty of a focal length that was assumed (66 degrees along the longer side):
+// phones and webcams have 50 to 90.
+constexpr double kGuessedLens = 0.6;
+
 // Takes the library's warnings while it lives.
 class Warnings {
  public:
@@ -85,6 +89,8 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();
   record.settings.sensor = record.source.sensor;
+  if (record.source.camera_guessed && record.settings.start.two_view.lens_uncertainty == 0)
+    record.settings.start.two_view.lens_uncertainty = kGuessedLens;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
   if (saved && saved->camera.width < record.source.camera.width)
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down

@@ -150,6 +150,10 @@ void VisitStart(Settings& i, Visit&& visit) {
   visit("start.reference_gap", i.reference_gap);
   visit("start.window", i.window);
   visit("start.min_motion", i.min_motion);
+  visit("start.still_pixels", i.still_pixels);
+  visit("start.max_still_share", i.max_still_share);
+  visit("start.min_still_peak", i.min_still_peak);
+  visit("start.min_still_area", i.min_still_area);
   visit("start.trial_frames", i.trial_frames);
   visit("start.trial_share", i.trial_share);
   visit("start.iterations", i.two_view.iterations);
@@ -157,6 +161,11 @@ void VisitStart(Settings& i, Visit&& visit) {
   visit("start.homography_share", i.two_view.homography_share);
   visit("start.min_parallax_degrees", i.two_view.min_parallax_degrees);
   visit("start.min_triangulated", i.two_view.min_triangulated);
+  visit("start.max_direction_sigma_degrees", i.two_view.max_direction_sigma_degrees);
+  visit("start.turn_sigma", i.two_view.turn_sigma);
+  visit("start.min_beyond_turn", i.two_view.min_beyond_turn);
+  visit("start.min_beyond_lens", i.two_view.min_beyond_lens);
+  visit("start.lens_uncertainty", i.two_view.lens_uncertainty);
 }
 
 template <typename Settings, typename Visit>

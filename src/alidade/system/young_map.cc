@@ -38,7 +38,9 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
 }
 
 bool YoungMap::Confirm(const TrackEstimate& estimate) {
-  if (!estimate.tracked || estimate.placed.inliers < settings_.start.trial_share * begun_points_)
+  // Of the points that should be in sight: a camera that drives leaves many behind in five frames.
+  const auto in_sight = static_cast<double>(estimate.sightings.size());
+  if (!estimate.tracked || estimate.placed.inliers < settings_.start.trial_share * in_sight)
     return false;
   if (--trial_left_ == 0) {
     for (KeyFrameId id : keyframes_) workers_.AddMapped(id);

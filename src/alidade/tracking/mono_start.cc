@@ -1,5 +1,6 @@
 #include "alidade/tracking/mono_start.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -7,6 +8,27 @@
 #include "alidade/base/median.h"
 
 namespace alidade {
+namespace {
+
+// How far about points lie: the area of the ellipse of one standard deviation, by pi.
+struct Extent {
+  double count = 0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+
+  void Add(const Eigen::Vector2d& p) {
+    ++count;
+    sum += p;
+    squares += p * p.transpose();
+  }
+  double Area() const {
+    if (count < 3) return 0;
+    const Eigen::Vector2d mean = sum / count;
+    return std::sqrt(std::max(0.0, (squares / count - mean * mean.transpose()).determinant()));
+  }
+};
+
+}  // namespace
 
 void MonoStartSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
@@ -19,8 +41,31 @@ void MonoStartSettings::Check() const {
   require(references >= 1 && reference_gap >= 1, "references and reference_gap must be positive");
   require(window > 0 && window <= 1, "window must lie in (0, 1]");
   require(min_motion >= 0 && min_motion < window, "min_motion must lie in [0, window)");
+  require(still_pixels > 0, "still_pixels must be positive");
+  require(min_still_peak >= 1, "min_still_peak must be at least 1");
+  require(max_still_share > 0 && max_still_share <= 1, "max_still_share must lie in (0, 1]");
+  require(min_still_area >= 0, "min_still_area must not be negative");
   require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
           "trial_share must lie in [0, 1]");
+}
+
+MonoStart::Step MonoStart::StepOf(TwoViewFailure failure) {
+  switch (failure) {
+    case TwoViewFailure::kNone:
+      return Step::kStarts;
+    case TwoViewFailure::kLowParallax:
+      return Step::kLowParallax;
+    case TwoViewFailure::kUnknownLens:
+      return Step::kUnknownLens;
+    case TwoViewFailure::kAmbiguous:
+      return Step::kAmbiguous;
+    case TwoViewFailure::kTooFewMatches:
+      return Step::kFewMatches;
+    case TwoViewFailure::kNoModel:
+    case TwoViewFailure::kTooFewPoints:
+      break;
+  }
+  return Step::kNoModel;
 }
 
 MonoStart::MonoStart(const Camera& camera, MonoStartSettings settings)
@@ -28,19 +73,28 @@ MonoStart::MonoStart(const Camera& camera, MonoStartSettings settings)
   settings_.Check();
 }
 
-std::optional<MonoStartResult> MonoStart::Try(Reference& reference,
-                                              const std::shared_ptr<const Frame>& frame,
-                                              bool& lost) {
+bool MonoStart::StandsStill(std::span<const Eigen::Vector2d> a,
+                            std::span<const Eigen::Vector2d> b) const {
+  const double near = settings_.still_pixels;
+  Extent still, around, rest;
+  for (size_t i = 0; i < a.size(); ++i) {
+    const double moved = (a[i] - b[i]).norm();
+    (moved < near ? still : moved < 2 * near ? around : rest).Add(a[i]);
+  }
+  return still.count >= settings_.max_still_share * static_cast<double>(a.size()) &&
+         still.count > settings_.min_still_peak * around.count &&
+         still.Area() >= settings_.min_still_area * rest.Area();
+}
+
+MonoStart::Step MonoStart::Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
+                               MonoStartResult& result) const {
   MatchSettings matching;
   matching.ratio = 0.9;
   const auto radius = static_cast<float>(settings_.window * camera_.width);
   const std::vector<IndexMatch> matches =
       MatchWindow(*reference.frame, *frame, reference.guess, radius, matching);
-  lost = static_cast<double>(matches.size()) < settings_.min_matches * settings_.match_scale;
-  if (lost) {
-    reason_ = "too few matches between frames";
-    return {};
-  }
+  if (static_cast<double>(matches.size()) < settings_.min_matches * settings_.match_scale)
+    return Step::kFewMatches;
   std::vector<Eigen::Vector2d> pixels_a, pixels_b;
   std::vector<double> motion;
   for (const IndexMatch& match : matches) {
@@ -50,29 +104,10 @@ std::optional<MonoStartResult> MonoStart::Try(Reference& reference,
     pixels_b.push_back(b.pixel());
     motion.push_back((a.pixel() - b.pixel()).norm());
   }
-  if (UpperMedian(motion) < settings_.min_motion * camera_.width) {
-    reason_ = "the camera hardly moves";
-    return {};
-  }
+  if (UpperMedian(motion) < settings_.min_motion * camera_.width) return Step::kLittleMotion;
   const TwoViewResult views = ReconstructTwoViews(camera_, pixels_a, pixels_b, settings_.two_view);
-  switch (views.failure) {
-    case TwoViewFailure::kNone:
-      break;
-    case TwoViewFailure::kLowParallax:
-      reason_ = "too little parallax: move the camera sideways";
-      return {};
-    case TwoViewFailure::kAmbiguous:
-      reason_ = "two motions explain what is seen";
-      return {};
-    case TwoViewFailure::kTooFewMatches:
-      reason_ = "too few matches between frames";
-      return {};
-    case TwoViewFailure::kNoModel:
-    case TwoViewFailure::kTooFewPoints:
-      reason_ = "too few points agree on one motion";
-      return {};
-  }
-  MonoStartResult result;
+  if (views.failure != TwoViewFailure::kNone) return StepOf(views.failure);
+  if (StandsStill(pixels_a, pixels_b)) return Step::kStillCamera;
   result.a = reference.frame;
   result.b = frame;
   result.T_b_a = views.T_b_a;
@@ -80,21 +115,24 @@ std::optional<MonoStartResult> MonoStart::Try(Reference& reference,
   for (size_t i = 0; i < matches.size(); ++i) {
     if (views.inlier[i]) result.points.push_back({views.p_a[i], matches[i].a, matches[i].b});
   }
-  return result;
+  return Step::kStarts;
 }
 
 std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame) {
-  if (static_cast<double>(frame->keypoints.size()) <
-      settings_.min_matches * settings_.match_scale) {
-    reason_ = "too few corners in the image";
+  farthest_ = Step::kFewCorners;
+  if (static_cast<double>(frame->keypoints.size()) < settings_.min_matches * settings_.match_scale)
     return {};
-  }
-  std::optional<MonoStartResult> result;
+  farthest_ = references_.empty() ? Step::kNoFrame : Step::kFewMatches;
   std::vector<Reference> kept;
   for (Reference& reference : references_) {
-    bool lost = false;
-    if (!result) result = Try(reference, frame, lost);
-    if (!lost) kept.push_back(std::move(reference));
+    MonoStartResult tried;
+    const Step step = Try(reference, frame, tried);
+    farthest_ = std::max(farthest_, step);
+    if (step == Step::kStarts) {  // the oldest that can has the most parallax
+      references_.clear();
+      return tried;
+    }
+    if (step != Step::kFewMatches) kept.push_back(std::move(reference));
   }
   references_ = std::move(kept);
   if (references_.empty() ||
@@ -106,7 +144,33 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
       reference.guess.push_back({keypoint.x, keypoint.y});
     references_.push_back(std::move(reference));
   }
-  return result;
+  return {};
+}
+
+const char* MonoStart::reason() const {
+  switch (farthest_) {
+    case Step::kNoFrame:
+      return "no frame yet";
+    case Step::kFewCorners:
+      return "too few corners in the image";
+    case Step::kFewMatches:
+      return "too few matches between frames";
+    case Step::kLittleMotion:
+      return "the camera hardly moves";
+    case Step::kNoModel:
+      return "too few points agree on one motion";
+    case Step::kLowParallax:
+      return "too little parallax: move the camera sideways";
+    case Step::kUnknownLens:
+      return "a turn on the spot explains what is seen: move the camera sideways";
+    case Step::kAmbiguous:
+      return "two motions explain what is seen";
+    case Step::kStillCamera:
+      return "something moves, the camera seems to stand still";
+    case Step::kStarts:
+      break;
+  }
+  return "";
 }
 
 }  // namespace alidade

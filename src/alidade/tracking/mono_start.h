@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "alidade/base/api.h"
@@ -23,10 +24,24 @@ struct MonoStartSettings {
   int references = 4;        // kept at a time, at most
   int reference_gap = 6;     // frames between them
   double window = 0.16;      // of the image's width: how far a keypoint may move between two frames
-  double min_motion = 0.015;  // of the image's width: median motion below which a pair can't tell
-  int trial_frames = 5;       // frames that must confirm the map before it is believed
-  double trial_share = 0.3;   // of its points, tracked in each of them
-  void Check() const;         // throws Error (usage) naming the field that cannot be
+  // Of the image's width: median motion below which a pair is not tried. Only saves time: what a
+  // pair can tell is for the two views to say.
+  double min_motion = 0.0075;
+  // A camera that stands still while something moves before it takes the thing for a place it moves
+  // past: two views cannot tell. But the rest of the picture stays where it was to a fraction of a
+  // pixel, which a moving camera shows only by chance. Refused when at least `max_still_share` of
+  // the matches moved by less than `still_pixels`, `min_still_peak` times as many as by one to two
+  // times that (around a chance meeting of motions there are as many or more: 0.2 to 0.8 in videos;
+  // a still camera has 1.3 before slow hands in a small picture, 4 to 20 else), and these lie about
+  // in at least `min_still_area` of the area of the others: what is fixed to the camera (a bonnet,
+  // a caption) is in one place.
+  double still_pixels = 1.0;
+  double max_still_share = 0.1;
+  double min_still_peak = 1.2;
+  double min_still_area = 0.4;
+  int trial_frames = 5;      // frames that must confirm the map before it is believed
+  double trial_share = 0.3;  // of its points that should be in sight, tracked in each of them
+  void Check() const;        // throws Error (usage) naming the field that cannot be
 };
 
 struct MonoStartResult {
@@ -46,20 +61,38 @@ class MonoStart {
   // The next frame; a result once it and an earlier one tell where the points are.
   std::optional<MonoStartResult> Add(std::shared_ptr<const Frame> frame);
   void Reset() { references_.clear(); }
-  const char* reason() const { return reason_; }  // why the last frame did not start a map
+  // Why the last frame did not start a map: of the pairs it was tried in, the one that came nearest
+  // to a start.
+  const char* reason() const;
 
  private:
   struct Reference {
     std::shared_ptr<const Frame> frame;
     std::vector<Eigen::Vector2f> guess;  // where each keypoint was last seen
   };
-  std::optional<MonoStartResult> Try(Reference& reference,
-                                     const std::shared_ptr<const Frame>& frame, bool& lost);
+  // How far a pair came, and why no farther.
+  enum class Step {
+    kNoFrame,
+    kFewCorners,
+    kFewMatches,
+    kLittleMotion,
+    kNoModel,
+    kLowParallax,
+    kUnknownLens,
+    kAmbiguous,
+    kStillCamera,
+    kStarts
+  };
+  static Step StepOf(TwoViewFailure failure);
+  // Whether too many matches stay where they were (settings).
+  bool StandsStill(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b) const;
+  Step Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
+           MonoStartResult& result) const;
 
   Camera camera_;
   MonoStartSettings settings_;
   std::vector<Reference> references_;  // oldest first
-  const char* reason_ = "no frame yet";
+  Step farthest_ = Step::kNoFrame;     // of the last frame's pairs
 };
 
 }  // namespace alidade

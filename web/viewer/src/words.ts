@@ -6,6 +6,8 @@ export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Start
 const ADVICE: readonly [RegExp, string][] = [
   [/hardly moves/, 'Move the camera sideways, slowly.'],
   [/too little parallax/, 'Turning is not enough: it has to see things from another place.'],
+  [/turn on the spot explains/, 'Turning is not enough: it has to see things from another place.'],
+  [/camera seems to stand still/, 'The camera itself has to move, not the things before it.'],
   [/two motions explain/, 'What is seen is flat: show it something with depth.'],
   [/too few matches between frames/, 'Move more slowly, or add light.'],
   [/too few points agree/, 'Move more slowly, and keep moving things out of the picture.'],

@@ -1,0 +1,104 @@
+#include "alidade/geometry/turned_lens.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/geometry/two_view_ransac.h"
+
+namespace alidade {
+namespace {
+
+using Vector5d = Eigen::Matrix<double, 5, 1>;
+using Matrix5d = Eigen::Matrix<double, 5, 5>;
+
+struct Turn {
+  Eigen::Matrix3d R;
+  LensChange lens;
+
+  Turn Stepped(const Vector5d& step, double uncertainty) const {
+    Turn next;
+    next.R = ExpSo3(step.head<3>()) * R;
+    next.lens.g = std::clamp(lens.g * std::exp(step[3]), 1 / (1 + uncertainty), 1 + uncertainty);
+    next.lens.k = std::clamp(lens.k + step[4], -uncertainty / 2, uncertainty / 2);
+    return next;
+  }
+};
+
+// g pi(R u(a)) - u(b), in sigmas; far out where the point turns behind the camera.
+Eigen::Vector2d ErrorOf(const Turn& turn, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                        const Eigen::Vector2d& sigma) {
+  const auto [g, k] = turn.lens;
+  const Eigen::Vector2d u_a = a.head<2>() * (1 + k * a.head<2>().squaredNorm()) / g;
+  const Eigen::Vector2d u_b = b.head<2>() * (1 + k * b.head<2>().squaredNorm());
+  const Eigen::Vector3d p = turn.R * u_a.homogeneous();
+  if (p.z() < 0.05) return Eigen::Vector2d::Constant(1e6);
+  return (g * p.head<2>() / p.z() - u_b).cwiseQuotient(sigma);
+}
+
+// Sum of squared errors, each at most `bound`, and the priors: of `uncertainty` on the logarithm of
+// g, of half of it on k.
+double CostOf(const Turn& turn, const RayPairs& rays, double uncertainty, double bound) {
+  const double g = std::log(turn.lens.g) / uncertainty, k = 2 * turn.lens.k / uncertainty;
+  double cost = g * g + k * k;
+  for (size_t i = 0; i < rays.size(); ++i)
+    cost += std::min(bound, ErrorOf(turn, rays.a[i], rays.b[i], rays.sigma).squaredNorm());
+  return cost;
+}
+
+// One step of Levenberg and Marquardt, with more damping until the cost falls; false: none does.
+bool Improve(Turn& turn, const RayPairs& rays, double uncertainty, double bound) {
+  constexpr double kDifference = 1e-6;  // in place of derivatives
+  Matrix5d H = Matrix5d::Zero();
+  Vector5d g = Vector5d::Zero();
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const Eigen::Vector2d error = ErrorOf(turn, rays.a[i], rays.b[i], rays.sigma);
+    if (!(error.squaredNorm() < bound)) continue;
+    Eigen::Matrix<double, 2, 5> J;
+    for (int p = 0; p < 5; ++p) {
+      const Turn moved = turn.Stepped(kDifference * Vector5d::Unit(p), 10);
+      J.col(p) = (ErrorOf(moved, rays.a[i], rays.b[i], rays.sigma) - error) / kDifference;
+    }
+    H += J.transpose() * J;
+    g += J.transpose() * error;
+  }
+  const double weight = 1 / (uncertainty * uncertainty);
+  H(3, 3) += weight;
+  H(4, 4) += 4 * weight;
+  g[3] += weight * std::log(turn.lens.g);
+  g[4] += 4 * weight * turn.lens.k;
+  const double cost = CostOf(turn, rays, uncertainty, bound);
+  for (double damping = 1e-6; damping < 1e4; damping *= 100) {
+    Matrix5d damped = H;
+    damped.diagonal() *= 1 + damping;
+    const Vector5d step = -damped.ldlt().solve(g);
+    if (!step.allFinite()) return false;
+    const Turn next = turn.Stepped(step, uncertainty);
+    if (CostOf(next, rays, uncertainty, bound) < cost) {
+      turn = next;
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<bool> ExplainedByTurnedLens(const Eigen::Matrix3d& R, const RayPairs& rays,
+                                        double uncertainty, LensChange* found) {
+  constexpr int kIterations = 5;  // for each gate
+  Turn turn{R, {}};
+  for (const double widening : {1e4, 64.0, 16.0, 4.0, 1.0}) {
+    const double bound = widening * 2 * kChi2Homography;
+    for (int i = 0; i < kIterations && Improve(turn, rays, uncertainty, bound); ++i) continue;
+  }
+  std::vector<bool> explained;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    explained.push_back(ErrorOf(turn, rays.a[i], rays.b[i], rays.sigma).squaredNorm() <
+                        2 * kChi2Homography);
+  }
+  if (found) *found = turn.lens;
+  return explained;
+}
+
+}  // namespace alidade
