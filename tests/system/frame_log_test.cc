@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <thread>
 
@@ -262,6 +263,43 @@ TEST(FrameLog, AFrameIsReadOnceItHasEnded) {
   EXPECT_EQ(log.Trajectory(store).size(), 2u);
   EXPECT_FALSE(log.Trajectory(store)[1].tracked);
   EXPECT_EQ(log.size(), 3);
+}
+
+TEST(FrameLog, AFrameIsPlacedLate) {
+  MapStore store;
+  KeyFrameId keyframe;
+  store.Commit([&](MapCommit& commit) { keyframe = AddKeyFrame(commit, Se3()); });
+  FrameLog log;
+  const int frames = 1300;  // two full chunks and an open one
+  Dice dice(3);
+  std::vector<Se3> placed(frames);
+  for (int i = 0; i < frames; ++i) {
+    log.Begin(i);
+    placed[i] = dice.Pose();
+    if (i % 2)
+      log.Place(AnchorTo(store.Snapshot().state(), keyframe, placed[i]), placed[i].Inverse());
+    log.End();
+  }
+  const std::vector<int> late = {0, 512, 600, 1299,
+                                 1298};  // the last but one lacks its pose no more
+  const std::vector<FramePose> before = log.Trajectory(store);
+  for (int i : late) {
+    placed[i] = dice.Pose();
+    log.PlaceLate(i, AnchorTo(store.Snapshot().state(), keyframe, placed[i]));
+  }
+  log.PlaceLate(frames, {});  // there is none such: nothing happens
+  const std::vector<FramePose> after = log.Trajectory(store);
+  ASSERT_EQ(after.size(), before.size());
+  for (int i = 0; i < frames; ++i) {
+    const bool was_late = std::find(late.begin(), late.end(), i) != late.end();
+    EXPECT_EQ(before[i].tracked, i % 2 == 1);
+    ASSERT_EQ(after[i].tracked, before[i].tracked || was_late) << i;
+    EXPECT_EQ(after[i].late, was_late && !before[i].tracked) << i;
+    if (!after[i].tracked) continue;
+    EXPECT_LT((after[i].T_world_camera.t - placed[i].Inverse().t).norm(), 1e-9) << i;
+    if (after[i].late) continue;
+    EXPECT_EQ(after[i].T_world_camera_live.t, before[i].T_world_camera_live.t);
+  }
 }
 
 TEST(FrameLog, AnotherThreadReadsWholeTrajectoriesBesideTheWriter) {

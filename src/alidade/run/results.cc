@@ -55,7 +55,8 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
     const std::string& stamp = record.stamps[index];
     MapResults& map = in(frame.map);
     map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
-    map.live.push_back({frame.time, Mounted(frame.T_world_camera_live, turn), stamp});
+    if (!frame.late)
+      map.live.push_back({frame.time, Mounted(frame.T_world_camera_live, turn), stamp});
   }
   for (KeyFrameId id : results.map.KeyFrames()) {
     const KeyFrame* keyframe = results.map.Find(id);

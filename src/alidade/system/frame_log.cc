@@ -47,23 +47,57 @@ void FrameLog::End() {
   begun_ = placed_ = false;
 }
 
-// In the open chunk's table. Readers hold the table: a longer one takes its place.
+// In the open chunk's table.
 int FrameLog::AnchorOf(KeyFrameId keyframe) {
-  const auto same = [&](const ChunkAnchor& a) { return a.placed == keyframe; };
-  if (open_.anchors) {
-    const auto at = std::find_if(open_.anchors->rbegin(), open_.anchors->rend(), same);
-    if (at != open_.anchors->rend()) return static_cast<int>(open_.anchors->rend() - at) - 1;
-  }
-  auto anchors = open_.anchors ? std::make_shared<AnchorTable>(*open_.anchors)
-                               : std::make_shared<AnchorTable>();
-  anchors->push_back({keyframe, keyframe, {}, 1});
-  const int index = static_cast<int>(anchors->size()) - 1;
-  std::vector<int>& chunks = chunks_of_[keyframe];
-  const int number = first_of_open_ / kChunk;
-  if (chunks.empty() || chunks.back() != number) chunks.push_back(number);
+  std::shared_ptr<const AnchorTable> table = open_.anchors;
+  const int index = AnchorIn(table, first_of_open_ / kChunk, keyframe);
+  if (table == open_.anchors) return index;
   std::lock_guard<std::mutex> lock(mutex_);
-  open_.anchors = std::move(anchors);
+  open_.anchors = std::move(table);
   return index;
+}
+
+// In the table of chunk `number`. Readers hold the table: a longer one takes its place.
+int FrameLog::AnchorIn(std::shared_ptr<const AnchorTable>& table, int number, KeyFrameId keyframe) {
+  const auto same = [&](const ChunkAnchor& a) { return a.placed == keyframe; };
+  if (table) {
+    const auto at = std::find_if(table->rbegin(), table->rend(), same);
+    if (at != table->rend()) return static_cast<int>(table->rend() - at) - 1;
+  }
+  auto longer = table ? std::make_shared<AnchorTable>(*table) : std::make_shared<AnchorTable>();
+  longer->push_back({keyframe, keyframe, {}, 1});
+  std::vector<int>& chunks = chunks_of_[keyframe];
+  const auto at = std::lower_bound(chunks.begin(), chunks.end(), number);
+  if (at == chunks.end() || *at != number) chunks.insert(at, number);
+  table = std::move(longer);
+  return static_cast<int>(table->size()) - 1;
+}
+
+void FrameLog::PlaceLate(int index, Anchor anchor) {
+  const int number = index / kChunk;
+  const bool open = number == first_of_open_ / kChunk;
+  if (number < first_chunk_ || index >= first_of_open_ + open_count_) return;
+  Chunk chunk = open ? open_ : (*full_)[static_cast<size_t>(number - first_chunk_)];
+  auto records = std::make_shared<Records>(*chunk.records);
+  Record& record = (*records)[static_cast<size_t>(index % kChunk)];
+  if (record.anchor < 0) {
+    record.late = true;
+    ++chunk.tracked;
+  }
+  record.anchor = AnchorIn(chunk.anchors, number, anchor.keyframe);
+  anchor.T_camera_keyframe.t /= anchor.scale;
+  record.T_camera_anchor = Pack(anchor.T_camera_keyframe);
+  chunk.records = records;
+  if (open) {
+    writing_ = records;
+    std::lock_guard<std::mutex> lock(mutex_);
+    open_ = std::move(chunk);
+    return;
+  }
+  auto full = std::make_shared<std::vector<Chunk>>(*full_);
+  (*full)[static_cast<size_t>(number - first_chunk_)] = std::move(chunk);
+  std::lock_guard<std::mutex> lock(mutex_);
+  full_ = std::move(full);
 }
 
 void FrameLog::Seal() {
@@ -209,7 +243,8 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
         T_camera_anchor = Unpack(record.T_camera_anchor);
         T_camera_anchor.t *= place.scale;
         pose.T_world_camera = (T_camera_anchor * place.T_anchor_world).Inverse();
-        pose.T_world_camera_live = Unpack(record.T_world_camera_live);
+        pose.late = record.late;
+        if (!pose.late) pose.T_world_camera_live = Unpack(record.T_world_camera_live);
       }
     }
     trajectory.push_back(pose);

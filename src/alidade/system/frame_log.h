@@ -27,6 +27,9 @@ class FrameLog {
   void Begin(double time);  // seconds
   void BeginRecording();    // frames begun from now on are the next one's (FramePose::recording)
   void Place(const Anchor& anchor, const Se3& T_world_camera_live);
+  // A frame that has ended, by its index, gets the pose it lacked or another one. Nothing happens
+  // to one that was let go.
+  void PlaceLate(int index, Anchor anchor);
   void End();  // where it throws, for want of memory, the next Begin ends the frame
   bool empty() const { return size() == 0; }
   int size() const { return first_of_open_ + open_count_ + (begun_ ? 1 : 0); }  // frames begun
@@ -57,7 +60,8 @@ class FrameLog {
     double time = 0;
     Pose T_camera_anchor;  // with lengths as if the anchor's scale were 1
     Pose T_world_camera_live;
-    int anchor = -1;  // in the chunk's table; -1: no pose
+    int anchor = -1;    // in the chunk's table; -1: no pose
+    bool late = false;  // it had none when the frame was done: there is no live one
   };
   // What records are tied to: a keyframe, or the place one had beside an older one.
   struct ChunkAnchor {
@@ -77,6 +81,7 @@ class FrameLog {
 
   void Seal();
   int AnchorOf(KeyFrameId keyframe);
+  int AnchorIn(std::shared_ptr<const AnchorTable>& table, int number, KeyFrameId keyframe);
   static Pose Pack(const Se3& pose) { return {pose.Quaternion(), pose.t}; }
   static Se3 Unpack(const Pose& pose) { return {pose.q.toRotationMatrix(), pose.t}; }
 

@@ -67,6 +67,11 @@ void TrajectorySettings::Check() const {
   if (!(keep_seconds >= 0)) ThrowUsage("trajectory.keep_seconds must not be negative");
 }
 
+void EarlyFrameSettings::Check() const {
+  if (most < 0 || settle < 0 || most_missed < 1)
+    ThrowUsage("early.most and early.settle must not be negative, early.most_missed not below 1");
+}
+
 void SlamSettings::Check() const {
   if (image_width != 0 && image_width < 100)
     ThrowUsage("image_width must be 0 or at least 100 pixels");
@@ -82,6 +87,7 @@ void SlamSettings::Check() const {
     ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");
   start.Check();
+  early.Check();
 }
 
 }  // namespace alidade

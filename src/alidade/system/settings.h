@@ -26,6 +26,15 @@ struct TrajectorySettings {
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
+// Frames that one camera saw before its map could tell where they were, and in its first moments,
+// are placed in it later (EarlyFrames).
+struct EarlyFrameSettings {
+  int most = 180;   // frames kept for it, some 80 kB each; 0: none is placed later
+  int settle = 60;  // frames after the start, from when on one is placed with each tracked frame
+  int most_missed = 10;  // on end that are not recognised, going back: the rest is not tried
+  void Check() const;    // throws Error (usage) naming the field that cannot be
+};
+
 struct SlamSettings {
   Sensor sensor = Sensor::kMono;
   bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
@@ -34,6 +43,7 @@ struct SlamSettings {
   TrackerSettings tracker;
   MapperSettings mapper;
   MonoStartSettings start;
+  EarlyFrameSettings early;
   PlaceSettings places;
   LoopSettings loop;
   SemiDenseSettings semidense;

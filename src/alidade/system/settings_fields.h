@@ -169,6 +169,13 @@ void VisitStart(Settings& i, Visit&& visit) {
 }
 
 template <typename Settings, typename Visit>
+void VisitEarly(Settings& e, Visit&& visit) {
+  visit("early.most", e.most);
+  visit("early.settle", e.settle);
+  visit("early.most_missed", e.most_missed);
+}
+
+template <typename Settings, typename Visit>
 void VisitFields(Settings& s, Visit&& visit) {
   visit("image_width", s.image_width);
   visit("seed", s.seed);
@@ -187,6 +194,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   VisitSemiDense(s.semidense, visit);
   VisitDynamics(s.dynamics, visit);
   VisitStart(s.start, visit);
+  VisitEarly(s.early, visit);
 }
 
 }  // namespace alidade

@@ -2,6 +2,7 @@
 #include "alidade/system/slam.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -49,6 +50,7 @@ Slam::Impl::Impl(const Camera& given, const SlamSettings& settings,
       tracker_(camera_, settings_.tracker),
       movers_(camera_, settings_, detector),
       young_(camera_, settings_, workers_),
+      early_(settings_.early),
       log_(settings_.trajectory),
       clock_(settings_.time) {}
 
@@ -105,6 +107,10 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   movers_.End(*last_.frame, result);
   Show();
   log_.End();
+  if (settings_.sensor == Sensor::kMono && result.state == TrackState::kTracking) {
+    early_.Tracked(*frame, log_.size() - 1);
+    if (!young_.on_trial()) early_.Place(1, number, tracker_, workers_.map().Snapshot(), log_);
+  }
   if (log_.size() % kReanchorFrames == 0) Reanchor();
   return result;
 }
@@ -207,6 +213,7 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     if (estimate.tracked) {
       ++relocalisations_;
       young_.Reset();
+      early_.ForgetWaiting();
       // A place just found again is confirmed by the frames after it before the map grows on it.
       tracker_.KeyFrameInserted(frame->number);
       estimate.wants_keyframe = false;
@@ -249,6 +256,10 @@ void Slam::Impl::Finish(double limit) {
   const std::lock_guard<std::mutex> driving(driving_);
   EndFrame();
   workers_.Drain(limit);
+  if (!young_.on_trial()) {
+    constexpr int kSettled = std::numeric_limits<int>::max();
+    early_.Place(settings_.early.most, kSettled, tracker_, workers_.map().Snapshot(), log_);
+  }
 }
 
 Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)

@@ -62,9 +62,12 @@ struct FramePose {
   double time = 0;    // seconds
   int recording = 0;  // Reset() and clocks set back begin the next: times grow within each
   bool tracked = false;
-  MapId map;                // whose world the pose is in: none when not tracked
-  Se3 T_world_camera;       // corrected by all that was learnt since
-  Se3 T_world_camera_live;  // as it was when the frame was done
+  MapId map;           // whose world the pose is in: none when not tracked
+  Se3 T_world_camera;  // corrected by all that was learnt since
+  // The frame had no pose when it was done, and got one later (of one camera: frames before the
+  // start).
+  bool late = false;
+  Se3 T_world_camera_live;  // as it was when the frame was done; of no meaning when late
   // The same told by the keyframe it hangs on (living, or culled and followed by another, see
   // MapState::culled), with lengths as if that one's scale were 1: what a correction leaves alone.
   KeyFrameId reference;

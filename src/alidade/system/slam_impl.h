@@ -14,6 +14,7 @@
 
 #include "alidade/map/anchor.h"
 #include "alidade/system/camera_clock.h"
+#include "alidade/system/early_frames.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/slam.h"
@@ -57,6 +58,7 @@ class Slam::Impl {
   PlacedFrame last_;          // the present frame, as it was tracked
   KeyFrameId last_keyframe_;  // it became
   YoungMap young_;            // of one camera
+  EarlyFrames early_;         // likewise
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
   CameraClock clock_;

@@ -59,6 +59,7 @@ bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult
 bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
   const auto begun = young_.Begin(frame);
   if (!begun) {
+    early_.Wait(*frame, log_.size() - 1);
     result.reason = young_.reason();
     return false;
   }
@@ -67,6 +68,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
     return false;
   }
   tracker_.KeyFrameInserted(frame->number);
+  early_.Begin(begun->map.MapOf(begun->id), frame->number);
   Place(begun->placed, begun->id, begun->map);
   last_keyframe_ = begun->id;
   result.matches = begun->placed.inliers;
@@ -75,6 +77,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
 
 TrackResult Slam::Impl::GiveUpStart(const char* reason) {
   young_.GiveUp();
+  early_.GiveUp();
   tracker_.Forget();
   movers_.Forget();
   state_ = TrackState::kInitialising;

@@ -46,6 +46,7 @@ const char* Slam::Impl::Tick(double time) {
 // The next frame may show anything: nothing is taken from the last one.
 void Slam::Impl::Cut() {
   ++cuts_;
+  early_.ForgetWaiting();
   if (young_.on_trial()) {
     GiveUpStart("");
   } else if (state_ == TrackState::kTracking) {

@@ -218,6 +218,14 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
   return lost;
 }
 
+TrackEstimate Tracker::PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                                  KeyFrameId near) {
+  const int most = most_inliers_;
+  TrackEstimate estimate = Relocalise(frame, map, {&near, 1});
+  most_inliers_ = most;
+  return estimate;
+}
+
 // A place only like the one in view shows some of the same, and leaves much of the rest unseen. And
 // one poster, however well seen, leaves open whether the camera is moved or turned.
 bool Tracker::IsCertain(const TrackEstimate& estimate) const {

@@ -49,6 +49,11 @@ class Tracker {
   TrackEstimate Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            std::span<const KeyFrameId> candidates);
 
+  // The same for a frame of earlier, near a keyframe in time. What is known of the last frame
+  // stays.
+  TrackEstimate PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                           KeyFrameId near);
+
   // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
   // or a loss.
   // `map`: the one its pose is in.

@@ -1,0 +1,52 @@
+// Frames that came before the map knew better: those before one camera's start, which had no pose,
+// and those placed in the first seconds of its map, when two views were all it had. Once the map
+// has settled each is placed in it anew. Holds a bounded number of frames; used by the tracker's
+// thread.
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "alidade/map/map_store.h"
+#include "alidade/system/frame_log.h"
+#include "alidade/system/settings.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+
+class EarlyFrames {
+ public:
+  explicit EarlyFrames(const EarlyFrameSettings& settings) : settings_(settings) {}
+
+  // `index`: of the frame in the log. A frame without a pose, while a map is to be begun …
+  void Wait(const Frame& frame, int index);
+  // … which `map` then is, by frame `number`: the frames that wait are its own from now on.
+  void Begin(MapId map, int number);
+  // A frame that was tracked in that map.
+  void Tracked(const Frame& frame, int index);
+  // The map is given up: its frames wait for the next one.
+  void GiveUp();
+  // What waits is of no use any more: the next frame need not go on where it was.
+  void ForgetWaiting();
+
+  // Places `count` frames at most whose map has settled by frame `number`. Those before the start
+  // come last first, and no further than they are recognised.
+  void Place(int count, int number, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
+
+ private:
+  struct Early {
+    std::shared_ptr<const Frame> frame;
+    int index = 0;
+    MapId map;            // none: it waits
+    bool before = false;  // the start
+  };
+  void Keep(const Frame& frame, int index, MapId map);
+
+  EarlyFrameSettings settings_;
+  std::deque<Early> frames_;  // oldest first
+  MapId map_;                 // begun last
+  int begun_ = 0;             // number of the frame it was begun with
+  int missed_ = 0;            // frames before the start that were not recognised, on end
+};
+
+}  // namespace alidade
