@@ -63,21 +63,26 @@ void EarlyFrames::Place(int count, int number, Tracker& tracker, const MapSnapsh
     const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
                                    [](const Early& early) { return early.map.valid(); });
     if (last == frames_.rend()) return;
-    const Early early = *last;
-    frames_.erase(std::next(last).base());
-    const KeyFrameId near = NearestKeyFrame(map, early.map, early.frame->number);
-    if (!near.valid()) continue;  // its map is gone
-    if (map.Find(near)->frame->number == early.frame->number) {
-      log.PlaceLate(early.index, {near, Se3(), map.ScaleOf(near)});
-      continue;
-    }
-    if (early.before && missed_ >= settings_.most_missed) continue;
-    const TrackEstimate estimate = tracker.PlaceAgain(early.frame, map, near);
-    if (early.before) missed_ = estimate.tracked ? 0 : missed_ + 1;
-    if (!estimate.tracked) continue;
+    PlaceOne(*last, tracker, map, log);
+    frames_.erase(std::next(last).base());  // not when memory ran out
+  }
+}
+
+void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapshot& map,
+                           FrameLog& log) {
+  const KeyFrameId near = NearestKeyFrame(map, early.map, early.frame->number);
+  if (!near.valid()) return;  // its map is gone
+  if (map.Find(near)->frame->number == early.frame->number) {
+    log.PlaceLate(early.index, {near, Se3(), map.ScaleOf(near)});
+    return;
+  }
+  if (early.before && missed_ >= settings_.most_missed) return;
+  const TrackEstimate estimate = tracker.PlaceAgain(early.frame, map, near);
+  if (estimate.tracked) {
     log.PlaceLate(early.index,
                   AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));
   }
+  if (early.before) missed_ = estimate.tracked ? 0 : missed_ + 1;
 }
 
 }  // namespace alidade

@@ -40,6 +40,7 @@ class EarlyFrames {
     MapId map;            // none: it waits
     bool before = false;  // the start
   };
+  void PlaceOne(const Early& early, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
   void Keep(const Frame& frame, int index, MapId map);
 
   EarlyFrameSettings settings_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -109,7 +110,7 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   log_.End();
   if (settings_.sensor == Sensor::kMono && result.state == TrackState::kTracking) {
     early_.Tracked(*frame, log_.size() - 1);
-    if (!young_.on_trial()) early_.Place(1, number, tracker_, workers_.map().Snapshot(), log_);
+    PlaceEarly(1, number);
   }
   if (log_.size() % kReanchorFrames == 0) Reanchor();
   return result;
@@ -236,6 +237,15 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
   return Start(frame);
 }
 
+// Of one camera: what came before the map knew better. Where memory runs out it is left for later.
+void Slam::Impl::PlaceEarly(int count, int number) {
+  if (young_.on_trial()) return;
+  try {
+    early_.Place(count, number, tracker_, workers_.map().Snapshot(), log_);
+  } catch (const std::bad_alloc&) {
+  }
+}
+
 // Between two frames: from then on none of what the tracker's thread remembers needs a keyframe
 // that was culled before.
 void Slam::Impl::Reanchor() {
@@ -256,10 +266,7 @@ void Slam::Impl::Finish(double limit) {
   const std::lock_guard<std::mutex> driving(driving_);
   EndFrame();
   workers_.Drain(limit);
-  if (!young_.on_trial()) {
-    constexpr int kSettled = std::numeric_limits<int>::max();
-    early_.Place(settings_.early.most, kSettled, tracker_, workers_.map().Snapshot(), log_);
-  }
+  PlaceEarly(settings_.early.most, std::numeric_limits<int>::max());
 }
 
 Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)

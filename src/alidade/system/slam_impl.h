@@ -76,6 +76,7 @@ class Slam::Impl {
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void Reanchor();
+  void PlaceEarly(int count, int number);
   void Lose();
 
   // slam_start.cc: the begin and the end of a map.
