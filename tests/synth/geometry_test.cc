@@ -139,7 +139,7 @@ TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
   SynthSettings settings = Small("room");
   settings.fps = 1000;  // poses and pictures at every millisecond
   const SynthRecording global(settings);
-  settings.rolling = true;
+  settings.rolling_shutter = 16;
   const RenderedFrame moving = SynthRecording(settings).Render(4000);
   // Row r is taken (r + 0.5) / 240 - 0.5 of 16 ms after the frame's time.
   const auto row_difference = [&](int milliseconds, int row) {

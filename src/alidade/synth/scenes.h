@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,12 +13,20 @@ namespace alidade {
 
 using Walk = std::vector<Eigen::Vector2d>;  // corners of a closed way over free floor, metres
 
+// A part of a table over which things may be moved: the middle at the height they stand on, and
+// half its size along the world's x and y.
+struct TableTop {
+  Eigen::Vector3d middle;  // metres
+  double half_x = 0, half_y = 0;
+};
+
 struct Layout {
   std::vector<PathKnot> knots;  // of the camera's way
   double period = 20;           // seconds once round it
   int turns = 0;                // of yaw meanwhile
   ShakeSettings shake;
   std::vector<Walk> walks;
+  std::optional<TableTop> table;
 };
 
 // Fills the builder with the scene called `name`, one of SceneNames(); throws Error otherwise.
@@ -28,6 +37,10 @@ Layout LayOutDesk(SceneBuilder& builder);      // close above a cluttered desk
 Layout LayOutCorridor(SceneBuilder& builder);  // out and back; doors and posters repeat
 Layout LayOutWall(SceneBuilder& builder);      // along one wall that fills the view
 Layout LayOutLoop(SceneBuilder& builder);      // through six rooms and back into the first
+
+// The same place, where the camera turns or stands where its way begins (see SynthSettings::path).
+Layout TurnOnTheSpot(Layout layout, double arm);
+Layout StandStill(Layout layout);
 
 // Knots at equal distances along a closed polygon, at one height; yaw looks along the way.
 std::vector<PathKnot> KnotsAlong(const std::vector<Eigen::Vector2d>& corners, double height,
