@@ -133,7 +133,7 @@ void AddSynthCommand(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--frames", arguments->frames,
-                   "How many; default: once round the scene's path (600, corridor 1000, loop 2000)")
+                   "How many; default: once round the scene's path (room 600, street 1080 …)")
       ->check(CLI::PositiveNumber);
   command->add_option("--path", settings.path,
                       "walk: the scene's own; turn: on the spot; turn-walk: 4 s on the spot, then "

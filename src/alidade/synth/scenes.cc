@@ -13,6 +13,10 @@ Layout LayOut(const std::string& name, SceneBuilder& builder) {
   if (name == "corridor") return LayOutCorridor(builder);
   if (name == "wall") return LayOutWall(builder);
   if (name == "loop") return LayOutLoop(builder);
+  if (name == "street") return LayOutStreet(builder);
+  if (name == "table") return LayOutTable(builder);
+  if (name == "blank") return LayOutBlank(builder);
+  if (name == "hall") return LayOutHall(builder);
   return LayOutRoom(builder);
 }
 

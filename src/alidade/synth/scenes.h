@@ -18,6 +18,8 @@ using Walk = std::vector<Eigen::Vector2d>;  // corners of a closed way over free
 struct TableTop {
   Eigen::Vector3d middle;  // metres
   double half_x = 0, half_y = 0;
+  Eigen::Vector3d arm = {0.75, -0.55, 0.2};  // where an arm that reaches over it comes from
+  double sitter = 0;  // metres along y to who sits at it; 0: nobody is in the picture
 };
 
 struct Layout {
@@ -37,6 +39,10 @@ Layout LayOutDesk(SceneBuilder& builder);      // close above a cluttered desk
 Layout LayOutCorridor(SceneBuilder& builder);  // out and back; doors and posters repeat
 Layout LayOutWall(SceneBuilder& builder);      // along one wall that fills the view
 Layout LayOutLoop(SceneBuilder& builder);      // through six rooms and back into the first
+Layout LayOutStreet(SceneBuilder& builder);    // a car's way round a block of houses
+Layout LayOutTable(SceneBuilder& builder);     // a bare table in a bare room
+Layout LayOutBlank(SceneBuilder& builder);     // a turn in a room, past a wall that is blank
+Layout LayOutHall(SceneBuilder& builder);      // past such a wall, and back past another
 
 // The same place, where the camera turns or stands where its way begins (see SynthSettings::path).
 Layout TurnOnTheSpot(Layout layout, double arm);

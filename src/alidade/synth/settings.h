@@ -9,7 +9,7 @@ namespace alidade {
 
 // Names are those of the flags of `alidade synth` and of the options of a `synth:` source.
 struct SynthSettings {
-  std::string scene = "room";  // room, desk, corridor, wall or loop
+  std::string scene = "room";  // one of SceneNames()
   // Frames to play. A scene's path is walked at a natural speed and comes round once in
   // SceneFrames() frames at 30 per second; fewer play its beginning only, more go round again.
   int frames = 600;

@@ -74,14 +74,21 @@ std::vector<Quadric> Thing::Parts(double time) const {
       Round(foot, foot + up, R.col(0), looks_.radius, 1.1 * looks_.radius, looks_.body));
   parts.push_back(
       Ball(foot + 0.98 * up, R, {1.08 * looks_.radius, 1.08 * looks_.radius, 0.012}, looks_.lid));
-  // Held from the right; the arm leads away to the right and towards smaller y.
-  const Vector3d hand = foot + 0.45 * up + Vector3d(looks_.radius + 0.02, -0.01, 0);
-  const Vector3d along = Vector3d(0.75, -0.55, 0.2).normalized();
+  const Vector3d along = table_.arm.normalized();
+  const Vector3d outwards = Vector3d(along.x(), along.y(), 0).normalized();
+  const Vector3d hand = foot + 0.45 * up + (looks_.radius + 0.02) * outwards;
   const Matrix3d level = Matrix3d::Identity();
   parts.push_back(Ball(hand, level, {0.03, 0.045, 0.05}, looks_.skin));
   parts.push_back(Round(hand, hand + 0.12 * along, {0, 0, 1}, 0.026, 0.03, looks_.skin));
   parts.push_back(
       Round(hand + 0.1 * along, hand + 0.6 * along, {0, 0, 1}, 0.042, 0.055, looks_.sleeve));
+  if (looks_.shirt >= 0) {  // who sits there, and sways
+    const double lean = 0.05 * std::sin(0.8 * s);
+    const Vector3d seat(0.02 * lean, table_.sitter, 0.35), neck(lean, table_.sitter - 0.05, 1.27);
+    parts.push_back(Round(seat, neck, {1, 0, 0}, 0.19, 0.22, looks_.shirt));
+    parts.push_back(Ball(neck, level, {0.27, 0.16, 0.09}, looks_.shirt));
+    parts.push_back(Ball(neck + Vector3d(0, -0.02, 0.2), level, {0.08, 0.1, 0.13}, looks_.head));
+  }
   return parts;
 }
 
@@ -103,6 +110,12 @@ std::vector<Thing> PutThings(SceneBuilder& builder, const TableTop& table, int c
     looks.sleeve = builder.Paint([shirt](Random& r) {
       return PaintShirt(r, {300, 400}, shirt, true);
     });
+    if (i == 0 && table.sitter != 0) {
+      looks.shirt = builder.Paint([shirt](Random& r) {
+        return PaintShirt(r, {640, 340}, shirt, false);
+      });
+      looks.head = builder.Paint([](Random& r) { return PaintHead(r, {420, 230}); });
+    }
     TableTop part = table;
     part.half_x = table.half_x / count;
     part.middle.x() += table.half_x * ((2 * i + 1.0) / count - 1);

@@ -12,10 +12,11 @@ namespace alidade {
 struct ThingLooks {
   double radius = 0.06, height = 0.14;          // metres
   int body = 0, lid = 0, skin = 0, sleeve = 0;  // textures
+  int head = 0, shirt = -1;                     // -1: nobody sits there
 };
 
 // Slid to and fro, turned and lifted a little, now and then left alone for a moment; a hand holds
-// it, whose arm comes from beyond the table's edge at smaller y.
+// it, whose arm comes from beyond the table's edge.
 class Thing {
  public:
   Thing(const ThingLooks& looks, const TableTop& table, double phase);
