@@ -46,6 +46,8 @@ std::vector<WildCase> AllCases() {
       {"street", "synth:street?frames=250&fps=10"},
       {"street-phone", "synth:street?frames=250&fps=10", kPhone},
       {"street-3hz", "synth:street?frames=120&fps=3.5"},
+      {"road", "synth:road?frames=250&fps=10"},
+      {"road-phone", "synth:road?frames=250&fps=10", kPhone},
       // Turns on the spot: exact ones give no map, whatever is thought of the camera.
       NoMap("turn", "synth:room?path=turn&frames=300"),
       NoMap("turn-narrow", "synth:room?path=turn&frames=300&fov=45&calibrated=0"),

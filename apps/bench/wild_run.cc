@@ -8,6 +8,7 @@
 
 #include "alidade/base/timing.h"
 #include "alidade/evaluation/false_poses.h"
+#include "alidade/io/read_ahead.h"
 #include "alidade/run/any_source.h"
 #include "alidade/run/loop.h"
 #include "alidade/run/results.h"
@@ -103,9 +104,9 @@ WildRun RunWild(const WildCase& of, uint64_t seed, SlamSettings settings,
                 const std::function<void(int)>& progress) {
   SourceOptions options;
   options.sensor = settings.sensor = Sensor::kMono;
-  const auto source = OpenAnySource(of.source + "&seed=" + std::to_string(seed), options);
+  ReadAhead source(OpenAnySource(of.source + "&seed=" + std::to_string(seed), options));
   RunRecord record;
-  record.source = source->Info();
+  record.source = source.Info();
   record.settings = settings;
   Slam slam(record.source.camera, settings);
   WildRun run;
@@ -114,7 +115,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, SlamSettings settings,
   std::map<std::string, int> reasons;
   Stopwatch clock;
   double milliseconds = 0;
-  while (const auto frame = source->Next()) {
+  while (const auto frame = source.Next()) {
     usable.Add(*frame);
     record.truth.push_back({frame->time, *frame->T_world_camera, frame->stamp});
     record.stamps.push_back(frame->stamp);

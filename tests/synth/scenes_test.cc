@@ -73,6 +73,7 @@ Meant MeantOf(const std::string& scene) {
   if (scene == "table") meant = {10, 0.25, 0.9, 1.6, 3, 0.6, 10, 12, 0.45, false};
   if (scene == "blank") meant = {20, 0.25, 0.9, 1.6, 4, 0.6, 2, 6, 0.45, false};
   if (scene == "hall") meant = {14, 0.3, 0.9, 1.6, 12, 0.6, 3, 7, 0.45, false};
+  if (scene == "road") meant = {1, 13, 15, 15, 800, 16, 6, 12, 0.95, true};
   if (scene == "street") meant = {2, 7, 10, 10.8, 300, 12, 0, 2, 0.95, true};
   return meant;
 }

@@ -14,6 +14,7 @@ Layout LayOut(const std::string& name, SceneBuilder& builder) {
   if (name == "wall") return LayOutWall(builder);
   if (name == "loop") return LayOutLoop(builder);
   if (name == "street") return LayOutStreet(builder);
+  if (name == "road") return LayOutRoad(builder);
   if (name == "table") return LayOutTable(builder);
   if (name == "blank") return LayOutBlank(builder);
   if (name == "hall") return LayOutHall(builder);

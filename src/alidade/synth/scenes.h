@@ -40,6 +40,7 @@ Layout LayOutCorridor(SceneBuilder& builder);  // out and back; doors and poster
 Layout LayOutWall(SceneBuilder& builder);      // along one wall that fills the view
 Layout LayOutLoop(SceneBuilder& builder);      // through six rooms and back into the first
 Layout LayOutStreet(SceneBuilder& builder);    // a car's way round a block of houses
+Layout LayOutRoad(SceneBuilder& builder);      // a road through fields
 Layout LayOutTable(SceneBuilder& builder);     // a bare table in a bare room
 Layout LayOutBlank(SceneBuilder& builder);     // a turn in a room, past a wall that is blank
 Layout LayOutHall(SceneBuilder& builder);      // past such a wall, and back past another

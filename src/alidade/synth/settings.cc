@@ -14,9 +14,9 @@ struct NamedScene {
   const char* name;
   int frames;
 };
-constexpr NamedScene kScenes[] = {{"room", 600},  {"desk", 600},  {"corridor", 1000},
-                                  {"wall", 600},  {"loop", 2000}, {"street", 1320},
-                                  {"table", 360}, {"blank", 420}, {"hall", 840}};
+constexpr NamedScene kScenes[] = {
+    {"room", 600},    {"desk", 600},  {"corridor", 1000}, {"wall", 600},  {"loop", 2000},
+    {"street", 1320}, {"road", 1987}, {"table", 360},     {"blank", 420}, {"hall", 840}};
 constexpr const char* kPaths[] = {"walk", "turn", "turn-walk", "still"};
 
 }  // namespace
