@@ -180,6 +180,7 @@ int RunWild(BenchArguments arguments) {
   bench::WildOptions& options = arguments.wild;
   options.settings = arguments.settings;
   options.out = arguments.out;
+  options.frames = arguments.frames;
   if (arguments.seeds > 0) options.seeds = arguments.seeds;
   return bench::BenchWild(options);
 }
@@ -291,7 +292,7 @@ void AddBenchCommand(CLI::App& app, Action& action) {
   command
       ->add_option("--frames", arguments->frames,
                    "Frames of it, at most (150; semidense: 200, recorded ones 600; dynamic: 200, "
-                   "recorded ones all; lasting: 20000)")
+                   "recorded ones all; lasting: 20000; wild: all the case has)")
       ->check(CLI::Range(2, 100000000));
   AddRunOptions(*command, *arguments);
   AddDynamicOptions(*command, arguments->dynamic);

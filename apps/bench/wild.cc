@@ -160,7 +160,8 @@ int BenchWild(const WildOptions& options) {
                              std::to_string(seed) + " of " + std::to_string(options.seeds) +
                              ": frame " + std::to_string(frames));
       };
-      rows.back().runs.push_back(RunWild(of, static_cast<uint64_t>(seed), settings, progress));
+      rows.back().runs.push_back(
+          RunWild(of, static_cast<uint64_t>(seed), options.frames, settings, progress));
     }
     terminal.SetProgress("");
     PrintWild(rows.back());

@@ -11,6 +11,7 @@ struct WildOptions {
   std::string profile;                // of all cases; "": each its own
   std::vector<std::string> settings;  // name=value, of every run
   int seeds = 3;
+  int frames = 0;      // of each, at most; 0: all the case has
   bool check = false;  // say so when there is a false pose or a false map
   std::string out;     // JSON file; "": none
 };

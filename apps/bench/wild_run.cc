@@ -100,10 +100,11 @@ void Judge(const WildCase& of, const RunRecord& record, const RunResults& result
 
 }  // namespace
 
-WildRun RunWild(const WildCase& of, uint64_t seed, SlamSettings settings,
+WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings settings,
                 const std::function<void(int)>& progress) {
   SourceOptions options;
   options.sensor = settings.sensor = Sensor::kMono;
+  options.last = frames - 1;  // -1: to the end
   ReadAhead source(OpenAnySource(of.source + "&seed=" + std::to_string(seed), options));
   RunRecord record;
   record.source = source.Info();

@@ -29,8 +29,9 @@ struct WildRun {
   std::string reason;       // that most of the frames without a pose have
 };
 
-// One camera, inline, as `alidade run` does it. `progress` is told the number of frames done.
-WildRun RunWild(const WildCase& of, uint64_t seed, SlamSettings settings,
+// One camera, inline, as `alidade run` does it. `frames`: at most; 0: all. `progress` is told the
+// number of frames done.
+WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings settings,
                 const std::function<void(int)>& progress);
 
 }  // namespace alidade::bench
