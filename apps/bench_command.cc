@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 
+#include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/file.h"
@@ -15,6 +16,7 @@
 #include "bench/large_map.h"
 #include "bench/lasting.h"
 #include "bench/semidense.h"
+#include "bench/wild.h"
 #include "commands.h"
 
 namespace alidade {
@@ -26,7 +28,10 @@ struct BenchArguments {
   std::vector<std::string> names;
   std::string source, out;
   int frames = 0;  // 0: see FillIn()
+  int seeds = 0;   // 0: dynamic 1, wild 3
+  std::vector<std::string> settings;
   bench::DynamicOptions dynamic;
+  bench::WildOptions wild;
 };
 
 using Bench = bench::Section (*)(const bench::Recording&);
@@ -146,6 +151,8 @@ int RunDynamic(const std::vector<std::string>& words, BenchArguments arguments) 
   options.sources = words;
   if (!arguments.source.empty()) options.sources.push_back(arguments.source);
   options.frames = arguments.frames;
+  options.settings = arguments.settings;
+  if (arguments.seeds > 0) options.seeds = arguments.seeds;
   const bench::Section section = bench::BenchDynamic(options);
   Print(section);
   Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, {ToJson(section)});
@@ -168,12 +175,23 @@ int RunLasting(std::vector<std::string> words, const BenchArguments& arguments) 
   return 0;
 }
 
+int RunWild(BenchArguments arguments) {
+  if (arguments.names.size() > 1) ThrowUsage("bench wild takes no recordings: it renders its own");
+  bench::WildOptions& options = arguments.wild;
+  options.settings = arguments.settings;
+  options.out = arguments.out;
+  options.frames = arguments.frames;
+  if (arguments.seeds > 0) options.seeds = arguments.seeds;
+  return bench::BenchWild(options);
+}
+
 int Run(BenchArguments arguments) {
   cv::setNumThreads(1);
   SetThreadCount(0);
   const std::vector<std::string>& names = arguments.names;
   if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "dynamic") return RunDynamic({names.begin() + 1, names.end()}, arguments);
+  if (names[0] == "wild") return RunWild(arguments);
   if (names[0] == "lasting") return RunLasting({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "large-map") {
     const bench::Section section = bench::BenchLargeMap(arguments.frames);
@@ -209,6 +227,27 @@ int Run(BenchArguments arguments) {
   return 0;
 }
 
+// Of several runs, which have settings.
+void AddRunOptions(CLI::App& command, BenchArguments& arguments) {
+  command.add_option("--seeds", arguments.seeds, "Runs of each kind (dynamic: 1, wild: 3)")
+      ->check(CLI::Range(1, 100))
+      ->group("Of dynamic and wild");
+  command.add_option("--set", arguments.settings, "One setting of all runs, name=value")
+      ->take_all()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->group("Of dynamic and wild");
+}
+
+void AddWildOptions(CLI::App& command, bench::WildOptions& options) {
+  const std::string group = "Of wild";
+  command.add_option("--cases", options.cases, "Which, with commas between them; default: all")
+      ->group(group);
+  command.add_option("--profile", options.profile, "desktop or phone, of all cases")->group(group);
+  command.add_flag("--check", options.check, "End with status 1 when there is a false pose or map")
+      ->group(group);
+}
+
 void AddDynamicOptions(CLI::App& command, bench::DynamicOptions& options) {
   const auto add = [&](const std::string& name, auto& value, const std::string& help) {
     return command.add_option(name, value, help)->group("Of dynamic");
@@ -226,11 +265,8 @@ void AddDynamicOptions(CLI::App& command, bench::DynamicOptions& options) {
   add("--detector", options.detector, "Network that finds people (.onnx), for mode full");
   add("--camera", options.camera, "Calibration (camera.yaml) instead of the recordings' own");
   many("--sensor", options.sensors, "rgbd, stereo, mono; default: the recording's own, and mono");
-  add("--seeds", options.seeds, "Runs of each kind, of which medians are told (1)")
-      ->check(CLI::Range(1, 100));
   many("--plain", options.plain,
        "The same frames without people, DIR or DIR:first-last, for each recording");
-  many("--set", options.settings, "One setting of all runs, name=value");
   flag("--ablation", options.ablation, "What each part is worth");
   flag("--latency", options.latency, "Late and lost detections");
   flag("!--no-live", options.live, "Leave out the threaded runs, which take their time");
@@ -249,16 +285,18 @@ void AddBenchCommand(CLI::App& app, Action& action) {
                    "with depth (synth:room, synth:desk, synth:wall); or dynamic and recordings of "
                    "people (synth:room?actors=3); or lasting and recordings to be played forth and "
                    "back for hours (--sensor; --frames 20000); or large-map (--frames 10000: "
-                   "keyframes)")
+                   "keyframes); or wild")
       ->required();
   command->add_option("--source", arguments->source,
                       "Recording to take frames from (synth:room; place: synth:loop)");
   command
       ->add_option("--frames", arguments->frames,
                    "Frames of it, at most (150; semidense: 200, recorded ones 600; dynamic: 200, "
-                   "recorded ones all; lasting: 20000)")
+                   "recorded ones all; lasting: 20000; wild: all the case has)")
       ->check(CLI::Range(2, 100000000));
+  AddRunOptions(*command, *arguments);
   AddDynamicOptions(*command, arguments->dynamic);
+  AddWildOptions(*command, arguments->wild);
   command->add_option("--out", arguments->out, "JSON file to write the numbers to");
   command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });
 }

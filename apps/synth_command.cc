@@ -33,19 +33,13 @@ struct SynthArguments {
 };
 
 ordered_json Describe(const SynthSettings& s) {
-  return {{"scene", s.scene},
-          {"frames", s.frames},
-          {"actors", s.actors},
-          {"noise", s.noise},
-          {"blur", s.blur},
-          {"exposure", s.exposure},
-          {"distortion", s.distortion},
-          {"rolling", s.rolling},
-          {"stereo", s.stereo},
-          {"seed", s.seed},
-          {"width", s.width},
-          {"height", s.height},
-          {"fps", s.fps}};
+  return {{"scene", s.scene},   {"frames", s.frames},     {"path", s.path},
+          {"speed", s.speed},   {"arm", s.arm},           {"actors", s.actors},
+          {"things", s.things}, {"noise", s.noise},       {"light", s.light},
+          {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
+          {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
+          {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
+          {"height", s.height}, {"fov", s.fov},           {"fps", s.fps}};
 }
 
 ordered_json Describe(const SynthStatistics& s) {
@@ -93,13 +87,15 @@ int RenderAll(SynthArguments arguments) {
         "--distortion: KITTI recordings are rectified and cannot say how a lens distorts (--format "
         "tum or euroc)");
   }
+  if (format != SynthFormat::kTum && settings.fisheye)
+    ThrowUsage("--fisheye needs --format tum: the others are stereo");
   PrepareSynthFolder(arguments.out);
   const std::string marker = arguments.out + "/" + kSynthMarker;
   ordered_json about = {{"program", "alidade synth"}, {"settings", Describe(settings)}};
   AtomicWriteFile(marker, about.dump(2) + "\n");
 
   const SynthRecording recording(settings);
-  const auto writer = MakeSynthWriter(format, arguments.out, recording.camera());
+  const auto writer = MakeSynthWriter(format, arguments.out, recording.camera(), settings.fisheye);
   StatisticsCollector statistics(settings.fps);
   const bool progress = !arguments.quiet && isatty(STDERR_FILENO) != 0;
   for (int i = 0; i < recording.frames(); ++i) {
@@ -137,16 +133,33 @@ void AddSynthCommand(CLI::App& app, Action& action) {
       ->required();
   command
       ->add_option("--frames", arguments->frames,
-                   "How many; default: once round the scene's path (600, corridor 1000, loop 2000)")
+                   "How many; default: once round the scene's path (room 600, street 1080 …)")
       ->check(CLI::PositiveNumber);
+  command->add_option("--path", settings.path,
+                      "walk: the scene's own; turn: on the spot; turn-walk: 4 s on the spot, then "
+                      "the scene's own; still: as on a tripod (walk)");
+  command->add_option("--speed", settings.speed, "Times the scene's own (1)");
+  command->add_option("--arm", settings.arm,
+                      "Metres from the axis to the camera, with --path turn (0)");
   command->add_option("--actors", settings.actors, "People walking about (0)");
+  command->add_option("--things", settings.things,
+                      "Cups moved about by hand, in scenes with a table: room, desk (0)");
   command->add_option("--noise", settings.noise,
                       "Standard deviation of the image noise, grey levels (4)");
-  command->add_flag("--blur", settings.blur, "Motion blur of a shutter open for 20 ms");
+  command->add_option("--light", settings.light,
+                      "Share of daylight: below 0.25 pictures are dark; noise shows more (1)");
+  command->add_flag("--blur{20}", settings.blur,
+                    "Motion blur of a shutter open for 20 ms, or --blur=MS");
   command->add_flag("--exposure", settings.exposure, "Brightness and contrast drift slowly");
   command->add_flag("--distortion", settings.distortion,
                     "A lens with radial and tangential distortion");
-  command->add_flag("--rolling", settings.rolling, "Rolling shutter, 16 ms from first to last row");
+  command->add_option("--k1", settings.k1, "A lens with radial distortion alone (0)");
+  command->add_flag("--fisheye", settings.fisheye,
+                    "An equidistant lens: as many pixels for each degree (--format tum)");
+  command->add_flag("--rolling{16}", settings.rolling_shutter,
+                    "Rolling shutter, 16 ms from first to last row");
+  command->add_option("--rolling-shutter", settings.rolling_shutter,
+                      "The same with another number of milliseconds (0)");
   command->add_flag("--stereo", settings.stereo,
                     "A second camera, 0.11 m to the right (implied by euroc and kitti)");
   command->add_option("--format", arguments->format,
@@ -154,6 +167,7 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   command->add_option("--seed", settings.seed, "Of textures, clutter, shake, noise and people (1)");
   command->add_option("--width", settings.width, "Pixels (640)");
   command->add_option("--height", settings.height, "Pixels (480)");
+  command->add_option("--fov", settings.fov, "Horizontal field of view, degrees (62.7)");
   command->add_option("--fps", settings.fps, "Frames per second (30)");
   command->add_option("--threads", arguments->threads, "Threads for rendering; 0 = all cores");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

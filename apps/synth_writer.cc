@@ -73,8 +73,8 @@ class FolderWriter : public SynthWriter {
 // Sturm et al. 2012: lists of stamped images, poses as stamp, place and quaternion.
 class TumWriter : public FolderWriter {
  public:
-  TumWriter(const std::string& folder, const Camera& camera)
-      : FolderWriter(folder, camera, {"rgb", "depth", "mask"}) {}
+  TumWriter(const std::string& folder, const Camera& camera, bool fisheye)
+      : FolderWriter(folder, camera, {"rgb", "depth", "mask"}), fisheye_(fisheye) {}
 
   void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
     const std::string stamp = SynthStamp(frame.time), file = "/" + stamp + ".png";
@@ -89,11 +89,14 @@ class TumWriter : public FolderWriter {
 
   void Finish() override {
     const Camera& c = camera();
+    // A fisheye's four numbers are all 0: it is as equidistant as can be.
+    const std::vector<double> distortion(c.distortion.begin(),
+                                         c.distortion.begin() + (fisheye_ ? 4 : 5));
     WriteText("camera.yaml",
-              "model: pinhole\nwidth: " + std::to_string(c.width) +
-                  "\nheight: " + std::to_string(c.height) + "\nfx: " + Exact(c.fx) +
-                  "\nfy: " + Exact(c.fy) + "\ncx: " + Exact(c.cx) + "\ncy: " + Exact(c.cy) +
-                  "\ndistortion: [" + Join({c.distortion.begin(), c.distortion.end()}, ", ") +
+              std::string("model: ") + (fisheye_ ? "fisheye" : "pinhole") +
+                  "\nwidth: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) +
+                  "\nfx: " + Exact(c.fx) + "\nfy: " + Exact(c.fy) + "\ncx: " + Exact(c.cx) +
+                  "\ncy: " + Exact(c.cy) + "\ndistortion: [" + Join(distortion, ", ") +
                   "]\nfps: " + Exact(c.fps) + "\ndepth_factor: " + Exact(c.depth_factor) + "\n");
     WriteText("groundtruth.txt", FormatTumTrajectory(truth_));
     WriteText("mask.txt", "# timestamp file (255 = moving people)\n" + mask_);
@@ -102,6 +105,7 @@ class TumWriter : public FolderWriter {
   }
 
  private:
+  bool fisheye_;
   std::string rgb_, depth_, mask_;
   Trajectory truth_;
 };
@@ -207,10 +211,10 @@ class KittiWriter : public FolderWriter {
 }  // namespace
 
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
-                                             const Camera& camera) {
+                                             const Camera& camera, bool fisheye) {
   switch (format) {
     case SynthFormat::kTum:
-      return std::make_unique<TumWriter>(folder, camera);
+      return std::make_unique<TumWriter>(folder, camera, fisheye);
     case SynthFormat::kEuroc:
       return std::make_unique<EurocWriter>(folder, camera);
     case SynthFormat::kKitti:

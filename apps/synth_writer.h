@@ -20,9 +20,10 @@ class SynthWriter {
   virtual void Finish() = 0;
 };
 
-// The folder must be there. Throws Error (input) when a file cannot be written.
+// The folder must be there. `fisheye`: the camera's lens is an equidistant one (kTum alone). Throws
+// Error (input) when a file cannot be written.
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
-                                             const Camera& camera);
+                                             const Camera& camera, bool fisheye);
 
 // Makes the folder, or clears an earlier recording of ours out of it. Throws Error (input) when it
 // holds anything else.

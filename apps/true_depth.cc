@@ -25,7 +25,8 @@ std::string SynthSourceOf(const std::string& marker) {
     damaged();
   std::string source = "synth:" + settings["scene"].get<std::string>() + "?";
   for (const auto& [name, value] : settings.items()) {
-    if (name != "scene") source += name + "=" + value.dump() + "&";
+    if (name == "scene") continue;
+    source += name + "=" + (value.is_string() ? value.get<std::string>() : value.dump()) + "&";
   }
   try {
     ParseSynthSource(source);

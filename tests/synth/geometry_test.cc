@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -41,9 +42,8 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Moves the first view's textured pixels into the second by depth and poses alone. `camera`:
-// T_camera_world of both, and how pixels are undistorted.
-Agreement Reproject(const Camera& camera, const RenderedFrame& a, const Se3& T_world_a,
+// Moves the first view's textured pixels into the second by depth and poses alone.
+Agreement Reproject(const RawCamera& camera, const RenderedFrame& a, const Se3& T_world_a,
                     const RenderedFrame& b, const Se3& T_world_b) {
   Agreement result;
   std::vector<double> grey, wrong_grey, depth;
@@ -57,11 +57,10 @@ Agreement Reproject(const Camera& camera, const RenderedFrame& a, const Se3& T_w
       const float step = std::abs(a.clean.at<float>(y, x + 1) - a.clean.at<float>(y, x - 1));
       const float z = a.depth_exact.at<float>(y, x);
       if (step < 10 || !(z > 0)) continue;  // plain places agree with anything
-      const Eigen::Vector3d p_a = camera.Unproject(camera.Undistort({x, y}), z);
+      const Eigen::Vector3d ray = camera.Direction({x, y}), p_a = ray * (z / ray.z());
       const Eigen::Vector3d p_b = T_b_a * p_a, p_wrong = wrong * p_a;
       if (p_b.z() < 0.1 || p_wrong.z() < 0.1) continue;
-      const Eigen::Vector2d pixel = camera.Distort(camera.Project(p_b)),
-                            pixel_wrong = camera.Distort(camera.Project(p_wrong));
+      const Eigen::Vector2d pixel = camera.Project(p_b), pixel_wrong = camera.Project(p_wrong);
       if (!inside(pixel) || !inside(pixel_wrong)) continue;
       const double there = Bilinear(b.depth_exact, pixel);
       if (std::abs(there - p_b.z()) > 0.03 * there) continue;  // hidden, or an edge
@@ -82,9 +81,9 @@ Agreement Reproject(const Camera& camera, const RenderedFrame& a, const Se3& T_w
 void ExpectAgreement(const SynthSettings& settings, int first, int second) {
   const SynthRecording recording(settings);
   const Agreement found =
-      Reproject(recording.camera(), recording.Render(first), recording.Pose(first),
+      Reproject(recording.lens(), recording.Render(first), recording.Pose(first),
                 recording.Render(second), recording.Pose(second));
-  EXPECT_GT(found.tested, 400) << settings.scene;
+  EXPECT_GT(found.tested, settings.scene == "road" ? 150 : 400) << settings.scene;  // fields
   EXPECT_LT(found.median_grey, 5) << settings.scene;
   EXPECT_LT(found.median_depth, 1e-3) << settings.scene;
   EXPECT_GT(found.gain, 2) << settings.scene;  // or the test could not fail
@@ -105,6 +104,35 @@ TEST(SynthGeometry, LensDistortionIsTheCameraModels) {
   ASSERT_TRUE(camera.HasDistortion());
   // Without it straight lines would stay straight: the corner moves by many pixels.
   EXPECT_GT((camera.Undistort({0, 0}) - Eigen::Vector2d(0, 0)).norm(), 5);
+}
+
+TEST(SynthGeometry, StrongRadialDistortionAndAFisheyeAreTheCameraModelsToo) {
+  SynthSettings settings = Small("room");
+  settings.k1 = -0.24;
+  ExpectAgreement(settings, 100, 108);
+  settings.k1 = 0;
+  settings.fisheye = true;
+  settings.fov = 120;
+  ExpectAgreement(settings, 100, 108);
+  // 120 degrees from the left edge to the right one, and as many pixels for each.
+  const RawCamera lens = SynthRecording(settings).lens();
+  const auto angle = [&](double x) {
+    const Eigen::Vector3d ray = lens.Direction({x, lens.cy});
+    return std::atan2(ray.x(), ray.z()) * 180 / std::numbers::pi;
+  };
+  EXPECT_NEAR(angle(319.5) - angle(-0.5), 120, 1e-9);
+  EXPECT_NEAR(angle(239.5), 30, 1e-9);
+}
+
+TEST(SynthGeometry, TheFieldOfViewIsTheHorizontalOneAskedFor) {
+  SynthSettings settings = Small("room");
+  settings.width = 180;
+  settings.height = 320;
+  settings.fov = 40;
+  ExpectAgreement(settings, 40, 46);
+  const Camera camera = SynthRecording(settings).camera();
+  EXPECT_NEAR(std::atan(90 / camera.fx) * 360 / std::numbers::pi, 40, 1e-9);
+  EXPECT_EQ(camera.fx, camera.fy);
 }
 
 TEST(SynthGeometry, DisparityOfTheSecondCameraIsBaselineTimesFocalLengthOverDepth) {
@@ -139,7 +167,7 @@ TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
   SynthSettings settings = Small("room");
   settings.fps = 1000;  // poses and pictures at every millisecond
   const SynthRecording global(settings);
-  settings.rolling = true;
+  settings.rolling_shutter = 16;
   const RenderedFrame moving = SynthRecording(settings).Render(4000);
   // Row r is taken (r + 0.5) / 240 - 0.5 of 16 ms after the frame's time.
   const auto row_difference = [&](int milliseconds, int row) {
@@ -153,6 +181,23 @@ TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
   EXPECT_LT(middle, 1);
   EXPECT_GT(row_difference(8, 0), 2.5 * first);
   EXPECT_GT(row_difference(-8, 239), 2.5 * last);
+}
+
+TEST(SynthGeometry, ARollingShutterTakesAsLongAsAsked) {
+  SynthSettings settings = Small("desk");
+  settings.path = "turn";
+  settings.fps = 1000;
+  const SynthRecording global(settings);
+  settings.rolling_shutter = 40;
+  const RenderedFrame moving = SynthRecording(settings).Render(3000);
+  const auto row_difference = [&](int milliseconds, int row) {
+    const RenderedFrame still = global.Render(3000 + milliseconds);
+    return cv::norm(still.clean.row(row), moving.clean.row(row), cv::NORM_L1) / still.clean.cols;
+  };
+  EXPECT_LT(row_difference(-20, 0), 1);
+  EXPECT_LT(row_difference(20, 239), 1);
+  EXPECT_LT(row_difference(10, 180), 1);
+  EXPECT_GT(row_difference(8, 239), 2);
 }
 
 }  // namespace

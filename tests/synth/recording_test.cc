@@ -38,7 +38,7 @@ SynthSettings Small(const std::string& scene) {
 TEST(SynthRecording, IsTheSameWithOneThreadAndTwoAndInAnyOrder) {
   SynthSettings settings = Small("room");
   settings.actors = 2;
-  settings.rolling = true;
+  settings.rolling_shutter = 16;
   settings.exposure = true;
   SetThreadCount(1);
   const SynthRecording one(settings);
@@ -117,10 +117,10 @@ TEST(SynthRecording, BlurSmearsAndExposureDrifts) {
   for (int i = 0; i < 300; ++i) {
     if (turn(i) > turn(fastest)) fastest = i;
   }
-  settings.blur = true;
+  settings.blur = 20;
   EXPECT_LT(sharpness(SynthRecording(settings).Render(fastest).clean),
             0.85 * sharpness(still.Render(fastest).clean));
-  settings.blur = false;
+  settings.blur = 0;
   settings.exposure = true;
   const SynthRecording drifting(settings);
   double darkest = 1e9, brightest = 0;

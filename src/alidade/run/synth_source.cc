@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "alidade/base/nearest_name.h"
 #include "alidade/io/calibration.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/text.h"
 #include "alidade/io/wrappers.h"
 #include "alidade/synth/recording.h"
@@ -42,50 +44,84 @@ bool Switch(const std::string& name, const std::string& value) {
   ThrowUsage("synth: " + name + " cannot be \"" + value + "\": it is 0 or 1");
 }
 
-void Set(SynthSettings& settings, const std::string& name, const std::string& value) {
-  static const std::vector<std::string> kNames = {"frames",   "actors",     "noise",   "blur",
-                                                  "exposure", "distortion", "rolling", "stereo",
-                                                  "seed",     "width",      "height",  "fps"};
-  if (name == "frames") {
-    settings.frames = Whole(name, value);
-  } else if (name == "actors") {
-    settings.actors = Whole(name, value);
-  } else if (name == "noise") {
-    settings.noise = Number(name, value, false);
-  } else if (name == "blur") {
-    settings.blur = Switch(name, value);
-  } else if (name == "exposure") {
-    settings.exposure = Switch(name, value);
-  } else if (name == "distortion") {
-    settings.distortion = Switch(name, value);
-  } else if (name == "rolling") {
-    settings.rolling = Switch(name, value);
-  } else if (name == "stereo") {
-    settings.stereo = Switch(name, value);
-  } else if (name == "seed") {
-    const double seed = Number(name, value, true);
-    if (seed < 0) ThrowUsage("synth: seed cannot be negative");
-    settings.seed = static_cast<uint64_t>(seed);
-  } else if (name == "width") {
-    settings.width = Whole(name, value);
-  } else if (name == "height") {
-    settings.height = Whole(name, value);
-  } else if (name == "fps") {
-    settings.fps = Number(name, value, false);
-  } else {
-    ThrowUsage("synth: unknown option \"" + name + "\"" + DidYouMean(name, kNames));
-  }
+using Setter = std::function<void(SynthSettings&, const std::string&, const std::string&)>;
+
+Setter Into(int SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Whole(name, value);
+  };
 }
 
-Calibration CalibrationOf(const Camera& camera) {
+Setter Into(double SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Number(name, value, false);
+  };
+}
+
+Setter Into(bool SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Switch(name, value);
+  };
+}
+
+// A switch, which stands for `usual`, or a number above 1.
+Setter Into(double SynthSettings::*field, double usual) {
+  return
+      [field, usual](SynthSettings& settings, const std::string& name, const std::string& value) {
+        const bool number = !value.empty() && value != "1" && value != "true" && value != "false";
+        settings.*field = number ? Number(name, value, false) : (Switch(name, value) ? usual : 0);
+      };
+}
+
+void SetSeed(SynthSettings& settings, const std::string& name, const std::string& value) {
+  const double seed = Number(name, value, true);
+  if (seed < 0) ThrowUsage("synth: seed cannot be negative");
+  settings.seed = static_cast<uint64_t>(seed);
+}
+
+void SetPath(SynthSettings& settings, const std::string&, const std::string& value) {
+  settings.path = value;
+}
+
+void Set(SynthSettings& settings, const std::string& name, const std::string& value) {
+  using S = SynthSettings;
+  static const std::vector<std::pair<std::string, Setter>> kOptions = {
+      {"frames", Into(&S::frames)},
+      {"path", SetPath},
+      {"speed", Into(&S::speed)},
+      {"arm", Into(&S::arm)},
+      {"actors", Into(&S::actors)},
+      {"things", Into(&S::things)},
+      {"noise", Into(&S::noise)},
+      {"light", Into(&S::light)},
+      {"blur", Into(&S::blur, S::kUsualBlur)},
+      {"exposure", Into(&S::exposure)},
+      {"distortion", Into(&S::distortion)},
+      {"k1", Into(&S::k1)},
+      {"fisheye", Into(&S::fisheye)},
+      {"rolling", Into(&S::rolling_shutter, S::kUsualRolling)},
+      {"rolling_shutter", Into(&S::rolling_shutter)},
+      {"stereo", Into(&S::stereo)},
+      {"seed", SetSeed},
+      {"width", Into(&S::width)},
+      {"height", Into(&S::height)},
+      {"fov", Into(&S::fov)},
+      {"fps", Into(&S::fps)},
+      {"calibrated", Into(&S::calibrated)}};
+  std::vector<std::string> names;
+  for (const auto& [known, set] : kOptions) {
+    if (known == name) {
+      set(settings, name, value);
+      return;
+    }
+    names.push_back(known);
+  }
+  ThrowUsage("synth: unknown option \"" + name + "\"" + DidYouMean(name, names));
+}
+
+Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
   Calibration calibration;
-  calibration.left.width = camera.width;
-  calibration.left.height = camera.height;
-  calibration.left.fx = camera.fx;
-  calibration.left.fy = camera.fy;
-  calibration.left.cx = camera.cx;
-  calibration.left.cy = camera.cy;
-  calibration.left.distortion = camera.distortion;
+  calibration.left = lens;
   calibration.baseline = camera.baseline;
   calibration.fps = camera.fps;
   calibration.depth_factor = camera.depth_factor;
@@ -93,12 +129,15 @@ Calibration CalibrationOf(const Camera& camera) {
 }
 
 // What the user says the camera is, where he says so.
-Calibration ChooseCalibration(const Camera& camera, const SourceOptions& options) {
-  const Calibration own = CalibrationOf(camera);
+Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions& options) {
+  const Camera& camera = recording.camera();
+  const Calibration own = CalibrationOf(camera, recording.lens());
   if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
   Calibration chosen = own;
-  if (options.fov_degrees)
-    chosen = GuessedCalibration(camera.width, camera.height, *options.fov_degrees);
+  if (options.fov_degrees || !recording.settings().calibrated) {
+    const double assumed = AssumedFov({camera.width, camera.height});
+    chosen = GuessedCalibration(camera.width, camera.height, options.fov_degrees.value_or(assumed));
+  }
   if (options.camera_file) chosen = ReadCameraFile(*options.camera_file);
   if (chosen.left.width != camera.width || chosen.left.height != camera.height) {
     ThrowInput(chosen.origin + " is for images of another size than the rendered " +
@@ -125,12 +164,12 @@ class SynthSource : public ActorSource {
  public:
   SynthSource(SynthSettings settings, const SourceOptions& options)
       : recording_(settings),
-        preparation_(ChooseCalibration(recording_.camera(), options),
-                     ChooseSensor(settings, options)) {
+        preparation_(ToldCalibration(recording_, options), ChooseSensor(settings, options)) {
     info_.name = "synth-" + settings.scene;
     info_.kind = "synth";
     info_.sensor = ChooseSensor(settings, options);
     info_.camera = preparation_.camera();
+    info_.camera_guessed = !settings.calibrated && !options.fov_degrees && !options.camera_file;
     info_.R_camera_rectified = preparation_.R_camera_rectified();
     info_.frames = settings.frames;
   }

@@ -12,9 +12,10 @@ namespace alidade {
 
 bool IsSynthSource(const std::string& source);  // starts with "synth:"
 
-// The options are named like the flags of `alidade synth`, and width, height, fps. Without
-// `frames`: once round the scene's path. Switches (blur …) may stand alone or be set to 0 or 1.
-// Throws Error (usage).
+// The options are named like the flags of `alidade synth`, with _ for the - in a name. Without
+// `frames`: once round the scene's path. Switches (exposure …) may stand alone or be set to 0 or 1;
+// blur and rolling, too, or to milliseconds. calibrated=0: nothing is told of the camera, and one
+// is assumed as of a video. Throws Error (usage).
 SynthSettings ParseSynthSource(const std::string& source);
 
 // Frames are rendered when asked for. Same options as for recordings on disk: a sensor the settings

@@ -1,5 +1,6 @@
 #include "alidade/synth/camera_path.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -17,8 +18,8 @@ Eigen::Matrix3d LookAlong(double yaw, double pitch) {
 }
 
 CameraPath::CameraPath(std::vector<PathKnot> knots, double period, int turns,
-                       const ShakeSettings& shake, uint64_t seed)
-    : knots_(std::move(knots)), period_(period), turns_(turns) {
+                       const ShakeSettings& shake, uint64_t seed, const PathTiming& timing)
+    : knots_(std::move(knots)), period_(period), turns_(turns), timing_(timing) {
   Random random(seed, 21);
   for (int axis = 0; axis < 6; ++axis) {
     const double scale = axis < 3 ? shake.position : shake.rotation;
@@ -59,13 +60,32 @@ PathKnot CameraPath::Spline(double time) const {
   return at;
 }
 
-Eigen::Vector3d CameraPath::UnshakenPosition(double time) const { return Spline(time).position; }
+// Speed grows from 0 to 1 within a second, as 3 t² - 2 t³, whose integral is t³ - t⁴/2.
+double CameraPath::Walked(double time) const {
+  if (timing_.turn_first == 0) return timing_.speed * time;
+  const double since = std::max(0.0, time - timing_.turn_first);
+  const double gone = since < 1 ? since * since * since * (1 - since / 2) : since - 0.5;
+  return timing_.speed * gone;
+}
+
+Eigen::Vector3d CameraPath::UnshakenPosition(double time) const {
+  return Spline(Walked(time)).position;
+}
 
 Se3 CameraPath::At(double time) const {
-  const PathKnot knot = Spline(time);
+  PathKnot knot = Spline(Walked(time));
+  double steady = 0;  // 1: the hand does not shift
+  if (timing_.turn_first > 0 && time < timing_.turn_first + 1) {
+    const double since = std::max(0.0, time - timing_.turn_first);
+    steady = 1 - since * since * (3 - 2 * since);
+    if (time < timing_.turn_first) {
+      const double wave = std::sin(std::numbers::pi * time / timing_.turn_first);
+      knot.yaw += timing_.turn_angle * wave * wave;
+    }
+  }
   const Eigen::Vector3d shift(Shake(0, time), Shake(1, time), Shake(2, time));
   const Eigen::Vector3d turn(Shake(3, time), Shake(4, time), Shake(5, time));
-  return {LookAlong(knot.yaw, knot.pitch) * ExpSo3(turn), knot.position + shift};
+  return {LookAlong(knot.yaw, knot.pitch) * ExpSo3(turn), knot.position + (1 - steady) * shift};
 }
 
 }  // namespace alidade

@@ -42,6 +42,10 @@ cv::Mat PaintLeaves(Random& random, cv::Size size);
 cv::Mat PaintBand(Random& random,
                   cv::Size size);  // round a mug or a vase; left and right edge meet
 
+// Streets: houses with windows and shops below (`tone`: the wall's), and the road.
+cv::Mat PaintFacade(Random& random, cv::Size size, double density, double tone);
+cv::Mat PaintAsphalt(Random& random, cv::Size size, double density, double tone);
+
 // People. u goes once round with the front in the middle, v from top to bottom.
 cv::Mat PaintHead(Random& random, cv::Size size);
 struct ShirtStyle {

@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "alidade/geometry/camera.h"
+#include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/synth/settings.h"
 
@@ -30,7 +31,8 @@ class SynthRecording {
   SynthRecording& operator=(SynthRecording&&) noexcept;
 
   const SynthSettings& settings() const;
-  const Camera& camera() const;
+  const Camera& camera() const;  // of a fisheye: size, and focal length in its middle
+  RawCamera lens() const;        // with a fisheye's lens, too
   int frames() const;
   double Time(int number) const;  // seconds
   // T_world_camera, exact; when rows are taken one after another, of the middle row. The world is z

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "alidade/base/parallel.h"
+#include "alidade/geometry/raw_camera.h"
 #include "alidade/synth/tile_caster.h"
 
 namespace alidade {
@@ -11,9 +12,19 @@ namespace {
 
 constexpr int kTile = TileCaster::kTile;
 
+Eigen::Vector3d EquidistantDirection(const Camera& camera, const Eigen::Vector2d& pixel) {
+  RawCamera lens;
+  lens.lens = Lens::kFisheye;
+  lens.fx = camera.fx;
+  lens.fy = camera.fy;
+  lens.cx = camera.cx;
+  lens.cy = camera.cy;
+  return lens.Direction(pixel);
+}
+
 }  // namespace
 
-ViewRenderer::ViewRenderer(const Scene& scene, const Camera& camera)
+ViewRenderer::ViewRenderer(const Scene& scene, const Camera& camera, bool fisheye)
     : scene_(scene),
       camera_(camera),
       columns_((camera.width + kTile - 1) / kTile),
@@ -24,9 +35,10 @@ ViewRenderer::ViewRenderer(const Scene& scene, const Camera& camera)
   ParallelFor(ray_x_.rows, [&](int y) {
     for (int x = 0; x < ray_x_.cols; ++x) {
       const Eigen::Vector2d pixel(std::min(x, camera.width), std::min(y, camera.height));
-      const Eigen::Vector3d ray = camera_.Unproject(camera_.Undistort(pixel));
-      ray_x_(y, x) = static_cast<float>(ray.x());
-      ray_y_(y, x) = static_cast<float>(ray.y());
+      const Eigen::Vector3d ray = fisheye ? EquidistantDirection(camera_, pixel)
+                                          : camera_.Unproject(camera_.Undistort(pixel));
+      ray_x_(y, x) = static_cast<float>(ray.x() / ray.z());
+      ray_y_(y, x) = static_cast<float>(ray.y() / ray.z());
     }
   });
 }

@@ -19,8 +19,9 @@ struct View {
 
 class ViewRenderer {
  public:
-  // Keeps a reference to the scene.
-  ViewRenderer(const Scene& scene, const Camera& camera);
+  // Keeps a reference to the scene. `fisheye`: equidistant, with the camera's size and focal
+  // length.
+  ViewRenderer(const Scene& scene, const Camera& camera, bool fisheye = false);
   // The same bits with any number of threads.
   View Render(const Shutter& shutter) const;
 

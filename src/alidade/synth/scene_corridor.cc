@@ -92,7 +92,7 @@ Layout LayOutCorridor(SceneBuilder& builder) {
   furnish.Cartons(AtWall(c, d, 13.9, 0.28), 3);
 
   const std::vector<Walk> walks = {{{-5.5, -0.95}, {5.5, -0.95}, {5.5, 0.95}, {-5.5, 0.95}}};
-  return {OutAndBack(), 33.0, 1, {}, walks};
+  return {OutAndBack(), 33.0, 1, {}, walks, {}};
 }
 
 }  // namespace alidade

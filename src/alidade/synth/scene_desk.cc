@@ -69,7 +69,8 @@ Layout LayOutDesk(SceneBuilder& builder) {
   ShakeSettings shake;
   shake.position = 0.008;
   shake.rotation = 0.026;
-  return {knots, 20.0, 0, shake, walks};
+  const TableTop table = {{0, -0.12, 0.76}, 0.5, 0.2};
+  return {knots, 20.0, 0, shake, walks, table};
 }
 
 }  // namespace alidade

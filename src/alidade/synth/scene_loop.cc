@@ -178,7 +178,7 @@ Layout LayOutLoop(SceneBuilder& builder) {
                        m + Vector2d(0, 2), m + Vector2d(-2, 2)});
     }
   }
-  return {knots, 64.0, 1, {}, walks};
+  return {knots, 64.0, 1, {}, walks, {}};
 }
 
 }  // namespace alidade

@@ -93,7 +93,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
       {{1.55, 0.95}, {-1.55, 0.95}, {-1.55, -0.95}, {1.55, -0.95}},
       {{1.5, 1.2}, {-1.4, 1.25}, {-1.75, 0.0}, {-1.4, -1.25}, {1.5, -1.2}, {1.75, 0.0}},
   };
-  return {knots, 19.0, 1, {}, walks};
+  return {knots, 19.0, 1, {}, walks, TableTop{{0, 0, 1.0}, 0.45, 0.2}};
 }
 
 }  // namespace alidade

@@ -53,7 +53,7 @@ Layout LayOutWall(SceneBuilder& builder) {
     knots.push_back(knot);
   }
   const std::vector<Walk> walks = {{{3.2, -0.55}, {-3.2, -0.55}, {-3.2, -0.75}, {3.2, -0.75}}};
-  return {knots, 20.0, 0, {}, walks};
+  return {knots, 20.0, 0, {}, walks, {}};
 }
 
 }  // namespace alidade

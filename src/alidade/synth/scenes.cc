@@ -13,7 +13,38 @@ Layout LayOut(const std::string& name, SceneBuilder& builder) {
   if (name == "corridor") return LayOutCorridor(builder);
   if (name == "wall") return LayOutWall(builder);
   if (name == "loop") return LayOutLoop(builder);
+  if (name == "street") return LayOutStreet(builder);
+  if (name == "road") return LayOutRoad(builder);
+  if (name == "table") return LayOutTable(builder);
+  if (name == "blank") return LayOutBlank(builder);
+  if (name == "hall") return LayOutHall(builder);
   return LayOutRoom(builder);
+}
+
+Layout TurnOnTheSpot(Layout layout, double arm) {
+  const PathKnot begin = layout.knots.front();
+  constexpr int kKnots = 48;
+  layout.knots.clear();
+  for (int i = 0; i < kKnots; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kKnots;
+    PathKnot knot = begin;
+    knot.yaw += angle + 0.25 * std::sin(3 * angle);  // now faster, now slower
+    knot.pitch += 0.08 * std::sin(5 * angle);
+    knot.position += arm * Eigen::Vector3d(std::cos(knot.yaw), std::sin(knot.yaw), 0);
+    layout.knots.push_back(knot);
+  }
+  layout.period = 16;  // 22 degrees a second, as one looks about
+  layout.turns = 1;
+  layout.shake.position = 0;
+  return layout;
+}
+
+Layout StandStill(Layout layout) {
+  const PathKnot begin = layout.knots.front();
+  layout.knots.assign(4, begin);
+  layout.turns = 0;
+  layout.shake.position = layout.shake.rotation = 0;
+  return layout;
 }
 
 std::vector<PathKnot> KnotsAlong(const std::vector<Eigen::Vector2d>& corners, double height,

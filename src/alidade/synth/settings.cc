@@ -1,6 +1,9 @@
 #include "alidade/synth/settings.h"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <numbers>
 
 #include "alidade/base/error.h"
 
@@ -12,7 +15,9 @@ struct NamedScene {
   int frames;
 };
 constexpr NamedScene kScenes[] = {
-    {"room", 600}, {"desk", 600}, {"corridor", 1000}, {"wall", 600}, {"loop", 2000}};
+    {"room", 600},    {"desk", 600},  {"corridor", 1000}, {"wall", 600},  {"loop", 2000},
+    {"street", 1320}, {"road", 1987}, {"table", 360},     {"blank", 420}, {"hall", 840}};
+constexpr const char* kPaths[] = {"walk", "turn", "turn-walk", "still"};
 
 }  // namespace
 
@@ -21,6 +26,8 @@ std::vector<std::string> SceneNames() {
   for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
   return names;
 }
+
+std::vector<std::string> PathNames() { return {std::begin(kPaths), std::end(kPaths)}; }
 
 int SceneFrames(const std::string& name) {
   for (const NamedScene& scene : kScenes) {
@@ -32,18 +39,44 @@ int SceneFrames(const std::string& name) {
   ThrowUsage("synth: no scene is called \"" + name + "\"; there are " + known);
 }
 
+double SynthSettings::Focal() const {
+  if (fov == 0) return 525.0 * width / 640;  // 62.7°, as Kinect-like cameras have
+  const double half = fov / 2 * std::numbers::pi / 180;
+  return fisheye ? width / 2.0 / half : width / 2.0 / std::tan(half);
+}
+
 void SynthSettings::Check() const {
   SceneFrames(scene);
   const auto require = [](bool holds, const char* what) {
     if (!holds) ThrowUsage(std::string("synth: ") + what);
   };
   require(frames >= 1 && frames <= 1000000, "frames must be between 1 and 1000000");
+  const std::vector<std::string> paths = PathNames();
+  require(std::find(paths.begin(), paths.end(), path) != paths.end(),
+          "path must be walk, turn, turn-walk or still");
+  require(speed > 0 && speed <= 100, "speed must be above 0 and at most 100");
+  require(arm >= 0 && arm <= 2, "arm must be between 0 and 2 metres");
+  require(arm == 0 || path == "turn", "arm is of the path \"turn\" alone");
+  require(things >= 0 && things <= 5, "things must be between 0 and 5");
+  require(fov == 0 || (fov >= 10 && fov <= 150), "fov must be between 10 and 150 degrees");
+  require(light > 0 && light <= 1, "light must be above 0 and at most 1");
+  require(blur >= 0 && blur <= 500, "blur must be between 0 and 500 milliseconds");
+  require(rolling_shutter >= 0 && rolling_shutter <= 500,
+          "rolling_shutter must be between 0 and 500 milliseconds");
+  require((distortion ? 1 : 0) + (k1 != 0 ? 1 : 0) + (fisheye ? 1 : 0) <= 1,
+          "distortion, k1 and fisheye are three lenses: choose one");
+  require(!fisheye || !stereo, "fisheye lenses come without stereo");
+  require(k1 >= -1 && k1 <= 1, "k1 must be between -1 and 1");
   require(actors >= 0 && actors <= 20, "actors must be between 0 and 20");
   require(std::isfinite(noise) && noise >= 0 && noise <= 100,
           "noise must be between 0 and 100 grey levels");
   require(width >= 64 && width <= 4096, "width must be between 64 and 4096 pixels");
   require(height >= 48 && height <= 4096, "height must be between 48 and 4096 pixels");
   require(std::isfinite(fps) && fps >= 1 && fps <= 1000, "fps must be between 1 and 1000");
+  // r (1 + k1 r²) grows up to r² = -1 / (3 k1) only, where it is 2/3 r: no ray comes further out.
+  const double corner = std::hypot(width, height) / 2 / Focal();
+  require(k1 >= 0 || corner < 2.0 / 3 / std::sqrt(-3 * k1),
+          "k1 bends the picture's corners back: choose it nearer to 0, or a smaller fov");
 }
 
 }  // namespace alidade

@@ -9,25 +9,45 @@ namespace alidade {
 
 // Names are those of the flags of `alidade synth` and of the options of a `synth:` source.
 struct SynthSettings {
-  std::string scene = "room";  // room, desk, corridor, wall or loop
+  std::string scene = "room";  // one of SceneNames()
   // Frames to play. A scene's path is walked at a natural speed and comes round once in
   // SceneFrames() frames at 30 per second; fewer play its beginning only, more go round again.
   int frames = 600;
-  int actors = 0;                 // people walking about
-  double noise = 4;               // standard deviation of the image noise, grey levels
-  bool blur = false;              // shutter open for 20 ms: fast turns smear
+  // The way the camera takes: "walk", the scene's own; "turn", it turns on the spot, about its own
+  // centre; "turn-walk", it does so for 4 s and then walks; "still", it stands, as on a tripod.
+  std::string path = "walk";
+  double speed = 1;  // times that of the scene's own
+  double arm = 0;    // metres from the axis of a turn to the camera, which looks away
+  int actors = 0;    // people walking about
+  int things = 0;    // cups and tins moved about by hand, where there is a table
+  double noise = 4;  // standard deviation of the image noise, grey levels
+  // Share of daylight. The exposure makes up for it up to 4 times, below a quarter pictures are
+  // dark; what light is left is uneven (shot noise): against what is seen the noise is
+  // 1 / sqrt(light) of what it is by day.
+  double light = 1;
+  double blur = 0;                // milliseconds the shutter is open: fast turns smear
   bool exposure = false;          // brightness and contrast drift slowly, as with auto-exposure
   bool distortion = false;        // lens with radial and tangential distortion
-  bool rolling = false;           // rows are taken one after another over 16 ms
+  double k1 = 0;                  // lens with radial distortion alone: Brown's k1
+  bool fisheye = false;           // equidistant lens: as many pixels for each degree
+  double rolling_shutter = 0;     // milliseconds from the first row to the last
   bool stereo = false;            // a second, rectified camera 0.11 m to the right
   uint64_t seed = 1;              // of textures, clutter, shake, noise and actors
   int width = 640, height = 480;  // pixels
+  double fov = 0;                 // horizontal field of view, degrees; 0: 62.7, as of a Kinect
   double fps = 30;                // frames per second
+  bool calibrated = true;         // false: sources assume a camera, as if nothing were known of it
 
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  // What --blur, --rolling and switches of those names stand for: ms of a shutter indoors, of a
+  // phone's sensor.
+  static constexpr double kUsualBlur = 20, kUsualRolling = 16;
+
+  double Focal() const;  // focal length, pixels; of a fisheye: pixels per radian
+  void Check() const;    // throws Error (usage) naming the field that cannot be
 };
 
 std::vector<std::string> SceneNames();
+std::vector<std::string> PathNames();
 int SceneFrames(
     const std::string& scene);  // once round its path; scene must be one of SceneNames()
 

@@ -19,17 +19,14 @@ void CheckSize(const Calibration& calibration, cv::Size size) {
   }
 }
 
-// A phone's field of view is that of its longer side: of an upright picture, the horizontal one is
-// 2 atan(width / height tan(fov / 2)), 40 degrees for 9:16. Taken for the horizontal one, 66 makes
-// a walk of a turn on the spot.
+}  // namespace
+
 double AssumedFov(cv::Size size) {
   if (size.width >= size.height) return kDefaultFovDegrees;
   const double degree = std::numbers::pi / 180;
   const double half = std::tan(kDefaultFovDegrees / 2 * degree) * size.width / size.height;
   return 2 / degree * std::atan(half);
 }
-
-}  // namespace
 
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv::Size size,
                                     const SourceOptions& options) {

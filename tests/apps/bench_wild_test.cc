@@ -1,0 +1,61 @@
+// `alidade bench wild`: that its rows say what happened. How good that was is for
+// docs/benchmarks.md.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "support/program.h"
+
+namespace alidade::bench_wild_test {
+namespace {
+
+using nlohmann::json;
+
+TEST(BenchWild, GivesARowForEachCaseAndSaysThatNothingIsFalse) {
+  const TempFolder folder;
+  const std::string out = folder / "wild.json";
+  const ProgramResult result = RunAlidade({"bench", "wild", "--cases", "desk-small,turn", "--seeds",
+                                           "1", "--frames", "24", "--check", "--out", out});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("| case | start |"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("\n| desk-small | "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("2 runs: 0 false poses, 0 false maps"), std::string::npos);
+  EXPECT_EQ(result.err, "");  // progress is for terminals
+
+  const json all = json::parse(ReadText(out), nullptr, false);
+  ASSERT_EQ(all["cases"].size(), 2u);
+  for (const json& run : all["cases"][0]["runs"]) {
+    EXPECT_EQ(run["frames"], 24);
+    const int start = run["start"], tracked = run["tracked"], usable = run["usable"];
+    EXPECT_GE(start, 0);
+    EXPECT_LE(tracked, 24 - start);
+    EXPECT_GT(usable, 0);
+    EXPECT_LT(usable, 10);
+    EXPECT_EQ(run["maps"], 1);
+    EXPECT_EQ(run["false_poses"], 0);
+    EXPECT_LT(run["ate_percent"].get<double>(), 5);
+    EXPECT_TRUE(run["coverage"].is_null());  // not a second of usable motion
+  }
+  // A turn about the camera's centre has no usable motion and gives no map.
+  EXPECT_EQ(all["cases"][1]["map_expected"], false);
+  for (const json& run : all["cases"][1]["runs"]) {
+    EXPECT_EQ(run["usable"], -1);
+    EXPECT_EQ(run["maps"], 0);
+    EXPECT_TRUE(run["coverage"].is_null());
+    EXPECT_NE(run["reason"], "");
+  }
+}
+
+TEST(BenchWild, KnowsItsCasesAndSettings) {
+  const ProgramResult result = RunAlidade({"bench", "wild", "--cases", "desk,still-cap"});
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("still-cup"), std::string::npos) << result.err;
+  EXPECT_EQ(RunAlidade({"bench", "wild", "synth:room"}).status, 2);
+  const ProgramResult unknown = RunAlidade({"bench", "wild", "--set", "nonsense=1"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.err.find("nonsense"), std::string::npos) << unknown.err;
+}
+
+}  // namespace
+}  // namespace alidade::bench_wild_test
