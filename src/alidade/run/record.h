@@ -10,6 +10,7 @@
 #include "alidade/io/frame_source.h"
 #include "alidade/io/trajectory.h"
 #include "alidade/run/keyframe_album.h"
+#include "alidade/run/lens.h"
 #include "alidade/run/stream_settings.h"
 #include "alidade/run/untracked.h"
 #include "alidade/system/slam.h"
@@ -22,6 +23,7 @@ struct RunRecord {
   SlamSettings settings;
   StreamFeedSettings stream;  // of who tells the run, if somebody does
   LookSettings look;          // of frames without a pose
+  LensSettings lens_check;    // of what the lens is asked
   std::string profile;
   int threads = 0;
 
@@ -37,6 +39,7 @@ struct RunRecord {
   KeyframeAlbum album;
   std::string first_problem;  // of a bad frame
   Trajectory truth;           // of rendered recordings
+  LensCheck lens;             // what the map says of it, at the end
 
   double cpu_s = 0;   // CPU time of all threads, reading images left out, seconds
   double wall_s = 0;  // seconds

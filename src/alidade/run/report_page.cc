@@ -183,7 +183,8 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results,
   report.settings = {{"profile", record.profile},
                      {"schedule", record.settings.threaded ? "threaded" : "inline"},
                      {"threads", std::to_string(record.threads)}};
-  for (const auto& setting : RunSettings{record.settings, record.stream, record.look}.All())
+  for (const auto& setting :
+       RunSettings{record.settings, record.stream, record.look, record.lens_check}.All())
     report.settings.push_back(setting);
   return RenderReport(report);
 }

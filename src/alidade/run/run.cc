@@ -70,6 +70,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   record.settings = settings.slam;
   record.stream = settings.stream;
   record.look = settings.look;
+  record.lens_check = settings.lens;
   record.untracked.set_look(settings.look);
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
@@ -110,6 +111,9 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
+  record.lens = CheckLens(slam, record.settings, record.lens_check);
+  if (const std::string bent = LensInWords(record.lens, slam.camera()); !bent.empty())
+    LogWarning(bent);
   record.warnings = warnings.all();
   if (record.failure && record.frames == 0) {
     if (masks) masks->Discard();

@@ -8,6 +8,7 @@ void RunSettings::Check() const {
   slam.Check();
   stream.Check();
   look.Check();
+  lens.Check();
 }
 
 void RunSettings::Set(const std::string& name, const std::string& value) {
@@ -15,6 +16,8 @@ void RunSettings::Set(const std::string& name, const std::string& value) {
     stream.Set(name, value);
   } else if (name.rfind("look.", 0) == 0) {
     look.Set(name, value);
+  } else if (name.rfind("lens.", 0) == 0) {
+    lens.Set(name, value);
   } else {
     slam.Set(name, value);
   }
@@ -24,6 +27,7 @@ std::vector<std::pair<std::string, std::string>> RunSettings::All() const {
   auto all = slam.All();
   for (auto& setting : stream.All()) all.push_back(std::move(setting));
   for (auto& setting : look.All()) all.push_back(std::move(setting));
+  for (auto& setting : lens.All()) all.push_back(std::move(setting));
   std::sort(all.begin(), all.end());
   return all;
 }

@@ -1,11 +1,12 @@
-// All settings of a run, by name: the system's, those of the stream and of how
-// pictures without a pose are judged.
+// All settings of a run, by name: the system's, those of the stream, of how pictures without a pose
+// are judged, and of what the lens is asked.
 #pragma once
 
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "alidade/run/lens.h"
 #include "alidade/run/look.h"
 #include "alidade/run/stream_settings.h"
 #include "alidade/system/settings.h"
@@ -16,6 +17,7 @@ struct RunSettings {
   SlamSettings slam;
   StreamFeedSettings stream;  // stream.…
   LookSettings look;          // look.…
+  LensSettings lens;          // lens.…
   void Check() const;         // throws Error (usage) naming the field that cannot be
 
   // As SlamSettings::Set() and All().

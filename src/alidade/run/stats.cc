@@ -24,7 +24,8 @@ ordered_json SettingsJson(const RunRecord& record) {
   ordered_json settings = {{"profile", record.profile},
                            {"schedule", record.settings.threaded ? "threaded" : "inline"},
                            {"threads", record.threads}};
-  for (const auto& [name, value] : RunSettings{record.settings, record.stream, record.look}.All()) {
+  for (const auto& [name, value] :
+       RunSettings{record.settings, record.stream, record.look, record.lens_check}.All()) {
     const ordered_json parsed = ordered_json::parse(value, nullptr, false);
     settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
   }
@@ -42,6 +43,16 @@ ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& repor
           {"searches", mean(report.search.searches, report.keyframes)},
           {"mean_search", mean(report.search.samples, report.search.searches)},
           {"most_behind", report.most_behind}};
+}
+
+// What the map says of the lens; null: too little was seen.
+ordered_json LensJson(const LensCheck& lens) {
+  if (lens.windows == 0) return nullptr;
+  return {{"k1", lens.k1},
+          {"sigma", lens.sigma},
+          {"bend", lens.bend},
+          {"windows", lens.windows},
+          {"strong", lens.strong}};
 }
 
 // Parts that failed and did nothing from then on.
@@ -105,6 +116,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
         {"dynamics", ToJson(results.times.dynamics)},
         {"semidense", ToJson(results.times.semidense)}}},
       {"semidense", SemiDenseJson(record, results.semidense)},
+      {"lens", LensJson(record.lens)},
       {"cpu_s", record.cpu_s},
       {"wall_s", record.wall_s},
       {"peak_mb", PeakMegabytes()},

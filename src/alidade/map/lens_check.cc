@@ -1,0 +1,103 @@
+#include "alidade/map/lens_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/id_map.h"
+#include "alidade/base/median.h"
+#include "alidade/optimize/lens_bend.h"
+
+namespace alidade {
+namespace {
+
+BundleProblem ProblemOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,
+                        const Camera& camera, const MeasurementNoise& noise, int min_seen) {
+  BundleProblem problem;
+  problem.camera = camera;
+  IdMap<KeyFrameId, int> index;
+  std::vector<LandmarkId> landmarks;
+  for (KeyFrameId id : keyframes) {
+    index[id] = static_cast<int>(problem.T_camera_world.size());
+    const KeyFrame& keyframe = *map.Find(id);
+    problem.T_camera_world.push_back(keyframe.T_camera_world);
+    for (LandmarkId landmark : keyframe.landmarks) {
+      if (landmark.valid()) landmarks.push_back(landmark);
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  for (LandmarkId id : landmarks) {
+    const Landmark* landmark = map.Find(id);
+    if (!landmark) continue;
+    const auto seen = std::count_if(landmark->observations.begin(), landmark->observations.end(),
+                                    [&](const Observation& o) { return index.Find(o.keyframe); });
+    if (seen < min_seen) continue;
+    for (const Observation& o : landmark->observations) {
+      const int* camera_index = index.Find(o.keyframe);
+      if (!camera_index) continue;
+      const Measurement m = Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], noise);
+      problem.observations.push_back({*camera_index, static_cast<int>(problem.points.size()),
+                                      m.pixel, m.inv_sigma2, m.inv_sigma2_right,
+                                      landmark->static_probability});
+    }
+    problem.points.push_back(landmark->p_world);
+  }
+  return problem;
+}
+
+}  // namespace
+
+void LensCheckSettings::Check() const {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) ThrowUsage(std::string("lens.") + what);
+  };
+  require(least_window >= 3 && least_window <= 100, "least_window must lie in 3..100");
+  require(window >= least_window && window <= 100, "window must lie in least_window..100");
+  require(min_windows >= 2, "min_windows must be at least 2");
+  require(max_windows >= min_windows, "max_windows must be at least min_windows");
+  require(min_seen >= 2 && min_seen <= least_window, "min_seen must lie in 2..least_window");
+  require(min_bend > 0, "min_bend must be positive");
+  require(min_sigmas > 0, "min_sigmas must be positive");
+}
+
+LensCheck CheckLens(const MapSnapshot& map, MapId id, const Camera& camera,
+                    const MeasurementNoise& noise, const LensCheckSettings& settings) {
+  settings.Check();
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
+  const size_t window = std::min(static_cast<size_t>(settings.window),
+                                 keyframes.size() / static_cast<size_t>(settings.min_windows));
+  if (window < static_cast<size_t>(settings.least_window)) return {};
+  const size_t there = keyframes.size() / window;
+  const size_t used = std::min(there, static_cast<size_t>(settings.max_windows));
+  std::vector<double> k1, sigma;
+  for (size_t i = 0; i < used; ++i) {
+    const std::span<const KeyFrameId> part(keyframes.data() + i * there / used * window, window);
+    const auto bend = EstimateLensBend(ProblemOf(map, part, camera, noise, settings.min_seen));
+    if (!bend) continue;
+    k1.push_back(bend->k1);
+    sigma.push_back(bend->sigma);
+  }
+  LensCheck check;
+  check.windows = static_cast<int>(k1.size());
+  if (k1.empty()) return check;
+  check.k1 = UpperMedian(k1);
+  std::vector<double> apart;
+  for (double k : k1) apart.push_back(std::abs(k - check.k1));
+  // Of Gaussian noise the median absolute deviation is 0.6745 standard deviations, and the median
+  // of n has 1.2533 / sqrt(n) of them. Few windows may agree by chance, but not better than each
+  // knows by itself.
+  const double of_one = std::hypot(UpperMedian(apart) / 0.6745, UpperMedian(sigma));
+  check.sigma = 1.2533 * of_one / std::sqrt(static_cast<double>(k1.size()));
+  const double corner = std::hypot(camera.width / camera.fx, camera.height / camera.fy) / 2;
+  check.bend = check.k1 * corner * corner;
+  check.strong = check.windows >= settings.min_windows &&
+                 std::abs(check.bend) >= settings.min_bend &&
+                 std::abs(check.k1) >= settings.min_sigmas * check.sigma;
+  return check;
+}
+
+}  // namespace alidade
