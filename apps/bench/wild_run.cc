@@ -108,6 +108,9 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   ReadAhead source(OpenAnySource(of.source + "&seed=" + std::to_string(seed), options));
   RunRecord record;
   record.source = source.Info();
+  // As `alidade run` does where the camera is only assumed (run.cc, kGuessedLens).
+  if (record.source.camera_guessed && settings.start.two_view.lens_uncertainty == 0)
+    settings.start.two_view.lens_uncertainty = 0.6;
   record.settings = settings;
   Slam slam(record.source.camera, settings);
   WildRun run;
