@@ -2,12 +2,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "alidade/base/id_map.h"
+#include "alidade/base/median.h"
 
 namespace alidade {
 namespace {
+
+// Noise of what one camera saw, as a share of what is assumed: the median of chi² with 2 degrees of
+// freedom is 2 ln 2. 1 where it is larger (or nothing was seen): then the state is not near enough.
+double NoiseShare(const BundleProblem& problem, double least) {
+  const double median_of_chi2 = 2 * std::numbers::ln2;
+  std::vector<double> chi2;
+  chi2.reserve(problem.observations.size());
+  for (const BundleObservation& o : problem.observations) {
+    chi2.push_back(
+        ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o));
+  }
+  if (chi2.empty()) return 1;
+  return std::clamp(std::sqrt(UpperMedian(chi2) / median_of_chi2), least, 1.0);
+}
 
 double Gate(const BundleObservation& o) { return std::isnan(o.pixel.z()) ? 5.991 : 7.815; }
 
@@ -55,7 +71,13 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   }
 
   Adjustment result;
-  result.report = AdjustBundle(problem, settings.bundle, stop);
+  BundleSettings bundle = settings.bundle;
+  if (camera.StereoBaseline() <= 0) {
+    const double share = NoiseShare(problem, settings.least_noise);
+    bundle.huber_mono *= share;
+    bundle.redescending = bundle.redescending || share < 1;
+  }
+  result.report = AdjustBundle(problem, bundle, stop);
   for (size_t i = 0; i < free.size(); ++i)
     result.poses.push_back({free[i], problem.T_camera_world[i]});
   for (size_t i = 0; i < points.size(); ++i)

@@ -16,6 +16,12 @@ namespace ALIDADE_API alidade {
 struct AdjustSettings {
   MeasurementNoise noise;  // of keypoints
   BundleSettings bundle;
+  // One camera alone: its scale hangs on few observations where it turns past little structure, and
+  // matches that are none bend it (a landmark k times too near weighs k²). So the loss follows the
+  // noise there is: its bound is that for noise.sigma_px by the share of it that is seen (median of
+  // chi² over that of noise as assumed, 2 ln 2), no smaller than this; and where that is below 1,
+  // the loss is Geman & McClure's (BundleSettings::redescending). 1: Huber's loss, as assumed.
+  double least_noise = 0.1;
 };
 
 struct Adjustment {

@@ -5,6 +5,33 @@
 #include "alidade/base/id_map.h"
 
 namespace alidade {
+namespace {
+
+// Fills `window` with those that share most landmarks with one that is in it, best first.
+void Widen(const MapSnapshot& map, const MapperSettings& settings,
+           std::vector<KeyFrameId>& window) {
+  IdSet<KeyFrameId> within;
+  std::vector<Neighbour> around;  // of those in the window; may name one more than once
+  const auto enter = [&](KeyFrameId id) {
+    within.Enter(id);
+    for (const Neighbour& n : map.Find(id)->covisible) {
+      if (n.shared >= settings.window_shared && map.Find(n.id)) around.push_back(n);
+    }
+  };
+  for (KeyFrameId id : window) enter(id);
+  while (static_cast<int>(window.size()) < settings.window_keyframes) {
+    Neighbour best{{}, 0};
+    for (const Neighbour& n : around) {
+      const bool better = n.shared > best.shared || (n.shared == best.shared && n.id > best.id);
+      if (better && !within.Contains(n.id)) best = n;
+    }
+    if (best.shared == 0) return;
+    window.push_back(best.id);
+    enter(best.id);
+  }
+}
+
+}  // namespace
 
 Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
                         const MapperSettings& settings, const std::atomic<bool>* stop) {
@@ -14,6 +41,8 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
     if (static_cast<int>(free.size()) >= settings.window_keyframes) break;
     if (map.Find(n.id)) free.push_back(n.id);
   }
+  const bool one_camera = camera.StereoBaseline() <= 0;
+  if (one_camera) Widen(map, settings, free);
   std::sort(free.begin(), free.end());
 
   // Votes for the fixed ones: landmarks of the window each outsider sees.
@@ -42,7 +71,7 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
   }
   // The world's own frame stays; something must hold a young map's gauge (and a monocular one's
   // scale).
-  const size_t wanted = camera.StereoBaseline() > 0 ? 1 : 2;
+  const size_t wanted = one_camera ? 2 : 1;
   while (fixed.size() < wanted && free.size() > 1) {
     fixed.push_back(free.front());
     free.erase(free.begin());
@@ -52,7 +81,9 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
     free.erase(free.begin());
   }
   std::sort(fixed.begin(), fixed.end());
-  return AdjustKeyFrames(map, free, fixed, camera, {settings.noise, settings.bundle}, stop);
+  AdjustSettings adjust{settings.noise, settings.bundle, settings.least_noise};
+  if (one_camera) adjust.bundle.max_iterations = settings.window_iterations_mono;
+  return AdjustKeyFrames(map, free, fixed, camera, adjust, stop);
 }
 
 }  // namespace alidade

@@ -86,7 +86,7 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
     }
     commit.RefreshCovisibility(second);
   });
-  AdjustSettings thorough{settings_.noise, settings_.bundle};
+  AdjustSettings thorough{settings_.noise, settings_.bundle, settings_.least_noise};
   thorough.bundle.max_iterations = 20;
   const Adjustment adjusted = AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr);
   map_.Commit([&](MapCommit& commit) {

@@ -22,6 +22,11 @@ void MapperSettings::Check() const {
   require(fuse_keyframes >= 0 && fuse_radius > 0, "fuse_* cannot be negative");
   require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must lie in [0, 1]");
   require(redundant_share > 0, "redundant_share must be positive");
+  require(min_parallax_degrees_mono > 0 && min_parallax_degrees_mono < 90,
+          "min_parallax_degrees_mono must lie in (0, 90)");
+  require(window_shared >= 1, "window_shared must be positive");
+  require(window_iterations_mono >= 1, "window_iterations_mono must be positive");
+  require(least_noise > 0 && least_noise <= 1, "least_noise must be above 0 and at most 1");
   require(window_keyframes >= 1 && window_fixed >= 1, "window_* must be positive");
   require(max_keyframes >= 0, "max_keyframes cannot be negative");
   require(max_keyframes == 0 || max_keyframes >= 10,

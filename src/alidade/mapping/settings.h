@@ -23,8 +23,10 @@ struct MapperSettings {
   int triangulate_keyframes_depth = 6;
   int triangulate_distance = 50;    // bits of 256: only the epipolar line guides the search
   double triangulate_ratio = 0.85;  // best to second-best distance
-  double min_parallax_degrees =
-      0.4;  // between the two rays; far points hold the rotation, their depth comes later
+  // Between the two rays. Far points hold the rotation, their depth comes later. One camera needs
+  // new points sooner: where it turns past a blank wall its scale hangs on what is mapped at once.
+  double min_parallax_degrees = 0.4;
+  double min_parallax_degrees_mono = 0.2;
   double min_baseline_ratio = 0.01;  // baseline to median depth, monocular
 
   // Fusion of duplicates.
@@ -52,7 +54,12 @@ struct MapperSettings {
   // Adjusted: the newest and its best covisible ones. With fewer, a monocular scale breaks where
   // the camera turns round on the spot.
   int window_keyframes = 20;
+  // On the spot few keyframes see the same as the newest. One camera's window is then filled with
+  // those that share at least so many landmarks with one that is in it.
+  int window_shared = 15;
+  int window_iterations_mono = 20;  // bundle.max_iterations of one camera: a bend of scale is soft
   int window_fixed = 20;  // held: those that see most of the same landmarks
+  double least_noise = 0.1;  // AdjustSettings::least_noise, one camera
   BundleSettings bundle{
       .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
 

@@ -136,7 +136,9 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
         MatchAlongLines(a, free_a, *others[i], WithoutLandmark(*others[i]), camera, settings);
   });
 
-  const double max_cosine = std::cos(settings.min_parallax_degrees * std::numbers::pi / 180);
+  const double min_degrees =
+      has_depth ? settings.min_parallax_degrees : settings.min_parallax_degrees_mono;
+  const double max_cosine = std::cos(min_degrees * std::numbers::pi / 180);
   std::vector<NewLandmark> made;
   std::vector<uint8_t> used(a.landmarks.size(), 0);
   for (size_t n = 0; n < others.size(); ++n) {

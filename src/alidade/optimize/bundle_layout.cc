@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "alidade/base/error.h"
@@ -48,7 +49,9 @@ BundleSighting Sight(const Intrinsics& k, const BundleObservation& o, int slot,
   s.right = stereo ? o.pixel.z() : 0;
   s.weight = o.inv_sigma2;
   s.weight_r = stereo ? o.inv_sigma2_right : 0;
-  s.huber = stereo ? settings.huber_stereo : settings.huber_mono;
+  const double bound = stereo ? settings.huber_stereo : settings.huber_mono;
+  s.huber = settings.redescending ? std::numeric_limits<double>::infinity() : bound;
+  s.inv_c2 = settings.redescending ? 1 / (bound * bound) : 0;
   s.trust = o.trust;
   return s;
 }

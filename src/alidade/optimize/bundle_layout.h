@@ -15,7 +15,8 @@ struct BundleSighting {
   int slot;                 // index among the free cameras, -1: fixed
   double u, v, right;       // pixels; right = 0 without
   double weight, weight_r;  // 1/px²; weight_r = 0 without
-  double huber;             // standard deviations
+  double huber;             // standard deviations; infinite where the loss is another
+  double inv_c2;            // of Geman & McClure's loss, 1 / variances; 0: Huber's
   double trust;             // above 0, up to 1
 };
 

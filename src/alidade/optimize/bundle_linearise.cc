@@ -10,7 +10,7 @@ namespace {
 // Two sightings of one point, side by side.
 struct Terms {
   Double2 Y[3];  // point from the camera's centre, world axes
-  // B' W B, W with trust, and Huber's weight at this state (iteratively reweighted least squares)
+  // B' W B, W with trust, and the loss's weight at this state (iteratively reweighted least squares)
   Double2 N[6];
   Double2 g[3];  // B' W r
   Double2 cost;
@@ -37,8 +37,10 @@ struct Terms {
   const Double2 huber{s0.huber, s1.huber};
   const Double2 root = Sqrt(chi2), inner = Min(root, huber);
   const Double2 trust{s0.trust, s1.trust};
-  t.cost = trust * (inner * (root - 0.5 * inner));
-  const Double2 say = trust * (root > huber ? huber / root : Both(1));
+  // Huber's loss by Geman & McClure's factor: one of the two is always without effect.
+  const Double2 q = 1 / (1 + chi2 * Double2{s0.inv_c2, s1.inv_c2});
+  t.cost = trust * (inner * (root - 0.5 * inner)) * q;
+  const Double2 say = trust * (root > huber ? huber / root : Both(1)) * (q * q);
   w *= say;
   wr *= say;
   // Rows of B = A R.

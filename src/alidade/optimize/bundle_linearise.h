@@ -57,7 +57,7 @@ struct Linearisation {
   std::vector<Coupling> couplings;  // point by point, in the order of the layout
   std::vector<PointBlock> points;
   std::vector<CameraBlock> cameras;  // by slot
-  double cost = 0;                   // ½ sum of Huber losses by trust
+  double cost = 0;                   // ½ sum of losses by trust
   bool valid = true;                 // no point behind a camera that should see it
 };
 

@@ -58,6 +58,7 @@ void VisitMapping(Settings& m, Visit&& visit) {
   visit("mapper.triangulate_distance", m.triangulate_distance);
   visit("mapper.triangulate_ratio", m.triangulate_ratio);
   visit("mapper.min_parallax_degrees", m.min_parallax_degrees);
+  visit("mapper.min_parallax_degrees_mono", m.min_parallax_degrees_mono);
   visit("mapper.min_baseline_ratio", m.min_baseline_ratio);
   visit("mapper.fuse_keyframes", m.fuse_keyframes);
   visit("mapper.fuse_radius", m.fuse_radius);
@@ -68,6 +69,9 @@ void VisitMapping(Settings& m, Visit&& visit) {
   visit("mapper.max_keyframes", m.max_keyframes);
   visit("mapper.window_keyframes", m.window_keyframes);
   visit("mapper.window_fixed", m.window_fixed);
+  visit("mapper.window_shared", m.window_shared);
+  visit("mapper.window_iterations_mono", m.window_iterations_mono);
+  visit("mapper.least_noise", m.least_noise);
   visit("mapper.bundle.max_iterations", m.bundle.max_iterations);
   visit("mapper.bundle.min_relative_decrease", m.bundle.min_relative_decrease);
 }
@@ -99,6 +103,7 @@ void VisitLooping(Settings& l, Visit&& visit) {
   visit("loop.graph_shared", l.graph_shared);
   visit("loop.graph.max_iterations", l.graph.max_iterations);
   visit("loop.graph.length_scale", l.graph.length_scale);
+  visit("loop.least_noise", l.least_noise);
   visit("loop.bundle.max_iterations", l.bundle.max_iterations);
   visit("loop.bundle.min_relative_decrease", l.bundle.min_relative_decrease);
 }
