@@ -86,8 +86,7 @@ void LoopCloser::AdjustAll(
     (map.Find(other)->parent.valid() ? free : fixed).push_back(other);
   }
   Adjustment adjusted =
-      AdjustKeyFrames(map, free, fixed, camera_, {settings_.noise, settings_.bundle, settings_.least_noise},
-                      stop);
+      AdjustKeyFrames(map, free, fixed, camera_, {settings_.noise, settings_.bundle}, stop);
   adjusted.outliers.clear();  // the mapper will find those that stay
   while_mapper_rests([&] {
     map_.CommitAside([&](MapCommit& commit) {

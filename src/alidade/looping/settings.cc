@@ -23,7 +23,6 @@ void LoopSettings::Check() const {
           "confirm_keyframes must be at least loop.confirm_needed");
   require(max_drift > 0 && max_drift_floor >= 0, "max_drift must be positive");
   require(max_turn > 0, "max_turn must be positive");
-  require(least_noise > 0 && least_noise <= 1, "least_noise must be above 0 and at most 1");
   require(max_scale >= 1, "max_scale must be at least 1");
   require(max_plain_scale >= max_scale, "max_plain_scale must be at least loop.max_scale");
   graph.Check();

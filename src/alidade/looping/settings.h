@@ -43,8 +43,7 @@ struct LoopSettings {
   // Of the whole map. What a loop leaves bends all of it a little, which damping would hold on to.
   BundleSettings bundle{
       .max_iterations = 15, .min_relative_decrease = 1e-5, .initial_lambda = 1e-6};
-  double least_noise = 0.1;  // AdjustSettings::least_noise, one camera
-  uint64_t seed = 1;         // of the random samples
+  uint64_t seed = 1;   // of the random samples
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 

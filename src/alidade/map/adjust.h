@@ -20,8 +20,9 @@ struct AdjustSettings {
   // matches that are none bend it (a landmark k times too near weighs k²). So the loss follows the
   // noise there is: its bound is that for noise.sigma_px by the share of it that is seen (median of
   // chi² over that of noise as assumed, 2 ln 2), no smaller than this; and where that is below 1,
-  // the loss is Geman & McClure's (BundleSettings::redescending). 1: Huber's loss, as assumed.
-  double least_noise = 0.1;
+  // the loss is Geman & McClure's (BundleSettings::redescending). 1: Huber's loss, as assumed; so
+  // after a loop, where the whole map is to move: from afar the other one lets the loop itself go.
+  double least_noise = 1;
 };
 
 struct Adjustment {

@@ -103,7 +103,6 @@ void VisitLooping(Settings& l, Visit&& visit) {
   visit("loop.graph_shared", l.graph_shared);
   visit("loop.graph.max_iterations", l.graph.max_iterations);
   visit("loop.graph.length_scale", l.graph.length_scale);
-  visit("loop.least_noise", l.least_noise);
   visit("loop.bundle.max_iterations", l.bundle.max_iterations);
   visit("loop.bundle.min_relative_decrease", l.bundle.min_relative_decrease);
 }
