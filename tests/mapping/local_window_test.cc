@@ -218,6 +218,52 @@ TEST(CommitAdjustment, TheYoungFollow) {
   EXPECT_LT((in_camera(before, in_grandchild) - in_camera(after, in_grandchild)).norm(), 1e-12);
 }
 
+// A camera that turns round on the spot: the newest keyframe shares landmarks with few others.
+TEST(AdjustWindow, IsFilledWithNeighboursOfNeighbours) {
+  const SyntheticWorld world = MakeSyntheticWorld({.points = 1500, .cameras = 24, .ring = 0.5});
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {}, store);
+  const auto adjusted = [&](int shared) {
+    MapperSettings settings;
+    settings.window_shared = shared;
+    return AdjustWindow(store.Snapshot(), made.keyframes.back(), world.camera, settings, nullptr)
+        .poses.size();
+  };
+  const size_t covisible = store.Snapshot().Find(made.keyframes.back())->covisible.size();
+  ASSERT_LT(covisible, 12u);
+  EXPECT_LE(adjusted(100000), covisible + 1);
+  EXPECT_EQ(adjusted(15), 20u);
+}
+
+// Noise is a quarter of what is assumed, and every tenth keypoint is off by less than would be
+// noticed at that: they pull less where the loss follows the noise there is.
+TEST(AdjustWindow, LetsGoOfWhatTheNoiseDoesNotExplain) {
+  SyntheticWorld world = MakeSyntheticWorld({.points = 400, .cameras = 7, .noise_px = 0.2});
+  for (SyntheticView& view : world.views) {
+    auto frame = std::make_shared<Frame>(*view.frame);
+    for (size_t k = 0; k < frame->keypoints.size(); k += 10) {
+      frame->keypoints[k].x += 1.8F * static_cast<float>(ScaleOfLevel(frame->keypoints[k].level));
+    }
+    view.frame = frame;
+  }
+  const auto error = [&](double least_noise) {
+    MapStore store;
+    const SyntheticMap made = FillMap(world, {}, store);
+    MapperSettings settings = Patient();
+    settings.least_noise = least_noise;
+    const Adjustment result =
+        AdjustWindow(store.Snapshot(), made.keyframes.back(), world.camera, settings, nullptr);
+    double sum = 0;
+    for (const auto& [id, T_camera_world] : result.poses) {
+      const size_t v =
+          std::find(made.keyframes.begin(), made.keyframes.end(), id) - made.keyframes.begin();
+      sum += Distance(T_camera_world, world.views[v].T_camera_world);
+    }
+    return sum;
+  };
+  EXPECT_LT(error(0.1), 0.6 * error(1));
+}
+
 TEST(AdjustWindow, StopsWhenTold) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 250, .cameras = 6});
   MapStore store;

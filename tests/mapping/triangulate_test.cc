@@ -116,8 +116,8 @@ TEST(TriangulateNew, RefusesWhatHasTooLittleParallax) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {.known = 0.5}, store);
   MapperSettings settings;
-  settings.min_parallax_degrees = 1;   // 24 mm at 2.5 m and more: half of that
-  settings.min_baseline_ratio = 1e-6;  // so that it is the angle that decides
+  settings.min_parallax_degrees_mono = 1;  // 24 mm at 2.5 m and more: half of that
+  settings.min_baseline_ratio = 1e-6;      // so that it is the angle that decides
   EXPECT_TRUE(
       TriangulateNew(store.Snapshot(), made.keyframes.back(), world.camera, settings).empty());
 }

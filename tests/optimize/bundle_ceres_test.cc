@@ -54,6 +54,23 @@ TEST(BundleAgainstCeres, SameOptimumWhenSomeAreTrustedLess) {
   EXPECT_NEAR(report.final_cost, summary.final_cost, 1e-6 * summary.final_cost);
 }
 
+// From near the optimum, where both walk into the same one: this loss has several.
+TEST(BundleAgainstCeres, SameOptimumWithARedescendingLoss) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    BundleProblem problem =
+        MakeBundleProblem({.points = 150, .min_track = 4, .outliers = 0.05, .seed = seed});
+    AdjustBundle(problem, kToTheEnd);
+    BundleSettings settings = kToTheEnd;
+    settings.redescending = true;
+    BundleProblem ours = problem, theirs = problem;
+    const BundleReport report = AdjustBundle(ours, settings);
+    const ceres::Solver::Summary summary = AdjustWithCeres(theirs, settings);
+    EXPECT_NEAR(report.initial_cost, summary.initial_cost, 1e-9 * summary.initial_cost);
+    EXPECT_NEAR(report.final_cost, summary.final_cost, 1e-6 * summary.final_cost);
+    EXPECT_LT(report.final_cost, report.initial_cost);
+  }
+}
+
 TEST(BundleAgainstCeres, SameOptimumNearAPlane) {
   ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0, .seed = 11});
   ExpectSameOptimum({.scene = BundleScene::kWall, .stereo = 0.5, .outliers = 0.05, .seed = 12});

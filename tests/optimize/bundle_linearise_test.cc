@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ceres_loss.h"
 #include "ceres_reprojection.h"
 #include "support/bundle_problem.h"
 
@@ -13,9 +14,9 @@ using Jet = ceres::Jet<double, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-// J'WJ and J'Wr with W Huber's weight, by automatic derivatives of p = R Exp(θ) (X - c + ρ).
+// J'WJ and J'Wr with W the loss's weight, by automatic derivatives of p = R Exp(θ) (X - c + ρ).
 void ByJets(const BundleCamera& camera, const Eigen::Vector3d& X, const Camera& intrinsics,
-            const BundleObservation& o, double huber, Matrix9d& H, Vector9d& g) {
+            const BundleObservation& o, const ceres::LossFunction& loss, Matrix9d& H, Vector9d& g) {
   const bool stereo = std::isfinite(o.pixel.z());
   Jet turn[3], moved[3], turned[3], pose[6], p[3], residual[3];
   for (int i = 0; i < 3; ++i) {
@@ -38,7 +39,7 @@ void ByJets(const BundleCamera& camera, const Eigen::Vector3d& X, const Camera& 
   const int rows = stereo ? 3 : 2;
   for (int i = 0; i < rows; ++i) chi2 += residual[i].a * residual[i].a;
   double rho[3];
-  ceres::HuberLoss(huber).Evaluate(chi2, rho);
+  loss.Evaluate(chi2, rho);
   rho[1] *= o.trust;
   H.setZero();
   g.setZero();
@@ -52,10 +53,14 @@ Eigen::Matrix3d Full(const Symmetric3& s) {
   return (Eigen::Matrix3d() << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5]).finished();
 }
 
-TEST(LineariseBundle, AgreesWithAutomaticDerivatives) {
+class LineariseBundle : public testing::TestWithParam<bool> {};  // redescending?
+INSTANTIATE_TEST_SUITE_P(Losses, LineariseBundle, testing::Bool());
+
+TEST_P(LineariseBundle, AgreesWithAutomaticDerivatives) {
   for (const double outliers : {0.0, 0.5}) {
     BundleProblem problem = MakeBundleProblem({.points = 30, .outliers = outliers, .seed = 41});
-    const BundleSettings settings;
+    BundleSettings settings;
+    settings.redescending = GetParam();
     for (BundleObservation& o : problem.observations) {
       o.trust = 0.2 * (1 + o.camera % 5);
       // One camera, one point, one sighting: the sums are that sighting's terms.
@@ -75,8 +80,9 @@ TEST(LineariseBundle, AgreesWithAutomaticDerivatives) {
       Matrix9d H;
       Vector9d g;
       const bool stereo = std::isfinite(o.pixel.z());
-      const double huber = stereo ? settings.huber_stereo : settings.huber_mono;
-      ByJets(state.cameras[0], one.points[0], one.camera, o, huber, H, g);
+      const double bound = stereo ? settings.huber_stereo : settings.huber_mono;
+      ByJets(state.cameras[0], one.points[0], one.camera, o,
+             *CeresLoss(bound, settings.redescending), H, g);
 
       const CameraBlock& c = system.cameras[0];
       Matrix9d ours;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "alidade/optimize/bundle_adjustment.h"
+#include "ceres_loss.h"
 #include "ceres_reprojection.h"
 
 namespace alidade {
@@ -23,15 +24,17 @@ inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
   for (const Se3& T : problem.T_camera_world) poses.push_back(ToCeresPose(T));
   ceres::Problem::Options ownership;
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::HuberLoss mono(settings.huber_mono), stereo(settings.huber_stereo);
+  const auto mono = CeresLoss(settings.huber_mono, settings.redescending);
+  const auto stereo = CeresLoss(settings.huber_stereo, settings.redescending);
   std::vector<std::unique_ptr<ceres::LossFunction>> losses;  // of each observation
   ceres::Problem ceres_problem(ownership);
   auto* ordering = new ceres::ParameterBlockOrdering;
   for (const BundleObservation& o : problem.observations) {
     double* pose = poses[o.camera].data();
     double* point = problem.points[o.point].data();
-    losses.push_back(std::make_unique<ceres::ScaledLoss>(
-        std::isfinite(o.pixel.z()) ? &stereo : &mono, o.trust, ceres::DO_NOT_TAKE_OWNERSHIP));
+    losses.push_back(
+        std::make_unique<ceres::ScaledLoss>(std::isfinite(o.pixel.z()) ? stereo.get() : mono.get(),
+                                            o.trust, ceres::DO_NOT_TAKE_OWNERSHIP));
     ceres_problem.AddResidualBlock(MakeCeresReprojection(problem.camera, o), losses.back().get(),
                                    pose, point);
     if (problem.fixed[o.camera]) ceres_problem.SetParameterBlockConstant(pose);

@@ -185,7 +185,8 @@ TEST(ServeCrowd, AThousandViewers) {
 // Connections that cannot be taken must not be tried again at once: that would fill a core.
 TEST(ServeCrowd, OutOfDescriptorsItWaitsForSome) {
 #ifdef __SANITIZE_ADDRESS__
-  // UBSan probes memory through a pipe: without a descriptor for it, it takes every object for a broken one.
+  // UBSan probes memory through a pipe: without a descriptor for it, it takes every object for a
+  // broken one.
   GTEST_SKIP() << "the sanitizers need descriptors of their own";
 #endif
   CountingHub hub;

@@ -58,8 +58,8 @@ struct MapperSettings {
   // those that share at least so many landmarks with one that is in it.
   int window_shared = 15;
   int window_iterations_mono = 20;  // bundle.max_iterations of one camera: a bend of scale is soft
-  int window_fixed = 20;  // held: those that see most of the same landmarks
-  double least_noise = 0.1;  // AdjustSettings::least_noise, one camera
+  int window_fixed = 20;            // held: those that see most of the same landmarks
+  double least_noise = 0.1;         // AdjustSettings::least_noise, one camera
   BundleSettings bundle{
       .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
 

@@ -30,12 +30,12 @@ struct BundleProblem {
 };
 
 struct BundleSettings {
-  int max_iterations = 10;              // accepted or rejected Levenberg–Marquardt steps
-  double huber_mono = 2.447;            // sqrt(5.991), standard deviations
-  double huber_stereo = 2.796;          // sqrt(7.815)
+  int max_iterations = 10;      // accepted or rejected Levenberg–Marquardt steps
+  double huber_mono = 2.447;    // sqrt(5.991), standard deviations
+  double huber_stereo = 2.796;  // sqrt(7.815)
   // Geman & McClure's loss ½ r² / (1 + r² / c²) instead of Huber's, c being the bounds above: what
-  // lies far beyond c pulls no more at all (weight 1 / (1 + r² / c²)²), where Huber's pull stays. For
-  // a start near the result: from afar good observations are let go, too.
+  // lies far beyond c pulls no more at all (weight 1 / (1 + r² / c²)²), where Huber's pull stays.
+  // For a start near the result: from afar good observations are let go, too.
   bool redescending = false;
   double min_relative_decrease = 1e-5;  // stops when a step lowers the cost by less
   // Damping, relative to the diagonal. For a whole map take 1e-6: where all of it is bent, hundreds

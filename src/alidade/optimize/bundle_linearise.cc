@@ -10,7 +10,8 @@ namespace {
 // Two sightings of one point, side by side.
 struct Terms {
   Double2 Y[3];  // point from the camera's centre, world axes
-  // B' W B, W with trust, and the loss's weight at this state (iteratively reweighted least squares)
+  // B' W B, W with trust, and the loss's weight at this state (iteratively reweighted least
+  // squares)
   Double2 N[6];
   Double2 g[3];  // B' W r
   Double2 cost;
