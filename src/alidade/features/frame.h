@@ -65,6 +65,7 @@ struct Frame {
   KeypointGrid grid;
   cv::Mat image;                 // 8 bit grey, level 0, as given (not undistorted)
   std::vector<cv::Mat> pyramid;  // all levels; empty once the frame is a keyframe (memory)
+  cv::Mat glance;  // Glance() of the image while one camera is to start a map; else empty
   std::shared_ptr<const Picture> picture;  // for dense work, until it is handed over; else null
 
   // Keypoints less likely to stand still than this take no part in the pose, and less likely ones

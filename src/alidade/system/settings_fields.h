@@ -158,6 +158,7 @@ void VisitStart(Settings& i, Visit&& visit) {
   visit("start.max_still_share", i.max_still_share);
   visit("start.min_still_peak", i.min_still_peak);
   visit("start.min_still_area", i.min_still_area);
+  visit("start.max_still_picture", i.max_still_picture);
   visit("start.trial_frames", i.trial_frames);
   visit("start.trial_share", i.trial_share);
   visit("start.iterations", i.two_view.iterations);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/features/glance.h"
 #include "alidade/features/subset.h"
 #include "alidade/map/anchor.h"
 #include "alidade/system/movers.h"
@@ -98,12 +99,15 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
                                       movers_.Expected());
   extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
+  if (settings_.sensor == Sensor::kMono && state_ != TrackState::kTracking)
+    frame->glance = Glance(prepared.image);
   last_ = {};
   last_keyframe_ = {};
   last_.frame = frame;
   const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
+  if (state_ != TrackState::kInitialising) frame->glance.release();
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
   movers_.End(*last_.frame, result);
   Show();

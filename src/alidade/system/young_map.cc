@@ -14,6 +14,7 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
   Mapper::TwoViewMap two;
   const auto first = std::make_shared<Frame>(*views->a);  // the map keeps no pictures
   first->picture = nullptr;
+  first->glance.release();
   two.a = first;
   two.b = views->b;
   two.T_b_a = views->T_b_a;

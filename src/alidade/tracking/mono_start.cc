@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/median.h"
+#include "alidade/features/glance.h"
 
 namespace alidade {
 namespace {
@@ -44,6 +45,7 @@ void MonoStartSettings::Check() const {
   require(still_pixels > 0, "still_pixels must be positive");
   require(min_still_peak >= 1, "min_still_peak must be at least 1");
   require(max_still_share > 0 && max_still_share <= 1, "max_still_share must lie in (0, 1]");
+  require(max_still_picture > 0, "max_still_picture must be positive");
   require(min_still_area >= 0, "min_still_area must not be negative");
   require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
           "trial_share must lie in [0, 1]");
@@ -86,6 +88,10 @@ bool MonoStart::StandsStill(std::span<const Eigen::Vector2d> a,
          still.Area() >= settings_.min_still_area * rest.Area();
 }
 
+bool MonoStart::PictureStays(const Frame& a, const Frame& b) const {
+  return StillShare(a.glance, b.glance) >= settings_.max_still_picture;
+}
+
 MonoStart::Step MonoStart::Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
                                MonoStartResult& result) const {
   MatchSettings matching;
@@ -107,7 +113,8 @@ MonoStart::Step MonoStart::Try(Reference& reference, const std::shared_ptr<const
   if (UpperMedian(motion) < settings_.min_motion * camera_.width) return Step::kLittleMotion;
   const TwoViewResult views = ReconstructTwoViews(camera_, pixels_a, pixels_b, settings_.two_view);
   if (views.failure != TwoViewFailure::kNone) return StepOf(views.failure);
-  if (StandsStill(pixels_a, pixels_b)) return Step::kStillCamera;
+  if (StandsStill(pixels_a, pixels_b) || PictureStays(*reference.frame, *frame))
+    return Step::kStillCamera;
   result.a = reference.frame;
   result.b = frame;
   result.T_b_a = views.T_b_a;

@@ -39,6 +39,10 @@ struct MonoStartSettings {
   double max_still_share = 0.1;
   double min_still_peak = 1.2;
   double min_still_area = 0.4;
+  // Keypoints may all be on the thing. Refused, too, when this share of the picture's edges stays
+  // in each direction (StillShare() in features/glance.h): where a camera starts to move 0 to 0.09
+  // do, before a camera on a tripod 0.15 to 0.6.
+  double max_still_picture = 0.13;
   int trial_frames = 5;      // frames that must confirm the map before it is believed
   double trial_share = 0.3;  // of its points that should be in sight, tracked in each of them
   void Check() const;        // throws Error (usage) naming the field that cannot be
@@ -86,6 +90,7 @@ class MonoStart {
   static Step StepOf(TwoViewFailure failure);
   // Whether too many matches stay where they were (settings).
   bool StandsStill(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b) const;
+  bool PictureStays(const Frame& a, const Frame& b) const;
   Step Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
            MonoStartResult& result) const;
 
