@@ -62,7 +62,8 @@ TEST(StillShare, WhatIsFixedToTheCameraDoesNotStandStill) {
     }
     return image;
   };
-  EXPECT_EQ(Share(with_bonnet(Room({0, 0}, {150, 150})), with_bonnet(Room({9, 12}, {162, 150}))), 0);
+  EXPECT_EQ(Share(with_bonnet(Room({0, 0}, {150, 150})), with_bonnet(Room({9, 12}, {162, 150}))),
+            0);
 }
 
 TEST(StillShare, NothingToCompareIsZero) {

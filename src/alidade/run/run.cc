@@ -34,6 +34,18 @@ std::string BugOf(const RunRecord& record) {
 // phones and webcams have 50 to 90.
 constexpr double kGuessedLens = 0.6;
 
+std::string SizeOf(const Camera& camera) {
+  return std::to_string(camera.width) + "x" + std::to_string(camera.height);
+}
+
+// Where the settings did not ask for it.
+void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& settings) {
+  if (settings.image_width != 0 || used.width == given.width) return;
+  LogWarning("pictures of " + SizeOf(given) + " are scaled down to " + SizeOf(used) +
+             ": larger ones take longer and tell no more (--set max_image_side=0 takes them as "
+             "they are)");
+}
+
 // Takes the library's warnings while it lives.
 class Warnings {
  public:
@@ -99,6 +111,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.detector)
     detector = OpenDetector(*options.detector, record.settings.dynamics.detector);
   Slam slam(record.source.camera, record.settings, detector);
+  SayScaledDown(record.source.camera, slam.camera(), record.settings);
   if (saved) slam.Load(*saved);
   OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name),
                       options.load ? SavedMapPath(*options.load) : std::string());

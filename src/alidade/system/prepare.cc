@@ -1,5 +1,6 @@
 #include "alidade/system/prepare.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -18,8 +19,13 @@ Camera CameraInUse(Camera camera, const SlamSettings& settings) {
   if (settings.sensor == Sensor::kStereo && camera.baseline <= 0) {
     ThrowInput("camera: a stereo run needs the baseline between the cameras");
   }
-  const bool shrink = settings.image_width > 0 && settings.image_width < camera.width;
-  return shrink ? camera.ScaledToWidth(settings.image_width) : camera;
+  int width = settings.image_width;
+  const int longer = std::max(camera.width, camera.height);
+  if (width == 0 && settings.max_image_side > 0 && longer > settings.max_image_side) {
+    const double scale = static_cast<double>(settings.max_image_side) / longer;
+    width = std::max(1, static_cast<int>(std::lround(camera.width * scale)));
+  }
+  return width > 0 && width < camera.width ? camera.ScaledToWidth(width) : camera;
 }
 
 FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& used,

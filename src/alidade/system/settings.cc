@@ -75,6 +75,8 @@ void EarlyFrameSettings::Check() const {
 void SlamSettings::Check() const {
   if (image_width != 0 && image_width < 100)
     ThrowUsage("image_width must be 0 or at least 100 pixels");
+  if (max_image_side != 0 && max_image_side < 100)
+    ThrowUsage("max_image_side must be 0 or at least 100 pixels");
   tracker.Check();
   mapper.Check();
   loop.Check();

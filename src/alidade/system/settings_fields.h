@@ -183,6 +183,7 @@ void VisitEarly(Settings& e, Visit&& visit) {
 template <typename Settings, typename Visit>
 void VisitFields(Settings& s, Visit&& visit) {
   visit("image_width", s.image_width);
+  visit("max_image_side", s.max_image_side);
   visit("seed", s.seed);
   visit("new_map_seconds", s.new_map_seconds);
   visit("new_map_frames", s.new_map_frames);
