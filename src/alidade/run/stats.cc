@@ -99,6 +99,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
                                  : ordered_json(nullptr)},
       {"relocalisations", results.counts.relocalisations},
+      {"predicted", results.counts.predicted},
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},
       {"cuts", results.counts.cuts},

@@ -299,7 +299,8 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
     made.add_map(told_.keyframes().at(entry.reference.value).map.value);
     made.add_t_reference_camera(&beside);
   }
-  if (result.state == TrackState::kTracking) made.add_t_world_camera(&live);
+  if (result.state == TrackState::kTracking || result.predicted) made.add_t_world_camera(&live);
+  made.add_predicted(result.predicted);
   made.add_keyframes(static_cast<uint32_t>(map.keyframe_count()));
   made.add_landmarks(static_cast<uint32_t>(map.landmark_count()));
   made.add_matches(static_cast<uint32_t>(result.matches));

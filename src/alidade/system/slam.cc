@@ -17,7 +17,6 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
 constexpr int kReanchorFrames = 300;  // how often frames are tied to living keyframes: each 10 s
 
 // Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
@@ -160,10 +159,7 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
     return GiveUpStart("the first points moved");
   if (estimate.tracked) return Accept(std::move(estimate), map);
   Lose();
-  TrackResult result;
-  result.state = state_;
-  result.reason = "too few landmarks found";
-  return result;
+  return WithoutPose("too few landmarks found", frame->time, map);
 }
 
 TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
@@ -194,53 +190,6 @@ TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {
   return result;
 }
 
-// No pose: known places first; a new map only where none is known, or none was recognised for long.
-TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
-  const MapSnapshot map = workers_.map().Snapshot();
-  movers_.Judge(*frame, nullptr);
-  if (map.keyframe_count() > 0) {
-    const Stopwatch watch;
-    std::vector<KeyFrameId> candidates;
-    if (state_ == TrackState::kLost && map.Find(tracker_.reference()))
-      candidates.push_back(tracker_.reference());
-    const std::vector<MapId> dropped = workers_.dropped();
-    const auto may_be = [&](KeyFrameId id) {
-      const KeyFrame* keyframe = map.Find(id);
-      return keyframe && (candidates.empty() || id != candidates[0]) &&
-             std::find(dropped.begin(), dropped.end(), keyframe->map) == dropped.end();
-    };
-    const Frame still = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
-    for (const PlaceMatch& match : workers_.places().Query(still, may_be, kRelocaliseCandidates)) {
-      candidates.push_back(match.id);
-    }
-    TrackEstimate estimate = tracker_.Relocalise(frame, map, candidates);
-    track_ms_.Add(watch.Milliseconds());
-    if (estimate.tracked) {
-      ++relocalisations_;
-      young_.Reset();
-      early_.ForgetWaiting();
-      // A place just found again is confirmed by the frames after it before the map grows on it.
-      tracker_.KeyFrameInserted(frame->number);
-      estimate.wants_keyframe = false;
-      return Accept(std::move(estimate), map);
-    }
-  }
-  if (state_ == TrackState::kLost) {
-    const auto sighted = 100 * settings_.tracker.match_scale;  // corners
-    lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
-    const bool long_lost = clock_.steady() - lost_since_ >= settings_.new_map_seconds &&
-                           lost_sighted_ >= settings_.new_map_frames;
-    if (!long_lost || settings_.localise || workers_.mapping_stopped()) {
-      TrackResult result;
-      result.state = state_;
-      result.reason = "the place was not recognised";
-      return result;
-    }
-    LeaveMap();
-  }
-  return Start(frame);
-}
-
 // Of one camera: what came before the map knew better. Where memory runs out it is left for later.
 void Slam::Impl::PlaceEarly(int count, int number) {
   if (young_.on_trial()) return;
@@ -257,13 +206,6 @@ void Slam::Impl::Reanchor() {
   log_.Reanchor(map);
   tracker_.Reanchor(map);
   workers_.map().ReleaseCulledKeyFrames(map.version());
-}
-
-void Slam::Impl::Lose() {
-  tracker_.Forget();
-  state_ = TrackState::kLost;
-  lost_since_ = clock_.steady();
-  lost_sighted_ = 0;
 }
 
 void Slam::Impl::Finish(double limit) {

@@ -47,7 +47,10 @@ struct PoseQuality {
 
 struct TrackResult {
   TrackState state = TrackState::kInitialising;
-  Se3 T_world_camera;       // only when tracking
+  Se3 T_world_camera;  // only when tracking or predicted
+  // Lost, for so short that the camera is taken to go on as it moved (tracker.predict_seconds):
+  // T_world_camera is where that leads. A guess: it is in no trajectory.
+  bool predicted = false;
   int matches = 0;          // landmarks the pose agrees with
   bool keyframe = false;    // this frame became one
   const char* reason = "";  // why there is no pose
@@ -114,7 +117,8 @@ struct LetGoFrames {
 
 struct SlamCounts {
   int relocalisations = 0, loops = 0, merges = 0;
-  int cuts = 0;  // gaps and jumps of the time, and calls of Reset()
+  int cuts = 0;       // gaps and jumps of the time, and calls of Reset()
+  int predicted = 0;  // frames of TrackResult::predicted
   LetGoFrames let_go;
 };
 

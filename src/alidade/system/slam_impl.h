@@ -1,7 +1,8 @@
 // What Slam is made of: what the system keeps between frames, and what it does with one. Private to
 // system/; its files have one matter each:
 //   slam.cc            one frame, from image to pose and keyframe
-//   slam_start.cc      a map is begun, loaded, given up or left
+//   slam_start.cc      a map is begun, loaded or given up
+//   slam_lost.cc       a frame without a pose: gone on, found back, another map
 //   slam_time.cc       time that jumps, new recordings, cuts
 //   slam_failure.cc    a frame that ended in the middle, and what has stopped
 //   slam_questions.cc  what any thread may ask
@@ -63,7 +64,7 @@ class Slam::Impl {
   FrameLog log_;
   CameraClock clock_;
   SampleLog frame_ms_, extract_ms_, track_ms_;
-  std::atomic<int> relocalisations_{0}, cuts_{0};
+  std::atomic<int> relocalisations_{0}, cuts_{0}, predicted_{0};
   std::atomic<int> frames_{0};        // counted so far
   std::atomic<int> first_number_{0};  // of the next recording's frames, after a loaded map's
 
@@ -71,20 +72,25 @@ class Slam::Impl {
   // slam.cc: a frame.
   TrackResult TrackCounted(const FrameInput& prepared, double time);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
-  TrackResult FindBack(const std::shared_ptr<Frame>& frame);
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void Reanchor();
   void PlaceEarly(int count, int number);
+
+  // slam_lost.cc: frames without a pose.
+  TrackResult FindBack(const std::shared_ptr<Frame>& frame);
+  std::vector<KeyFrameId> PlacesLike(const Frame& frame, const MapSnapshot& map);
+  TrackResult FoundBack(TrackEstimate estimate, const MapSnapshot& map);
+  TrackResult WithoutPose(const char* reason, double time, const MapSnapshot& map);
   void Lose();
+  void LeaveMap();
 
   // slam_start.cc: the begin and the end of a map.
   TrackResult Start(const std::shared_ptr<Frame>& frame);
   bool StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult& result);
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
   TrackResult GiveUpStart(const char* reason);
-  void LeaveMap();
 
   // slam_time.cc: time that jumps.
   const char* Tick(double time);

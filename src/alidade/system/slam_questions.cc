@@ -76,7 +76,7 @@ cv::Mat Slam::MoverMask() const {
 
 SlamCounts Slam::Counts() const {
   return {impl_->relocalisations_, impl_->workers_.loops(), impl_->workers_.merges(), impl_->cuts_,
-          impl_->log_.let_go()};
+          impl_->predicted_,       impl_->log_.let_go()};
 }
 
 SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }

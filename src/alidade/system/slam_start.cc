@@ -86,19 +86,6 @@ TrackResult Slam::Impl::GiveUpStart(const char* reason) {
   return result;
 }
 
-// A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
-void Slam::Impl::LeaveMap() {
-  state_ = TrackState::kInitialising;
-  young_.Reset();
-  const MapSnapshot map = workers_.map().Snapshot();
-  const MapId left = map.MapOf(tracker_.reference());
-  if (!left.valid()) return;
-  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
-  const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
-  if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
-    workers_.Drop(left);
-}
-
 void Slam::Impl::Load(const SavedMap& saved) {
   const std::lock_guard<std::mutex> driving(driving_);
   if (!log_.empty()) ThrowUsage("a map is loaded before the first frame, not after");

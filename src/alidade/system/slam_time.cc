@@ -54,6 +54,7 @@ void Slam::Impl::Cut() {
   } else if (state_ == TrackState::kInitialising) {
     young_.Reset();
   }
+  tracker_.Forget();
 }
 
 void Slam::Impl::Reset() {

@@ -34,6 +34,7 @@ void TrackerSettings::Check() const {
   require(min_relocalised_share >= 0 && min_relocalised_share <= 1,
           "min_relocalised_share must lie in [0, 1]");
   require(local_keyframes > 0, "local_keyframes must be positive");
+  require(predict_seconds >= 0, "predict_seconds cannot be negative");
   require(depth_range > 0, "depth_range must be positive");
   require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
   require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap,

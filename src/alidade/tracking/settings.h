@@ -55,8 +55,11 @@ struct TrackerSettings {
   int keyframe_min_gap = 1;   // … but not sooner after the last than this many frames,
   int keyframe_max_gap = 30;  // and at the latest after this many
   MotionSettings motion;      // how the camera is taken to move on
-  uint64_t seed = 1;          // of the random samples when a frame is placed anew
-  void Check() const;         // throws Error (usage) naming the field that cannot be
+  // Seconds a lost camera is taken to go on as it moved: so long its pose is told as predicted, and
+  // looked for there. Hands turn back within a second.
+  double predict_seconds = 0.5;
+  uint64_t seed = 1;   // of the random samples when a frame is placed anew
+  void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
 }  // namespace alidade

@@ -86,8 +86,7 @@ PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const M
   guess.frame = std::move(frame);
   const Se3 T_last_world = PoseOf(map.state(), last_anchor_);
   last_.T_camera_world = T_last_world;
-  Se3 motion = last_.frame ? motion_.After(guess.frame->time - last_.frame->time) : Se3();
-  motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  const Se3 motion = MotionUntil(guess.frame->time, map);
 
   const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
   PlacedFrame best;
@@ -103,6 +102,19 @@ PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const M
   }
   MatchKeyFrame(guess, map, reference());
   return guess.inliers > best.inliers ? guess : best.frame ? best : guess;
+}
+
+Se3 Tracker::MotionUntil(double time, const MapSnapshot& map) const {
+  if (!last_.frame) return {};
+  Se3 motion = motion_.After(time - last_.frame->time);
+  motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  return motion;
+}
+
+std::optional<Se3> Tracker::PredictedPose(double time, const MapSnapshot& map) const {
+  if (!last_.frame || !motion_.known() || !map.Find(reference())) return std::nullopt;
+  if (!(time - last_.frame->time <= settings_.predict_seconds)) return std::nullopt;
+  return MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
 }
 
 void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const {
@@ -216,6 +228,13 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     passing_.Clear();  // of a pose that is not believed
   }
   return lost;
+}
+
+TrackEstimate Tracker::GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map) {
+  TrackEstimate estimate = Estimate(Predict(frame, map), map);
+  estimate.tracked = estimate.tracked && IsCertain(estimate);
+  if (!estimate.tracked) passing_.Clear();
+  return estimate;
 }
 
 TrackEstimate Tracker::PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -54,11 +55,20 @@ class Tracker {
   TrackEstimate PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            KeyFrameId near);
 
+  // Pose of a frame that follows some without one, near where PredictedPose() has it. Tracked only
+  // when certain, as Relocalise().
+  TrackEstimate GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map);
+
   // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
   // or a loss.
   // `map`: the one its pose is in.
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
-  void Forget();  // the frame was lost: no motion is known
+  void Forget();  // where the camera was says nothing of where it is: no motion is known
+  // A frame has no pose; the last one that had is remembered for a while.
+  void Lose() { passing_.Clear(); }
+  // Of a frame that has no pose (yet): where the last motion leads if it goes on evenly. None when
+  // no motion is known or it is too long ago (settings.predict_seconds).
+  std::optional<Se3> PredictedPose(double time, const MapSnapshot& map) const;  // T_camera_world
   // From now on the last frame hangs on no keyframe that is culled in `map`.
   void Reanchor(const MapSnapshot& map);
 
@@ -75,6 +85,7 @@ class Tracker {
   PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // By descriptors alone, wherever in the picture; what of the two more of the map agrees with.
   PlacedFrame BetterByLooks(PlacedFrame guess, const MapSnapshot& map);
+  Se3 MotionUntil(double time, const MapSnapshot& map) const;  // T_now_last, in lengths of today
   double Agreement(PlacedFrame placed, const MapSnapshot& map);
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;

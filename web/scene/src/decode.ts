@@ -97,7 +97,7 @@ function frame(body: fb.Frame): Frame {
   const picture = body.picture();
   return {
     kind: 'frame', number: body.number(), time: body.time(), state: entry(STATES, body.state(), 'state'),
-    reason: body.reason() ?? '', cut: body.cut() ?? '', keyframe: body.keyframe(),
+    reason: body.reason() ?? '', cut: body.cut() ?? '', predicted: body.predicted(), keyframe: body.keyframe(),
     reference: body.reference(), map: body.map(),
     T_reference_camera: inReference && pose(inReference), T_world_camera: inWorld && pose(inWorld),
     keyframes: body.keyframes(), landmarks: body.landmarks(), matches: body.matches(), maps: body.maps(),

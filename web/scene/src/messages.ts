@@ -42,6 +42,7 @@ export interface Frame {
   kind: 'frame';
   number: number; time: number;
   state: TrackingState; reason: string; cut: string;
+  predicted: boolean; // lost, and T_world_camera is where the last motion leads
   keyframe: boolean;
   reference: number; map: number;
   T_reference_camera: Pose | null; T_world_camera: Pose | null;

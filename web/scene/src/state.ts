@@ -58,11 +58,11 @@ export class State {
     return !this.frame || (last && last.number > this.frame.number) ? last : this.frame;
   }
 
-  // Where the camera of the latest frame is, by the map as it is now; null: not known.
+  // Where the camera of the latest frame is, by the map as it is now, or predicted; null: not known.
   cameraPose(): Pose | null {
     if (this.path.length === 0) return this.frame?.T_world_camera ?? null;
     const last = this.path.at(this.path.length - 1);
-    if (last.state !== 'tracking') return null;
+    if (last.state !== 'tracking') return this.frame?.predicted && this.frame.number === last.number ? this.frame.T_world_camera : null;
     const reference = this.keyframes.get(last.reference);
     if (reference) return compose(reference.T_world_camera, reference.scale, last.T_reference_camera);
     return this.frame?.number === last.number ? this.frame.T_world_camera : null;

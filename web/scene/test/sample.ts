@@ -328,7 +328,7 @@ export class Sample {
     const ms = (mean: number, share = 0.3) => mean * (1 + share * (this.random.next() - 0.5));
     const track = ms(3), extract = ms(5);
     return {
-      kind: 'frame', number: i, time: i / 30, state, cut: '', keyframe,
+      kind: 'frame', number: i, time: i / 30, state, cut: '', predicted: false, keyframe,
       reason: state === 'lost' ? 'too few landmarks found' : state === 'initialising' ? 'too little parallax: move the camera sideways' : '',
       reference, map: tracking ? 0 : NONE, T_reference_camera, T_world_camera: tracking ? T_world_camera : null,
       keyframes: this.keyframes.size, landmarks: this.points.size, matches: tracking ? matches : 0, maps: this.keyframes.size ? 1 : 0,

@@ -24,7 +24,8 @@ export function advice(reason: string): string {
 
 export function reasonText(frame: Frame): string {
   if (frame.state === 'tracking') return '';
-  return [sentence(frame.reason), advice(frame.reason)].filter(Boolean).join(' ');
+  const guess = frame.predicted ? 'Shown where its motion leads.' : '';
+  return [sentence(frame.reason), guess || advice(frame.reason)].filter(Boolean).join(' ');
 }
 
 // When there is nothing more to come.

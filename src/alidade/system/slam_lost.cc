@@ -1,0 +1,111 @@
+// A frame without a pose: where the camera goes on, is found again, or begins another map.
+// slam_impl.h says what else is where.
+#include <algorithm>
+
+#include "alidade/features/subset.h"
+#include "alidade/system/movers.h"
+#include "alidade/system/slam_impl.h"
+
+namespace alidade {
+namespace {
+
+constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
+
+}  // namespace
+
+// Known places first, the one the motion leads to before all others; a new map only where none is
+// known, or none was recognised for long.
+TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
+  const MapSnapshot map = workers_.map().Snapshot();
+  movers_.Judge(*frame, nullptr);
+  if (map.keyframe_count() > 0) {
+    const Stopwatch watch;
+    const bool goes_on = tracker_.PredictedPose(frame->time, map).has_value();
+    if (goes_on) {
+      TrackEstimate estimate = tracker_.GoOn(frame, map);
+      if (estimate.tracked) {
+        track_ms_.Add(watch.Milliseconds());
+        return FoundBack(std::move(estimate), map);
+      }
+    }
+    TrackEstimate estimate = tracker_.Relocalise(frame, map, PlacesLike(*frame, map));
+    track_ms_.Add(watch.Milliseconds());
+    if (estimate.tracked) {
+      tracker_.Forget();  // the motion that was, led elsewhere
+      return FoundBack(std::move(estimate), map);
+    }
+  }
+  if (state_ == TrackState::kLost) {
+    const auto sighted = 100 * settings_.tracker.match_scale;  // corners
+    lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
+    const bool long_lost = clock_.steady() - lost_since_ >= settings_.new_map_seconds &&
+                           lost_sighted_ >= settings_.new_map_frames;
+    if (!long_lost || settings_.localise || workers_.mapping_stopped())
+      return WithoutPose("the place was not recognised", frame->time, map);
+    LeaveMap();
+  }
+  return Start(frame);
+}
+
+// Keyframes that may show what a frame shows: the last one first, then by descriptors.
+std::vector<KeyFrameId> Slam::Impl::PlacesLike(const Frame& frame, const MapSnapshot& map) {
+  std::vector<KeyFrameId> candidates;
+  if (state_ == TrackState::kLost && map.Find(tracker_.reference()))
+    candidates.push_back(tracker_.reference());
+  const std::vector<MapId> dropped = workers_.dropped();
+  const auto may_be = [&](KeyFrameId id) {
+    const KeyFrame* keyframe = map.Find(id);
+    return keyframe && (candidates.empty() || id != candidates[0]) &&
+           std::find(dropped.begin(), dropped.end(), keyframe->map) == dropped.end();
+  };
+  const Frame still = KeypointSubset(frame, MappableKeypoints(frame), camera_);
+  for (const PlaceMatch& match : workers_.places().Query(still, may_be, kRelocaliseCandidates)) {
+    candidates.push_back(match.id);
+  }
+  return candidates;
+}
+
+// A place just found again is confirmed by the frames after it before the map grows on it.
+TrackResult Slam::Impl::FoundBack(TrackEstimate estimate, const MapSnapshot& map) {
+  ++relocalisations_;
+  young_.Reset();
+  early_.ForgetWaiting();
+  tracker_.KeyFrameInserted(estimate.placed.frame->number);
+  estimate.wants_keyframe = false;
+  return Accept(std::move(estimate), map);
+}
+
+TrackResult Slam::Impl::WithoutPose(const char* reason, double time, const MapSnapshot& map) {
+  TrackResult result;
+  result.state = state_;
+  result.reason = reason;
+  if (const auto T_camera_world = tracker_.PredictedPose(time, map)) {
+    result.predicted = true;
+    result.T_world_camera = T_camera_world->Inverse();
+    ++predicted_;
+  }
+  return result;
+}
+
+void Slam::Impl::Lose() {
+  tracker_.Lose();
+  state_ = TrackState::kLost;
+  lost_since_ = clock_.steady();
+  lost_sighted_ = 0;
+}
+
+// A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
+void Slam::Impl::LeaveMap() {
+  state_ = TrackState::kInitialising;
+  young_.Reset();
+  tracker_.Forget();
+  const MapSnapshot map = workers_.map().Snapshot();
+  const MapId left = map.MapOf(tracker_.reference());
+  if (!left.valid()) return;
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
+  const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
+  if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
+    workers_.Drop(left);
+}
+
+}  // namespace alidade
