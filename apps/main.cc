@@ -37,6 +37,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddViewCommand(app, action);
   alidade::AddCompareCommand(app, action);
   alidade::AddInfoCommand(app, action);
+  alidade::AddCalibrateCommand(app, action);
   alidade::AddBenchCommand(app, action);
 }
 

@@ -9,6 +9,7 @@ constexpr char kExamples[] =
     "\nExamples:\n"
     "  alidade run my_recording                     best sensor the recording has\n"
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
+    "  alidade run walk.mp4                         a video: its camera is found first\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
     "  alidade run my_recording --viewer            watch it in a browser\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
@@ -29,8 +30,11 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--camera", options.camera_file,
                      "Calibration (camera.yaml) instead of the recording's own");
   command.add_option(
-      "--fov", options.fov_degrees,
-      "Horizontal field of view, degrees, instead of a calibration (66 along the longer side)");
+      "--fov", options.fov,
+      "Horizontal field of view, degrees, instead of a calibration; ~70: a guess to begin with");
+  command.add_flag("--calibrate-first,!--no-calibrate-first", options.calibrate_first,
+                   "Find a camera that nothing is known of by playing its recording beforehand, as "
+                   "long as it takes (on; one camera only)");
   command.add_option("--profile", options.profile,
                      "desktop (1000 features, full size) or phone (500, 400 pixels wide)");
   command.add_option("--config", options.config, "YAML file of settings");

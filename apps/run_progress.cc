@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <string>
 
+#include "alidade/run/find_camera.h"
 #include "alidade/run/results.h"
 
 namespace alidade {
@@ -40,6 +41,22 @@ void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::st
   (void)folder;
   slam_ = &slam;
   record_ = &record;
+  shown_at_ = -1e9;  // of finding the camera
+  if (quiet_ || !record.camera.found || !record.camera.found->usable) return;
+  terminal_.SetProgress("");
+  std::printf("Camera found: %s\n", CameraInWords(record.camera.found->estimate).c_str());
+  std::fflush(stdout);
+}
+
+void RunProgress::Calibrating(const CalibrateProgress& progress) {
+  if (!terminal_.shows_progress()) return;
+  const double now = clock_.Milliseconds();
+  if (now - shown_at_ < kInterval) return;
+  shown_at_ = now;
+  std::string line = "finding the camera: pass " + std::to_string(progress.pass) + ", frame " +
+                     std::to_string(progress.frames);
+  if (progress.estimate.observations > 0) line += ", " + FovInWords(progress.estimate);
+  terminal_.SetProgress(line);
 }
 
 void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {

@@ -13,6 +13,7 @@ class RunProgress : public RunWatcher {
   explicit RunProgress(bool quiet) : terminal_(quiet), quiet_(quiet) {}
 
   void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
+  void Calibrating(const CalibrateProgress& progress) override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
   void Finishing() override;
   void Finished() override { terminal_.SetProgress(""); }

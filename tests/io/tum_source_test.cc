@@ -78,7 +78,7 @@ TEST(TumSource, DepthFactorOfZeroMeansNoDepth) {
   EXPECT_EQ(OpenSource(folder.path())->Info().camera.depth_factor, 5000);
 }
 
-TEST(TumSource, WithoutCameraFileGuessesAndSaysSo) {
+TEST(TumSource, WithoutCameraFileGuesses) {
   const TempFolder folder;
   WriteTinyTum(folder, {.camera = false});
   WarningCatcher warnings;
@@ -86,9 +86,12 @@ TEST(TumSource, WithoutCameraFileGuessesAndSaysSo) {
   EXPECT_TRUE(info.camera_guessed);
   EXPECT_NEAR(info.camera.fx, 32 / std::tan(33 * M_PI / 180), 1e-9);
   EXPECT_EQ(info.camera.depth_factor, 5000);
-  EXPECT_THAT(warnings.text(), testing::HasSubstr("66 degrees"));
   EXPECT_FALSE(OpenSource(folder.path(), {.fov_degrees = 90})->Info().camera_guessed);
   EXPECT_NEAR(OpenSource(folder.path(), {.fov_degrees = 90})->Info().camera.fx, 32, 1e-9);
+  const SourceInfo rough =
+      OpenSource(folder.path(), {.fov_degrees = 90, .fov_rough = true})->Info();
+  EXPECT_TRUE(rough.camera_guessed);
+  EXPECT_NEAR(rough.camera.fx, 32, 1e-9);
 }
 
 TEST(TumSource, BadImagesAreSkippedAndTheRestGoesOn) {

@@ -42,7 +42,7 @@ struct SourceInfo {
   std::string kind;  // "tum", "euroc", "kitti", "images", "video", "synth", "camera"
   Sensor sensor = Sensor::kMono;
   Camera camera;                // after any rectification
-  bool camera_guessed = false;  // nothing was known: field of view assumed
+  bool camera_guessed = false;  // nothing certain was known: field of view assumed
   // Rotation from the rectified camera's frame to that of the camera as mounted: trajectories are
   // the latter's.
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();

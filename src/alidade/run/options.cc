@@ -37,7 +37,16 @@ SourceOptions SourceOptionsFrom(const RunOptions& options) {
     source.sensor = SensorNamed("--sensor", *options.sensor);
   }
   source.camera_file = options.camera_file;
-  source.fov_degrees = options.fov_degrees;
+  if (options.fov) {
+    source.fov_rough = options.fov->rfind('~', 0) == 0;
+    source.fov_degrees = ParseNumber(options.fov->substr(source.fov_rough ? 1 : 0));
+    if (!source.fov_degrees || !(*source.fov_degrees > 0 && *source.fov_degrees < 180)) {
+      ThrowUsage(
+          "--fov is a number of degrees between 0 and 180, with a ~ before it where it is "
+          "only a guess (70 or ~70), not '" +
+          *options.fov + "'");
+    }
+  }
   source.first = options.first;
   source.last = options.last;
   return source;

@@ -15,7 +15,8 @@ struct RunOptions {
   std::string source;
   std::optional<std::string> sensor, camera_file, config, schedule, rate, out, load;
   std::string profile = "desktop";
-  std::optional<double> fov_degrees;
+  std::optional<std::string> fov;     // degrees, as typed: "70", or "~70" for a guess
+  bool calibrate_first = true;        // find a camera of which nothing is known
   std::vector<std::string> settings;  // "name=value"
   std::optional<uint64_t> seed;
   int threads = 0;  // 0: all cores

@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 11> kOurFiles = {
+constexpr std::array<const char*, 12> kOurFiles = {
     "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt",
     "map.alidade",    "landmarks.ply",       "semidense.ply", "semidense.png",
-    "report.html",    "stats.json",          "run.stream"};
+    "report.html",    "stats.json",          "run.stream",    "camera.yaml"};
 
 // Pictures with a list: NAME/STAMP.png and NAME.txt, where maps have their own NAME.1.txt, …
 struct PictureKind {

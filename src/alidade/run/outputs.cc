@@ -10,6 +10,7 @@
 #include "alidade/run/semidense_outputs.h"
 #include "alidade/run/shape_views.h"
 #include "alidade/run/stats.h"
+#include "alidade/run/unknown_camera.h"
 
 namespace alidade {
 namespace {
@@ -57,6 +58,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
       folder.Write("groundtruth.txt", FormatTumTrajectory(record.truth));
     }
     folder.Write("stats.json", StatsJson(record, results));
+    if (const std::string camera = FoundCameraFile(record); !camera.empty())
+      folder.Write("camera.yaml", camera);
     useful = true;
     attempt([&] {
       if (with_map) folder.Write("map.alidade", slam.SaveMap());

@@ -9,6 +9,7 @@
 
 #include "alidade/io/frame_source.h"
 #include "alidade/io/trajectory.h"
+#include "alidade/run/find_camera.h"
 #include "alidade/run/keyframe_album.h"
 #include "alidade/run/lens.h"
 #include "alidade/run/stream_settings.h"
@@ -17,13 +18,25 @@
 
 namespace alidade {
 
+// What is known of the camera, and how it came to be.
+struct CameraRecord {
+  // given (--camera, --fov), file (beside the recording, or the loaded map's), estimated (found
+  // from the recording itself), assumed (66 degrees, or found but not for certain).
+  std::string known = "file";
+  double focal_sigma = 0;            // standard deviation of the focal length, relative; 0: exact
+  std::optional<CameraFound> found;  // when it was looked for
+  double cpu_s = 0, wall_s = 0;      // that looking took, seconds
+};
+
 struct RunRecord {
   std::string source_path;  // as typed
   SourceInfo source;
+  CameraRecord camera;
   SlamSettings settings;
-  StreamFeedSettings stream;  // of who tells the run, if somebody does
-  LookSettings look;          // of frames without a pose
-  LensSettings lens_check;    // of what the lens is asked
+  StreamFeedSettings stream;    // of who tells the run, if somebody does
+  LookSettings look;            // of frames without a pose
+  LensSettings lens_check;      // of what the lens is asked
+  CalibrateSettings calibrate;  // of how an unknown camera is found
   std::string profile;
   int threads = 0;
 

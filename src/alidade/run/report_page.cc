@@ -70,6 +70,17 @@ std::string FirstTracked(const RunRecord& record, const RunResults& results) {
   return words + Format(", %.2f s after the start", waited) + (why.empty() ? "" : ": " + why);
 }
 
+std::string CameraFact(const RunRecord& record) {
+  const CameraRecord& camera = record.camera;
+  if (camera.found && camera.found->usable) {
+    return CameraInWords(camera.found->estimate) + ", found from the recording" +
+           (camera.found->estimate.known ? "" : ", not for certain");
+  }
+  const std::string fov = Format("%.1f degrees", FovDegrees(record.source.camera));
+  if (camera.known == "given") return fov + ", as given";
+  return fov + (camera.known == "file" ? ", by its calibration" : ", assumed");
+}
+
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
                                                          const RunResults& results,
                                                          const std::string& unit) {
@@ -78,6 +89,7 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   std::vector<std::pair<std::string, std::string>> facts = {
       {"source", record.source_path},
       {"sensor", NameOf(record.settings.sensor)},
+      {"camera", CameraFact(record)},
       {"frames tracked", std::to_string(tracked) + " of " + std::to_string(record.frames) +
                              Format(" (%.1f %%)", share)},
       {"first tracked frame", FirstTracked(record, results)},
@@ -184,7 +196,8 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results,
                      {"schedule", record.settings.threaded ? "threaded" : "inline"},
                      {"threads", std::to_string(record.threads)}};
   for (const auto& setting :
-       RunSettings{record.settings, record.stream, record.look, record.lens_check}.All())
+       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
+           .All())
     report.settings.push_back(setting);
   return RenderReport(report);
 }

@@ -16,6 +16,7 @@
 #include "alidade/run/loop.h"
 #include "alidade/run/mask_writer.h"
 #include "alidade/run/saved_map.h"
+#include "alidade/run/unknown_camera.h"
 
 namespace alidade {
 namespace {
@@ -29,10 +30,6 @@ std::string BugOf(const RunRecord& record) {
   if (record.bug) bugs += (bugs.empty() ? "" : "; ") + ("a frame failed: " + WhatOf(record.bug));
   return bugs;
 }
-
-// Relative uncertainty of a focal length that was assumed (66 degrees along the longer side):
-// phones and webcams have 50 to 90.
-constexpr double kGuessedLens = 0.6;
 
 std::string SizeOf(const Camera& camera) {
   return std::to_string(camera.width) + "x" + std::to_string(camera.height);
@@ -83,6 +80,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   record.stream = settings.stream;
   record.look = settings.look;
   record.lens_check = settings.lens;
+  record.calibrate = settings.calibrate;
   record.untracked.set_look(settings.look);
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
@@ -102,11 +100,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
   record.source = source->Info();
   record.settings.sensor = record.source.sensor;
-  if (record.source.camera_guessed && record.settings.start.two_view.lens_uncertainty == 0)
-    record.settings.start.two_view.lens_uncertainty = kGuessedLens;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
   if (saved && saved->camera.width < record.source.camera.width)
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down
+  LearnCamera(options, wanted, saved ? &saved->camera : nullptr, watchers, record);
   std::shared_ptr<Detector> detector;
   if (options.detector)
     detector = OpenDetector(*options.detector, record.settings.dynamics.detector);

@@ -9,6 +9,7 @@ void RunSettings::Check() const {
   stream.Check();
   look.Check();
   lens.Check();
+  calibrate.Check();
 }
 
 void RunSettings::Set(const std::string& name, const std::string& value) {
@@ -18,6 +19,8 @@ void RunSettings::Set(const std::string& name, const std::string& value) {
     look.Set(name, value);
   } else if (name.rfind("lens.", 0) == 0) {
     lens.Set(name, value);
+  } else if (name.rfind("calibrate.", 0) == 0) {
+    calibrate.Set(name, value);
   } else {
     slam.Set(name, value);
   }
@@ -27,6 +30,7 @@ std::vector<std::pair<std::string, std::string>> RunSettings::All() const {
   auto all = slam.All();
   for (auto& setting : stream.All()) all.push_back(std::move(setting));
   for (auto& setting : look.All()) all.push_back(std::move(setting));
+  for (auto& setting : calibrate.All()) all.push_back(std::move(setting));
   for (auto& setting : lens.All()) all.push_back(std::move(setting));
   std::sort(all.begin(), all.end());
   return all;

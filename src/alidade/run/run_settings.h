@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/run/find_camera.h"
 #include "alidade/run/lens.h"
 #include "alidade/run/look.h"
 #include "alidade/run/stream_settings.h"
@@ -15,10 +16,11 @@ namespace alidade {
 
 struct RunSettings {
   SlamSettings slam;
-  StreamFeedSettings stream;  // stream.…
-  LookSettings look;          // look.…
-  LensSettings lens;          // lens.…
-  void Check() const;         // throws Error (usage) naming the field that cannot be
+  StreamFeedSettings stream;    // stream.…
+  LookSettings look;            // look.…
+  LensSettings lens;            // lens.…
+  CalibrateSettings calibrate;  // calibrate.…
+  void Check() const;           // throws Error (usage) naming the field that cannot be
 
   // As SlamSettings::Set() and All().
   void Set(const std::string& name, const std::string& value);

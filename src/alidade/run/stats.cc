@@ -25,7 +25,8 @@ ordered_json SettingsJson(const RunRecord& record) {
                            {"schedule", record.settings.threaded ? "threaded" : "inline"},
                            {"threads", record.threads}};
   for (const auto& [name, value] :
-       RunSettings{record.settings, record.stream, record.look, record.lens_check}.All()) {
+       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
+           .All()) {
     const ordered_json parsed = ordered_json::parse(value, nullptr, false);
     settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
   }
@@ -53,6 +54,38 @@ ordered_json LensJson(const LensCheck& lens) {
           {"bend", lens.bend},
           {"windows", lens.windows},
           {"strong", lens.strong}};
+}
+
+// The camera of the recording's images (stereo, fisheye: as rectified).
+ordered_json CameraJson(const RunRecord& record) {
+  const Camera& camera = record.source.camera;
+  const double sigma = record.camera.focal_sigma;
+  return {{"width", camera.width},
+          {"height", camera.height},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
+          {"distortion", camera.distortion},
+          {"fov", FovDegrees(camera)},
+          {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
+          {"known", record.camera.known}};
+}
+
+// How it was found; null: it was not looked for.
+ordered_json CalibrationJson(const RunRecord& record) {
+  if (!record.camera.found) return nullptr;
+  const CameraFound& found = *record.camera.found;
+  return {{"passes", found.passes},
+          {"frames", found.frames},
+          {"keyframes", found.estimate.keyframes},
+          {"observations", found.estimate.observations},
+          {"k1_sigma", found.estimate.k1_sigma},
+          {"k2_sigma", found.estimate.k2_sigma},
+          {"noise", found.estimate.noise},
+          {"why_not", found.why_not},
+          {"cpu_s", record.camera.cpu_s},
+          {"wall_s", record.camera.wall_s}};
 }
 
 // Parts that failed and did nothing from then on.
@@ -91,6 +124,8 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"source", record.source_path},
       {"sensor", NameOf(record.settings.sensor)},
       {"settings", SettingsJson(record)},
+      {"camera", CameraJson(record)},
+      {"calibration", CalibrationJson(record)},
       {"frames", record.frames},
       {"tracked", tracked},
       {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},

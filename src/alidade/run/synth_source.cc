@@ -169,7 +169,8 @@ class SynthSource : public ActorSource {
     info_.kind = "synth";
     info_.sensor = ChooseSensor(settings, options);
     info_.camera = preparation_.camera();
-    info_.camera_guessed = !settings.calibrated && !options.fov_degrees && !options.camera_file;
+    info_.camera_guessed =
+        !options.camera_file && (options.fov_degrees ? options.fov_rough : !settings.calibrated);
     info_.R_camera_rectified = preparation_.R_camera_rectified();
     info_.frames = settings.frames;
   }

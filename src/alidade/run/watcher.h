@@ -5,6 +5,7 @@
 #include <string>
 
 #include "alidade/io/frame_source.h"
+#include "alidade/run/find_camera.h"
 #include "alidade/run/outputs.h"
 #include "alidade/run/record.h"
 #include "alidade/system/slam.h"
@@ -15,6 +16,8 @@ namespace alidade {
 class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
+  // Before all else, while the camera is looked for: after each frame of a pass.
+  virtual void Calibrating(const CalibrateProgress& progress) { (void)progress; }
   // Before the first frame. What `slam` and `record` are references to lives until End() has
   // returned, or Run() throws. Results will be in `folder`, which is there.
   virtual void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 
 #include "alidade/base/log.h"
 #include "alidade/io/files/file.h"
@@ -92,6 +93,30 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name) {
     calibration.baseline = Positive(file, root, "baseline");
   }
   return calibration;
+}
+
+std::string FormatCameraFile(const Camera& camera, const std::string& comment) {
+  std::string text;
+  for (size_t begin = 0; begin < comment.size();) {
+    const size_t end = std::min(comment.find('\n', begin), comment.size());
+    text += "# " + comment.substr(begin, end - begin) + "\n";
+    begin = end + 1;
+  }
+  const auto exact = [](double value) {
+    char digits[40];
+    std::snprintf(digits, sizeof(digits), "%.17g", value);
+    return std::string(digits);
+  };
+  text += "model: pinhole\nwidth: " + std::to_string(camera.width) +
+          "\nheight: " + std::to_string(camera.height) + "\nfx: " + exact(camera.fx) +
+          "\nfy: " + exact(camera.fy) + "\ncx: " + exact(camera.cx) + "\ncy: " + exact(camera.cy) +
+          "\ndistortion: [";
+  for (size_t i = 0; i < camera.distortion.size(); ++i)
+    text += (i > 0 ? ", " : "") + exact(camera.distortion[i]);
+  text += "]\nfps: " + exact(camera.fps) + "\n";
+  if (camera.depth_factor > 0) text += "depth_factor: " + exact(camera.depth_factor) + "\n";
+  if (camera.baseline > 0) text += "baseline: " + exact(camera.baseline) + "\n";
+  return text;
 }
 
 Calibration GuessedCalibration(int width, int height, double fov_degrees) {

@@ -20,6 +20,10 @@ Calibration ReadCameraFile(const std::string& path);
 // The same of a file's text; `name` is what it is called in errors.
 Calibration ParseCameraFile(const std::string& text, const std::string& name);
 
+// The same of a camera, as text that ReadCameraFile() reads back exactly; `comment`: lines for the
+// begin, without their #.
+std::string FormatCameraFile(const Camera& camera, const std::string& comment = {});
+
 // A pinhole of that field of view, and nothing else known.
 Calibration GuessedCalibration(int width, int height, double fov_degrees);
 

@@ -5,7 +5,6 @@
 #include <string>
 
 #include "alidade/base/error.h"
-#include "alidade/base/log.h"
 #include "alidade/io/files/camera_file.h"
 
 namespace alidade {
@@ -44,12 +43,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
     chosen.calibration.fps = found->fps;
     chosen.calibration.depth_factor = found->depth_factor;
   }
-  chosen.guessed = !options.fov_degrees;
-  if (chosen.guessed) {
-    LogWarning(std::string("no camera file: a field of view of 66 degrees ") +
-               (size.width >= size.height ? "" : "along the upright side ") +
-               "is assumed (--fov, which is the horizontal one, or --camera say better)");
-  }
+  chosen.guessed = !options.fov_degrees || options.fov_rough;
   return chosen;
 }
 

@@ -11,7 +11,7 @@ namespace alidade {
 
 struct ChosenCalibration {
   Calibration calibration;
-  bool guessed = false;  // of which a warning was given
+  bool guessed = false;  // nothing was known, or a field of view that is only a guess
 };
 
 // Horizontal field of view in degrees that is assumed when nothing is known. A phone's is that of

@@ -17,9 +17,10 @@ struct SourceOptions {
   std::optional<std::string> camera_file = {};
   // Horizontal, degrees, 0..180: a plain pinhole instead of any calibration's lens.
   std::optional<double> fov_degrees = {};
-  int first = 0;       // frame numbers from 0, both included; the frames keep their numbers
-  int last = -1;       // -1: to the end
-  bool color = false;  // frames have their colours as well, where there are any
+  bool fov_rough = false;  // it is only a guess, to begin with: SourceInfo::camera_guessed
+  int first = 0;           // frame numbers from 0, both included; the frames keep their numbers
+  int last = -1;           // -1: to the end
+  bool color = false;      // frames have their colours as well, where there are any
 };
 
 // `path` is known by what it holds: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/), KITTI odometry

@@ -1,0 +1,118 @@
+#include "alidade/map/camera_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/base/id_map.h"
+
+namespace alidade {
+namespace {
+
+LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,
+                    const Camera& camera, const MeasurementNoise& noise, int min_seen) {
+  LensWindow window;
+  IdMap<KeyFrameId, int> index;
+  std::vector<LandmarkId> landmarks;
+  for (KeyFrameId id : keyframes) {
+    index[id] = static_cast<int>(window.T_camera_world.size());
+    const KeyFrame& keyframe = *map.Find(id);
+    window.T_camera_world.push_back(keyframe.T_camera_world);
+    for (LandmarkId landmark : keyframe.landmarks) {
+      if (landmark.valid()) landmarks.push_back(landmark);
+    }
+  }
+  std::sort(landmarks.begin(), landmarks.end());
+  landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
+  for (LandmarkId id : landmarks) {
+    const Landmark* landmark = map.Find(id);
+    if (!landmark || landmark->static_probability < Frame::kMappable) continue;
+    const auto seen = std::count_if(landmark->observations.begin(), landmark->observations.end(),
+                                    [&](const Observation& o) { return index.Find(o.keyframe); });
+    if (seen < min_seen) continue;
+    for (const Observation& o : landmark->observations) {
+      const int* camera_index = index.Find(o.keyframe);
+      if (!camera_index) continue;
+      const Keypoint& keypoint = map.Find(o.keyframe)->frame->keypoints[o.keypoint];
+      const double v = camera.cy + (keypoint.raw_y - camera.cy) * camera.fx / camera.fy;
+      window.observations.push_back({*camera_index,
+                                     static_cast<int>(window.points.size()),
+                                     {keypoint.raw_x, v},
+                                     Measure(keypoint, noise).inv_sigma2});
+    }
+    window.points.push_back(landmark->p_world);
+  }
+  return window;
+}
+
+}  // namespace
+
+void CameraEstimateSettings::Check() const {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) ThrowUsage(std::string("calibrate.") + what);
+  };
+  adjust.Check();
+  require(min_keyframes >= 3, "min_keyframes must be at least 3");
+  require(window >= min_keyframes && window <= 500, "window must lie in min_keyframes..500");
+  require(max_windows >= 1, "max_windows must be positive");
+  require(min_seen >= 2 && min_seen <= min_keyframes, "min_seen must lie in 2..min_keyframes");
+  require(k1_corner_sigma >= 0 && k2_corner_sigma >= 0, "*_corner_sigma cannot be negative");
+  require(max_focal_sigma > 0, "max_focal_sigma must be positive");
+}
+
+std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Camera& camera,
+                                      const MeasurementNoise& noise,
+                                      const CameraEstimateSettings& settings) {
+  settings.Check();
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
+  const size_t all = keyframes.size();
+  if (all < static_cast<size_t>(settings.min_keyframes)) return {};
+  // As many windows as it takes to hold all keyframes, of one size.
+  const size_t there =
+      (all + static_cast<size_t>(settings.window) - 1) / static_cast<size_t>(settings.window);
+  const size_t used = std::min(there, static_cast<size_t>(settings.max_windows));
+  std::vector<LensWindow> windows;
+  for (size_t i = 0; i < used; ++i) {
+    const size_t at = i * there / used;
+    const size_t begin = at * all / there, end = (at + 1) * all / there;
+    if (end - begin < static_cast<size_t>(settings.min_keyframes)) continue;
+    windows.push_back(WindowOf(map, std::span(keyframes).subspan(begin, end - begin), camera, noise,
+                               settings.min_seen));
+  }
+  return windows;
+}
+
+CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& camera,
+                              const MeasurementNoise& noise,
+                              const CameraEstimateSettings& settings) {
+  settings.Check();
+  CameraEstimate estimate;
+  estimate.camera = camera;
+  for (const LensWindow& window : windows)
+    estimate.keyframes += static_cast<int>(window.T_camera_world.size());
+  if (estimate.keyframes == 0) return estimate;
+  const RadialLens start{
+      camera.fx, camera.distortion[0], camera.distortion[1], {camera.cx, camera.cy}};
+  LensAdjustmentSettings adjust = settings.adjust;
+  const double corner2 =
+      (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2)) / 4;
+  adjust.k1_sigma = settings.k1_corner_sigma / corner2;
+  adjust.k2_sigma = settings.k2_corner_sigma / (corner2 * corner2);
+  const LensAdjustment found = AdjustLens(windows, start, adjust);
+  estimate.observations = found.observations;
+  estimate.noise = found.noise * noise.sigma_px;
+  estimate.camera.fx = found.lens.focal;
+  estimate.camera.fy = found.lens.focal * camera.fy / camera.fx;
+  estimate.camera.distortion = {found.lens.k1, found.lens.k2, 0, 0, 0};
+  const Eigen::Vector3d sigma = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  estimate.focal_sigma = sigma.x();
+  estimate.k1_sigma = sigma.y();
+  estimate.k2_sigma = sigma.z();
+  estimate.known = found.observations > 0 && std::isfinite(estimate.focal_sigma) &&
+                   estimate.focal_sigma <= settings.max_focal_sigma;
+  return estimate;
+}
+
+}  // namespace alidade

@@ -1,0 +1,77 @@
+// Bundle adjustment with the camera's lens among the unknowns: focal length and radial distortion
+// are found from nothing but what a moving camera saw (self-calibration).
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <vector>
+
+#include "alidade/base/api.h"
+#include "alidade/geometry/se3.h"
+
+namespace ALIDADE_API alidade {
+
+// Square pixels, centre known: a point at (x, y, 1) is seen at
+//   (u, v) = centre + f (1 + k1 r² + k2 r⁴) (x, y),  r² = x² + y²  (Brown's radial terms).
+struct RadialLens {
+  double focal = 0;                                  // pixels
+  double k1 = 0, k2 = 0;                             // unitless
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // pixels
+};
+
+struct LensObservation {
+  int camera = -1, point = -1;  // indices within the window
+  Eigen::Vector2d pixel;        // as in the image, distortion and all
+  double inv_sigma2 = 1;        // 1 / variance, up to a factor that all have in common; 1/px²
+};
+
+// Views that share points with each other, but none with those of other windows: a stretch of a
+// recording. Each has a gauge of its own.
+struct LensWindow {
+  std::vector<Se3> T_camera_world;            // start, and result
+  std::vector<Eigen::Vector3d> points;        // in the window's world; start, and result
+  std::vector<LensObservation> observations;  // sorted by point
+};
+
+struct LensAdjustmentSettings {
+  int max_iterations = 30;              // accepted or rejected Levenberg–Marquardt steps
+  double min_relative_decrease = 1e-6;  // stops when a step lowers the cost by less, …
+  double min_lens_step = 1e-5;          // … and moves log focal, k1 and k2 by less each
+  // What is known beforehand, as standard deviations about the start of the focal length's
+  // logarithm and about no distortion. 0.35: 66 degrees may be 49 to 85 (one sigma).
+  double focal_sigma = 0.35;
+  double k1_sigma = 0.3;
+  double k2_sigma = 0.1;  // 0: k2 stays as it starts; so k1
+  // Standard deviations that residuals tell of are those of independent noise. What they do not
+  // tell (keypoints that creep along edges, blur, a rolling shutter) makes errors so many times as
+  // large: against the prior, and in the covariance. Measured, docs/calibration.md.
+  double inflation = 3.0;
+  // Bound c of Geman & McClure's loss ½ r² / (1 + r² / c²), in standard deviations of the noise
+  // seen: matches that are no points pull no more. The noise is the median of all residuals'.
+  double bound = 3.0;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
+};
+
+struct LensAdjustment {
+  RadialLens lens;
+  // Of log focal, k1 and k2, all else unknown; the prior is in it. What is held has 0. By the noise
+  // seen, times inflation²; or, of three windows and more, by what the windows differ where that is
+  // more: H⁻¹ (Σ g g') H⁻¹ with each window's own gradient g (sandwich estimator for clusters:
+  // Liang & Zeger 1986), which knows of all errors that change from window to window.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double noise = 0;      // of a residual, in the units of sqrt(1 / inv_sigma2)
+  int observations = 0;  // that had a say
+  int iterations = 0;
+  bool converged = false;
+};
+
+// Improves `windows` and `start` together by Levenberg–Marquardt: points are eliminated first
+// (Triggs et al. 2000, §6), then each window's poses, which leaves three equations for the lens.
+// Motions that tell nothing of the focal length (no turning, straight ahead, a flat scene seen
+// head-on) leave it to the prior: the covariance says so. The result is the same with any number of
+// threads. Throws Error on indices that aren't there.
+LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& start,
+                          const LensAdjustmentSettings& settings = {},
+                          const std::atomic<bool>* stop = nullptr);
+
+}  // namespace alidade
