@@ -1,16 +1,21 @@
 // `alidade calibrate`: the camera of recordings that nobody calibrated.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/base/parallel.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
+#include "alidade/io/files/file.h"
 #include "alidade/run/any_source.h"
 #include "alidade/run/find_camera.h"
 #include "alidade/run/loop.h"
 #include "alidade/run/options.h"
+#include "alidade/run/unknown_camera.h"
 #include "commands.h"
 #include "terminal.h"
 
@@ -19,55 +24,131 @@ namespace {
 
 struct CalibrateOptions {
   std::vector<std::string> sources;
+  std::string out = "camera.yaml";
   RunOptions run;
 };
+
+CameraFound Calibrate(const std::string& source, const CalibrateOptions& options,
+                      const RunSettings& settings, Terminal& terminal) {
+  SourceOptions wanted = SourceOptionsFrom(options.run);
+  wanted.sensor = Sensor::kMono;
+  const SourceInfo info = OpenAnySource(source, wanted)->Info();
+  if (info.kind == "camera")
+    ThrowUsage("calibrate takes recordings, not " + source + ": it plays them more than once");
+  // What lies beside the images is not looked at: that is what is asked for.
+  if (!wanted.fov_degrees) wanted.fov_degrees = AssumedFov({info.camera.width, info.camera.height});
+  wanted.fov_rough = true;
+  const auto open = [&] { return OpenAnySource(source, wanted); };
+  return FindCamera(open, settings.slam, settings.calibrate, [&](const CalibrateProgress& now) {
+    if (terminal.shows_progress() && now.frames % 10 == 0) {
+      terminal.SetProgress(source + ": pass " + std::to_string(now.pass) + ", frame " +
+                           std::to_string(now.frames) +
+                           (now.estimate.observations > 0 ? ", " + FovInWords(now.estimate) : ""));
+    }
+    return !Interrupted();
+  });
+}
+
+// All that the recordings' last passes saw, with one lens for all of it.
+CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings& settings) {
+  std::vector<LensWindow> windows;
+  const CameraFound* best = nullptr;
+  for (const CameraFound& one : found) {
+    if (!one.usable) continue;
+    if (!best || one.estimate.focal_sigma < best->estimate.focal_sigma) best = &one;
+  }
+  if (!best) return found.front().estimate;
+  for (const CameraFound& one : found) {
+    const Camera& size = one.windows_camera;
+    if (one.usable && size.width == best->windows_camera.width &&
+        size.height == best->windows_camera.height)
+      windows.insert(windows.end(), one.windows.begin(), one.windows.end());
+  }
+  const Camera start = CameraOfSize(best->estimate.camera, best->windows_camera);
+  CameraEstimate all =
+      EstimateCamera(std::move(windows), start, settings.slam.mapper.noise, settings.calibrate);
+  all.camera = CameraOfSize(all.camera, best->estimate.camera);
+  return all;
+}
 
 int CalibrateCommand(const CalibrateOptions& options) {
   CatchInterrupts();
   RunSettings settings = SettingsFrom(options.run);
-  settings.slam.start.two_view.lens_uncertainty = 0.6;
+  BeWaryOfTurns(settings.slam);
+  SetThreadCount(options.run.threads);
   Terminal terminal(options.run.quiet);
+  std::vector<CameraFound> found;
   for (const std::string& source : options.sources) {
-    SourceOptions wanted = SourceOptionsFrom(options.run);
-    wanted.sensor = Sensor::kMono;
-    const auto open = [&] { return OpenAnySource(source, wanted); };
-    int asked = 0;
-    const bool trace = std::getenv("TRACE") != nullptr;
-    const CameraFound found =
-        FindCamera(open, settings.slam, settings.calibrate, [&](const CalibrateProgress& now) {
-          if (trace && now.keyframes != asked && now.keyframes > 0)
-            std::printf("  pass %d frame %d kf %d: %s noise %.2f obs %d\n", now.pass, now.frames,
-                        now.keyframes, CameraInWords(now.estimate).c_str(), now.estimate.noise,
-                        now.estimate.observations);
-          asked = now.keyframes;
-          return !Interrupted();
-        });
-    std::printf("%s: %s %s; %d passes %d frames %d kf %d obs noise %.2f\n", source.c_str(),
-                CameraInWords(found.estimate).c_str(),
-                found.estimate.known ? "known"
-                : found.usable       ? "usable"
-                                     : "unknown",
-                found.passes, found.frames, found.estimate.keyframes, found.estimate.observations,
-                found.estimate.noise);
+    found.push_back(Calibrate(source, options, settings, terminal));
+    terminal.SetProgress("");
+    if (Interrupted()) return kInterruptedStatus;
+    const CameraFound& one = found.back();
+    const Camera &camera = one.estimate.camera, &first = found.front().estimate.camera;
+    if (camera.width != first.width || camera.height != first.height) {
+      ThrowInput(source + " has pictures of another size than " + options.sources.front() +
+                 ": not of one camera, or cut out otherwise");
+    }
+    if (options.run.quiet) continue;
+    std::printf("%s: %s\n", source.c_str(),
+                one.estimate.known ? CameraInWords(one.estimate).c_str()
+                : one.usable
+                    ? (CameraInWords(one.estimate) + ", not certain: " + one.why_not).c_str()
+                    : ("unknown: " + one.why_not).c_str());
+    std::fflush(stdout);
   }
+  const CameraEstimate all = found.size() > 1 ? Together(found, settings) : found.front().estimate;
+  const bool usable = found.size() > 1 ? all.known : found.front().usable;
+  if (!usable) {
+    throw Error(
+        ErrorKind::kNothingMapped,
+        "the camera stays unknown: move it sideways and turn it, before things near and far "
+        "(docs/calibration.md)");
+  }
+  if (found.size() > 1 && !options.run.quiet)
+    std::printf("together: %s\n", CameraInWords(all).c_str());
+  std::string from;
+  for (const std::string& source : options.sources) from += "\n" + source;
+  AtomicWriteFile(options.out,
+                  FormatCameraFile(all.camera, "Found by alidade calibrate from" + from +
+                                                   "\nfield of view " + CameraInWords(all) +
+                                                   (all.known ? "" : "\nnot known for certain")));
+  if (!options.run.quiet)
+    std::printf("Written to %s: alidade run RECORDING --camera %s\n", options.out.c_str(),
+                options.out.c_str());
   return 0;
 }
 
 }  // namespace
 
 void AddCalibrateCommand(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("calibrate", "Find a camera's focal length and distortion");
+  CLI::App* command = app.add_subcommand(
+      "calibrate", "Find a camera's focal length and distortion from what it recorded");
   const auto options = std::make_shared<CalibrateOptions>();
-  command->add_option("RECORDING", options->sources, "Recordings of one camera")->required();
-  command->add_option("--fov", options->run.fov, "Horizontal field of view to begin with, degrees");
+  command
+      ->add_option("RECORDING", options->sources,
+                   "Recordings of one camera: anything `alidade run` takes, but for live cameras")
+      ->required();
+  command->add_option("--out", options->out, "Calibration to write (camera.yaml)");
+  command->add_option("--fov", options->run.fov,
+                      "Horizontal field of view to begin with, degrees (66 along the longer side)");
   command->add_option("--profile", options->run.profile, "desktop or phone");
   command->add_option("--first", options->run.first, "First frame, counted from 0");
   command->add_option("--last", options->run.last, "Last frame, included");
-  command->add_option("--set", options->run.settings, "One setting, name=value")
+  command->add_option("--set", options->run.settings, "One setting, name=value; many times")
       ->take_all()
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  command->add_option("--threads", options->run.threads,
+                      "Threads for parallel loops; 0 = all cores");
+  command->add_flag("--quiet", options->run.quiet, "Say nothing but errors");
+  command->footer(
+      "\nNo target is needed: a minute of walking about a furnished room, moving sideways and\n"
+      "turning, is enough. What the recording's own calibration says is not looked at.\n"
+      "\nExamples:\n"
+      "  alidade calibrate walk.mp4\n"
+      "  alidade calibrate monday.mp4 tuesday.mp4 --out phone.yaml\n"
+      "  alidade run wednesday.mp4 --camera phone.yaml\n"
+      "\nExit status 4: the camera turned or moved too little to tell.");
   command->callback(
       [options, &action] { action = [options] { return CalibrateCommand(*options); }; });
 }

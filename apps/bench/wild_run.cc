@@ -12,6 +12,7 @@
 #include "alidade/run/any_source.h"
 #include "alidade/run/loop.h"
 #include "alidade/run/results.h"
+#include "alidade/run/unknown_camera.h"
 #include "alidade/slam.h"
 
 namespace alidade::bench {
@@ -105,12 +106,19 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   SourceOptions options;
   options.sensor = settings.sensor = Sensor::kMono;
   options.last = frames - 1;  // -1: to the end
-  ReadAhead source(OpenAnySource(of.source + "&seed=" + std::to_string(seed), options));
+  const std::string source_name = of.source + "&seed=" + std::to_string(seed);
+  ReadAhead source(OpenAnySource(source_name, options));
   RunRecord record;
   record.source = source.Info();
-  // As `alidade run` does where the camera is only assumed (run.cc, kGuessedLens).
-  if (record.source.camera_guessed && settings.start.two_view.lens_uncertainty == 0)
-    settings.start.two_view.lens_uncertainty = 0.6;
+  if (record.source.camera_guessed) {  // as `alidade run` does
+    BeWaryOfTurns(settings);
+    const CameraFound found = FindCamera([&] { return OpenAnySource(source_name, options); },
+                                         settings, {}, [](const auto&) { return true; });
+    if (found.usable) {
+      record.source.camera = found.estimate.camera;
+      settings.start.two_view.lens_uncertainty = 3 * found.estimate.focal_sigma;
+    }
+  }
   record.settings = settings;
   Slam slam(record.source.camera, settings);
   WildRun run;

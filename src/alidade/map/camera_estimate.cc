@@ -59,6 +59,7 @@ void CameraEstimateSettings::Check() const {
   require(max_windows >= 1, "max_windows must be positive");
   require(min_seen >= 2 && min_seen <= min_keyframes, "min_seen must lie in 2..min_keyframes");
   require(k1_corner_sigma >= 0 && k2_corner_sigma >= 0, "*_corner_sigma cannot be negative");
+  require(centre_sigma >= 0, "centre_sigma cannot be negative");
   require(max_focal_sigma > 0, "max_focal_sigma must be positive");
 }
 
@@ -100,13 +101,19 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
       (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2)) / 4;
   adjust.k1_sigma = settings.k1_corner_sigma / corner2;
   adjust.k2_sigma = settings.k2_corner_sigma / (corner2 * corner2);
+  adjust.centre_sigma = settings.centre_sigma * std::max(camera.width, camera.height);
+  adjust.centre = Eigen::Vector2d(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
   const LensAdjustment found = AdjustLens(windows, start, adjust);
   estimate.observations = found.observations;
   estimate.noise = found.noise * noise.sigma_px;
   estimate.camera.fx = found.lens.focal;
   estimate.camera.fy = found.lens.focal * camera.fy / camera.fx;
   estimate.camera.distortion = {found.lens.k1, found.lens.k2, 0, 0, 0};
-  const Eigen::Vector3d sigma = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  // Rows were stretched about the old centre.
+  estimate.camera.cx = found.lens.centre.x();
+  estimate.camera.cy = camera.cy + (found.lens.centre.y() - camera.cy) * camera.fy / camera.fx;
+  const LensAdjustment::Parameters sigma = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  estimate.centre_sigma = sigma.tail<2>();
   estimate.focal_sigma = sigma.x();
   estimate.k1_sigma = sigma.y();
   estimate.k2_sigma = sigma.z();

@@ -18,10 +18,13 @@ struct CameraEstimateSettings {
   // What is believed of distortion beforehand: standard deviations of the shift at the picture's
   // corners by k1, and by k2, as a share of their distance from the middle.
   double k1_corner_sigma = 0.08;
-  double k2_corner_sigma = 0.03;
+  double k2_corner_sigma = 0.02;
   // Known: 0.01 is the standard deviation of the focal length, relative, below which it is.
   double max_focal_sigma = 0.01;
-  LensAdjustmentSettings adjust;  // but for k1_sigma and k2_sigma, which follow from the above
+  // And of where the optical axis meets the picture: standard deviation about its middle, as a
+  // share of its longer side. Pictures are cut out of what a sensor sees.
+  double centre_sigma = 0.01;
+  LensAdjustmentSettings adjust;  // but for what follows from the above
   void Check() const;             // throws Error (usage) naming the field that cannot be
 };
 
@@ -29,9 +32,10 @@ struct CameraEstimate {
   Camera camera;           // of the images that the map was made from
   double focal_sigma = 0;  // standard deviation of log focal: relative, unitless
   double k1_sigma = 0, k2_sigma = 0;
-  int keyframes = 0, observations = 0;  // that had a say; 0: nothing is said
-  double noise = 0;                     // of keypoints on the finest level, pixels
-  bool known = false;                   // focal_sigma is small enough
+  Eigen::Vector2d centre_sigma = Eigen::Vector2d::Zero();  // pixels
+  int keyframes = 0, observations = 0;                     // that had a say; 0: nothing is said
+  double noise = 0;    // of keypoints on the finest level, pixels
+  bool known = false;  // focal_sigma is small enough
 };
 
 // Views of one map, or several of one camera, for AdjustLens(). Pixels are as in the image, for

@@ -15,7 +15,10 @@
 namespace alidade {
 namespace {
 
-using Lens3 = Eigen::Matrix<double, 2, 3>;  // by log focal, k1, k2
+constexpr int kUnknowns = LensAdjustment::kParameters;
+using ByLens = Eigen::Matrix<double, 2, kUnknowns>;
+using LensMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+using LensVector = LensAdjustment::Parameters;
 
 // Of a residual's chi²: with 2 degrees of freedom its median is 2 ln 2.
 constexpr double kMedianChi2 = 1.3862943611198906;
@@ -28,7 +31,7 @@ struct LensRow {
   Eigen::Vector2d residual;
   Eigen::Matrix<double, 2, 6> by_camera;  // translation, rotation: left-multiplied
   Eigen::Matrix<double, 2, 3> by_point;
-  Lens3 by_lens;
+  ByLens by_lens;
   double weight = 0;
 };
 
@@ -59,30 +62,32 @@ bool LineariseLens(const RadialLens& lens, const Se3& T_camera_world,
   row.by_camera << by_p, -by_p * cross;
   row.by_point = by_p * T_camera_world.R;
   const Eigen::Vector2d ideal(x, y);
-  row.by_lens << lens.focal * d * ideal, lens.focal * r2 * ideal, lens.focal * r2 * r2 * ideal;
+  row.by_lens << lens.focal * d * ideal, lens.focal * r2 * ideal, lens.focal * r2 * r2 * ideal,
+      Eigen::Matrix2d::Identity();
   return true;
 }
 
-RadialLens Moved(RadialLens lens, const Eigen::Vector3d& step) {
+RadialLens Moved(RadialLens lens, const LensVector& step) {
   lens.focal *= std::exp(step.x());
   lens.k1 += step.y();
   lens.k2 += step.z();
+  lens.centre += step.tail<2>();
   return lens;
 }
 
 // Normal equations of one window at one place, points eliminated.
 struct WindowSystem {
   Eigen::MatrixXd H;             // poses, lower triangle
-  Eigen::MatrixXd lens_by_pose;  // 3 × poses
+  Eigen::MatrixXd lens_by_pose;  // lens × poses
   Eigen::VectorXd g;             // of the poses: J' W r
-  Eigen::Matrix3d lens = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d g_lens = Eigen::Vector3d::Zero();
+  LensMatrix lens = LensMatrix::Zero();
+  LensVector g_lens = LensVector::Zero();
   int observations = 0;
   // What eliminating left of each point, to find its step from those of poses and lens.
   struct Point {
     Eigen::Matrix3d inverse;
     Eigen::Vector3d g;
-    Eigen::Matrix3d by_lens;  // lens × point
+    Eigen::Matrix<double, kUnknowns, 3> by_lens;  // lens × point
     std::vector<std::pair<int, Eigen::Matrix<double, 6, 3>>> by_camera;
   };
   std::vector<Point> points;  // one for each of the window's; empty by_camera: it stays
@@ -120,7 +125,8 @@ void EliminatePoint(const std::vector<LensRow>& rows, double damping, WindowSyst
   for (const LensRow& row : rows) {
     const Eigen::Index c = 6 * row.camera;
     system.H.block<6, 6>(c, c) += row.weight * row.by_camera.transpose() * row.by_camera;
-    system.lens_by_pose.block<3, 6>(0, c) += row.weight * row.by_lens.transpose() * row.by_camera;
+    system.lens_by_pose.block<kUnknowns, 6>(0, c) +=
+        row.weight * row.by_lens.transpose() * row.by_camera;
     system.lens += row.weight * row.by_lens.transpose() * row.by_lens;
     system.g.segment<6>(c) += row.weight * row.by_camera.transpose() * row.residual;
     system.g_lens += row.weight * row.by_lens.transpose() * row.residual;
@@ -129,7 +135,7 @@ void EliminatePoint(const std::vector<LensRow>& rows, double damping, WindowSyst
   for (const auto& [i, Hi] : point.by_camera) {
     const Eigen::Matrix<double, 6, 3> A = Hi * point.inverse;
     system.g.segment<6>(6 * i) -= A * point.g;
-    system.lens_by_pose.block<3, 6>(0, 6 * i) -= point.by_lens * A.transpose();
+    system.lens_by_pose.block<kUnknowns, 6>(0, 6 * i) -= point.by_lens * A.transpose();
     for (const auto& [j, Hj] : point.by_camera) {
       if (j <= i) system.H.block<6, 6>(6 * i, 6 * j) -= A * Hj.transpose();
     }
@@ -143,7 +149,7 @@ WindowSystem SystemOf(const LensWindow& window, const RadialLens& lens, const Le
   const auto size = 6 * static_cast<Eigen::Index>(window.T_camera_world.size());
   WindowSystem system;
   system.H = Eigen::MatrixXd::Zero(size, size);
-  system.lens_by_pose = Eigen::MatrixXd::Zero(3, size);
+  system.lens_by_pose = Eigen::MatrixXd::Zero(kUnknowns, size);
   system.g = Eigen::VectorXd::Zero(size);
   system.points.resize(window.points.size());
   std::vector<LensRow> rows;
@@ -168,8 +174,8 @@ WindowSystem SystemOf(const LensWindow& window, const RadialLens& lens, const Le
 // The poses eliminated, too: what the window says of the lens alone.
 struct LensSystem {
   Eigen::LDLT<Eigen::MatrixXd> poses;
-  Eigen::Matrix3d H;
-  Eigen::Vector3d g;
+  LensMatrix H;
+  LensVector g;
 };
 
 LensSystem LensAlone(const WindowSystem& system, double damping) {
@@ -184,8 +190,8 @@ LensSystem LensAlone(const WindowSystem& system, double damping) {
   return alone;
 }
 
-void MoveWindow(const WindowSystem& system, const LensSystem& alone,
-                const Eigen::Vector3d& lens_step, LensWindow& window) {
+void MoveWindow(const WindowSystem& system, const LensSystem& alone, const LensVector& lens_step,
+                LensWindow& window) {
   const Eigen::VectorXd step =
       -alone.poses.solve(system.g + system.lens_by_pose.transpose() * lens_step);
   for (size_t i = 0; i < window.T_camera_world.size(); ++i) {
@@ -239,14 +245,19 @@ double NoiseOf(const std::vector<LensWindow>& windows, const RadialLens& lens) {
 // Where the lens is believed to be beforehand, as equations.
 struct LensPrior {
   RadialLens start;
-  Eigen::Vector3d information = Eigen::Vector3d::Zero();
+  Eigen::Vector2d centre;
+  LensVector information = LensVector::Zero();
 
-  LensPrior(const RadialLens& at, const LensAdjustmentSettings& s) : start(at) {
+  LensPrior(const RadialLens& at, const LensAdjustmentSettings& s)
+      : start(at), centre(s.centre.value_or(at.centre)) {
     const auto of = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0.0; };
-    information = {of(s.focal_sigma), of(s.k1_sigma), of(s.k2_sigma)};
+    information << of(s.focal_sigma), of(s.k1_sigma), of(s.k2_sigma), of(s.centre_sigma),
+        of(s.centre_sigma);
   }
-  Eigen::Vector3d Off(const RadialLens& lens) const {
-    return {std::log(lens.focal / start.focal), lens.k1, lens.k2};
+  LensVector Off(const RadialLens& lens) const {
+    LensVector off;
+    off << std::log(lens.focal / start.focal), lens.k1, lens.k2, lens.centre - centre;
+    return off;
   }
   double Cost(const RadialLens& lens, double noise2) const {
     return 0.5 * noise2 * Off(lens).cwiseAbs2().dot(information);
@@ -273,7 +284,7 @@ void LensAdjustmentSettings::Check() const {
   require(max_iterations >= 0, "max_iterations cannot be negative");
   require(min_relative_decrease >= 0 && min_lens_step >= 0, "bounds of steps cannot be negative");
   require(focal_sigma > 0, "focal_sigma must be positive");
-  require(k1_sigma >= 0 && k2_sigma >= 0, "k1_sigma and k2_sigma cannot be negative");
+  require(k1_sigma >= 0 && k2_sigma >= 0 && centre_sigma >= 0, "*_sigma cannot be negative");
   require(inflation >= 1, "inflation must be at least 1");
   require(bound >= 1, "bound must be at least 1");
 }
@@ -285,7 +296,9 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
   LensAdjustment result;
   result.lens = start;
   const LensPrior prior(start, settings);
-  const Eigen::Vector3d free(1, settings.k1_sigma > 0, settings.k2_sigma > 0);
+  LensVector free;
+  free << 1, settings.k1_sigma > 0, settings.k2_sigma > 0, settings.centre_sigma > 0,
+      settings.centre_sigma > 0;
   const int count = static_cast<int>(windows.size());
   std::vector<WindowSystem> systems(windows.size());
   std::vector<LensSystem> alone(windows.size());
@@ -298,13 +311,13 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
       alone[at] = LensAlone(systems[at], damping);
     });
     const double noise2 = spread * loss.noise * loss.noise;
-    Eigen::Matrix3d H = (noise2 * prior.information).asDiagonal();
-    Eigen::Vector3d g = noise2 * prior.information.cwiseProduct(prior.Off(result.lens));
+    LensMatrix H = (noise2 * prior.information).asDiagonal();
+    LensVector g = noise2 * prior.information.cwiseProduct(prior.Off(result.lens));
     for (const LensSystem& system : alone) {
       H += system.H;
       g += system.g;
     }
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < kUnknowns; ++k) {
       if (free[k] != 0) continue;
       H.row(k).setZero();
       H.col(k).setZero();
@@ -321,7 +334,7 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
   for (; result.iterations < settings.max_iterations && !(stop && *stop); ++result.iterations) {
     auto [H, g] = gather(loss, damping);
     H.diagonal() *= 1 + damping;
-    Eigen::Vector3d step = -H.ldlt().solve(g);
+    LensVector step = -H.ldlt().solve(g);
     // A lens is not believed to leap: what is linear near by is not, far away.
     const double most = std::max(std::abs(step.x()) / 0.3, std::abs(step.y()) / 0.3);
     if (!step.allFinite()) break;
@@ -337,7 +350,7 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
       continue;
     }
     const bool done = cost - tried < settings.min_relative_decrease * cost &&
-                      step.cwiseAbs().maxCoeff() < settings.min_lens_step;
+                      step.head<3>().cwiseAbs().maxCoeff() < settings.min_lens_step;
     windows = std::move(moved);
     result.lens = lens;
     damping = std::max(1e-7, damping / 4);
@@ -353,20 +366,20 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
   const auto [H, g] = gather(loss, kGaugeDamping);
   for (const WindowSystem& system : systems) result.observations += system.observations;
   result.noise = loss.noise;
-  const Eigen::Matrix3d inverse = H.inverse();
+  const LensMatrix inverse = H.inverse();
   result.covariance = inverse * (spread * loss.noise * loss.noise);
   if (windows.size() >= kLeastClusters) {
-    Eigen::Matrix3d meat = Eigen::Matrix3d::Zero();
+    LensMatrix meat = LensMatrix::Zero();
     for (const LensSystem& system : alone) meat += system.g * system.g.transpose();
     const auto n = static_cast<double>(windows.size());
-    const Eigen::Matrix3d sandwich = inverse * (n / (n - 1) * meat) * inverse;
-    for (int k = 0; k < 3; ++k) {  // scaled as a whole, so that it stays a covariance
+    const LensMatrix sandwich = inverse * (n / (n - 1) * meat) * inverse;
+    for (int k = 0; k < kUnknowns; ++k) {  // scaled as a whole, so that it stays a covariance
       const double more = std::sqrt(std::max(1.0, sandwich(k, k) / result.covariance(k, k)));
       result.covariance.row(k) *= more;
       result.covariance.col(k) *= more;
     }
   }
-  for (int k = 0; k < 3; ++k) {
+  for (int k = 0; k < kUnknowns; ++k) {
     if (free[k] != 0) continue;
     result.covariance.row(k).setZero();
     result.covariance.col(k).setZero();

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "alidade/base/api.h"
@@ -11,7 +12,7 @@
 
 namespace ALIDADE_API alidade {
 
-// Square pixels, centre known: a point at (x, y, 1) is seen at
+// Square pixels: a point at (x, y, 1) is seen at
 //   (u, v) = centre + f (1 + k1 r² + k2 r⁴) (x, y),  r² = x² + y²  (Brown's radial terms).
 struct RadialLens {
   double focal = 0;                                  // pixels
@@ -41,7 +42,10 @@ struct LensAdjustmentSettings {
   // logarithm and about no distortion. 0.35: 66 degrees may be 49 to 85 (one sigma).
   double focal_sigma = 0.35;
   double k1_sigma = 0.3;
-  double k2_sigma = 0.1;  // 0: k2 stays as it starts; so k1
+  double k2_sigma = 0.1;    // 0: k2 stays as it starts; so k1
+  double centre_sigma = 0;  // pixels, of either coordinate; 0: the centre stays as it starts
+  // About which the centre is believed to be, pixels; else its start.
+  std::optional<Eigen::Vector2d> centre = {};
   // Standard deviations that residuals tell of are those of independent noise. What they do not
   // tell (keypoints that creep along edges, blur, a rolling shutter) makes errors so many times as
   // large: against the prior, and in the covariance. Measured, docs/calibration.md.
@@ -53,12 +57,15 @@ struct LensAdjustmentSettings {
 };
 
 struct LensAdjustment {
+  static constexpr int kParameters = 5;  // log focal, k1, k2, centre
+  using Parameters = Eigen::Matrix<double, kParameters, 1>;
   RadialLens lens;
-  // Of log focal, k1 and k2, all else unknown; the prior is in it. What is held has 0. By the noise
+  // Of the parameters, all else unknown; the prior is in it. What is held has 0. By the noise
   // seen, times inflation²; or, of three windows and more, by what the windows differ where that is
   // more: H⁻¹ (Σ g g') H⁻¹ with each window's own gradient g (sandwich estimator for clusters:
   // Liang & Zeger 1986), which knows of all errors that change from window to window.
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix<double, kParameters, kParameters> covariance =
+      Eigen::Matrix<double, kParameters, kParameters>::Zero();
   double noise = 0;      // of a residual, in the units of sqrt(1 / inv_sigma2)
   int observations = 0;  // that had a say
   int iterations = 0;

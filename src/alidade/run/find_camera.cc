@@ -34,6 +34,7 @@ constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
   visit("calibrate.focal_sigma", s.adjust.focal_sigma);
   visit("calibrate.k1_corner_sigma", s.k1_corner_sigma);
   visit("calibrate.k2_corner_sigma", s.k2_corner_sigma);
+  visit("calibrate.centre_sigma", s.centre_sigma);
   visit("calibrate.inflation", s.adjust.inflation);
   visit("calibrate.bound", s.adjust.bound);
 };
@@ -153,6 +154,9 @@ Camera CameraOfSize(const Camera& camera, const Camera& of) {
   Camera result = of;
   result.fx = result.fy = camera.fx * of.width / camera.width;
   result.distortion = camera.distortion;
+  // Pixel centres are at whole numbers, image borders at ±0.5.
+  result.cx = (camera.cx + 0.5) * of.width / camera.width - 0.5;
+  result.cy = (camera.cy + 0.5) * of.height / camera.height - 0.5;
   return result;
 }
 
@@ -240,10 +244,13 @@ std::string FovInWords(const CameraEstimate& estimate) {
 
 std::string CameraInWords(const CameraEstimate& estimate) {
   const Camera& camera = estimate.camera;
-  char text[120];
-  std::snprintf(text, sizeof(text), " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f)",
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
+                "centre %.1f, %.1f ± %.1f)",
                 camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0],
-                estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma);
+                estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
+                estimate.centre_sigma.maxCoeff());
   return FovInWords(estimate) + text;
 }
 

@@ -20,7 +20,7 @@ struct CalibrateSettings : CameraEstimateSettings {
   // this (focal length, relative; or as a shift at the picture's corners, of their distance from
   // the middle), and by two standard deviations. A map made with a camera that is far off is bent
   // the more the longer it gets.
-  double max_off = 0.02;
+  double max_off = 0.06;
   // Standard deviation (relative) of a focal length that is worth to begin anew with: better than
   // what it replaces.
   double max_restart_sigma = 0.02;

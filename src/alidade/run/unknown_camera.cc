@@ -25,6 +25,11 @@ std::string AssumedInWords(const Camera& camera) {
 
 }  // namespace
 
+void BeWaryOfTurns(SlamSettings& settings) {
+  double& wary = settings.start.two_view.lens_uncertainty;
+  if (wary == 0) wary = kGuessedLens;
+}
+
 void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const Camera* saved,
                  const std::vector<RunWatcher*>& watchers, RunRecord& record) {
   SourceInfo& source = record.source;
@@ -37,12 +42,13 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   camera.focal_sigma = record.calibrate.adjust.focal_sigma;
   double& wary = record.settings.start.two_view.lens_uncertainty;
   const bool told_wary = wary != 0;
-  if (!told_wary) wary = kGuessedLens;
+  BeWaryOfTurns(record.settings);
   if (saved) {
     source.camera = CameraOfSize(*saved, source.camera);
     source.camera.distortion = saved->distortion;
     camera.known = "file";
     camera.focal_sigma = 0;
+    if (!told_wary) wary = 0;
     return;
   }
   const std::string better = " (--camera, or --fov, which is the horizontal one, say better)";

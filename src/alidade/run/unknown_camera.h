@@ -11,6 +11,10 @@
 
 namespace alidade {
 
+// For recordings of a camera that is only guessed: no map is begun on what a turn with another lens
+// explains, unless the settings say how much to allow for.
+void BeWaryOfTurns(SlamSettings& settings);
+
 // Fills in record.camera, and record.source.camera where a better one than the source's is found:
 // a loaded map's when nothing is known, else by FindCamera(), for recordings of one camera.
 // `saved`: null when no map is loaded. Warns of a camera that stays unknown.
