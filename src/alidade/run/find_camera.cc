@@ -77,8 +77,10 @@ class Pass {
   bool Step() {
     const std::optional<SourceFrame> frame = frames_.Next();
     if (!frame) return false;
-    if (!first_time_) first_time_ = frame->time;
-    if (!(frame->time - *first_time_ <= calibrate_.max_seconds)) return false;
+    if (std::isfinite(frame->time)) {  // of bad frames it may not be
+      if (!first_time_) first_time_ = frame->time;
+      if (frame->time - *first_time_ > calibrate_.max_seconds) return false;
+    }
     ++count_;
     if (!frame->problem.empty()) return true;
     try {
