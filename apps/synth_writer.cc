@@ -97,7 +97,8 @@ class TumWriter : public FolderWriter {
                   "\nwidth: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) +
                   "\nfx: " + Exact(c.fx) + "\nfy: " + Exact(c.fy) + "\ncx: " + Exact(c.cx) +
                   "\ncy: " + Exact(c.cy) + "\ndistortion: [" + Join(distortion, ", ") +
-                  "]\nfps: " + Exact(c.fps) + "\ndepth_factor: " + Exact(c.depth_factor) + "\n");
+                  "]\nfps: " + Exact(c.fps) + "\nreadout: " + Exact(c.readout[1]) +
+                  "\ndepth_factor: " + Exact(c.depth_factor) + "\n");
     WriteText("groundtruth.txt", FormatTumTrajectory(truth_));
     WriteText("mask.txt", "# timestamp file (255 = moving people)\n" + mask_);
     WriteText("depth.txt", "# timestamp file\n" + depth_);

@@ -32,6 +32,25 @@ TEST(CameraFile, HoldsWhatItSays) {
   EXPECT_FALSE(Read(kGood).depth_factor);
 }
 
+TEST(CameraFile, HoldsHowLongTheShutterRolls) {
+  EXPECT_FALSE(Read(kGood).readout);
+  EXPECT_EQ(Read(std::string(kGood) + "readout: 0\n").readout, (std::array{0.0, 0.0}));
+  EXPECT_EQ(Read(std::string(kGood) + "readout: 0.02\n").readout, (std::array{0.0, 0.02}));
+  EXPECT_EQ(Read(std::string(kGood) + "readout: [-0.01, 0]\n").readout, (std::array{-0.01, 0.0}));
+  EXPECT_THAT(
+      MessageOf(ErrorKind::kInput, [] { Read(std::string(kGood) + "readout: [1, 2, 3]\n"); }),
+      HasSubstr("readout"));
+  Camera camera = Camera::FromFieldOfView(64, 48, 60);
+  for (const std::array<double, 2>& readout : {std::array{0.0, 0.017}, std::array{-0.01, 0.0}}) {
+    camera.readout = readout;
+    EXPECT_EQ(ParseCameraFile(FormatCameraFile(camera), "x").readout, readout);
+  }
+  camera.readout = {};
+  EXPECT_FALSE(ParseCameraFile(FormatCameraFile(camera), "x").readout);
+  camera.readout_known = true;
+  EXPECT_EQ(ParseCameraFile(FormatCameraFile(camera), "x").readout, (std::array{0.0, 0.0}));
+}
+
 TEST(CameraFile, HoldsASecondCamera) {
   const std::string right =
       "right: {model: fisheye, width: 64, height: 48, fx: 50, fy: 51, cx: 30, cy: 20, distortion: "

@@ -153,8 +153,10 @@ TEST(MapFile, TheMapGoesOnAfterReading) {
 TEST(MapFile, AnEmptyMapIsAMap) {
   SavedMap saved;
   saved.camera = Camera::FromFieldOfView(640, 480, 66);
+  saved.camera.readout = {0, 0.02};
   saved.sensor = "mono";
   const SavedMap read = DecodeMap(EncodeMap(saved));
+  EXPECT_EQ(read.camera.readout, (std::array{0.0, 0.02}));
   EXPECT_EQ(read.map.keyframe_count(), 0);
   EXPECT_TRUE(read.settings.empty());
 }

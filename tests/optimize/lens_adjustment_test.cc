@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "alidade/base/error.h"
+
 namespace alidade::lens_adjustment_test {
 namespace {
 
@@ -98,6 +100,65 @@ TEST(LensAdjustment, FindsAnyLensFromAnyStartWithoutNoise) {
       }
     }
   }
+}
+
+// The same world, seen by a shutter that rolls while the cameras move on.
+void Roll(World& world, const Eigen::Vector2d& readout) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> even(-1, 1);
+  world.lens.readout = readout;
+  for (LensWindow& window : world.windows) {
+    for (size_t i = 0; i < window.T_camera_world.size(); ++i) {
+      window.motions.push_back((Vector6d() << 0.5 * even(random), 0.5 * even(random),
+                                0.5 * even(random), even(random), even(random), even(random))
+                                   .finished());
+    }
+    for (LensObservation& o : window.observations) {
+      const auto camera = static_cast<size_t>(o.camera);
+      const Eigen::Vector3d p =
+          window.T_camera_world[camera] * window.points[static_cast<size_t>(o.point)];
+      for (int i = 0; i < 20; ++i) {  // when it is read depends on where it is seen
+        o.read = {o.pixel.x() / 640 - 0.5, o.pixel.y() / 480 - 0.5};
+        const Eigen::Vector3d q = Se3::Exp(readout.dot(o.read) * window.motions[camera]) * p;
+        const Eigen::Vector2d x = q.head<2>() / q.z();
+        o.pixel = world.lens.centre + world.lens.focal * (1 + world.lens.k1 * x.squaredNorm()) * x;
+      }
+    }
+  }
+}
+
+TEST(LensAdjustment, FindsHowLongARollingShutterTakes) {
+  for (const Eigen::Vector2d& readout : {Eigen::Vector2d(0, 0.03), Eigen::Vector2d(-0.015, 0)}) {
+    World world = MakeWorld(Motion::kRound, 60, -0.1, 0, 3, 2);
+    Roll(world, readout);
+    Disturb(world.windows, 0.01, 5);
+    LensAdjustmentSettings settings{.max_iterations = 100, .k2_sigma = 0, .bound = 20};
+    settings.readout_sigma = {1, 1};
+    const RadialLens at{320 / std::tan(66 * M_PI / 360), 0, 0, world.lens.centre};
+    std::vector<LensWindow> windows = world.windows;
+    const LensAdjustment found = AdjustLens(windows, at, settings);
+    EXPECT_LT((found.lens.readout - readout).norm(), 2e-4);
+    EXPECT_NEAR(found.lens.focal / world.lens.focal, 1, 1e-3);
+    EXPECT_GT(found.covariance(5, 5), 0);
+
+    // Of a lens that is known nothing else moves.
+    settings.hold_focal = true;
+    settings.k1_sigma = 0;
+    windows = world.windows;
+    RadialLens known = world.lens;
+    known.readout.setZero();
+    const LensAdjustment held = AdjustLens(windows, known, settings);
+    EXPECT_LT((held.lens.readout - readout).norm(), 2e-4);
+    EXPECT_EQ(held.lens.focal, world.lens.focal);
+    EXPECT_EQ(held.lens.k1, world.lens.k1);
+    EXPECT_EQ(held.covariance(0, 0), 0);
+  }
+}
+
+TEST(LensAdjustment, MotionsMustBeThoseOfTheCameras) {
+  World world = MakeWorld(Motion::kRound, 60, 0, 0, 3);
+  world.windows[0].motions.resize(3, Vector6d::Zero());
+  EXPECT_THROW(AdjustLens(world.windows, world.lens), Error);
 }
 
 struct CeresResidual {

@@ -66,6 +66,9 @@ struct Frame {
   cv::Mat image;                 // 8 bit grey, level 0, as given (not undistorted)
   std::vector<cv::Mat> pyramid;  // all levels; empty once the frame is a keyframe (memory)
   cv::Mat glance;  // Glance() of the image while one camera is to start a map; else empty
+  // How the camera moved while the image was read, where known: T_camera_world was
+  // Exp(s motion) T_camera_world s seconds after its middle. Map units and radians, per second.
+  Vector6d motion = Vector6d::Zero();
   std::shared_ptr<const Picture> picture;  // for dense work, until it is handed over; else null
 
   // Keypoints less likely to stand still than this take no part in the pose, and less likely ones

@@ -9,6 +9,7 @@ Frame KeypointSubset(const Frame& frame, std::span<const int> kept, const Camera
   subset.image = frame.image;
   subset.pyramid = frame.pyramid;
   subset.picture = frame.picture;
+  subset.motion = frame.motion;
   for (int k : kept) {
     subset.keypoints.push_back(frame.keypoints[k]);
     subset.descriptors.push_back(frame.descriptors[k]);

@@ -13,6 +13,7 @@ namespace {
 
 // No camera comes near; squares and powers of such numbers are still numbers.
 constexpr double kMost = 1e9;
+constexpr double kLongestReadout = 0.2;  // seconds; rolling shutters take 5 to 40 ms
 
 }  // namespace
 
@@ -26,6 +27,10 @@ void Camera::Check() const {
           "fx and fy must be positive numbers");
   require(std::isfinite(cx) && std::isfinite(cy), "cx and cy must be numbers");
   for (double k : distortion) require(std::isfinite(k), "distortion must be numbers");
+  for (double seconds : readout) {
+    require(std::abs(seconds) <= kLongestReadout,
+            "readout is the time from the first to the last row, at most 0.2 seconds");
+  }
   require(std::isfinite(fps) && fps > 0, "fps must be a positive number");
   require(std::isfinite(depth_factor) && depth_factor >= 0,
           "depth_factor must be zero or positive");

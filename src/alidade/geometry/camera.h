@@ -20,9 +20,19 @@ struct Camera {
   double fps = 30;                     // frames per second, where time stamps don't say
   double depth_factor = 0;             // depth image value per metre; 0 = no depth image
   double baseline = 0;                 // metres between left and right camera; 0 = no second camera
+  // Rolling shutter: seconds that pass from the first to the last column (x) and row (y) of the
+  // image as it is read; negative from the last to the first, 0 0 all at once. A picture taken
+  // upright by a phone is read along x.
+  std::array<double, 2> readout{};
+  bool readout_known = false;  // else readout is a guess, to be found (tracking/readout.h)
 
   void Check() const;  // throws Error (input) naming the field that cannot be
   bool HasDistortion() const;
+  bool RollingShutter() const { return readout[0] != 0 || readout[1] != 0; }
+  // When a pixel of the image as taken was read, in seconds after the image's middle.
+  double ReadAfterMiddle(double raw_x, double raw_y) const {
+    return readout[0] * ((raw_x + 0.5) / width - 0.5) + readout[1] * ((raw_y + 0.5) / height - 0.5);
+  }
 
   // Undistorted pixel of a point in the camera frame (z > 0 is the caller's to see to).
   Eigen::Vector2d Project(const Eigen::Vector3d& p) const {

@@ -21,8 +21,9 @@ struct Calibration {
   Se3 T_left_right;                // with `right`
   double baseline = 0;  // metres, of a pair that is rectified already; 0: no second camera
   double fps = 30;      // frames per second
-  std::optional<double> depth_factor;  // depth image value per metre; nothing: not said
-  std::string origin;                  // file, for errors and warnings; empty: nothing was known
+  std::optional<std::array<double, 2>> readout;  // rolling shutter, see Camera; nothing: not said
+  std::optional<double> depth_factor;            // depth image value per metre; nothing: not said
+  std::string origin;  // file, for errors and warnings; empty: nothing was known
 };
 
 // Makes frames from images as taken. Copies share the maps.

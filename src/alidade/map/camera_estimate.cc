@@ -7,12 +7,26 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
+#include "alidade/map/camera_correction.h"
 
 namespace alidade {
 namespace {
 
+constexpr double kLeastTold = 3;  // sigmas of a readout, below which there is none
+
+// Of two directions the one that is told better stays, if it is told at all. Returns the other.
+int LeaveOneReadout(const LensAdjustment& found, Eigen::Vector2d& readout) {
+  const Eigen::Vector2d sigma = found.covariance.diagonal().tail<2>().cwiseMax(0).cwiseSqrt();
+  const Eigen::Vector2d told = readout.cwiseAbs().cwiseQuotient(sigma.cwiseMax(1e-9));
+  const int other = told.x() > told.y() ? 1 : 0;
+  readout[other] = 0;
+  if (!(told[1 - other] > kLeastTold)) readout.setZero();
+  return other;
+}
+
 LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,
-                    const Camera& camera, const MeasurementNoise& noise, int min_seen) {
+                    const Camera& camera, const MeasurementNoise& noise,
+                    const CameraEstimateSettings& settings) {
   LensWindow window;
   IdMap<KeyFrameId, int> index;
   std::vector<LandmarkId> landmarks;
@@ -20,6 +34,7 @@ LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframe
     index[id] = static_cast<int>(window.T_camera_world.size());
     const KeyFrame& keyframe = *map.Find(id);
     window.T_camera_world.push_back(keyframe.T_camera_world);
+    window.motions.push_back(MotionOf(keyframe));
     for (LandmarkId landmark : keyframe.landmarks) {
       if (landmark.valid()) landmarks.push_back(landmark);
     }
@@ -31,16 +46,20 @@ LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframe
     if (!landmark || landmark->static_probability < Frame::kMappable) continue;
     const auto seen = std::count_if(landmark->observations.begin(), landmark->observations.end(),
                                     [&](const Observation& o) { return index.Find(o.keyframe); });
-    if (seen < min_seen) continue;
+    if (seen < settings.min_seen) continue;
     for (const Observation& o : landmark->observations) {
       const int* camera_index = index.Find(o.keyframe);
       if (!camera_index) continue;
       const Keypoint& keypoint = map.Find(o.keyframe)->frame->keypoints[o.keypoint];
-      const double v = camera.cy + (keypoint.raw_y - camera.cy) * camera.fx / camera.fy;
+      Eigen::Vector2d pixel(keypoint.raw_x, keypoint.raw_y);
+      if (settings.hold_lens) pixel = camera.Undistort(pixel);
+      pixel.y() = camera.cy + (pixel.y() - camera.cy) * camera.fx / camera.fy;
       window.observations.push_back({*camera_index,
                                      static_cast<int>(window.points.size()),
-                                     {keypoint.raw_x, v},
-                                     Measure(keypoint, noise).inv_sigma2});
+                                     pixel,
+                                     Measure(keypoint, noise).inv_sigma2,
+                                     {(keypoint.raw_x + 0.5) / camera.width - 0.5,
+                                      (keypoint.raw_y + 0.5) / camera.height - 0.5}});
     }
     window.points.push_back(landmark->p_world);
   }
@@ -59,6 +78,7 @@ void CameraEstimateSettings::Check() const {
   require(max_windows >= 1, "max_windows must be positive");
   require(min_seen >= 2 && min_seen <= min_keyframes, "min_seen must lie in 2..min_keyframes");
   require(k1_corner_sigma >= 0 && k2_corner_sigma >= 0, "*_corner_sigma cannot be negative");
+  require(readout_sigma >= 0, "readout_sigma cannot be negative");
   require(centre_sigma >= 0, "centre_sigma cannot be negative");
   require(max_focal_sigma > 0, "max_focal_sigma must be positive");
 }
@@ -79,8 +99,8 @@ std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Ca
     const size_t at = i * there / used;
     const size_t begin = at * all / there, end = (at + 1) * all / there;
     if (end - begin < static_cast<size_t>(settings.min_keyframes)) continue;
-    windows.push_back(WindowOf(map, std::span(keyframes).subspan(begin, end - begin), camera, noise,
-                               settings.min_seen));
+    windows.push_back(
+        WindowOf(map, std::span(keyframes).subspan(begin, end - begin), camera, noise, settings));
   }
   return windows;
 }
@@ -94,8 +114,9 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
   for (const LensWindow& window : windows)
     estimate.keyframes += static_cast<int>(window.T_camera_world.size());
   if (estimate.keyframes == 0) return estimate;
-  const RadialLens start{
-      camera.fx, camera.distortion[0], camera.distortion[1], {camera.cx, camera.cy}};
+  RadialLens start{camera.fx, camera.distortion[0], camera.distortion[1], {camera.cx, camera.cy}};
+  start.readout = {camera.readout[0], camera.readout[1]};
+  if (settings.hold_lens) start.k1 = start.k2 = 0;
   LensAdjustmentSettings adjust = settings.adjust;
   const double corner2 =
       (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2)) / 4;
@@ -103,17 +124,33 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
   adjust.k2_sigma = settings.k2_corner_sigma / (corner2 * corner2);
   adjust.centre_sigma = settings.centre_sigma * std::max(camera.width, camera.height);
   adjust.centre = Eigen::Vector2d(0.5 * (camera.width - 1), 0.5 * (camera.height - 1));
-  const LensAdjustment found = AdjustLens(windows, start, adjust);
+  if (settings.hold_lens) {
+    adjust.hold_focal = true;
+    adjust.k1_sigma = adjust.k2_sigma = adjust.centre_sigma = 0;
+  }
+  if (!camera.readout_known && settings.readout_sigma > 0)
+    adjust.readout_sigma.setConstant(settings.readout_sigma);
+  LensAdjustment found = AdjustLens(windows, start, adjust);
+  if (adjust.readout_sigma.x() > 0) {
+    start = found.lens;
+    const int other = LeaveOneReadout(found, start.readout);
+    adjust.readout_sigma[other] = 0;
+    if (start.readout.isZero(0)) adjust.readout_sigma.setZero();
+    found = AdjustLens(windows, start, adjust);
+  }
   estimate.observations = found.observations;
   estimate.noise = found.noise * noise.sigma_px;
+  const LensAdjustment::Parameters sigma = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
+  estimate.camera.readout = {found.lens.readout.x(), found.lens.readout.y()};
+  estimate.readout_sigma = sigma.tail<2>();
+  if (settings.hold_lens) return estimate;
   estimate.camera.fx = found.lens.focal;
   estimate.camera.fy = found.lens.focal * camera.fy / camera.fx;
   estimate.camera.distortion = {found.lens.k1, found.lens.k2, 0, 0, 0};
   // Rows were stretched about the old centre.
   estimate.camera.cx = found.lens.centre.x();
   estimate.camera.cy = camera.cy + (found.lens.centre.y() - camera.cy) * camera.fy / camera.fx;
-  const LensAdjustment::Parameters sigma = found.covariance.diagonal().cwiseMax(0).cwiseSqrt();
-  estimate.centre_sigma = sigma.tail<2>();
+  estimate.centre_sigma = sigma.segment<2>(3);
   estimate.focal_sigma = sigma.x();
   estimate.k1_sigma = sigma.y();
   estimate.k2_sigma = sigma.z();

@@ -24,6 +24,10 @@ struct CameraEstimateSettings {
   // And of where the optical axis meets the picture: standard deviation about its middle, as a
   // share of its longer side. Pictures are cut out of what a sensor sees.
   double centre_sigma = 0.01;
+  // Rolling shutter, where the camera's readout is not known: what is believed of it beforehand,
+  // seconds about none. 0: it is not looked for.
+  double readout_sigma = 0;
+  bool hold_lens = false;         // the lens is known: only the readout is looked for
   LensAdjustmentSettings adjust;  // but for what follows from the above
   void Check() const;             // throws Error (usage) naming the field that cannot be
 };
@@ -33,18 +37,22 @@ struct CameraEstimate {
   double focal_sigma = 0;  // standard deviation of log focal: relative, unitless
   double k1_sigma = 0, k2_sigma = 0;
   Eigen::Vector2d centre_sigma = Eigen::Vector2d::Zero();  // pixels
-  int keyframes = 0, observations = 0;                     // that had a say; 0: nothing is said
-  double noise = 0;    // of keypoints on the finest level, pixels
-  bool known = false;  // focal_sigma is small enough
+  // Of camera.readout, seconds; zero for a direction that was not looked for, or found to be none.
+  Eigen::Vector2d readout_sigma = Eigen::Vector2d::Zero();
+  int keyframes = 0, observations = 0;  // that had a say; 0: nothing is said
+  double noise = 0;                     // of keypoints on the finest level, pixels
+  bool known = false;                   // focal_sigma is small enough
 };
 
-// Views of one map, or several of one camera, for AdjustLens(). Pixels are as in the image, for
-// square pixels: rows are stretched about the centre by fx / fy.
+// Views of one map, or several of one camera, for AdjustLens(). Pixels are as in the image (with
+// hold_lens: undistorted), for square pixels: rows are stretched about the centre by fx / fy.
 std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Camera& camera,
                                       const MeasurementNoise& noise,
                                       const CameraEstimateSettings& settings);
 
-// `camera`: what the windows' maps were made with; where the search starts.
+// `camera`: what the windows' maps were made with; where the search starts. A sensor is read by
+// rows or, upright, by columns: of the two directions of readout the one that is told better stays,
+// where it is more than 3 sigma.
 CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& camera,
                               const MeasurementNoise& noise,
                               const CameraEstimateSettings& settings = {});

@@ -111,6 +111,7 @@ Camera DecodeCamera(const fb::Camera& from) {
   camera.fps = from.fps();
   camera.depth_factor = from.depth_factor();
   camera.baseline = from.baseline();
+  camera.readout = {from.readout_x(), from.readout_y()};
   camera.Check();
   Require(camera.width <= kMaxImageSide && camera.height <= kMaxImageSide &&
               int64_t{camera.width} * camera.height <= kMaxImageArea,

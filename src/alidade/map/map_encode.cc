@@ -74,7 +74,8 @@ Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& 
 Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera) {
   const auto distortion = builder.CreateVector(camera.distortion.data(), camera.distortion.size());
   return fb::CreateCamera(builder, camera.width, camera.height, camera.fx, camera.fy, camera.cx,
-                          camera.cy, distortion, camera.fps, camera.depth_factor, camera.baseline);
+                          camera.cy, distortion, camera.fps, camera.depth_factor, camera.baseline,
+                          camera.readout[0], camera.readout[1]);
 }
 
 // A FlatBuffer holds 2 GB at most, some 25,000 keyframes of 1000 keypoints; its builder does not

@@ -46,10 +46,19 @@ bool Residual(const RadialLens& lens, const Eigen::Vector3d& p, const Eigen::Vec
   return true;
 }
 
-bool LineariseLens(const RadialLens& lens, const Se3& T_camera_world,
-                   const Eigen::Vector3d& p_world, const Eigen::Vector2d& seen, LensRow& row) {
-  const Eigen::Vector3d p = T_camera_world * p_world;
-  if (!Residual(lens, p, seen, row.residual)) return false;
+// From the camera at the image's middle to where it was when the observation's row was read.
+Se3 WhenRead(const RadialLens& lens, const LensWindow& window, const LensObservation& o) {
+  if (window.motions.empty() || lens.readout.isZero(0)) return {};
+  return Se3::Exp(lens.readout.dot(o.read) * window.motions[static_cast<size_t>(o.camera)]);
+}
+
+bool LineariseLens(const RadialLens& lens, const LensWindow& window, const LensObservation& o,
+                   LensRow& row) {
+  const Se3& T_camera_world = window.T_camera_world[static_cast<size_t>(o.camera)];
+  const Se3 T_read_camera = WhenRead(lens, window, o);
+  const Eigen::Vector3d at_middle = T_camera_world * window.points[static_cast<size_t>(o.point)];
+  const Eigen::Vector3d p = T_read_camera * at_middle;
+  if (!Residual(lens, p, o.pixel, row.residual)) return false;
   const double x = p.x() / p.z(), y = p.y() / p.z(), r2 = x * x + y * y;
   const double d = 1 + r2 * (lens.k1 + r2 * lens.k2), slope = lens.k1 + 2 * r2 * lens.k2;
   Eigen::Matrix2d by_ideal;
@@ -57,13 +66,21 @@ bool LineariseLens(const RadialLens& lens, const Se3& T_camera_world,
   Eigen::Matrix<double, 2, 3> of_point;  // ideal by p
   of_point << 1 / p.z(), 0, -x / p.z(), 0, 1 / p.z(), -y / p.z();
   const Eigen::Matrix<double, 2, 3> by_p = lens.focal * by_ideal * of_point;
-  Eigen::Matrix3d cross;
-  cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
-  row.by_camera << by_p, -by_p * cross;
-  row.by_point = by_p * T_camera_world.R;
+  const auto cross = [](const Eigen::Vector3d& v) {
+    return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
+  };
+  const Eigen::Matrix<double, 2, 3> by_middle = by_p * T_read_camera.R;
+  row.by_camera << by_middle, -by_middle * cross(at_middle);
+  row.by_point = by_middle * T_camera_world.R;
   const Eigen::Vector2d ideal(x, y);
   row.by_lens << lens.focal * d * ideal, lens.focal * r2 * ideal, lens.focal * r2 * r2 * ideal,
-      Eigen::Matrix2d::Identity();
+      Eigen::Matrix2d::Identity(), Eigen::Matrix2d::Zero();
+  if (!window.motions.empty()) {
+    // d Exp(s v) p / ds = v.head + v.tail × p, and s = readout · read.
+    const Vector6d& v = window.motions[static_cast<size_t>(o.camera)];
+    const Eigen::Vector2d flow = by_p * (v.head<3>() + v.tail<3>().cross(p));
+    row.by_lens.rightCols<2>() = flow * o.read.transpose();
+  }
   return true;
 }
 
@@ -71,7 +88,8 @@ RadialLens Moved(RadialLens lens, const LensVector& step) {
   lens.focal *= std::exp(step.x());
   lens.k1 += step.y();
   lens.k2 += step.z();
-  lens.centre += step.tail<2>();
+  lens.centre += step.segment<2>(3);
+  lens.readout += step.tail<2>();
   return lens;
 }
 
@@ -158,8 +176,7 @@ WindowSystem SystemOf(const LensWindow& window, const RadialLens& lens, const Le
     const LensObservation& o = all[i];
     LensRow row;
     row.camera = o.camera;
-    if (LineariseLens(lens, window.T_camera_world[static_cast<size_t>(o.camera)],
-                      window.points[static_cast<size_t>(o.point)], o.pixel, row)) {
+    if (LineariseLens(lens, window, o, row)) {
       row.weight = o.inv_sigma2 * loss.Weight(o.inv_sigma2 * row.residual.squaredNorm());
       rows.push_back(row);
     }
@@ -211,8 +228,9 @@ void MoveWindow(const WindowSystem& system, const LensSystem& alone, const LensV
 void ForEachChi2(const LensWindow& window, const RadialLens& lens, auto&& visit) {
   for (const LensObservation& o : window.observations) {
     Eigen::Vector2d residual;
-    const Eigen::Vector3d p = window.T_camera_world[static_cast<size_t>(o.camera)] *
-                              window.points[static_cast<size_t>(o.point)];
+    const Eigen::Vector3d p =
+        WhenRead(lens, window, o) * (window.T_camera_world[static_cast<size_t>(o.camera)] *
+                                     window.points[static_cast<size_t>(o.point)]);
     const bool seen = Residual(lens, p, o.pixel, residual);
     visit(seen ? o.inv_sigma2 * residual.squaredNorm() : std::numeric_limits<double>::infinity());
   }
@@ -252,11 +270,12 @@ struct LensPrior {
       : start(at), centre(s.centre.value_or(at.centre)) {
     const auto of = [](double sigma) { return sigma > 0 ? 1 / (sigma * sigma) : 0.0; };
     information << of(s.focal_sigma), of(s.k1_sigma), of(s.k2_sigma), of(s.centre_sigma),
-        of(s.centre_sigma);
+        of(s.centre_sigma), of(s.readout_sigma.x()), of(s.readout_sigma.y());
+    if (s.hold_focal) information.x() = 0;
   }
   LensVector Off(const RadialLens& lens) const {
     LensVector off;
-    off << std::log(lens.focal / start.focal), lens.k1, lens.k2, lens.centre - centre;
+    off << std::log(lens.focal / start.focal), lens.k1, lens.k2, lens.centre - centre, lens.readout;
     return off;
   }
   double Cost(const RadialLens& lens, double noise2) const {
@@ -268,6 +287,8 @@ void CheckIndices(const std::vector<LensWindow>& windows) {
   for (const LensWindow& window : windows) {
     const auto cameras = static_cast<int>(window.T_camera_world.size());
     const auto points = static_cast<int>(window.points.size());
+    if (!window.motions.empty() && window.motions.size() != window.T_camera_world.size())
+      ThrowUsage("AdjustLens: motions are not one for each camera");
     for (const LensObservation& o : window.observations) {
       if (o.camera < 0 || o.camera >= cameras || o.point < 0 || o.point >= points)
         ThrowUsage("AdjustLens: an observation names a camera or point that isn't there");
@@ -284,7 +305,8 @@ void LensAdjustmentSettings::Check() const {
   require(max_iterations >= 0, "max_iterations cannot be negative");
   require(min_relative_decrease >= 0 && min_lens_step >= 0, "bounds of steps cannot be negative");
   require(focal_sigma > 0, "focal_sigma must be positive");
-  require(k1_sigma >= 0 && k2_sigma >= 0 && centre_sigma >= 0, "*_sigma cannot be negative");
+  require(k1_sigma >= 0 && k2_sigma >= 0 && centre_sigma >= 0 && readout_sigma.minCoeff() >= 0,
+          "*_sigma cannot be negative");
   require(inflation >= 1, "inflation must be at least 1");
   require(bound >= 1, "bound must be at least 1");
 }
@@ -297,8 +319,9 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
   result.lens = start;
   const LensPrior prior(start, settings);
   LensVector free;
-  free << 1, settings.k1_sigma > 0, settings.k2_sigma > 0, settings.centre_sigma > 0,
-      settings.centre_sigma > 0;
+  free << !settings.hold_focal, settings.k1_sigma > 0, settings.k2_sigma > 0,
+      settings.centre_sigma > 0, settings.centre_sigma > 0, settings.readout_sigma.x() > 0,
+      settings.readout_sigma.y() > 0;
   const int count = static_cast<int>(windows.size());
   std::vector<WindowSystem> systems(windows.size());
   std::vector<LensSystem> alone(windows.size());
@@ -336,7 +359,8 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
     H.diagonal() *= 1 + damping;
     LensVector step = -H.ldlt().solve(g);
     // A lens is not believed to leap: what is linear near by is not, far away.
-    const double most = std::max(std::abs(step.x()) / 0.3, std::abs(step.y()) / 0.3);
+    const double most = std::max({std::abs(step.x()) / 0.3, std::abs(step.y()) / 0.3,
+                                  step.tail<2>().cwiseAbs().maxCoeff() / 0.02});
     if (!step.allFinite()) break;
     if (most > 1) step /= most;
     std::vector<LensWindow> moved = windows;

@@ -18,18 +18,24 @@ struct RadialLens {
   double focal = 0;                                  // pixels
   double k1 = 0, k2 = 0;                             // unitless
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // pixels
+  // Rolling shutter: seconds from the first to the last column, and row (see Camera::readout).
+  Eigen::Vector2d readout = Eigen::Vector2d::Zero();
 };
 
 struct LensObservation {
   int camera = -1, point = -1;  // indices within the window
   Eigen::Vector2d pixel;        // as in the image, distortion and all
   double inv_sigma2 = 1;        // 1 / variance, up to a factor that all have in common; 1/px²
+  // Where in the image's reading it was taken: seconds after the middle, per second of readout.
+  Eigen::Vector2d read = Eigen::Vector2d::Zero();
 };
 
 // Views that share points with each other, but none with those of other windows: a stretch of a
 // recording. Each has a gauge of its own.
 struct LensWindow {
-  std::vector<Se3> T_camera_world;            // start, and result
+  std::vector<Se3> T_camera_world;  // start, and result
+  // Of each camera, units of its T_camera_world per second (see Frame::motion); empty: none moved.
+  std::vector<Vector6d> motions;
   std::vector<Eigen::Vector3d> points;        // in the window's world; start, and result
   std::vector<LensObservation> observations;  // sorted by point
 };
@@ -44,6 +50,9 @@ struct LensAdjustmentSettings {
   double k1_sigma = 0.3;
   double k2_sigma = 0.1;    // 0: k2 stays as it starts; so k1
   double centre_sigma = 0;  // pixels, of either coordinate; 0: the centre stays as it starts
+  // Seconds, about none, across and down; 0: that readout stays as it starts.
+  Eigen::Vector2d readout_sigma = Eigen::Vector2d::Zero();
+  bool hold_focal = false;  // the focal length stays as it starts, whatever its sigma
   // About which the centre is believed to be, pixels; else its start.
   std::optional<Eigen::Vector2d> centre = {};
   // Standard deviations that residuals tell of are those of independent noise. What they do not
@@ -57,7 +66,7 @@ struct LensAdjustmentSettings {
 };
 
 struct LensAdjustment {
-  static constexpr int kParameters = 5;  // log focal, k1, k2, centre
+  static constexpr int kParameters = 7;  // log focal, k1, k2, centre, readout
   using Parameters = Eigen::Matrix<double, kParameters, 1>;
   RadialLens lens;
   // Of the parameters, all else unknown; the prior is in it. What is held has 0. By the noise
@@ -73,7 +82,7 @@ struct LensAdjustment {
 };
 
 // Improves `windows` and `start` together by Levenberg–Marquardt: points are eliminated first
-// (Triggs et al. 2000, §6), then each window's poses, which leaves three equations for the lens.
+// (Triggs et al. 2000, §6), then each window's poses, which leaves few equations for the lens.
 // Motions that tell nothing of the focal length (no turning, straight ahead, a flat scene seen
 // head-on) leave it to the prior: the covariance says so. The result is the same with any number of
 // threads. Throws Error on indices that aren't there.

@@ -25,6 +25,7 @@ constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
   visit("calibrate.max_passes", s.max_passes);
   visit("calibrate.first_keyframes", s.first_keyframes);
   visit("calibrate.growth", s.growth);
+  visit("calibrate.told_sigma", s.told_sigma);
   visit("calibrate.max_seconds", s.max_seconds);
   visit("calibrate.window", s.window);
   visit("calibrate.max_windows", s.max_windows);
@@ -113,7 +114,7 @@ class Pass {
   }
   void Finish() { slam_.Finish(); }
   const std::vector<LensWindow>& windows() const { return windows_; }
-  const Camera& used() const { return slam_.camera(); }
+  Camera used() const { return slam_.camera(); }
 
  private:
   ReadAhead frames_;
@@ -141,6 +142,7 @@ void CalibrateSettings::Check() const {
   require(max_passes >= 1, "max_passes must be at least 1");
   require(first_keyframes >= min_keyframes, "first_keyframes must be at least min_keyframes");
   require(growth > 1, "growth must be above 1");
+  require(told_sigma > 0, "told_sigma must be positive");
   require(max_seconds > 0, "max_seconds must be positive");
 }
 
@@ -156,6 +158,7 @@ Camera CameraOfSize(const Camera& camera, const Camera& of) {
   Camera result = of;
   result.fx = result.fy = camera.fx * of.width / camera.width;
   result.distortion = camera.distortion;
+  result.readout = camera.readout;
   // Pixel centres are at whole numbers, image borders at ±0.5.
   result.cx = (camera.cx + 0.5) * of.width / camera.width - 0.5;
   result.cy = (camera.cy + 0.5) * of.height / camera.height - 0.5;
@@ -171,6 +174,7 @@ CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open
   plain.sensor = Sensor::kMono;
   plain.threaded = false;
   plain.semidense.enabled = false;
+  plain.readout.enabled = false;  // a wrong lens bends pictures as a rolling shutter does
   Camera camera;
   bool settled = false;  // the last pass began with what it found
   while (found.passes < calibrate.max_passes) {

@@ -33,6 +33,9 @@ struct CalibrateSettings : CameraEstimateSettings {
   int max_passes = 6;        // over the recording, at most
   int first_keyframes = 10;  // of a map when it is asked first, …
   double growth = 1.3;       // … and again whenever it has so many times as many
+  // Standard deviation (relative) of a focal length that the recording itself tells (EXIF, what
+  // phones write into videos): sensors are cropped for video and against shake.
+  double told_sigma = 0.1;
   double max_seconds = 120;  // of the recording, from its begin, that are looked at
 
   void Check() const;

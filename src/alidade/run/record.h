@@ -1,6 +1,7 @@
 // What happened in a run, besides the map and the trajectory.
 #pragma once
 
+#include <array>
 #include <exception>
 #include <map>
 #include <optional>
@@ -26,6 +27,9 @@ struct CameraRecord {
   double focal_sigma = 0;            // standard deviation of the focal length, relative; 0: exact
   std::optional<CameraFound> found;  // when it was looked for
   double cpu_s = 0, wall_s = 0;      // that looking took, seconds
+  // Of its rolling shutter, as it was at the end (see Camera); sigma 0: told, or none was found.
+  std::array<double, 2> readout{};
+  double readout_sigma = 0;
 };
 
 struct RunRecord {

@@ -60,16 +60,20 @@ ordered_json LensJson(const LensCheck& lens) {
 ordered_json CameraJson(const RunRecord& record) {
   const Camera& camera = record.source.camera;
   const double sigma = record.camera.focal_sigma;
-  return {{"width", camera.width},
-          {"height", camera.height},
-          {"fx", camera.fx},
-          {"fy", camera.fy},
-          {"cx", camera.cx},
-          {"cy", camera.cy},
-          {"distortion", camera.distortion},
-          {"fov", FovDegrees(camera)},
-          {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
-          {"known", record.camera.known}};
+  return {
+      {"width", camera.width},
+      {"height", camera.height},
+      {"fx", camera.fx},
+      {"fy", camera.fy},
+      {"cx", camera.cx},
+      {"cy", camera.cy},
+      {"distortion", camera.distortion},
+      {"readout", record.camera.readout},
+      {"readout_sigma", record.camera.readout_sigma > 0 ? ordered_json(record.camera.readout_sigma)
+                                                        : ordered_json(nullptr)},
+      {"fov", FovDegrees(camera)},
+      {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
+      {"known", record.camera.known}};
 }
 
 // How it was found; null: it was not looked for.

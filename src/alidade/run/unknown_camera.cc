@@ -16,11 +16,11 @@ namespace {
 // phones and webcams have 50 to 90. What two views are given to be wary of turns.
 constexpr double kGuessedLens = 0.6;
 
-std::string AssumedInWords(const Camera& camera) {
+std::string AssumedInWords(const SourceInfo& source) {
   char text[80];
   std::snprintf(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
-                FovDegrees(camera));
-  return text;
+                FovDegrees(source.camera));
+  return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
 }
 
 }  // namespace
@@ -39,6 +39,7 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
     return;
   }
   camera.known = "assumed";
+  if (!source.lens_told.empty()) record.calibrate.adjust.focal_sigma = record.calibrate.told_sigma;
   camera.focal_sigma = record.calibrate.adjust.focal_sigma;
   double& wary = record.settings.start.two_view.lens_uncertainty;
   const bool told_wary = wary != 0;
@@ -54,7 +55,8 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   const std::string better = " (--camera, or --fov, which is the horizontal one, say better)";
   if (source.sensor != Sensor::kMono || source.kind == "camera" || !options.calibrate_first ||
       !record.calibrate.enabled) {
-    LogWarning("nothing is known of the camera: " + AssumedInWords(source.camera) + better);
+    record.settings.readout.enabled = false;  // a wrong lens may be taken for it
+    LogWarning("nothing is known of the camera: " + AssumedInWords(source) + better);
     return;
   }
   const double cpu = ProcessCpuSeconds();
@@ -75,14 +77,16 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
     camera.focal_sigma = found.estimate.focal_sigma;
     if (!told_wary) wary = 3 * camera.focal_sigma;
   }
+  if (!found.estimate.known)
+    record.settings.readout.enabled = false;  // the lens may be taken for it
   if (found.estimate.known) {
     camera.known = "estimated";
   } else if (found.usable) {
     LogWarning("the camera is not known for certain: a field of view of " +
                CameraInWords(found.estimate) + " was found and is taken" + better);
   } else {
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
-               AssumedInWords(source.camera) + better);
+    LogWarning("the camera stays unknown, as " + found.why_not + ": " + AssumedInWords(source) +
+               better);
   }
 }
 

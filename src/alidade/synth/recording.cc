@@ -33,6 +33,8 @@ Camera MakeCamera(const SynthSettings& settings) {
   camera.fps = settings.fps;
   camera.depth_factor = kDepthFactor;
   camera.baseline = settings.stereo ? kBaseline : 0;
+  camera.readout_known = true;
+  camera.readout[1] = 1e-3 * settings.rolling_shutter;
   return camera;
 }
 

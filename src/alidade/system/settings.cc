@@ -90,6 +90,7 @@ void SlamSettings::Check() const {
   if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");
   start.Check();
   early.Check();
+  readout.Check();
 }
 
 }  // namespace alidade

@@ -14,6 +14,7 @@
 #include "alidade/place/settings.h"
 #include "alidade/semidense/settings.h"
 #include "alidade/system/camera_clock.h"
+#include "alidade/system/readout_watch.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 
@@ -50,6 +51,7 @@ struct SlamSettings {
   EarlyFrameSettings early;
   PlaceSettings places;
   LoopSettings loop;
+  ReadoutSettings readout;
   SemiDenseSettings semidense;
   DynamicsSettings dynamics;
   TrajectorySettings trajectory;

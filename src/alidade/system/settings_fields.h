@@ -182,6 +182,24 @@ void VisitEarly(Settings& e, Visit&& visit) {
 }
 
 template <typename Settings, typename Visit>
+void VisitReadout(Settings& r, Visit&& visit) {
+  visit("readout.enabled", r.enabled);
+  visit("readout.first_keyframes", r.first_keyframes);
+  visit("readout.growth", r.growth);
+  visit("readout.max_windows", r.max_windows);
+  visit("readout.prior_sigma", r.prior_sigma);
+  visit("readout.min_hint", r.min_hint);
+  visit("readout.hint_sigma", r.hint_sigma);
+  visit("readout.hint_explained", r.hint_explained);
+  visit("readout.hint_frames", r.hint_frames);
+  visit("readout.hint_growth", r.hint_growth);
+  visit("readout.max_sigma", r.max_sigma);
+  visit("readout.least", r.least);
+  visit("readout.longest", r.longest);
+  visit("readout.min_change", r.min_change);
+}
+
+template <typename Settings, typename Visit>
 void VisitFields(Settings& s, Visit&& visit) {
   visit("image_width", s.image_width);
   visit("max_image_side", s.max_image_side);
@@ -202,6 +220,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   VisitDynamics(s.dynamics, visit);
   VisitStart(s.start, visit);
   VisitEarly(s.early, visit);
+  VisitReadout(s.readout, visit);
 }
 
 }  // namespace alidade

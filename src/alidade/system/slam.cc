@@ -93,6 +93,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
 TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   const int number = first_number_ + log_.size() - 1;
   movers_.Begin(prepared, number);
+  tracker_.SetReadout(workers_.readout());
   const Stopwatch extracting;
   const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
                                       movers_.Expected());
@@ -146,12 +147,18 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
   const MapSnapshot map = workers_.map().Snapshot();
+  tracker_.UndoShutter(*frame, map);
   PlacedFrame guess = tracker_.Predict(frame, map);
   const double predicting = watch.Milliseconds();
   const PoseGuess where = GuessOf(guess, tracker_.reference(), map);
   movers_.Judge(*frame, &where);
   const Stopwatch estimating;
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
+  if (estimate.tracked) {
+    tracker_.UndoShutter(*frame, estimate, map);
+    if (settings_.readout.enabled && !camera_.readout_known)
+      workers_.readout_watch().Placed(frame->motion, tracker_.ReadoutMatches(estimate.placed, map));
+  }
   track_ms_.Add(predicting + estimating.Milliseconds());
   if (young_.on_trial() && !young_.Confirm(estimate))
     return GiveUpStart("the first points did not hold");

@@ -184,7 +184,10 @@ class Slam {
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   LatestTimes Latest() const;
-  const Camera& camera() const;  // as used: scaled by the profile
+  // As used: scaled by the profile, with what was found of its rolling shutter by now.
+  Camera camera() const;
+  // Standard deviation of that, seconds; 0: the camera told it, or none was found.
+  double readout_sigma() const;
   SlamCounts Counts() const;
   SemiDenseReport SemiDense() const;  // of the keyframes that are done
   // Frame::number of the first call of Track(): keyframes of a loaded map have smaller ones.

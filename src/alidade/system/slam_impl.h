@@ -49,6 +49,12 @@ class Slam::Impl {
     return shown_;
   }
 
+  Camera CameraNow() const {
+    Camera camera = camera_;
+    camera.readout = workers_.readout();
+    return camera;
+  }
+
   Camera given_;
   SlamSettings settings_;
   Camera camera_;

@@ -21,7 +21,8 @@ void Slam::Impl::Show() {
 
 SlamHealth Slam::Health() const { return impl_->Health(); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
-const Camera& Slam::camera() const { return impl_->camera_; }
+double Slam::readout_sigma() const { return impl_->workers_.readout_sigma(); }
+Camera Slam::camera() const { return impl_->CameraNow(); }
 int Slam::frames() const { return impl_->frames_; }
 int Slam::first_number() const { return impl_->first_number_; }
 
@@ -84,7 +85,7 @@ SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
 std::string Slam::SaveMap() const {
   // Places first: they are never ahead of the map then, which may grow meanwhile.
   SavedPlaces places = impl_->workers_.places().Save();
-  return EncodeMap({Snapshot(), impl_->camera_, NameOf(impl_->settings_.sensor),
+  return EncodeMap({Snapshot(), impl_->CameraNow(), NameOf(impl_->settings_.sensor),
                     impl_->settings_.All(), std::move(places)});
 }
 

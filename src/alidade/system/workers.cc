@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "alidade/base/log.h"
+#include "alidade/map/camera_correction.h"
 #include "alidade/system/prepare.h"
 
 namespace alidade {
@@ -48,6 +49,7 @@ class Alarm {
 Workers::Workers(const Camera& camera, const SlamSettings& settings)
     : places_(settings.places, settings.seed),
       mapper_(map_, camera, settings.mapper),
+      readout_watch_(camera, settings.mapper.noise, settings.readout),
       loop_closer_(map_, places_, camera, settings.loop),
       semidense_mapper_(map_, camera, settings.semidense),
       dense_(settings.semidense.enabled && !settings.localise),
@@ -68,6 +70,10 @@ Workers::~Workers() {  // who hands on stops before who is handed to
 
 void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
   mapper_.Process(id, stop);
+  if (readout_watch_.Mapped(id, map_.Snapshot())) {
+    map_.Commit([&](MapCommit& commit) { CommitShutter(commit, readout_watch_.camera()); });
+    adjusting_.Add(id);
+  }
   if (mapper_.KeepWithinLimit(id) > 0 && !std::exchange(limit_told_, true))
     LogWarning(
         "the map has as many keyframes as it may have (mapper.max_keyframes): the least useful go");

@@ -2,6 +2,7 @@
 // as a stage. Keyframes pass through them in this order.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <functional>
 #include <limits>
@@ -15,6 +16,7 @@
 #include "alidade/place/place_index.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/system/health.h"
+#include "alidade/system/readout_watch.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/stage.h"
 
@@ -35,6 +37,10 @@ class Workers {
   void AddMapped(KeyFrameId id);                 // needs no mapping
   // The keyframe's picture, before it is added: semi-dense mapping wants a copy. Null without it.
   void Keep(KeyFrameId id, const Picture* picture);
+  // How long the camera's shutter takes to roll, as found by now; see Camera::readout.
+  std::array<double, 2> readout() const { return readout_watch_.readout(); }
+  ReadoutWatch& readout_watch() { return readout_watch_; }
+  double readout_sigma() const { return readout_watch_.sigma(); }
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
   // Until nothing is left to do; what grew is adjusted as a whole once more. After `limit` seconds,
   // or CutShort(), what is left is given up, as soon as what is in work can be brought to an end.
@@ -66,6 +72,7 @@ class Workers {
   MapStore map_;
   PlaceIndex places_;
   Mapper mapper_;
+  ReadoutWatch readout_watch_;  // mapping_'s
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
   bool dense_;  // semi-dense mapping is asked for

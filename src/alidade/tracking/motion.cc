@@ -39,4 +39,15 @@ Se3 Motion::After(double seconds) const {
   return Se3::Exp(seconds / all.seconds * all.T_after_before.Log());
 }
 
+Vector6d Motion::Velocity() const {
+  if (steps_.empty() || !(steps_[0].seconds > 0)) return Vector6d::Zero();
+  const Vector6d last = steps_[0].T_after_before.Log() / steps_[0].seconds;
+  if (steps_.size() < 2 || !(steps_[1].seconds > 0)) return last;
+  const Vector6d before = steps_[1].T_after_before.Log() / steps_[1].seconds;
+  // Means of two intervals are velocities at their middles, (a + b) / 2 apart; the end of the last
+  // is a / 2 after its middle.
+  const double a = steps_[0].seconds, b = steps_[1].seconds;
+  return last + (last - before) * a / (a + b);
+}
+
 }  // namespace alidade

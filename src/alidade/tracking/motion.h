@@ -32,6 +32,10 @@ class Motion {
   // when that took as long; else Exp(seconds / s · Log(T)) of the last steps T that took s seconds
   // together, at least as long where so much is known: the noise of a short step is not drawn out.
   Se3 After(double seconds) const;
+  // At the last frame, per second: T_camera_world s seconds later is Exp(s v) T_camera_world. The
+  // mean of the last step, and half of what changed since the one before; zero when nothing is
+  // known.
+  Vector6d Velocity() const;
 
  private:
   MotionSettings settings_;

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "alidade/base/id_map.h"
+#include "alidade/base/median.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/features/matching.h"
+#include "alidade/features/rolling_shutter.h"
 #include "alidade/geometry/pnp.h"
 #include "alidade/tracking/local_search.h"
 
@@ -40,6 +42,65 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
   frame->pyramid.clear();  // only extraction and stereo matching need it
   frame->image.release();
   return frame;
+}
+
+void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {
+  if (!camera_.RollingShutter() || !last_.frame || !motion_.known()) return;
+  const double seconds = frame.time - last_.frame->time;
+  if (!(seconds > 0)) return;
+  const Vector6d motion = MotionUntil(frame.time, map).Log() / seconds;
+  PlacedFrame last = last_;
+  last.T_camera_world = PoseOf(map.state(), last_anchor_);
+  UndoRollingShutter(camera_, motion, {}, InverseDepths(last, map).common, frame);
+}
+
+void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const {
+  if (!last_.frame) return;
+  PlacedFrame& placed = estimate.placed;
+  const double seconds = frame.time - last_.frame->time;
+  if (!(seconds > 0)) return;
+  Motion motion = motion_;
+  motion.Scale(map.ScaleOf(reference()) / last_anchor_.scale);
+  motion.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(), seconds);
+  const InverseDepthsSeen depths = InverseDepths(placed, map);
+  UndoRollingShutter(camera_, motion.Velocity(), depths.of_keypoints, depths.common, frame);
+  if (camera_.RollingShutter()) Optimise(placed, map);
+}
+
+std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
+                                                  const MapSnapshot& map) const {
+  std::vector<ReadoutMatch> matches;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
+    if (!landmark) continue;
+    const Keypoint& keypoint = placed.frame->keypoints[i];
+    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
+    if (!(p.z() > 0)) continue;
+    matches.push_back({p,
+                       keypoint.pixel() - camera_.Project(p),
+                       {keypoint.raw_x, keypoint.raw_y},
+                       Measure(keypoint, settings_.noise).inv_sigma2});
+  }
+  return matches;
+}
+
+// Of what a placed frame shows.
+Tracker::InverseDepthsSeen Tracker::InverseDepths(const PlacedFrame& placed,
+                                                  const MapSnapshot& map) {
+  InverseDepthsSeen seen;
+  seen.of_keypoints.assign(placed.matches.size(), 0);
+  std::vector<float> all;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const LandmarkId id = map.Current(placed.matches[i]);
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    const double z = (placed.T_camera_world * landmark->p_world).z();
+    if (!(z > 0)) continue;
+    seen.of_keypoints[i] = static_cast<float>(1 / z);
+    all.push_back(seen.of_keypoints[i]);
+  }
+  if (!all.empty()) seen.common = UpperMedian(all);
+  return seen;
 }
 
 PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {

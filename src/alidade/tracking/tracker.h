@@ -2,6 +2,7 @@
 // ORB-SLAM §V (Mur-Artal, Montiel & Tardós 2015), with depth as in ORB-SLAM2 (2017).
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -15,6 +16,7 @@
 #include "alidade/tracking/motion.h"
 #include "alidade/tracking/passing_points.h"
 #include "alidade/tracking/placed_frame.h"
+#include "alidade/tracking/readout.h"
 #include "alidade/tracking/settings.h"
 
 namespace alidade {
@@ -40,6 +42,15 @@ class Tracker {
   // Turns images into a frame. `right` and `depth` may be empty. `avoid`: see Extractor.
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number, const cv::Mat& avoid = {});
+  // Of the camera, from the next frame on; see Camera.
+  void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
+  // Rolling shutters only: keypoints as if read all at once, by how the camera is taken to move.
+  void UndoShutter(Frame& frame, const MapSnapshot& map) const;
+  // The same of a frame that was placed, by how it did move, and its pose with that. `frame` is the
+  // estimate's.
+  void UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const;
+  // What that frame says of the readout.
+  std::vector<ReadoutMatch> ReadoutMatches(const PlacedFrame& placed, const MapSnapshot& map) const;
   // First guess of the pose: an even motion and the last frame's landmarks, or the reference
   // keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
@@ -82,6 +93,11 @@ class Tracker {
   }
 
  private:
+  struct InverseDepthsSeen {
+    std::vector<float> of_keypoints;  // 1 / map units; 0: not known
+    double common = 0;                // their median
+  };
+  static InverseDepthsSeen InverseDepths(const PlacedFrame& placed, const MapSnapshot& map);
   PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // By descriptors alone, wherever in the picture; what of the two more of the map agrees with.
   PlacedFrame BetterByLooks(PlacedFrame guess, const MapSnapshot& map);

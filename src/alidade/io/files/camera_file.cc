@@ -24,7 +24,7 @@ double Positive(const YamlFile& file, const YAML::Node& parent, const char* key)
 void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool right) {
   static constexpr std::array kCommon = {"model", "width", "height", "fx",
                                          "fy",    "cx",    "cy",     "distortion"};
-  static constexpr std::array kLeftOnly = {"fps", "depth_factor", "baseline", "right"};
+  static constexpr std::array kLeftOnly = {"fps", "readout", "depth_factor", "baseline", "right"};
   for (const auto& entry : parent) {
     const std::string key = entry.first.Scalar();
     const auto is_key = [&key](const char* known) { return key == known; };
@@ -65,6 +65,15 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
   return raw;
 }
 
+// One number: from the top row to the bottom row; two: [left to right, top to bottom].
+std::array<double, 2> ReadReadout(const YamlFile& file, const YAML::Node& node) {
+  if (!node.IsSequence()) return {0, file.Number(node, "readout")};
+  const auto both = file.Numbers(node, "readout");
+  if (both.size() != 2)
+    file.Fail(node, "`readout` is one number (seconds from the top to the bottom row) or two");
+  return {both[0], both[1]};
+}
+
 }  // namespace
 
 Calibration ReadCameraFile(const std::string& path) {
@@ -79,6 +88,7 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name) {
   calibration.origin = name;
   calibration.left = ReadRawCamera(file, root);
   if (root["fps"]) calibration.fps = Positive(file, root, "fps");
+  if (const YAML::Node readout = root["readout"]) calibration.readout = ReadReadout(file, readout);
   if (const YAML::Node factor = root["depth_factor"]) {
     calibration.depth_factor = file.Number(factor, "depth_factor");
     if (*calibration.depth_factor < 0) file.Fail(factor, "`depth_factor` must not be negative");
@@ -114,6 +124,11 @@ std::string FormatCameraFile(const Camera& camera, const std::string& comment) {
   for (size_t i = 0; i < camera.distortion.size(); ++i)
     text += (i > 0 ? ", " : "") + exact(camera.distortion[i]);
   text += "]\nfps: " + exact(camera.fps) + "\n";
+  if (camera.readout[0] != 0) {
+    text += "readout: [" + exact(camera.readout[0]) + ", " + exact(camera.readout[1]) + "]\n";
+  } else if (camera.readout_known || camera.readout[1] != 0) {
+    text += "readout: " + exact(camera.readout[1]) + "\n";
+  }
   if (camera.depth_factor > 0) text += "depth_factor: " + exact(camera.depth_factor) + "\n";
   if (camera.baseline > 0) text += "baseline: " + exact(camera.baseline) + "\n";
   return text;

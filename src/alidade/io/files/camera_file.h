@@ -13,9 +13,10 @@ inline constexpr double kDefaultFovDegrees =
     66;  // along the longer side; most phones' main camera lies between 60 and 70
 
 // camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1 p2 k3]`
-// (fisheye: [k1 k2 k3 k4]), `fps`, `depth_factor`, and for a stereo pair `baseline` (metres) or
-// `right: {width …, T_left_right: 4x4}`. Throws Error with file:line for what is missing, unknown
-// or impossible.
+// (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter: seconds from
+// the top to the bottom row, or [left to right, top to bottom]), `depth_factor`, and for a stereo
+// pair `baseline` (metres) or `right: {width …, T_left_right: 4x4}`. Throws Error with file:line
+// for what is missing, unknown or impossible.
 Calibration ReadCameraFile(const std::string& path);
 // The same of a file's text; `name` is what it is called in errors.
 Calibration ParseCameraFile(const std::string& text, const std::string& name);

@@ -1,6 +1,7 @@
 #include "alidade/io/files/choose_calibration.h"
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 
@@ -9,6 +10,8 @@
 
 namespace alidade {
 namespace {
+
+constexpr double kShortest35 = 6, kLongest35 = 1000;  // mm
 
 void CheckSize(const Calibration& calibration, cv::Size size) {
   if (size != cv::Size(calibration.left.width, calibration.left.height)) {
@@ -27,17 +30,31 @@ double AssumedFov(cv::Size size) {
   return 2 / degree * std::atan(half);
 }
 
+double FovOfFocalLength35(double millimetres, cv::Size size) {
+  constexpr double kDiagonal35 = 43.266615;  // mm, of 36 x 24
+  const double focal = millimetres / kDiagonal35 * std::hypot(size.width, size.height);
+  return 360 / std::numbers::pi * std::atan(size.width / (2 * focal));
+}
+
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv::Size size,
-                                    const SourceOptions& options) {
+                                    const SourceOptions& options, double focal_length_35) {
   std::optional<Calibration> found = beside;
   if (options.camera_file) found = ReadCameraFile(*options.camera_file);
   if (found && !options.fov_degrees) {
     CheckSize(*found, size);
-    return {*found, false};
+    return {*found, false, {}};
   }
   ChosenCalibration chosen;
+  double assumed = AssumedFov(size);
+  // From fisheyes to telescopes: what else is written there is no focal length.
+  if (!options.fov_degrees && focal_length_35 >= kShortest35 && focal_length_35 <= kLongest35) {
+    assumed = FovOfFocalLength35(focal_length_35, size);
+    char text[60];
+    std::snprintf(text, sizeof(text), "%g mm in 35 mm equivalents", focal_length_35);
+    chosen.lens_told = text;
+  }
   chosen.calibration =
-      GuessedCalibration(size.width, size.height, options.fov_degrees.value_or(AssumedFov(size)));
+      GuessedCalibration(size.width, size.height, options.fov_degrees.value_or(assumed));
   if (found) {  // what a field of view says nothing about
     chosen.calibration.baseline = found->baseline;
     chosen.calibration.fps = found->fps;

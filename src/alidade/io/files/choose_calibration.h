@@ -11,7 +11,8 @@ namespace alidade {
 
 struct ChosenCalibration {
   Calibration calibration;
-  bool guessed = false;  // nothing was known, or a field of view that is only a guess
+  bool guessed = false;   // nothing was known, or a field of view that is only a guess
+  std::string lens_told;  // SourceInfo's
 };
 
 // Horizontal field of view in degrees that is assumed when nothing is known. A phone's is that of
@@ -19,8 +20,13 @@ struct ChosenCalibration {
 // 2)), 40 degrees for 9:16. Taken for the horizontal one, 66 makes a walk of a turn on the spot.
 double AssumedFov(cv::Size size);
 
-// For images of `size`; throws Error when the calibration is for another.
+// Of the full picture of a lens with that focal length in 35 mm equivalents: f = f35 × diagonal /
+// 43.27 mm (CIPA DCG-001), whichever way the picture is held.
+double FovOfFocalLength35(double millimetres, cv::Size size);
+
+// `focal_length_35`: what the recording says of its lens, mm; 0: nothing. For images of `size`;
+// throws Error when the calibration is for another.
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& found, cv::Size size,
-                                    const SourceOptions& options);
+                                    const SourceOptions& options, double focal_length_35 = 0);
 
 }  // namespace alidade

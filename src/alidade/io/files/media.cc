@@ -12,17 +12,19 @@ namespace {
 struct Module {
   MediaDecodeFunction* decode = nullptr;
   MediaOpenFunction* open = nullptr;
+  MediaFocalFunction* focal = nullptr;
   std::string problem;
 };
 
 Module LoadMediaModule() {
   // OpenCV's own limit is a thousand million pixels. It reads this while it is loaded.
   setenv("OPENCV_IO_MAX_IMAGE_PIXELS", std::to_string(kMostPixels).c_str(), 0);
-  const LoadedModule loaded =
-      LoadModule(kMediaModuleFile, {"alidade_media_decode", "alidade_media_open"});
-  if (loaded.symbols.empty()) return {nullptr, nullptr, loaded.problem};
+  const LoadedModule loaded = LoadModule(
+      kMediaModuleFile, {"alidade_media_decode", "alidade_media_open", "alidade_media_focal"});
+  if (loaded.symbols.empty()) return {nullptr, nullptr, nullptr, loaded.problem};
   return {reinterpret_cast<MediaDecodeFunction*>(loaded.symbols[0]),
           reinterpret_cast<MediaOpenFunction*>(loaded.symbols[1]),
+          reinterpret_cast<MediaFocalFunction*>(loaded.symbols[2]),
           {}};
 }
 
@@ -42,6 +44,11 @@ std::unique_ptr<MediaStream> Open(const std::string& path, int camera, const std
 }
 
 }  // namespace
+
+double FocalLength35OfImage(std::string_view bytes) {
+  const Module& module = TheModule();
+  return module.focal == nullptr ? 0 : module.focal(bytes.data(), bytes.size());
+}
 
 DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use) {
   const Module& module = TheModule();

@@ -13,6 +13,10 @@
 namespace alidade {
 
 // A problem, too, when there is no module to ask.
+// What an image's EXIF data say of the lens: focal length in 35 mm equivalents, mm; 0: nothing, or
+// no module.
+double FocalLength35OfImage(std::string_view bytes);
+
 DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use);
 
 // Throw Error when it cannot be opened, or the module is missing.

@@ -11,6 +11,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/folder_recording.h"
 #include "alidade/io/files/kitti_recording.h"
+#include "alidade/io/files/media.h"
 #include "alidade/io/files/recording.h"
 #include "alidade/io/files/tum_recording.h"
 #include "alidade/io/files/video_source.h"
@@ -53,13 +54,27 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
   return sensor;
 }
 
+// Focal length in 35 mm equivalents that the first image has in its EXIF data; 0: it has none, or a
+// calibration says better.
+double LensToldBy(const Recording& recording, const SourceOptions& options) {
+  if (recording.calibration || options.camera_file || options.fov_degrees ||
+      recording.frames.empty())
+    return 0;
+  try {
+    return FocalLength35OfImage(ReadFile(recording.frames.front().image));
+  } catch (const Error&) {  // whoever reads it next says so
+    return 0;
+  }
+}
+
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   std::error_code error;
   recording.name = fs::weakly_canonical(path, error).filename().string();
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
-  auto [calibration, guessed] = ChooseCalibration(recording.calibration, size, options);
+  auto [calibration, guessed, lens_told] =
+      ChooseCalibration(recording.calibration, size, options, LensToldBy(recording, options));
   if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;
   // A factor of 0 says: no depth, whatever lies in the folder.
   recording.has_depth = recording.has_depth && *calibration.depth_factor > 0;
@@ -70,6 +85,7 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
                "--sensor mono)");
   }
   ImagePreparation preparation(calibration, sensor);
+  recording.lens_told = std::move(lens_told);
   return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
 }
 

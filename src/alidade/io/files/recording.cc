@@ -29,6 +29,7 @@ class RecordingSource : public FrameSource {
     info_.sensor = sensor;
     info_.camera = preparation_.camera();
     info_.camera_guessed = camera_guessed;
+    info_.lens_told = std::move(recording.lens_told);
     info_.R_camera_rectified = preparation_.R_camera_rectified();
     info_.frames = static_cast<int>(frames_.size());
   }

@@ -24,6 +24,7 @@ struct RecordedFrame {
 
 struct Recording {
   std::string name, kind;  // as in SourceInfo
+  std::string lens_told;   // likewise
   std::vector<RecordedFrame> frames;
   bool has_right = false, has_depth = false;
   bool color = false;                      // frames are to have their colours as well

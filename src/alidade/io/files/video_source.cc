@@ -156,13 +156,15 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
     ThrowUsage(name + " has one camera: only --sensor mono");
   const cv::Mat first = stream->Grab() ? stream->Gray() : cv::Mat();
   if (first.empty()) ThrowInput(name + ": not one picture can be read");
-  auto [calibration, guessed] = ChooseCalibration(beside, first.size(), options);
+  auto [calibration, guessed, lens_told] =
+      ChooseCalibration(beside, first.size(), options, stream->FocalLength35());
   const double fps = stream->FramesPerSecond();
   // A camera file's rate is for streams that tell none: times do not depend on the calibration.
   if (std::isfinite(fps) && fps > 0) calibration.fps = fps;
   ImagePreparation preparation(calibration, Sensor::kMono);
   info.camera = preparation.camera();
   info.camera_guessed = guessed;
+  info.lens_told = lens_told;
   const int frames = stream->FrameCount();
   info.frames = frames > 0 ? frames : -1;
   return std::make_unique<VideoSource>(std::move(info), path, std::move(stream),

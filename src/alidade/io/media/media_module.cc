@@ -1,6 +1,14 @@
 #include "alidade/io/media/media_module.h"
 
+#include <libexif/exif-data.h>
+
+extern "C" {
+#include <libavformat/avformat.h>
+}
+
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
@@ -32,15 +40,40 @@ int QuarterTurns(const cv::VideoCapture& capture) {
   return wrong ? (4 - turns) % 4 : turns;
 }
 
+// What phones of one maker write into QuickTime files and their offspring, for all or for a track.
+constexpr char kFocalLengthKey[] = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
+
+double Millimetres(const AVDictionary* metadata) {
+  const AVDictionaryEntry* entry = av_dict_get(metadata, kFocalLengthKey, nullptr, 0);
+  const double value = entry ? std::strtod(entry->value, nullptr) : 0;
+  return std::isfinite(value) && value > 0 ? value : 0;
+}
+
+double FocalLengthOfVideo(const char* path) {
+  av_log_set_level(AV_LOG_QUIET);
+  AVFormatContext* context = nullptr;
+  if (avformat_open_input(&context, path, nullptr, nullptr) != 0) return 0;
+  double focal = Millimetres(context->metadata);
+  for (unsigned i = 0; focal == 0 && i < context->nb_streams; ++i)
+    focal = Millimetres(context->streams[i]->metadata);
+  avformat_close_input(&context);
+  return focal;
+}
+
 class Stream : public MediaStream {
  public:
-  Stream(cv::VideoCapture capture, bool live)
-      : capture_(std::move(capture)), live_(live), turns_(live ? 0 : QuarterTurns(capture_)) {}
+  Stream(cv::VideoCapture capture, bool live, double focal_length_35)
+      : capture_(std::move(capture)),
+        live_(live),
+        turns_(live ? 0 : QuarterTurns(capture_)),
+        focal_length_35_(focal_length_35) {}
 
   int FrameCount() const override {
     return live_ ? 0 : static_cast<int>(capture_.get(cv::CAP_PROP_FRAME_COUNT));
   }
   double FramesPerSecond() const override { return capture_.get(cv::CAP_PROP_FPS); }
+
+  double FocalLength35() const override { return focal_length_35_; }
 
   bool Grab() override try {
     const bool grabbed = capture_.grab();
@@ -100,6 +133,7 @@ class Stream : public MediaStream {
   cv::VideoCapture capture_;
   bool live_;
   int turns_;
+  double focal_length_35_;
   cv::Mat color_;  // of the picture Gray() gave last
   Clock::time_point start_{};
   double time_ = 0;
@@ -124,6 +158,20 @@ extern "C" __attribute__((visibility("default"))) bool alidade_media_decode(cons
   return false;
 }
 
+extern "C" __attribute__((visibility("default"))) double alidade_media_focal(const char* bytes,
+                                                                             size_t size) try {
+  ExifData* data = exif_data_new_from_data(reinterpret_cast<const unsigned char*>(bytes),
+                                           static_cast<unsigned>(std::min(size, size_t{1} << 30)));
+  if (!data) return 0;
+  const ExifEntry* entry = exif_data_get_entry(data, EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM);
+  const bool there = entry && entry->format == EXIF_FORMAT_SHORT && entry->size >= 2;
+  const double focal = there ? exif_get_short(entry->data, exif_data_get_byte_order(data)) : 0;
+  exif_data_unref(data);
+  return focal;
+} catch (...) {
+  return 0;
+}
+
 extern "C" __attribute__((visibility("default"))) MediaStream* alidade_media_open(const char* path,
                                                                                   int camera) try {
   SilenceLibraries();
@@ -136,7 +184,8 @@ extern "C" __attribute__((visibility("default"))) MediaStream* alidade_media_ope
     capture.set(cv::CAP_PROP_ORIENTATION_AUTO, 0);
   }
   if (!capture.isOpened()) return nullptr;
-  return std::make_unique<Stream>(std::move(capture), live).release();
+  return std::make_unique<Stream>(std::move(capture), live, live ? 0 : FocalLengthOfVideo(path))
+      .release();
 } catch (...) {
   return nullptr;
 }

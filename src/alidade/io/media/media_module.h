@@ -16,6 +16,8 @@ class MediaStream {
   // Frames the container says it has; 0 when it doesn't say.
   virtual int FrameCount() const = 0;
   virtual double FramesPerSecond() const = 0;  // 0 when unknown
+  // What the container says of the lens: its focal length in 35 mm equivalents, mm; 0: nothing.
+  virtual double FocalLength35() const = 0;
   // On to the next frame; false at the end. Upright: the rotation flag is honoured.
   virtual bool Grab() = 0;
   // Of the frame grabbed last: presentation time (seconds), and its picture (CV_8UC1; empty when
@@ -32,6 +34,8 @@ inline constexpr char kMediaModuleFile[] = "libalidade_media.so";
 
 // `use` is an ImageUse. False when it is no image.
 using MediaDecodeFunction = bool(const char* bytes, size_t size, int use, cv::Mat* image);
+// The same of an image file's EXIF data.
+using MediaFocalFunction = double(const char* bytes, size_t size);
 // A video file, or with an empty path the live camera `camera`. Null when it cannot be opened.
 using MediaOpenFunction = MediaStream*(const char* path, int camera);
 

@@ -1,0 +1,68 @@
+// Finds how long a camera with a rolling shutter takes to read an image, while its map grows.
+#pragma once
+
+#include <array>
+#include <mutex>
+#include <span>
+
+#include "alidade/base/api.h"
+#include "alidade/geometry/camera.h"
+#include "alidade/map/map_store.h"
+#include "alidade/map/measurement.h"
+#include "alidade/tracking/readout.h"
+
+namespace ALIDADE_API alidade {
+
+// Where nothing is told of a camera's readout (`readout` in its file). Rows that are read later
+// show a later place: 30 ms cost half of the accuracy of hand-held recordings
+// (docs/calibration.md).
+struct ReadoutSettings {
+  bool enabled = true;
+  int first_keyframes = 10;   // of a map, when it is asked first …
+  double growth = 1.4;        // … and again when it has so many times as many
+  int max_windows = 8;        // stretches of 12 keyframes that are asked, spread over the map
+  double prior_sigma = 0.02;  // seconds: what is believed of it beforehand, about none
+  double max_sigma = 0.002;   // seconds; what is told worse is not taken …
+  double least = 0.004;       // … nor less than this, seconds: it is none, …
+  double longest = 0.045;     // … nor more: images come each 33 ms as a rule
+  double min_change = 0.001;  // seconds, of what is taken already
+  // Maps agree with what they were made with. So frames are asked, too: where they tell of a change
+  // of so many seconds at least, to so many at most (one sigma, independent errors), …
+  double min_hint = 0.003, hint_sigma = 0.0004;
+  // … and the change does away with such a share of the squares of their residuals, …
+  double hint_explained = 0.01;
+  int hint_frames = 15;    // … so many of them at least, …
+  double hint_growth = 2;  // … so many times that is taken, since half of it the map hides
+  void Check() const;      // throws Error (usage) naming the field that cannot be
+};
+
+class ReadoutWatch {
+ public:
+  ReadoutWatch(const Camera& camera, const MeasurementNoise& noise,
+               const ReadoutSettings& settings);
+
+  // A frame was placed. The tracker's thread.
+  void Placed(const Vector6d& motion, std::span<const ReadoutMatch> matches);
+  // A keyframe was mapped: asks the map it is in when that has grown. Returns whether readout() has
+  // changed. One thread's.
+  bool Mapped(KeyFrameId id, const MapSnapshot& map);
+  std::array<double, 2> readout() const;  // see Camera; any thread's
+  double sigma() const;  // seconds; 0: told by the camera, or not found. Any thread's
+  const Camera& camera() const { return camera_; }  // with the readout; the thread's of Mapped()
+
+ private:
+  bool Take(const std::array<double, 2>& readout, double sigma);
+  bool TakeHint();
+  bool FramesAgree(const std::array<double, 2>& readout) const;
+
+  Camera camera_;
+  MeasurementNoise noise_;
+  ReadoutSettings settings_;
+  int ask_at_;
+  mutable std::mutex mutex_;
+  std::array<double, 2> readout_;
+  double sigma_ = 0;
+  ReadoutSum sum_;
+};
+
+}  // namespace alidade
