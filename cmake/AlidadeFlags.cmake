@@ -2,12 +2,17 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+if(NOT EMSCRIPTEN)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+endif()
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -g1 -DNDEBUG")
+if(EMSCRIPTEN)
+  set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")  # names would be a fifth of what pages load
+endif()
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib)
 
@@ -31,6 +36,11 @@ endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   # Of several files compiled in one go it takes a constant inside a function for a shadow on one of another file.
   target_compile_options(alidade_flags INTERFACE -Wno-shadow)
+endif()
+if(EMSCRIPTEN)
+  # OpenCV's headers know of WebAssembly's vectors only while OpenCV itself is built: elsewhere each lane is a loop.
+  target_compile_definitions(alidade_flags INTERFACE CV_WASM_SIMD=1)
+  target_compile_options(alidade_flags INTERFACE "SHELL:-include wasm_simd128.h")
 endif()
 if(ALIDADE_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # compiles in half the time of -O2 -g, runs nearly as fast

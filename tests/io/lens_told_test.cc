@@ -14,9 +14,10 @@
 namespace alidade::lens_told_test {
 namespace {
 
-std::string Big(uint32_t value, int bytes) {
+std::string Big(uint64_t value, int bytes) {
   std::string text;
-  for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>(value >> (8 * i));
+  for (int i = bytes - 1; i >= 0; --i)
+    text += static_cast<char>(i < 8 ? value >> (8 * i) : uint64_t{0});
   return text;
 }
 

@@ -1,6 +1,5 @@
 #include "alidade/io/cloud.h"
 
-#include <bit>
 #include <locale>
 #include <sstream>
 
@@ -16,7 +15,8 @@ void AppendLittleEndian(std::string& out, uint32_t value) {
 }
 
 void AppendLittleEndian(std::string& out, const Eigen::Vector3f& p) {
-  for (float value : {p.x(), p.y(), p.z()}) AppendLittleEndian(out, std::bit_cast<uint32_t>(value));
+  for (float value : {p.x(), p.y(), p.z()})
+    AppendLittleEndian(out, Eigen::numext::bit_cast<uint32_t>(value));
 }
 
 std::ostringstream FloatText() {
@@ -101,7 +101,7 @@ std::string BinaryPoints(const Cloud& cloud, Channels channels) {
     }
     const size_t count = FloatsBehind(cloud, i, floats);
     for (size_t k = 0; k < count; ++k)
-      AppendLittleEndian(bytes, std::bit_cast<uint32_t>(floats[k]));
+      AppendLittleEndian(bytes, Eigen::numext::bit_cast<uint32_t>(floats[k]));
   }
   return bytes;
 }

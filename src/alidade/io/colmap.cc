@@ -1,6 +1,5 @@
 #include "alidade/io/colmap.h"
 
-#include <bit>
 #include <locale>
 #include <sstream>
 #include <type_traits>
@@ -123,7 +122,7 @@ class Bytes {
       bytes_.push_back(static_cast<char>((static_cast<uint64_t>(value) >> (8 * byte)) & 0xff));
     }
   }
-  void Add(double value) { Add(std::bit_cast<uint64_t>(value)); }
+  void Add(double value) { Add(Eigen::numext::bit_cast<uint64_t>(value)); }
   void Add(const std::string& text) { bytes_.append(text.c_str(), text.size() + 1); }
   std::string Take() { return std::move(bytes_); }
 

@@ -1,7 +1,7 @@
 #include "alidade/semidense/packed_depth.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace alidade {
@@ -15,7 +15,7 @@ PackedDepth::PackedDepth(std::span<const Hypothesis> depth) : packed_(depth.size
     if (!depth[i].known()) continue;
     const long steps = std::lround(depth[i].inverse_depth / step_);
     packed_[i].inverse_depth = static_cast<uint16_t>(std::clamp(steps, 1L, 65535L));
-    const uint32_t sigma = std::bit_cast<uint32_t>(depth[i].sigma);
+    const uint32_t sigma = Eigen::numext::bit_cast<uint32_t>(depth[i].sigma);
     packed_[i].sigma = static_cast<uint16_t>(std::max(1u, (sigma + 0x8000) >> 16));
   }
 }
@@ -26,7 +26,7 @@ std::vector<Hypothesis> PackedDepth::Unpack(double growth) const {
   for (size_t i = 0; i < depth.size(); ++i) {
     const uint32_t sigma = static_cast<uint32_t>(packed_[i].sigma) << 16;
     depth[i] = {step * static_cast<float>(packed_[i].inverse_depth),
-                scale * std::bit_cast<float>(sigma)};
+                scale * Eigen::numext::bit_cast<float>(sigma)};
   }
   return depth;
 }

@@ -14,6 +14,7 @@ void ReadoutSettings::Check() const {
   };
   require(first_keyframes >= 6, "first_keyframes must be at least 6");
   require(growth > 1, "growth must be above 1");
+  require(max_iterations >= 1, "max_iterations must be positive");
   require(max_windows >= 1, "max_windows must be positive");
   require(prior_sigma > 0, "prior_sigma must be positive");
   require(min_hint > 0 && hint_sigma > 0, "min_hint and hint_sigma must be positive");
@@ -92,6 +93,7 @@ bool ReadoutWatch::Mapped(KeyFrameId id, const MapSnapshot& map) {
   ask.readout_sigma = settings_.prior_sigma;
   ask.hold_lens = true;
   ask.max_windows = settings_.max_windows;
+  ask.adjust.max_iterations = settings_.max_iterations;
   const CameraEstimate found =
       EstimateCamera(LensWindowsOf(map, where, camera_, noise_, ask), camera_, noise_, ask);
   std::array<double, 2> readout = found.camera.readout;

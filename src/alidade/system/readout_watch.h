@@ -22,6 +22,7 @@ struct ReadoutSettings {
   double growth = 1.4;        // … and again when it has so many times as many
   int max_windows = 8;        // stretches of 12 keyframes that are asked, spread over the map
   double prior_sigma = 0.02;  // seconds: what is believed of it beforehand, about none
+  int max_iterations = 6;     // of those adjustments: the map is nearly where they end
   double max_sigma = 0.002;   // seconds; what is told worse is not taken …
   double least = 0.004;       // … nor less than this, seconds: it is none, …
   double longest = 0.045;     // … nor more: images come each 33 ms as a rule

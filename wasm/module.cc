@@ -1,0 +1,188 @@
+// What JavaScript calls (web/core). Plain numbers and pointers into the module's memory; what is
+// told is read before the next call. No exception leaves it: calls that fail say so, and
+// alidade_error() why.
+#include <emscripten.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "alidade/base/log.h"
+#include "alidade/base/parallel.h"
+#include "phone_slam.h"
+
+namespace {
+
+using alidade::PhoneFrame;
+using alidade::PhoneSlam;
+
+// One session, with what it told last.
+struct Session {
+  Session(std::unique_ptr<PhoneSlam> of, int width, int height)
+      : slam(std::move(of)), pixels(static_cast<size_t>(width) * height * 4) {}
+  std::unique_ptr<PhoneSlam> slam;
+  std::vector<uint8_t> pixels;
+  std::array<double, 24> numbers{};
+  std::string reason, bytes;
+  std::vector<float> features;
+};
+
+std::string last_error;
+
+template <typename Call>
+auto Guarded(Call&& call, decltype(call()) failed) -> decltype(call()) {
+  try {
+    return call();
+  } catch (const std::exception& error) {
+    last_error = error.what();
+  } catch (...) {
+    last_error = "something unknown went wrong";
+  }
+  return failed;
+}
+
+// [bytes of the first, those bytes, bytes of the second, …], lengths as 32 bits little endian.
+std::string Joined(const std::vector<std::string>& messages) {
+  std::string all;
+  for (const std::string& message : messages) {
+    const auto size = static_cast<uint32_t>(message.size());
+    all.append(reinterpret_cast<const char*>(&size), sizeof(size));
+    all += message;
+  }
+  return all;
+}
+
+alidade::PhoneSettings SettingsOf(int threads, const std::string& text) {
+  alidade::SetThreadCount(std::max(1, threads));
+  auto phone = alidade::PhoneSettings::Default(threads > 1);
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string line = text.substr(begin, end - begin);
+    const size_t equal = line.find('=');
+    if (equal != std::string::npos) phone.slam.Set(line.substr(0, equal), line.substr(equal + 1));
+    begin = end + 1;
+  }
+  return phone;
+}
+
+}  // namespace
+
+extern "C" {
+
+EMSCRIPTEN_KEEPALIVE const char* alidade_error() { return last_error.c_str(); }
+
+// `fov`: horizontal, degrees; 0: nothing is known. `settings`: lines of name=value, as after --set.
+EMSCRIPTEN_KEEPALIVE Session* alidade_new(int width, int height, double fov, int threads,
+                                          const char* settings) {
+  return Guarded(
+      [&] {
+        const alidade::PhoneSettings phone = SettingsOf(threads, settings);
+        return new Session(std::make_unique<PhoneSlam>(width, height, fov, phone), width, height);
+      },
+      static_cast<Session*>(nullptr));
+}
+
+// `camera`: fx fy cx cy k1 k2 p1 p2 k3.
+EMSCRIPTEN_KEEPALIVE Session* alidade_new_calibrated(int width, int height, const double* camera,
+                                                     int threads, const char* settings) {
+  return Guarded(
+      [&] {
+        alidade::Camera c;
+        c.width = width;
+        c.height = height;
+        c.fx = camera[0];
+        c.fy = camera[1];
+        c.cx = camera[2];
+        c.cy = camera[3];
+        std::copy(camera + 4, camera + 9, c.distortion.begin());
+        const alidade::PhoneSettings phone = SettingsOf(threads, settings);
+        return new Session(std::make_unique<PhoneSlam>(c, phone), width, height);
+      },
+      static_cast<Session*>(nullptr));
+}
+
+EMSCRIPTEN_KEEPALIVE void alidade_delete(Session* session) { delete session; }
+
+// Where the next picture is put: 4 bytes a pixel at most.
+EMSCRIPTEN_KEEPALIVE uint8_t* alidade_pixels(Session* session) { return session->pixels.data(); }
+
+// The numbers of web/core's Frame, in order; null: alidade_error().
+EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels, double time) {
+  return Guarded(
+      [&]() -> const double* {
+        const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
+        session->reason = frame.result.reason;
+        const Eigen::Vector3d& t = frame.result.T_world_camera.t;
+        const Eigen::Quaterniond q(frame.result.T_world_camera.R);
+        const bool placed =
+            frame.result.state == alidade::TrackState::kTracking || frame.result.predicted;
+        session->numbers = {static_cast<double>(frame.result.state),
+                            placed ? 1.0 : 0.0,
+                            frame.result.predicted ? 1.0 : 0.0,
+                            static_cast<double>(frame.keyframes),
+                            static_cast<double>(frame.landmarks),
+                            static_cast<double>(frame.matches),
+                            static_cast<double>(frame.features),
+                            static_cast<double>(frame.maps),
+                            frame.milliseconds,
+                            frame.fov,
+                            frame.fov_sigma,
+                            static_cast<double>(frame.restarts),
+                            t.x(),
+                            t.y(),
+                            t.z(),
+                            q.x(),
+                            q.y(),
+                            q.z(),
+                            q.w()};
+        return session->numbers.data();
+      },
+      nullptr);
+}
+
+EMSCRIPTEN_KEEPALIVE const char* alidade_reason(Session* session) {
+  return session->reason.c_str();
+}
+
+// Of the last frame: x, y (pixels), 1 where it shows a landmark, for each. Returns how many.
+EMSCRIPTEN_KEEPALIVE int alidade_features(Session* session, const float** at) {
+  session->features.clear();
+  for (const alidade::FeatureUse& use : session->slam->slam().Features()) {
+    session->features.push_back(use.x);
+    session->features.push_back(use.y);
+    session->features.push_back(use.matched ? 1.0f : 0.0f);
+  }
+  *at = session->features.data();
+  return static_cast<int>(session->features.size() / 3);
+}
+
+enum Bytes { kMessages = 0, kTrajectory = 1, kMap = 2, kCloud = 3 };
+
+// Returns how many there are, at `*at`; below 0: alidade_error().
+EMSCRIPTEN_KEEPALIVE int alidade_bytes(Session* session, int what, const char** at) {
+  return Guarded(
+      [&] {
+        PhoneSlam& slam = *session->slam;
+        session->bytes = what == kMessages     ? Joined(slam.TakeMessages())
+                         : what == kTrajectory ? slam.Trajectory()
+                         : what == kMap        ? slam.slam().SaveMap()
+                                               : slam.Cloud();
+        *at = session->bytes.data();
+        return static_cast<int>(session->bytes.size());
+      },
+      -1);
+}
+
+EMSCRIPTEN_KEEPALIVE int alidade_finish(Session* session) {
+  return Guarded(
+      [&] {
+        session->slam->Finish();
+        return 0;
+      },
+      -1);
+}
+
+}  // extern "C"

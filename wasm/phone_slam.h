@@ -1,0 +1,92 @@
+// The core as a page or a phone's app wants it: pictures in, a few numbers and the viewer's
+// messages out; a camera nobody calibrated is found on the way.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alidade/map/camera_estimate.h"
+#include "alidade/stream/stream_encoder.h"
+#include "alidade/system/slam.h"
+
+namespace alidade {
+
+struct PhoneSettings {
+  SlamSettings slam;
+  StreamSettings stream;
+  // A camera of which nothing is known: the map is asked for it when it has so many keyframes, and
+  // again whenever it has grown by that factor.
+  CameraEstimateSettings calibrate;
+  int first_keyframes = 10;
+  double growth = 1.3;
+  // When two answers on end agree that the focal length differs by more than this share, known to
+  // max_sigma (relative), the map is begun anew with the camera found: it was made with a bent one.
+  double max_off = 0.06, max_sigma = 0.02;
+  int max_restarts = 3;
+  // Added (as variances) to the relative standard deviation that is told: a rolling shutter, which
+  // is not looked for while the lens is only assumed, shifted the focal lengths of real recordings
+  // by 1 to 5 %.
+  double model_sigma = 0.03;
+  // The phone profile, in the order that a single thread does things unless `threaded`; at most so
+  // many keyframes, since a page's memory is small.
+  static PhoneSettings Default(bool threaded);
+};
+
+// What is known after a frame.
+struct PhoneFrame {
+  TrackResult result;
+  int keyframes = 0, landmarks = 0, maps = 0;
+  int features = 0, matches = 0;  // of the frame
+  double milliseconds = 0;        // it took
+  double fov = 0;                 // horizontal, degrees, as it is believed to be
+  double fov_sigma = 0;           // degrees; 0: it was given
+  int restarts = 0;               // with another camera
+};
+
+class PhoneSlam {
+ public:
+  // `fov`: horizontal, degrees; 0: nothing is known, 66 along the longer side is where it begins.
+  // Throws Error on what cannot be.
+  PhoneSlam(int width, int height, double fov, PhoneSettings settings);
+  // The same with a calibrated camera.
+  PhoneSlam(const Camera& camera, PhoneSettings settings);
+  ~PhoneSlam();
+
+  // One picture: 1 (grey) or 4 (red green blue alpha) bytes a pixel, rows without gaps. `time` in
+  // seconds. Throws Error on what Slam::Track() refuses.
+  PhoneFrame Track(const uint8_t* pixels, int channels, double time);
+  void Finish();
+  Slam& slam() { return *slam_; }
+
+  // The viewer's messages since they were taken last (src/alidade/stream). The first call begins
+  // them; who takes none for long gets all that is known, anew.
+  std::vector<std::string> TakeMessages();
+  // TUM format: every frame that has a pose.
+  std::string Trajectory() const;
+  // Landmarks as a binary PLY point cloud.
+  std::string Cloud() const;
+
+ private:
+  void Begin();
+  void BeginMessages();
+  void Tell(std::vector<std::string> messages);
+  void AskForCamera();
+
+  PhoneSettings settings_;
+  Camera camera_;
+  bool known_;
+  double focal_ = 0, focal_sigma_ = 0;  // believed; relative
+  std::optional<CameraEstimate> before_;
+  int ask_at_ = 0, restarts_ = 0, frames_ = 0;
+  std::unique_ptr<Slam> slam_;
+  StreamSource source_;
+  std::unique_ptr<StreamEncoder> encoder_;  // null: nobody asked
+  std::vector<std::string> messages_;
+  size_t waiting_ = 0;   // bytes of messages_
+  bool behind_ = false;  // some were dropped: nobody took them
+};
+
+}  // namespace alidade

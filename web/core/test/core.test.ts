@@ -1,0 +1,133 @@
+// The package as a program in Node uses it, over rendered frames and, where ALIDADE_DATA is, over a real recording.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { pathToFileURL } from 'node:url';
+import { test } from 'node:test';
+import jpeg from 'jpeg-js';
+import { decode } from '../../scene/src/decode.ts';
+import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
+
+declare const WEB: string;
+const dist = join(WEB, 'core/dist');
+const program = process.env.ALIDADE_BINARY ?? join(WEB, '../build/bin/alidade');
+const built = existsSync(join(dist, 'single/alidade.wasm'));
+const options = { skip: built ? false : 'scripts/wasm has not been run', timeout: 300e3 };
+const { Slam } = (built ? await import(pathToFileURL(join(dist, 'index.js')).href) : {}) as { Slam: typeof SlamType };
+
+const create = (more: Partial<SlamOptions> & { width: number; height: number }) =>
+  Slam.create({ wasmBinary: readFileSync(join(dist, 'single/alidade.wasm')), ...more });
+
+interface Recording { times: string[]; gray(i: number): Uint8Array; width: number; height: number }
+
+function open(folder: string): Recording {
+  const lines = readFileSync(join(folder, 'rgb.txt'), 'utf8').split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.split(/\s+/));
+  const picture = (i: number) => jpeg.decode(readFileSync(join(folder, lines[i]![1]!)), { useTArray: true });
+  const { width, height } = picture(0);
+  return {
+    times: lines.map(([time]) => time!), width, height,
+    gray: (i) => {
+      const { data } = picture(i);
+      const gray = new Uint8Array(width * height);
+      for (let k = 0; k < gray.length; ++k) gray[k] = (299 * data[4 * k]! + 587 * data[4 * k + 1]! + 114 * data[4 * k + 2]! + 500) / 1000;
+      return gray;
+    },
+  };
+}
+
+// ATE of the program's own evaluation, metres.
+function ate(folder: string, trajectory: string): { rmse: number; coverage: number } {
+  const file = join(mkdtempSync(join(tmpdir(), 'alidade-')), 'trajectory.txt');
+  writeFileSync(file, trajectory);
+  return JSON.parse(execFileSync(program, ['evaluate', 'ate', join(folder, 'groundtruth.txt'), file, '--align', 'sim3', '--json'], { encoding: 'utf8' })) as { rmse: number; coverage: number };
+}
+
+const kitchen = join(process.env.ALIDADE_DATA ?? '', 'kitchen');
+const onKitchen = { ...options, skip: options.skip || (process.env.ALIDADE_DATA && existsSync(kitchen) && existsSync(program) ? false : 'ALIDADE_DATA does not point to the recordings') };
+
+function median(values: number[]): number { return [...values].sort((a, b) => a - b)[values.length >> 1]!; }
+
+test('a real recording: as good as the native core', onKitchen, async () => {
+  const recording = open(kitchen);
+  const camera = Object.fromEntries(readFileSync(join(kitchen, 'camera.yaml'), 'utf8').split('\n').map((line) => line.split(/:\s*/)).filter((pair) => pair.length === 2)) as Record<string, string>;
+  const slam = await create({
+    width: recording.width, height: recording.height,
+    camera: { fx: Number(camera.fx), fy: Number(camera.fy), cx: Number(camera.cx), cy: Number(camera.cy) },
+  });
+  const milliseconds: number[] = [];
+  let messages = slam.messages();
+  assert.equal(messages.length, 1);  // hello
+  for (let i = 0; i < recording.times.length; ++i) {
+    const frame = slam.track(recording.gray(i), Number(recording.times[i]));
+    milliseconds.push(frame.milliseconds);
+    assert.equal(frame.state === 'tracking', frame.reason === '');
+    messages = slam.messages();
+    assert.ok(messages.length >= 1);
+  }
+  for (const message of messages) assert.ok(decode(message));
+  slam.finish();
+  const out = mkdtempSync(join(tmpdir(), 'alidade-'));
+  execFileSync(program, ['run', kitchen, '--sensor', 'mono', '--profile', 'phone', '--threads', '1', '--out', join(out, 'native'), '--quiet']);
+  const native = JSON.parse(readFileSync(join(out, 'native/stats.json'), 'utf8')) as { tracked: number; ms: { frame: { median: number } } };
+  const here = ate(kitchen, slam.trajectory());
+  const there = ate(kitchen, readFileSync(join(out, 'native/trajectory.txt'), 'utf8'));
+  const tracked = slam.trajectory().split('\n').filter((line) => line && !line.startsWith('#')).length;
+  console.log(`kitchen: ${tracked} of ${recording.times.length} frames (native ${native.tracked}), ATE ${(100 * here.rmse).toFixed(2)} cm (native ${(100 * there.rmse).toFixed(2)}), `
+    + `median ${median(milliseconds).toFixed(1)} ms (native ${native.ms.frame.median.toFixed(1)})`);
+  assert.ok(tracked >= 0.95 * native.tracked);
+  assert.ok(here.rmse < 1.05 * there.rmse + 0.001, `${here.rmse} against ${there.rmse}`);
+  assert.ok(slam.map().length > 1e5);
+  assert.match(new TextDecoder('latin1').decode(slam.cloud().slice(0, 40)), /^ply\nformat binary_little_endian/);
+  slam.delete();
+  assert.throws(() => slam.finish(), /deleted/);
+  rmSync(out, { recursive: true });
+});
+
+test('a camera nobody calibrated is found on the way', onKitchen, async () => {
+  const recording = open(kitchen);
+  const slam = await create({ width: recording.width, height: recording.height });
+  let frame = slam.track(recording.gray(0), Number(recording.times[0]));
+  assert.ok(Math.abs(frame.fov - 66) < 0.1 && frame.fovSigma > 10);
+  for (let i = 1; i < recording.times.length; ++i) frame = slam.track(recording.gray(i), Number(recording.times[i]));
+  console.log(`kitchen, nothing known: ${frame.fov.toFixed(1)} ± ${frame.fovSigma.toFixed(1)} degrees (62.5), ${frame.restarts} restarts`);
+  assert.ok(frame.fovSigma < 2 && Math.abs(frame.fov - 62.5) < 3 * frame.fovSigma);
+  assert.equal(frame.state, 'tracking');
+  slam.finish();
+  assert.ok(ate(kitchen, slam.trajectory()).rmse < 0.08);
+  slam.delete();
+});
+
+test('what cannot be is refused in words, and nothing is lost', options, async () => {
+  await assert.rejects(create({ width: 0, height: 10 }), /0x10/);
+  await assert.rejects(create({ width: 64, height: 48, fov: 200 }), /field of view/);
+  await assert.rejects(create({ width: 64, height: 48, settings: { 'tracker.no_such': 1 } }), /no_such/);
+  const slam = await create({ width: 64, height: 48 });
+  assert.throws(() => slam.track(new Uint8Array(10), 0), /10 bytes/);
+  assert.throws(() => slam.track(new Uint8Array(64 * 48), NaN), /time/);
+  const frame = slam.track(new Uint8Array(64 * 48), 1);
+  assert.equal(frame.state, 'initialising');
+  assert.equal(frame.pose, null);
+  assert.notEqual(frame.reason, '');
+  assert.deepEqual(slam.features(), []);
+  slam.delete();
+  slam.delete();
+});
+
+test('many sessions on end leave no memory behind', options, async () => {
+  const picture = new Uint8Array(320 * 240).map((_, i) => (i * 2654435761) >>> 24);
+  for (let i = 0; i < 40; ++i) {
+    const slam = await create({ width: 320, height: 240 });
+    for (let k = 0; k < 3; ++k) slam.track(picture, k / 30);
+    slam.delete();
+  }
+  assert.ok(process.memoryUsage().rss < 1.5e9);
+});
+
+test('the package holds what it needs and no more', options, () => {
+  const files = readdirSync(dist).sort();
+  for (const name of ['index.d.ts', 'index.js', 'single']) assert.ok(files.includes(name), files.join());
+  const bytes = readFileSync(join(dist, 'single/alidade.wasm')).length;
+  assert.ok(bytes <= 4e6, `${bytes} bytes`);
+});
