@@ -1,5 +1,6 @@
-// Bundles the viewer into viewer/dist: five files, all that the program serves, each also compressed.
+// Bundles the viewer into viewer/dist and the page for phones into phone/dist: all files that the program serves, each also compressed.
 import { build } from 'esbuild';
+import { createHash } from 'node:crypto';
 import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -29,6 +30,34 @@ const options = {
   nodePaths: [join(web, 'node_modules')], alias: { '@alidade/scene': join(web, 'scene/src/index.ts') }, logLevel: 'warning',
 };
 
+// The page for phones: its script, the Worker and the service worker, which knows all files and a digest of them.
+export async function buildPhone() {
+  const from = join(web, 'phone/src');
+  const to = join(web, 'phone/dist');
+  rmSync(to, { recursive: true, force: true });
+  mkdirSync(to, { recursive: true });
+  const { version } = JSON.parse(readFileSync(join(web, 'core/package.json'), 'utf8'));
+  const main = { ...options, entryPoints: [join(from, 'main.ts')], outfile: join(to, 'phone.js') };
+  const define = { BUNDLED: '[]', PROGRAM: JSON.stringify(`Alidade ${version}`) };
+  const { metafile } = await build({ ...main, define, write: false, metafile: true });
+  const packages = bundled(metafile);
+  await build({ ...main, define: { ...define, BUNDLED: JSON.stringify(packages.map(({ name, version: number, licence }) => ({ name, version: number, licence }))) } });
+  await build({ ...options, entryPoints: [join(from, 'worker.ts')], outfile: join(to, 'worker.js') });
+  await build({ ...options, entryPoints: [join(from, 'phone.css')], outfile: join(to, 'phone.css') });
+  for (const name of ['index.html', 'icon.svg', 'manifest.webmanifest']) copyFileSync(join(from, name), join(to, name));
+  writeFileSync(join(to, 'licences.txt'), licences(packages));
+  const files = readdirSync(to).sort();
+  const digest = createHash('sha256');
+  for (const name of files) digest.update(readFileSync(join(to, name)));
+  const core = join(web, 'core/dist');
+  for (const variant of ['single', 'threads']) if (existsSync(join(core, variant))) digest.update(readFileSync(join(core, variant, 'alidade.wasm')));
+  await build({
+    ...options, entryPoints: [join(from, 'sw.ts')], outfile: join(to, 'sw.js'), format: 'iife',
+    define: { VERSION: JSON.stringify(digest.digest('hex').slice(0, 16)), FILES: JSON.stringify(files) },
+  });
+  return compressed(to);
+}
+
 export async function buildViewer() {
   rmSync(dist, { recursive: true, force: true });
   mkdirSync(dist, { recursive: true });
@@ -40,18 +69,26 @@ export async function buildViewer() {
   await build({ ...options, entryPoints: [join(source, 'viewer.css')], outfile: join(dist, 'viewer.css') });
   copyFileSync(join(source, 'index.html'), join(dist, 'index.html'));
   copyFileSync(join(source, 'favicon.svg'), join(dist, 'favicon.svg'));
+  writeFileSync(join(dist, 'licences.txt'), licences(packages));
+  return compressed(dist);
+}
+
+function licences(packages) {
   const rule = '-'.repeat(80);
-  writeFileSync(join(dist, 'licences.txt'), packages.map(({ name, version, licence, text }) =>
-    `${rule}\n${name} ${version}: ${licence}\n${rule}\n${text || 'See https://www.apache.org/licenses/LICENSE-2.0\n'}`).join('\n'));
-  // The program serves these to whoever takes them: over Wi-Fi a quarter of the bytes.
-  return readdirSync(dist).map((name) => {
-    const small = gzipSync(readFileSync(join(dist, name)), { level: 9 });
-    writeFileSync(join(dist, `${name}.gz`), small);
-    return { name, bytes: statSync(join(dist, name)).size, gzip: small.length };
+  return packages.map(({ name, version, licence, text }) =>
+    `${rule}\n${name} ${version}: ${licence}\n${rule}\n${text || 'See https://www.apache.org/licenses/LICENSE-2.0\n'}`).join('\n');
+}
+
+// The program serves these to whoever takes them: over Wi-Fi a quarter of the bytes.
+function compressed(folder) {
+  return readdirSync(folder).map((name) => {
+    const small = gzipSync(readFileSync(join(folder, name)), { level: 9 });
+    writeFileSync(join(folder, `${name}.gz`), small);
+    return { name, bytes: statSync(join(folder, name)).size, gzip: small.length };
   });
 }
 
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   if (!existsSync(join(web, 'node_modules'))) throw new Error('web: run npm ci first');
-  for (const { name, bytes, gzip } of await buildViewer()) console.log(`${name.padEnd(14)} ${String(bytes).padStart(8)} bytes, ${gzip} gzipped`);
+  for (const { name, bytes, gzip } of [...await buildViewer(), ...await buildPhone()]) console.log(`${name.padEnd(14)} ${String(bytes).padStart(8)} bytes, ${gzip} gzipped`);
 }

@@ -1,0 +1,57 @@
+// The phone's camera: asked for, its focus held, and what to do when it cannot be had, in words.
+
+export class CameraProblem extends Error {}
+
+const PROBLEMS: Record<string, string> = {
+  NotAllowedError: 'The camera was refused. Allow it for this page (the lock or camera sign beside the address), then press Start again. A video can be opened without it.',
+  NotFoundError: 'No camera was found. A video can be opened instead.',
+  NotReadableError: 'The camera is in use by something else, or does not answer. Close other apps that show it, then press Start again.',
+  OverconstrainedError: 'No camera fits what was asked for. A video can be opened instead.',
+};
+
+interface FocusCapabilities extends MediaTrackCapabilities { focusMode?: string[]; focusDistance?: { min: number; max: number } }
+interface FocusSettings extends MediaTrackSettings { focusDistance?: number }
+
+// The rear camera where there are several.
+export async function openCamera(): Promise<MediaStream> {
+  if (!navigator.mediaDevices) {
+    throw new CameraProblem(isSecureContext ? 'This browser gives pages no camera. A video can be opened instead.'
+      : 'Browsers give the camera to secure pages only (https, or localhost): start the program with --tls. A video can be opened instead.');
+  }
+  try {
+    return await navigator.mediaDevices.getUserMedia({
+      audio: false, video: { facingMode: { ideal: 'environment' }, width: { ideal: 640 }, height: { ideal: 480 }, frameRate: { ideal: 30 } },
+    });
+  } catch (error) {
+    const { name, message } = error as DOMException;
+    throw new CameraProblem(PROBLEMS[name] ?? `The camera could not be opened: ${message}.`);
+  }
+}
+
+const SETTLING = 1500; // milliseconds that the lens is given to focus by itself before it is held
+
+// A lens that focuses changes the focal length by a per cent or two. Whether it is held now.
+export async function holdFocus(stream: MediaStream): Promise<boolean> {
+  const track = stream.getVideoTracks()[0];
+  const can = (track?.getCapabilities?.() ?? {}) as FocusCapabilities;
+  if (!track || !can.focusMode?.includes('manual')) return false;
+  await new Promise((resolve) => { setTimeout(resolve, SETTLING); });
+  if (track.readyState !== 'live') return false;
+  const { focusDistance } = track.getSettings() as FocusSettings;
+  try {
+    await track.applyConstraints({ advanced: [{ focusMode: 'manual', ...(focusDistance === undefined ? {} : { focusDistance }) } as MediaTrackConstraintSet] });
+    return true;
+  } catch {
+    return false;
+  }
+}
+
+const AREA = 400 * 300; // pixels that are worked on: the paper's 400 columns of a lying 4:3 picture
+const FEWEST = 64;
+
+// As large as is worked on, the picture's proportions kept; even numbers.
+export function workingSize(width: number, height: number): { width: number; height: number } {
+  const scale = Math.min(1, Math.sqrt(AREA / (width * height)));
+  const even = (length: number) => Math.max(FEWEST, 2 * Math.round((length * scale) / 2));
+  return { width: even(width), height: even(height) };
+}

@@ -1,0 +1,193 @@
+// A virtual object on a tapped surface. It hangs on the keyframe it was placed from, so that it goes along when the map is corrected.
+import { poses } from '@alidade/scene';
+import type { Camera, Culled, Message, Pose, State } from '@alidade/scene';
+import { project, unproject } from './lens.ts';
+import type { Point, Ray } from './lens.ts';
+
+type Vector = readonly [number, number, number];
+const { compose, inverse, rotate, transform } = poses;
+
+// How a surface is told from the points about a tap.
+const REACH = 0.06;        // of the picture's width: points so near say where the surface is; more and more, until there are …
+const FARTHEST = 0.25;
+const ENOUGH = 12;         // … so many
+const FLAT = 0.02;         // of the depth: points so near to a plane lie on it
+const TRIES = 200;         // planes through three of them
+const STEEPEST = 0.2;      // cosine between a surface and the sight: flatter ones are not believed
+const EDGE = 0.12;         // of the depth: the cube's
+
+const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const plus = (a: Vector, b: Vector, s = 1): Vector => [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]];
+const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const scaled = (a: Vector, s: number): Vector => [s * a[0], s * a[1], s * a[2]];
+const unit = (a: Vector): Vector => scaled(a, 1 / Math.hypot(...a));
+
+interface Seen { p: Vector; pixel: Point }
+
+export class Cube {
+  private constructor(
+    private keyframe: number,
+    private at: Vector,                 // middle of its foot, in the keyframe (lengths as if its scale were 1)
+    private axes: readonly [Vector, Vector, Vector], // edges in the keyframe; the last one up from the surface
+  ) {}
+
+  // On what is seen at `tap` (pixels of the stream's camera) from where the camera is; null: no point of the map near it.
+  static place(state: State, tap: Point): Cube | null {
+    const camera = state.hello?.camera;
+    const T_world_camera = state.cameraPose();
+    if (!camera || !T_world_camera) return null;
+    const surface = surfaceAt(pointsBefore(state, camera, T_world_camera), camera, tap);
+    if (!surface) return null;
+    const keyframe = nearestKeyframe(state, T_world_camera);
+    if (keyframe === null) return null;
+    const { T_world_camera: T_world_keyframe, scale } = state.keyframes.get(keyframe)!;
+    const T_keyframe_camera = compose(inverse(T_world_keyframe), 1, T_world_camera);
+    const turn = (v: Vector): Vector => scaled(rotate(T_keyframe_camera, ...v), 1 / scale);
+    const up = surface.normal;
+    const side = unit(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 0, 1]));
+    const edge = EDGE * surface.at[2];
+    return new Cube(keyframe, scaled(transform(T_keyframe_camera, 1, ...surface.at), 1 / scale),
+      [turn(scaled(side, edge)), turn(scaled(cross(up, side), edge)), turn(scaled(up, edge))]);
+  }
+
+  // Before the state takes the message in: a keyframe that goes hands the cube to the one it follows.
+  follow(message: Message): void {
+    if (message.kind !== 'map') return;
+    for (let moved = true; moved;) {
+      moved = false;
+      for (const culled of message.culled) {
+        if (culled.id !== this.keyframe) continue;
+        this.hangOn(culled);
+        moved = true;
+        break;
+      }
+    }
+  }
+
+  // Middle of its foot in the world; null: what it hung on is gone.
+  position(state: State): Vector | null {
+    const keyframe = state.keyframes.get(this.keyframe);
+    return keyframe ? transform(keyframe.T_world_camera, keyframe.scale, ...this.at) : null;
+  }
+
+  // Faces to draw, the farthest first: corners in pixels of the stream's camera, and how light they are (0…1).
+  faces(state: State, T_world_camera: Pose): { corners: Point[]; light: number }[] {
+    const keyframe = state.keyframes.get(this.keyframe);
+    const camera = state.hello?.camera;
+    if (!keyframe || !camera) return [];
+    const T_camera_keyframe = compose(inverse(T_world_camera), 1, keyframe.T_world_camera);
+    const corner = (x: number, y: number, z: number): Vector => {
+      const [a, b, c] = this.axes;
+      return transform(T_camera_keyframe, keyframe.scale, ...plus(plus(plus(this.at, a, x), b, y), c, z));
+    };
+    const sides: readonly [light: number, ...corners: Vector[]][] = [
+      [0.35, corner(-.5, -.5, 0), corner(.5, -.5, 0), corner(.5, .5, 0), corner(-.5, .5, 0)],
+      [1, corner(-.5, -.5, 1), corner(.5, -.5, 1), corner(.5, .5, 1), corner(-.5, .5, 1)],
+      [0.85, corner(-.5, -.5, 0), corner(.5, -.5, 0), corner(.5, -.5, 1), corner(-.5, -.5, 1)],
+      [0.6, corner(-.5, .5, 0), corner(.5, .5, 0), corner(.5, .5, 1), corner(-.5, .5, 1)],
+      [0.75, corner(-.5, -.5, 0), corner(-.5, .5, 0), corner(-.5, .5, 1), corner(-.5, -.5, 1)],
+      [0.7, corner(.5, -.5, 0), corner(.5, .5, 0), corner(.5, .5, 1), corner(.5, -.5, 1)],
+    ];
+    const far = (points: readonly Vector[]) => points.reduce((sum, p) => sum + Math.hypot(...p), 0);
+    return sides.map(([light, ...points]) => ({ light, far: far(points), pixels: points.map((p) => project(camera, p)) }))
+      .filter(({ pixels }) => pixels.every((pixel) => pixel !== null))
+      .sort((a, b) => b.far - a.far)
+      .map(({ light, pixels }) => ({ light, corners: pixels as Point[] }));
+  }
+
+  private hangOn({ follows, scale, T_follows_culled }: Culled): void {
+    this.keyframe = follows;
+    this.at = transform(T_follows_culled, scale, ...this.at);
+    const turn = (v: Vector): Vector => scaled(rotate(T_follows_culled, ...v), scale);
+    this.axes = [turn(this.axes[0]), turn(this.axes[1]), turn(this.axes[2])];
+  }
+}
+
+// Landmarks and semi-dense points in the camera's frame that it sees.
+function pointsBefore(state: State, camera: Camera, T_world_camera: Pose): Seen[] {
+  const T_camera_world = inverse(T_world_camera);
+  const map = state.activeMap;
+  const seen: Seen[] = [];
+  const add = (p: Vector) => {
+    const pixel = project(camera, p);
+    if (pixel && pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < camera.width && pixel[1] < camera.height) seen.push({ p, pixel });
+  };
+  const from = new Map<number, { T: Pose; scale: number }>();
+  for (const { id, map: of, T_world_camera: T, scale } of state.keyframes.values()) if (of === map) from.set(id, { T: compose(T_camera_world, 1, T), scale });
+  for (let i = 0; i < state.landmarks.size; ++i) {
+    const { keyframe, p } = state.landmarks.at(i);
+    const pose = from.get(keyframe);
+    if (pose) add(transform(pose.T, pose.scale, ...p));
+  }
+  return seen;
+}
+
+interface Surface { at: Vector; normal: Vector }
+
+// The plane that most of the points about the tap lie on, where the tap's ray meets it; facing the camera.
+function surfaceAt(all: readonly Seen[], camera: Camera, tap: Point): Surface | null {
+  const byDistance = all.map((seen) => ({ ...seen, off: Math.hypot(seen.pixel[0] - tap[0], seen.pixel[1] - tap[1]) }))
+    .filter(({ off }) => off <= FARTHEST * camera.width).sort((a, b) => a.off - b.off);
+  if (byDistance.length < 3) return null;
+  const near = byDistance.filter(({ off }, i) => i < ENOUGH || off <= REACH * camera.width);
+  const ray = unproject(camera, tap) as Ray;
+  const depth = median(near.slice(0, 5).map(({ p }) => p[2]));
+  const plane = planeOf(near.map(({ p }) => p), FLAT * depth);
+  const towards = unit(scaled(ray, -1));
+  if (plane) {
+    const facing = dot(plane.normal, towards) < 0 ? scaled(plane.normal, -1) : plane.normal;
+    const z = dot(plane.normal, plane.through) / dot(plane.normal, ray);
+    if (dot(facing, towards) > STEEPEST && z > 0.5 * depth && z < 2 * depth) return { at: scaled(ray, z), normal: facing };
+  }
+  return { at: scaled(ray, depth), normal: towards };
+}
+
+// RANSAC over three points, then least squares over what agrees: the normal is the direction of least spread. Null: most agree on none.
+function planeOf(points: readonly Vector[], bound: number): { through: Vector; normal: Vector } | null {
+  let best: Vector[] = [];
+  let seed = 1;
+  const pick = () => {
+    seed = (Math.imul(seed, 1664525) + 1013904223) >>> 0;
+    return points[Math.floor((seed / 2 ** 32) * points.length)]!;
+  };
+  for (let i = 0; i < TRIES; ++i) {
+    const [a, b, c] = [pick(), pick(), pick()];
+    const across = cross(minus(b, a), minus(c, a));
+    if (Math.hypot(...across) < 1e-3 * bound * bound) continue;
+    const normal = unit(across);
+    const on = points.filter((p) => Math.abs(dot(normal, minus(p, a))) <= bound);
+    if (on.length > best.length) best = on;
+  }
+  if (best.length < 6 || best.length < 0.5 * points.length) return null;
+  const through = scaled(best.reduce((sum, p) => plus(sum, p), [0, 0, 0] as Vector), 1 / best.length);
+  // Inverse power iteration on the scatter matrix, kept regular by a little of its trace.
+  const m = [0, 0, 0, 0, 0, 0, 0, 0, 0];
+  for (const p of best) {
+    const d = minus(p, through);
+    for (let r = 0; r < 3; ++r) for (let c = 0; c < 3; ++c) m[3 * r + c]! += d[r]! * d[c]!;
+  }
+  const trace = m[0]! + m[4]! + m[8]!;
+  for (const k of [0, 4, 8]) m[k]! += 1e-6 * trace;
+  const row = (r: number): Vector => [m[3 * r]!, m[3 * r + 1]!, m[3 * r + 2]!];
+  const [a, b, c] = [row(0), row(1), row(2)];
+  const solve = (v: Vector): Vector => plus(plus(scaled(cross(b, c), v[0]), cross(c, a), v[1]), cross(a, b), v[2]); // adj(M) v, M symmetric
+  let normal: Vector = unit([0.3, 0.5, 0.8]);
+  for (let i = 0; i < 30; ++i) normal = unit(solve(normal));
+  return { through, normal };
+}
+
+function nearestKeyframe(state: State, T_world_camera: Pose): number | null {
+  const map = state.activeMap;
+  let best: number | null = null;
+  let least = Infinity;
+  for (const { id, map: of, T_world_camera: T } of state.keyframes.values()) {
+    const off = Math.hypot(T[4]! - T_world_camera[4]!, T[5]! - T_world_camera[5]!, T[6]! - T_world_camera[6]!);
+    if (of === map && off < least) [best, least] = [id, off];
+  }
+  return best;
+}
+
+function median(values: readonly number[]): number {
+  return [...values].sort((a, b) => a - b)[values.length >> 1]!;
+}

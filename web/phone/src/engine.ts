@@ -1,0 +1,96 @@
+// Where pictures are worked on: in a Worker of this page, or on the computer that serves it (remote.ts).
+import type { Done, FromWorker, Saved, Start, ToWorker } from './protocol.ts';
+
+export interface Hooks {
+  done(result: Done): void;
+  messages(messages: Uint8Array[]): void; // of the stream, that came with no picture
+  failed(error: string): void;            // it is over
+  lost(text: string): void;               // a connection, tried again by itself; '': it is back
+}
+
+export interface Engine {
+  readonly free: boolean; // takes a picture now
+  begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void>;
+  push(bitmap: ImageBitmap, time: number, turn: number): void;
+  ask(what: Saved): Promise<Uint8Array<ArrayBuffer>>; // rejects where it cannot be had
+  close(): void;
+}
+
+const MOST_THREADS = 4;
+
+export class LocalEngine implements Engine {
+  private readonly worker = new Worker(new URL('worker.js', document.baseURI), { type: 'module' });
+  private working = 0;
+  private number = 0;
+  private ready: (() => void) | null = null;
+  private refuse: ((error: Error) => void) | null = null;
+  private readonly waiting = new Map<Saved, { resolve(bytes: Uint8Array<ArrayBuffer>): void; reject(error: Error): void }>();
+
+  constructor(private readonly hooks: Hooks) {
+    this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(data);
+    this.worker.onerror = (event) => this.fail(event.message || 'the Worker could not be started');
+  }
+
+  get free(): boolean { return this.ready === null && this.working === 0; }
+
+  // With threads where the page is cross-origin isolated, and both modules are there.
+  async begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
+    const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
+    const threads = self.crossOriginIsolated && cores > 1 && await there('core/threads/alidade.mjs') ? cores : 1;
+    const base = new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href;
+    await new Promise<void>((resolve, reject) => {
+      this.ready = resolve;
+      this.refuse = reject;
+      this.send({ kind: 'start', base, threads, ...start });
+    });
+  }
+
+  push(bitmap: ImageBitmap, time: number, turn: number): void {
+    ++this.working;
+    this.send({ kind: 'picture', number: this.number++, time, bitmap, turn }, [bitmap]);
+  }
+
+  ask(what: Saved): Promise<Uint8Array<ArrayBuffer>> {
+    return new Promise((resolve, reject) => {
+      this.waiting.set(what, { resolve, reject });
+      this.send({ kind: 'ask', what });
+    });
+  }
+
+  close(): void { this.worker.terminate(); }
+
+  private send(message: ToWorker, transfer: Transferable[] = []): void { this.worker.postMessage(message, transfer); }
+
+  private hear(data: FromWorker): void {
+    if (data.kind === 'ready') {
+      this.ready?.();
+      this.ready = this.refuse = null;
+    } else if (data.kind === 'done') {
+      --this.working;
+      this.hooks.done(data);
+    } else if (data.kind === 'answer') {
+      if (data.messages.length > 0) this.hooks.messages(data.messages);
+      this.waiting.get(data.what)?.resolve(data.bytes);
+      this.waiting.delete(data.what);
+    } else if (data.what) {
+      this.waiting.get(data.what)?.reject(new Error(data.error));
+      this.waiting.delete(data.what);
+    } else {
+      this.fail(data.error);
+    }
+  }
+
+  private fail(text: string): void {
+    if (this.refuse) this.refuse(new Error(text));
+    else this.hooks.failed(text);
+    this.ready = this.refuse = null;
+  }
+}
+
+async function there(address: string): Promise<boolean> {
+  try {
+    return (await fetch(address, { method: 'HEAD' })).ok;
+  } catch {
+    return false;
+  }
+}

@@ -1,0 +1,72 @@
+// The camera picture as it was worked on, with its features and the cube.
+import type { Frame as StreamFrame, State } from '@alidade/scene';
+import { features } from '../../viewer/src/picture_marks.ts';
+import { byId } from '../../viewer/src/dom.ts';
+import type { Cube } from './cube.ts';
+import type { Point } from './lens.ts';
+
+const MARKS: ReadonlySet<string> = new Set(['matched', 'fresh', 'free', 'moving']);
+
+export class PictureView {
+  private readonly canvas = byId('picture') as HTMLCanvasElement;
+  private readonly draw = this.canvas.getContext('2d')!;
+  private turn = 0;
+
+  // `turn`: quarters the screen was turned clockwise since the start. What is told in pixels is told for the picture as it lay then.
+  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marks: boolean): void {
+    const { canvas, draw } = this;
+    this.turn = turn;
+    if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
+      canvas.width = bitmap.width;
+      canvas.height = bitmap.height;
+    }
+    draw.setTransform(1, 0, 0, 1, 0, 0);
+    draw.drawImage(bitmap, 0, 0);
+    const [w, h] = this.size();
+    draw.translate(canvas.width / 2, canvas.height / 2);
+    draw.rotate((-turn * Math.PI) / 2);
+    draw.translate(-w / 2, -h / 2);
+    const style = getComputedStyle(document.documentElement);
+    if (marks && frame) features({ draw, w, h, ratio: Math.max(w, h) / 480, colour: (name) => style.getPropertyValue(name) }, frame, MARKS);
+    if (cube) this.drawCube(cube, state, w, h);
+  }
+
+  // Pixels of the stream's camera where the page was tapped; null: beside the picture.
+  at(event: PointerEvent, state: State): Point | null {
+    const camera = state.hello?.camera;
+    if (!camera) return null;
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const { width: cw, height: ch } = this.canvas;
+    const scale = Math.min(width / cw, height / ch); // object-fit: contain
+    const [x, y] = [(event.clientX - left - width / 2) / scale, (event.clientY - top - height / 2) / scale]; // from the middle
+    const [w, h] = this.size();
+    const angle = (this.turn * Math.PI) / 2;
+    const [u, v] = [x * Math.cos(angle) - y * Math.sin(angle) + w / 2, x * Math.sin(angle) + y * Math.cos(angle) + h / 2];
+    if (u < 0 || v < 0 || u > w || v > h) return null;
+    return [(u * camera.width) / w - 0.5, (v * camera.height) / h - 0.5];
+  }
+
+  // Of the picture as it lay at the start.
+  private size(): [number, number] {
+    const { width, height } = this.canvas;
+    return this.turn % 2 ? [height, width] : [width, height];
+  }
+
+  private drawCube(cube: Cube, state: State, w: number, h: number): void {
+    const camera = state.hello?.camera;
+    const T_world_camera = state.cameraPose();
+    if (!camera || !T_world_camera) return;
+    const { draw } = this;
+    draw.lineWidth = w / 400;
+    draw.lineJoin = 'round';
+    for (const { corners, light } of cube.faces(state, T_world_camera)) {
+      draw.beginPath();
+      corners.forEach(([x, y], i) => draw[i === 0 ? 'moveTo' : 'lineTo'](((x + 0.5) * w) / camera.width, ((y + 0.5) * h) / camera.height));
+      draw.closePath();
+      draw.fillStyle = `rgb(${230 * light} ${140 * light} ${20 * light})`;
+      draw.fill();
+      draw.strokeStyle = '#3a2405';
+      draw.stroke();
+    }
+  }
+}

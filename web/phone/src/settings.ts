@@ -1,0 +1,68 @@
+// What the user chose, kept on the device.
+import { byId } from '../../viewer/src/dom.ts';
+
+export interface Choices {
+  fov: number | null;      // horizontal, degrees; null: found on the way
+  shape: boolean; moving: boolean; features: boolean; focus: boolean; connected: boolean;
+  more: string;            // name=value lines
+}
+
+const KEY = 'alidade-phone';
+const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '' };
+
+export function load(): Choices {
+  try {
+    const kept = JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Choices>;
+    return { ...DEFAULTS, ...kept };
+  } catch {
+    return { ...DEFAULTS }; // storage is switched off, or holds something else
+  }
+}
+
+function keep(choices: Choices): void {
+  try {
+    localStorage.setItem(KEY, JSON.stringify(choices));
+  } catch {
+    // storage is switched off: nothing is remembered
+  }
+}
+
+// As after --set of the program.
+export function coreSettings(choices: Choices): Record<string, string | number | boolean> {
+  const settings: Record<string, string | number | boolean> = {};
+  if (choices.shape) settings['semidense.enabled'] = true;
+  if (choices.moving) settings['dynamics.mode'] = 'geometry';
+  for (const line of choices.more.split('\n')) {
+    const equal = line.indexOf('=');
+    if (equal > 0) settings[line.slice(0, equal).trim()] = line.slice(equal + 1).trim();
+  }
+  return settings;
+}
+
+// Fills the dialog, and keeps what is changed in it.
+export function bind(choices: Choices, changed: () => void): void {
+  const box = (name: 'shape' | 'moving' | 'features' | 'focus' | 'connected') => {
+    const input = byId('set-' + name) as HTMLInputElement;
+    input.checked = choices[name];
+    input.addEventListener('change', () => {
+      choices[name] = input.checked;
+      keep(choices);
+      changed();
+    });
+  };
+  for (const name of ['shape', 'moving', 'features', 'focus', 'connected'] as const) box(name);
+  const fov = byId('set-fov') as HTMLInputElement;
+  fov.value = choices.fov === null ? '' : String(choices.fov);
+  fov.addEventListener('change', () => {
+    choices.fov = fov.value === '' || !fov.validity.valid ? null : fov.valueAsNumber;
+    keep(choices);
+    changed();
+  });
+  const more = byId('set-more') as HTMLTextAreaElement;
+  more.value = choices.more;
+  more.addEventListener('change', () => {
+    choices.more = more.value;
+    keep(choices);
+    changed();
+  });
+}

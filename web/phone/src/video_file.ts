@@ -1,0 +1,102 @@
+// A video file, picture by picture, at the speed at which they are worked on: none is left out.
+
+const MOST_WAITING = 3;          // pictures
+const SLOWEST = 0.0625, FASTEST = 4; // of playing: browsers take no less and no more
+const STEADY = 30;               // pictures without a miss, after which it may go faster
+
+interface Waiting { bitmap: ImageBitmap; time: number }
+
+// Plays a video element and takes each picture as it is shown. One that was missed (the browser counts what it shows) is
+// gone back for, and it goes on more slowly.
+export class VideoFile {
+  private readonly address: string;
+  private readonly canvas: OffscreenCanvas;
+  private readonly context: OffscreenCanvasRenderingContext2D;
+  private waiting: Waiting[] = [];
+  private last = -1; // seconds: the time of the last picture taken
+  private shown = -1; // pictures shown so far, by the browser's count
+  private dropped = 0;
+  private steady = 0;
+  private closed = false;
+  private wake: (() => void) | null = null;
+
+  private constructor(private readonly video: HTMLVideoElement, address: string) {
+    this.address = address;
+    this.canvas = new OffscreenCanvas(video.videoWidth, video.videoHeight);
+    this.context = this.canvas.getContext('2d')!;
+  }
+
+  // Throws Error, in words, when the browser cannot read it.
+  static async open(video: HTMLVideoElement, file: Blob): Promise<VideoFile> {
+    const address = URL.createObjectURL(file);
+    await new Promise<void>((resolve, reject) => {
+      video.onloadeddata = () => resolve();
+      video.onerror = () => reject(new Error('this browser cannot read it as a video (MP4 with H.264 and WebM are read nearly everywhere)'));
+      video.srcObject = null;
+      video.src = address;
+      video.load();
+    });
+    if (!video.videoWidth) throw new Error('there are no pictures in it');
+    const opened = new VideoFile(video, address);
+    video.playbackRate = 0.5;
+    video.requestVideoFrameCallback(opened.take);
+    video.onended = () => opened.wake?.();
+    return opened;
+  }
+
+  get share(): number { return this.video.duration ? Math.max(0, this.last) / this.video.duration : 0; }
+  get duration(): number { return this.video.duration; }
+
+  // The next picture, and its time in seconds; null: that was the last one.
+  async next(): Promise<Waiting | null> {
+    for (;;) {
+      const first = this.waiting.shift();
+      if (this.closed) return null;
+      if (first && this.waiting.length > 0) return first;
+      if (this.video.ended) return first ?? null;
+      if (this.video.paused) await this.video.play().catch(() => { this.closed = true; });
+      if (first) return first;
+      await new Promise<void>((resolve) => { this.wake = resolve; });
+      this.wake = null;
+    }
+  }
+
+  close(): void {
+    if (this.closed) return;
+    this.closed = true;
+    for (const { bitmap } of this.waiting) bitmap.close();
+    this.waiting = [];
+    this.video.pause();
+    this.video.removeAttribute('src');
+    this.video.load();
+    URL.revokeObjectURL(this.address);
+    this.wake?.();
+  }
+
+  private readonly take = (_: number, { mediaTime, presentedFrames }: VideoFrameCallbackMetadata): void => {
+    if (this.closed) return;
+    const { video } = this;
+    video.requestVideoFrameCallback(this.take);
+    const { droppedVideoFrames } = video.getVideoPlaybackQuality();
+    const missed = this.shown >= 0 && (presentedFrames > this.shown + 1 || droppedVideoFrames > this.dropped);
+    this.shown = presentedFrames;
+    this.dropped = droppedVideoFrames;
+    if (mediaTime <= this.last) return;
+    if (missed && video.playbackRate > SLOWEST) {
+      this.steady = 0;
+      video.playbackRate = Math.max(SLOWEST, 0.6 * video.playbackRate);
+      video.currentTime = Math.max(0, this.last);
+      this.shown = -1;
+      return;
+    }
+    if (++this.steady > STEADY && this.waiting.length === 0) {
+      this.steady = 0;
+      video.playbackRate = Math.min(FASTEST, 1.2 * video.playbackRate);
+    }
+    this.last = mediaTime;
+    this.context.drawImage(video, 0, 0);
+    this.waiting.push({ bitmap: this.canvas.transferToImageBitmap(), time: mediaTime });
+    if (this.waiting.length >= MOST_WAITING) video.pause();
+    this.wake?.();
+  };
+}

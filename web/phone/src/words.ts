@@ -1,0 +1,34 @@
+// What the core says, for people with a phone in their hand: short, and what to do.
+import type { Frame } from '../../core/src/index.ts';
+
+export const STATE_WORDS: Record<Frame['state'], string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
+
+const DARK = 35; // mean grey, 0…255
+
+const ADVICE: readonly [RegExp, string][] = [
+  [/hardly moves/, 'Move sideways, slowly.'],
+  [/too little parallax|turn on the spot/, 'Move sideways: turning is not enough.'],
+  [/stand still/, 'Move the phone, not the things before it.'],
+  [/two motions explain/, 'Show it something with depth: what is seen is flat.'],
+  [/no frame yet/, 'Move sideways, slowly.'],
+  [/too few matches between frames/, 'Move more slowly.'],
+  [/too few points agree|did not hold|first points moved/, 'Move slowly; keep people out of the picture.'],
+  [/too few corners/, 'Nothing to hold on to: show it something with texture.'],
+  [/not recognised/, 'Go back to a place it has seen, and look the same way.'],
+  [/too few landmarks found/, 'Go back slowly to what it has seen.'],
+];
+
+// `light`: mean grey of the picture; NaN: not known.
+export function advice({ state, reason, predicted }: Frame, light: number): string {
+  if (state === 'tracking') return light < DARK ? 'It is dark: more light would help.' : '';
+  if (predicted) return 'Hold on: it guesses where you are.';
+  if (light < DARK) return 'Too dark: switch on a light.';
+  const found = ADVICE.find(([pattern]) => pattern.test(reason));
+  return found?.[1] ?? (reason ? `${reason.charAt(0).toUpperCase()}${reason.slice(1)}.` : '');
+}
+
+export function lensText({ fov, fovSigma }: Frame, given: boolean): string {
+  if (!(fov > 0)) return '';
+  if (given) return `${fov.toFixed(0)}° given`;
+  return fovSigma > 5 ? `${fov.toFixed(0)}° assumed` : `${fov.toFixed(1)}° ± ${fovSigma.toFixed(1)} found`;
+}

@@ -1,0 +1,53 @@
+// The Worker: scales each picture, hands it to the core, and tells what came of it.
+import { Slam } from '../../core/src/index.ts';
+import type { FromWorker, Picture, Start, ToWorker } from './protocol.ts';
+
+const scope = self as unknown as { postMessage(message: FromWorker, transfer: Transferable[]): void; onmessage: ((event: MessageEvent<ToWorker>) => void) | null };
+
+let slam: Slam | null = null;
+let context: OffscreenCanvasRenderingContext2D | null = null;
+
+async function start({ base, threads, width, height, fov, settings }: Start): Promise<void> {
+  slam = await Slam.create({ width, height, base, threads, settings, ...(fov ? { fov } : {}) });
+  context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
+  scope.postMessage({ kind: 'ready' }, []);
+}
+
+function track({ number, time, bitmap, turn }: Picture): void {
+  if (!slam || !context) return;
+  const { width, height } = slam;
+  context.setTransform(1, 0, 0, 1, 0, 0);
+  if (turn === 0) {
+    context.drawImage(bitmap, 0, 0, width, height);
+  } else {
+    context.translate(width / 2, height / 2);
+    context.rotate((turn * Math.PI) / 2);
+    const [w, h] = turn % 2 ? [height, width] : [width, height];
+    context.drawImage(bitmap, -w / 2, -h / 2, w, h);
+  }
+  const image = context.getImageData(0, 0, width, height);
+  const frame = slam.track(image, time);
+  const messages = slam.messages();
+  scope.postMessage({ kind: 'done', number, time, frame, light: meanGreen(image.data), messages, bitmap, turn }, [bitmap, ...messages.map(({ buffer }) => buffer)]);
+}
+
+// Of every 16th pixel: enough to tell the dark.
+function meanGreen(data: Uint8ClampedArray): number {
+  let sum = 0;
+  for (let i = 1; i < data.length; i += 64) sum += data[i]!;
+  return sum / (data.length / 64);
+}
+
+scope.onmessage = ({ data }) => {
+  const failed = (error: unknown) => scope.postMessage({ kind: 'failed', error: error instanceof Error ? error.message : String(error), ...(data.kind === 'ask' ? { what: data.what } : {}) }, []);
+  if (data.kind === 'start') return void start(data).catch(failed);
+  try {
+    if (data.kind === 'picture') return track(data);
+    if (!slam) return;
+    if (data.what === 'finish') slam.finish();
+    const bytes = data.what === 'map' ? slam.map() : data.what === 'cloud' ? slam.cloud() : new TextEncoder().encode(data.what === 'trajectory' ? slam.trajectory() : '');
+    scope.postMessage({ kind: 'answer', what: data.what, bytes: bytes as Uint8Array<ArrayBuffer>, messages: data.what === 'finish' ? slam.messages() : [] }, [bytes.buffer]);
+  } catch (error) {
+    failed(error);
+  }
+};

@@ -1,0 +1,43 @@
+// A fake camera's file for Chromium: frames of a recording as raw video, each with its number in its upper left corner.
+import { closeSync, openSync, readFileSync, writeSync } from 'node:fs';
+import { join } from 'node:path';
+import jpeg from 'jpeg-js';
+
+export const CELL = 16;  // pixels: a bit of the number
+export const BITS = 12;
+
+export interface Recording { times: number[]; files: string[]; width: number; height: number }
+
+export function openRecording(folder: string): Recording {
+  const lines = readFileSync(join(folder, 'rgb.txt'), 'utf8').split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.split(/\s+/));
+  const files = lines.map(([, name]) => join(folder, name!));
+  const { width, height } = jpeg.decode(readFileSync(files[0]!), { useTArray: true });
+  return { times: lines.map(([time]) => Number(time)), files, width, height };
+}
+
+// `order`: frames of the recording, in the order that the camera shows them.
+export function writeY4m(path: string, { files, width, height }: Recording, order: readonly number[]): void {
+  const out = openSync(path, 'w');
+  writeSync(out, `YUV4MPEG2 W${width} H${height} F30:1 Ip A1:1 C420jpeg\n`);
+  const y = Buffer.alloc(width * height);
+  const u = Buffer.alloc((width * height) / 4);
+  const v = Buffer.alloc((width * height) / 4);
+  for (const number of order) {
+    const { data } = jpeg.decode(readFileSync(files[number]!), { useTArray: true });
+    // BT.601, limited range, as browsers take it.
+    for (let i = 0; i < width * height; ++i) y[i] = 16 + (65.738 * data[4 * i]! + 129.057 * data[4 * i + 1]! + 25.064 * data[4 * i + 2]!) / 256;
+    for (let r = 0; r < height / 2; ++r) {
+      for (let c = 0; c < width / 2; ++c) {
+        const i = 4 * (2 * r * width + 2 * c);
+        u[(r * width) / 2 + c] = 128 + (-37.945 * data[i]! - 74.494 * data[i + 1]! + 112.439 * data[i + 2]!) / 256;
+        v[(r * width) / 2 + c] = 128 + (112.439 * data[i]! - 94.154 * data[i + 1]! - 18.285 * data[i + 2]!) / 256;
+      }
+    }
+    for (let bit = 0; bit < BITS; ++bit) {
+      for (let r = 0; r < CELL; ++r) y.fill((number >> bit) & 1 ? 235 : 16, r * width + bit * CELL, r * width + (bit + 1) * CELL);
+    }
+    writeSync(out, 'FRAME\n');
+    for (const plane of [y, u, v]) writeSync(out, plane);
+  }
+  closeSync(out);
+}
