@@ -1,16 +1,19 @@
 // A virtual object on a tapped surface. It hangs on the keyframe it was placed from, so that it goes along when the map is corrected.
-import { poses } from '@alidade/scene';
 import type { Camera, Culled, Message, Pose, State } from '@alidade/scene';
+import { USES } from '../../scene/src/messages.ts';
+import { compose, inverse, rotate, transform } from '../../scene/src/pose.ts'; // not by the package: its scene wants a browser
 import { project, unproject } from './lens.ts';
 import type { Point, Ray } from './lens.ts';
 
 type Vector = readonly [number, number, number];
-const { compose, inverse, rotate, transform } = poses;
 
 // How a surface is told from the points about a tap.
 const REACH = 0.06;        // of the picture's width: points so near say where the surface is; more and more, until there are …
-const FARTHEST = 0.25;
-const ENOUGH = 12;         // … so many
+const FARTHEST = 0.15;
+const ENOUGH = 8;         // … so many
+const NEAR = 0.03;         // of the picture's width: no point so near, and they must lie all about the tap: what is seen is not gone beyond
+const WIDEST = 150;        // degrees without a point, as seen from the tap: they lie all about it
+const SAME = 3;            // pixels from a landmark to its feature
 const FLAT = 0.02;         // of the depth: points so near to a plane lie on it
 const TRIES = 200;         // planes through three of them
 const STEEPEST = 0.2;      // cosine between a surface and the sight: flatter ones are not believed
@@ -104,23 +107,35 @@ export class Cube {
   }
 }
 
-// Landmarks and semi-dense points in the camera's frame that it sees.
+// Landmarks in the camera's frame that are seen now: those with a feature of the latest frame at their place. Others may be behind something.
 function pointsBefore(state: State, camera: Camera, T_world_camera: Pose): Seen[] {
   const T_camera_world = inverse(T_world_camera);
   const map = state.activeMap;
   const seen: Seen[] = [];
-  const add = (p: Vector) => {
-    const pixel = project(camera, p);
-    if (pixel && pixel[0] >= 0 && pixel[1] >= 0 && pixel[0] < camera.width && pixel[1] < camera.height) seen.push({ p, pixel });
-  };
+  const features = matchedFeatures(state, camera);
   const from = new Map<number, { T: Pose; scale: number }>();
   for (const { id, map: of, T_world_camera: T, scale } of state.keyframes.values()) if (of === map) from.set(id, { T: compose(T_camera_world, 1, T), scale });
   for (let i = 0; i < state.landmarks.size; ++i) {
     const { keyframe, p } = state.landmarks.at(i);
     const pose = from.get(keyframe);
-    if (pose) add(transform(pose.T, pose.scale, ...p));
+    if (!pose) continue;
+    const there = transform(pose.T, pose.scale, ...p);
+    const pixel = project(camera, there);
+    if (pixel && features.some(([x, y]) => Math.abs(x - pixel[0]) < SAME && Math.abs(y - pixel[1]) < SAME)) seen.push({ p: there, pixel });
   }
   return seen;
+}
+
+function matchedFeatures(state: State, camera: Camera): Point[] {
+  const packed = state.frame?.features;
+  const points: Point[] = [];
+  if (!packed) return points;
+  const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
+  for (let at = 0; at + 6 <= packed.length; at += 6) {
+    if (USES[packed[at + 4]!] !== 'matched' && USES[packed[at + 4]!] !== 'fresh') continue;
+    points.push([(view.getUint16(at, true) * camera.width) / 65536 - 0.5, (view.getUint16(at + 2, true) * camera.height) / 65536 - 0.5]);
+  }
+  return points;
 }
 
 interface Surface { at: Vector; normal: Vector }
@@ -131,6 +146,7 @@ function surfaceAt(all: readonly Seen[], camera: Camera, tap: Point): Surface | 
     .filter(({ off }) => off <= FARTHEST * camera.width).sort((a, b) => a.off - b.off);
   if (byDistance.length < 3) return null;
   const near = byDistance.filter(({ off }, i) => i < ENOUGH || off <= REACH * camera.width);
+  if (near[0]!.off > NEAR * camera.width && !surrounded(near.map(({ pixel }) => pixel), tap)) return null;
   const ray = unproject(camera, tap) as Ray;
   const depth = median(near.slice(0, 5).map(({ p }) => p[2]));
   const plane = planeOf(near.map(({ p }) => p), FLAT * depth);
@@ -141,6 +157,11 @@ function surfaceAt(all: readonly Seen[], camera: Camera, tap: Point): Surface | 
     if (dot(facing, towards) > STEEPEST && z > 0.5 * depth && z < 2 * depth) return { at: scaled(ray, z), normal: facing };
   }
   return { at: scaled(ray, depth), normal: towards };
+}
+
+function surrounded(pixels: readonly Point[], [x, y]: Point): boolean {
+  const angles = pixels.map(([u, v]) => (Math.atan2(v - y, u - x) * 180) / Math.PI).sort((a, b) => a - b);
+  return angles.every((angle, i) => (i + 1 < angles.length ? angles[i + 1]! : angles[0]! + 360) - angle <= WIDEST);
 }
 
 // RANSAC over three points, then least squares over what agrees: the normal is the direction of least spread. Null: most agree on none.

@@ -1,9 +1,9 @@
 // Chromium for the tests of the page, and what they look at.
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { inflateSync } from 'node:zlib';
 import { chromium } from 'playwright-core';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
+import { readPng } from '../../scene/test/png.ts';
 
 declare const WEB: string; // by tools/test.mjs
 
@@ -82,38 +82,12 @@ export function differing(a: Picture, b: Picture): number {
 
 // 8 bits RGB or RGBA, as Chromium writes them.
 function decodePng(file: Buffer): Picture {
-  let at = 8;
-  const data: Buffer[] = [];
-  let [width, height, channels] = [0, 0, 0];
-  while (at < file.length) {
-    const length = file.readUInt32BE(at);
-    const type = file.toString('latin1', at + 4, at + 8);
-    const body = file.subarray(at + 8, at + 8 + length);
-    if (type === 'IHDR') [width, height, channels] = [body.readUInt32BE(0), body.readUInt32BE(4), body[9] === 6 ? 4 : 3];
-    if (type === 'IDAT') data.push(body);
-    at += 12 + length;
-  }
-  const raw = inflateSync(Buffer.concat(data));
-  const stride = width * channels;
-  const pixels = Buffer.alloc(stride * height);
-  for (let y = 0; y < height; ++y) {
-    const filter = raw[y * (stride + 1)];
-    for (let x = 0; x < stride; ++x) {
-      const left = x >= channels ? pixels[y * stride + x - channels] : 0;
-      const up = y > 0 ? pixels[(y - 1) * stride + x] : 0;
-      const corner = x >= channels && y > 0 ? pixels[(y - 1) * stride + x - channels] : 0;
-      const p = left + up - corner;
-      const [a, b, c] = [Math.abs(p - left), Math.abs(p - up), Math.abs(p - corner)];
-      const paeth = a <= b && a <= c ? left : b <= c ? up : corner;
-      const add = [0, left, up, (left + up) >> 1, paeth][filter];
-      pixels[y * stride + x] = raw[y * (stride + 1) + 1 + x] + add;
-    }
-  }
+  const { width, height, channels, samples } = readPng(file);
   return {
     width, height,
     at: (x, y) => {
-      const i = y * stride + x * channels;
-      return [pixels[i], pixels[i + 1], pixels[i + 2]];
+      const i = channels * (y * width + x);
+      return [samples[i]!, samples[i + 1]!, samples[i + 2]!];
     },
   };
 }
