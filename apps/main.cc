@@ -35,6 +35,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddSynthCommand(app, action);
   alidade::AddExportCommand(app, action);
   alidade::AddViewCommand(app, action);
+  alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddCalibrateCommand(app, action);
@@ -66,6 +67,7 @@ int Run(int argc, char** argv) {
       "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
       "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
       "  alidade run my_recording --viewer           watch it in a browser\n"
+      "  alidade phone --host 0.0.0.0 --tls          the page for phones, for one in this network\n"
       "  alidade compare result_a result_b           two runs beside each other\n"
       "  alidade info alidade-out/my_recording       what is in a map\n"
       "  alidade run --help                          all of a command's options\n"

@@ -41,20 +41,22 @@ endif()
 get_filename_component(FOLDER ${OUT} DIRECTORY)
 set(FOLDER ${FOLDER}/page)
 file(REMOVE_RECURSE ${FOLDER})
-set(FILES "")
-if(NOT PROBLEM)
-  file(GLOB FILES ${WEB}/viewer/dist/*)
-endif()
 set(DATA "")
 set(NAMES "")
-set(TABLE "")
 set(NUMBER 0)
-foreach(FILE ${FILES})
-  get_filename_component(NAME ${FILE} NAME)
-  file(COPY ${FILE} DESTINATION ${FOLDER})
-  file(SHA256 ${FILE} HASH)
-  set(SYMBOL alidade_page_${NUMBER})
-  string(APPEND DATA "// ${NAME} ${HASH}
+# Adds the files of web/PAGE/dist to DATA and NAMES, and their table to TABLE_<PAGE>.
+foreach(PAGE viewer phone)
+  set(FILES "")
+  if(NOT PROBLEM)
+    file(GLOB FILES ${WEB}/${PAGE}/dist/*)
+  endif()
+  set(TABLE_${PAGE} "")
+  foreach(FILE ${FILES})
+    get_filename_component(NAME ${FILE} NAME)
+    file(COPY ${FILE} DESTINATION ${FOLDER}/${PAGE})
+    file(SHA256 ${FILE} HASH)
+    set(SYMBOL alidade_page_${NUMBER})
+    string(APPEND DATA "// ${PAGE}/${NAME} ${HASH}
 asm(R\"(
 .pushsection .rodata
 .hidden ${SYMBOL}
@@ -62,15 +64,16 @@ asm(R\"(
 .global ${SYMBOL}
 .global ${SYMBOL}_end
 ${SYMBOL}:
-.incbin \"${FOLDER}/${NAME}\"
+.incbin \"${FOLDER}/${PAGE}/${NAME}\"
 ${SYMBOL}_end:
 .byte 0
 .popsection
 )\");
 ")
-  string(APPEND NAMES "extern \"C\" [[gnu::visibility(\"hidden\")]] const char ${SYMBOL}[], ${SYMBOL}_end[];\n")
-  string(APPEND TABLE "      {\"${NAME}\", Between(${SYMBOL}, ${SYMBOL}_end)},\n")
-  math(EXPR NUMBER "${NUMBER} + 1")
+    string(APPEND NAMES "extern \"C\" [[gnu::visibility(\"hidden\")]] const char ${SYMBOL}[], ${SYMBOL}_end[];\n")
+    string(APPEND TABLE_${PAGE} "      {\"${NAME}\", Between(${SYMBOL}, ${SYMBOL}_end)},\n")
+    math(EXPR NUMBER "${NUMBER} + 1")
+  endforeach()
 endforeach()
 file(WRITE ${OUT} "// Made by cmake/BuildViewerPage.cmake.
 #include \"alidade/serve/response.h\"
@@ -85,7 +88,12 @@ namespace {
 }  // namespace
 const std::vector<PageFile>& PageFiles() {
   static const std::vector<PageFile> files = {
-${TABLE}  };
+${TABLE_viewer}  };
+  return files;
+}
+const std::vector<PageFile>& PhoneFiles() {
+  static const std::vector<PageFile> files = {
+${TABLE_phone}  };
   return files;
 }
 }  // namespace alidade

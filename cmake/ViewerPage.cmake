@@ -1,4 +1,4 @@
-# alidade_viewer_page(OUT): makes the C++ file OUT that holds the files of the viewer's page (web/viewer/dist), which npm
+# alidade_viewer_page(OUT): makes the C++ file OUT that holds the files of the pages (web/viewer/dist, web/phone/dist), which npm
 # builds when Node.js is there; without, a plain page stands for it. Built again only when something in web/ has changed.
 option(ALIDADE_WEB "Build the viewer's page with npm" ON)
 
@@ -17,7 +17,8 @@ function(alidade_viewer_page OUT)
     endif()
   endif()
   # Not what npm puts there itself: node_modules, dist, generated.
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/viewer/src/*)
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/viewer/src/*
+       ${WEB}/phone/src/* ${WEB}/core/src/*)
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/BuildViewerPage.cmake)
   add_custom_command(
     OUTPUT ${OUT}

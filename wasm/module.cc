@@ -12,7 +12,7 @@
 
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
-#include "phone_slam.h"
+#include "alidade/phone/phone_slam.h"
 
 namespace {
 

@@ -28,22 +28,27 @@ bool SameSecret(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-Gate::Gate(int port, std::string name, std::string token)
-    : port_(":" + std::to_string(port)), name_(std::move(name)), token_(std::move(token)) {}
+Gate::Gate(int port, std::string name, std::string token, bool tls)
+    : port_(":" + std::to_string(port)),
+      name_(std::move(name)),
+      token_(std::move(token)),
+      tls_(tls) {}
 
 bool Gate::IsOurs(std::string_view host, const Caller& caller) const {
   if (host.size() > port_.size() && host.substr(host.size() - port_.size()) == port_) {
     host.remove_suffix(port_.size());
-  } else if (port_ != ":80") {  // which browsers leave out
+  } else if (port_ != (tls_ ? ":443" : ":80")) {  // which browsers leave out
     return false;
   }
   if (SameName(host, caller.local) || (!name_.empty() && SameName(host, name_))) return true;
+  if (tls_ && SameName(host, "127.0.0.1")) return true;
   return caller.loopback && SameName(host, "localhost");
 }
 
 std::string Gate::Refusal(const Caller& caller) const {
   if (!caller.host || !IsOurs(*caller.host, caller)) return "this host is called something else";
-  if (caller.origin && !SameName(*caller.origin, "http://" + std::string(*caller.host)))
+  if (caller.origin &&
+      !SameName(*caller.origin, (tls_ ? "https://" : "http://") + std::string(*caller.host)))
     return "pages of other hosts may not ask";
   return "";
 }

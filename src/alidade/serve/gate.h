@@ -18,7 +18,9 @@ struct Caller {
 class Gate {
  public:
   // `name`: what else we are called, when the user gave a name; `token`: empty when none is needed.
-  Gate(int port, std::string name, std::string token);
+  // `tls`: pages are https, and connections come from the TLS door: any may use the name, localhost
+  // or 127.0.0.1.
+  Gate(int port, std::string name, std::string token, bool tls = false);
   // Why the caller is refused, one line; empty when it may come in.
   //   Host must be an address of ours or the name: a page of another host whose name was made to
   // lead here (DNS rebinding) is told by it. Origin, which browsers send with what other pages ask
@@ -34,6 +36,7 @@ class Gate {
   std::string port_;  // ":8090"
   std::string name_;
   std::string token_;
+  bool tls_ = false;
 };
 
 // 128 random bits from the system, as 32 hexadecimal digits.

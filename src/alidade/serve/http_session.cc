@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "alidade/serve/frame_client.h"
 #include "alidade/serve/response.h"
 #include "alidade/serve/stream_client.h"
 
@@ -105,17 +106,22 @@ void HttpSession::OnRequest() {
   const std::string_view path = PathOf(target);
   const ServeTask& task = core_.task;
   const bool is_stream = path == "/stream" && task.hub != nullptr;
-  const bool is_file = path == "/run.stream" && task.hub == nullptr;
+  const bool is_frames = path == "/frames" && task.frames != nullptr;
+  const bool is_file = path == "/run.stream" && task.hub == nullptr && !task.phone;
   // What is compiled in is no secret, and the page asks for it without the token.
   const bool is_own = path == "/" || path == "/index.html" || path == "/info.json";
-  if ((is_stream || is_file || is_own) && !core_.gate->HasToken(target)) {
+  if ((is_stream || is_frames || is_file || is_own) && !core_.gate->HasToken(target)) {
     return Send(403, kText, "the address that the program printed ends in a token: it is needed\n");
   }
   if (is_stream) return Upgrade();
-  if (is_file) return SendFile();
+  if (is_frames) return UpgradeFrames();
+  if (is_file) return SendFile(task.replay_path, "application/octet-stream");
   if (path == "/info.json") return Send(200, "application/json", task.info);
   const auto accepted = Only(request, http::field::accept_encoding);
-  const auto page = FindPage(path, PageFiles(), AcceptsGzip(accepted.value_or("")));
+  if (const std::string core = FindCore(path, task.core_folder); !core.empty())
+    return SendFile(core, TypeOf(core));
+  const auto page =
+      FindPage(path, task.phone ? PhoneFiles() : PageFiles(), AcceptsGzip(accepted.value_or("")));
   if (!page) return Send(404, kText, "there is no such page\n");
   Send(200, page->type, page->bytes, page->gzipped);
 }
@@ -131,8 +137,20 @@ void HttpSession::Upgrade() {
   client->Start(request);
 }
 
+void HttpSession::UpgradeFrames() {
+  const Request& request = parser_->get();
+  if (!beast::websocket::is_upgrade(request) || buffer_.size() > 0)
+    return Send(400, kText, "this is a WebSocket\n");
+  if (!core_.MayJoin()) return Send(503, kText, "too many pages\n");
+  auto client = std::make_shared<FrameClient>(std::move(stream_), core_.io, *core_.task.frames,
+                                              core_.task.settings);
+  core_.pages.push_back(client);
+  client->Start(request);
+}
+
 void HttpSession::Send(int status, std::string_view type, std::string_view body, bool gzipped) {
-  head_ = ResponseHead(status, type, body.size(), keep_alive_, gzipped);
+  const Site site = core_.task.phone ? Site::kPhone : Site::kViewer;
+  head_ = ResponseHead(status, type, body.size(), keep_alive_, gzipped, site);
   Wake();
   const std::array<asio::const_buffer, 2> buffers = {
       asio::buffer(head_), asio::buffer(body.data(), head_only_ ? 0 : body.size())};
@@ -141,13 +159,13 @@ void HttpSession::Send(int status, std::string_view type, std::string_view body,
   });
 }
 
-void HttpSession::SendFile() {
+void HttpSession::SendFile(const std::string& path, std::string_view type) {
   std::error_code error;
-  const std::string& path = core_.task.replay_path;
   file_left_ = std::filesystem::file_size(path, error);
   file_.open(path, std::ios::binary);
-  if (error || !file_) return Send(404, kText, "the recording is gone\n");
-  head_ = ResponseHead(200, "application/octet-stream", file_left_, keep_alive_);
+  if (error || !file_) return Send(404, kText, "the file is gone\n");
+  const Site site = core_.task.phone ? Site::kPhone : Site::kViewer;
+  head_ = ResponseHead(200, type, file_left_, keep_alive_, false, site);
   if (head_only_) file_left_ = 0;
   Wake();
   asio::async_write(stream_, asio::buffer(head_),

@@ -36,8 +36,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void OnBadRequest(boost::beast::error_code error);
   std::string Refusal(const Request& request) const;
   void Upgrade();
+  void UpgradeFrames();
   void Send(int status, std::string_view type, std::string_view body, bool gzipped = false);
-  void SendFile();
+  void SendFile(const std::string& path, std::string_view type);
   void SendPart();
   void Sent(boost::beast::error_code error);
   void Linger();

@@ -1,6 +1,8 @@
 #include "alidade/serve/response.h"
 
+#include <algorithm>
 #include <array>
+#include <filesystem>
 #include <utility>
 
 namespace alidade {
@@ -40,14 +42,22 @@ std::string_view Words(int status) {
   }
 }
 
+constexpr std::array<std::string_view, 5> kCoreFiles = {
+    "single/alidade.mjs", "single/alidade.wasm", "threads/alidade.mjs", "threads/alidade.wasm",
+    "threads/alidade.worker.js"};
+
+}  // namespace
+
 std::string_view TypeOf(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kTypes = {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kTypes = {
       {{"html", "text/html; charset=utf-8"},
        {"js", "text/javascript; charset=utf-8"},
        {"css", "text/css; charset=utf-8"},
        {"svg", "image/svg+xml"},
        {"txt", "text/plain; charset=utf-8"},
-       {"wasm", "application/wasm"}}};
+       {"wasm", "application/wasm"},
+       {"mjs", "text/javascript; charset=utf-8"},
+       {"webmanifest", "application/manifest+json"}}};
   const std::string_view ending = name.substr(name.rfind('.') + 1);
   for (const auto& [known, type] : kTypes) {
     if (ending == known) return type;
@@ -55,10 +65,24 @@ std::string_view TypeOf(std::string_view name) {
   return "application/octet-stream";
 }
 
-}  // namespace
+std::string FindCore(std::string_view path, const std::string& folder) {
+  constexpr std::string_view kBegin = "/core/";
+  if (folder.empty() || path.substr(0, kBegin.size()) != kBegin) return {};
+  const std::string_view name = path.substr(kBegin.size());
+  if (std::find(kCoreFiles.begin(), kCoreFiles.end(), name) == kCoreFiles.end()) return {};
+  namespace fs = std::filesystem;
+  const fs::path installed = fs::path(folder) / name;
+  const fs::path built =
+      fs::path(folder) / name.substr(0, name.find('/')) / "bin" / name.substr(name.find('/') + 1);
+  std::error_code error;
+  for (const fs::path& file : {installed, built}) {
+    if (fs::is_regular_file(file, error)) return file.string();
+  }
+  return {};
+}
 
 std::string ResponseHead(int status, std::string_view type, uint64_t length, bool keep_alive,
-                         bool gzipped) {
+                         bool gzipped, Site site) {
   std::string head = "HTTP/1.1 " + std::to_string(status) + " ";
   const auto line = [&](std::string_view name, std::string_view value) {
     head.append(name).append(": ").append(value).append("\r\n");
@@ -69,7 +93,14 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   if (gzipped) line("Content-Encoding", "gzip");
   line("Connection", keep_alive ? "keep-alive" : "close");
   line("Cache-Control", "no-store");
-  line("Content-Security-Policy", kContentPolicy);
+  line("Content-Security-Policy", site == Site::kPhone ? kPhonePolicy : kContentPolicy);
+  if (site == Site::kPhone) {
+    // Cross-origin isolated: threads need it. The sensors are the page's own.
+    line("Cross-Origin-Opener-Policy", "same-origin");
+    line("Cross-Origin-Embedder-Policy", "require-corp");
+    line("Permissions-Policy",
+         "camera=(self), accelerometer=(self), gyroscope=(self), magnetometer=(self)");
+  }
   line("X-Content-Type-Options", "nosniff");
   line("Referrer-Policy", "no-referrer");
   line("Cross-Origin-Resource-Policy", "same-origin");

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "alidade/serve/frame_host.h"
 #include "alidade/serve/viewer_server.h"
 
 namespace alidade {
@@ -13,7 +14,10 @@ struct ServeTask {
   ServeSettings settings;    // checked
   StreamHub* hub = nullptr;  // null: the file
   std::string replay_path;
-  std::string info;  // what /info.json answers
+  std::string info;             // what /info.json answers
+  bool phone = false;           // the page for phones, not the viewer's
+  std::string core_folder;      // of the core as WebAssembly; empty: none
+  FrameHost* frames = nullptr;  // who works on pictures that pages send; null: nobody
 };
 
 inline constexpr char kServeModuleFile[] = "libalidade_serve.so";

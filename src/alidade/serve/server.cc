@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "alidade/serve/frame_client.h"
 #include "alidade/serve/http_session.h"
 #include "alidade/serve/response.h"
 #include "alidade/serve/stream_client.h"
@@ -65,13 +66,16 @@ std::string UrlAddress(const asio::ip::address& address) {
 
 bool ServerCore::MayJoin() {
   ForgetEnded(clients);
-  return static_cast<int>(clients.size()) < task.settings.max_clients;
+  ForgetEnded(pages);
+  return static_cast<int>(clients.size() + pages.size()) < task.settings.max_clients;
 }
 
 bool ServerCore::MayConnect() {
   ForgetEnded(clients);
+  ForgetEnded(pages);
   ForgetEnded(sessions);
-  if (static_cast<int>(clients.size() + sessions.size()) < task.settings.max_connections)
+  if (static_cast<int>(clients.size() + pages.size() + sessions.size()) <
+      task.settings.max_connections)
     return true;
   std::shared_ptr<HttpSession> oldest;
   for (const auto& one : sessions) {
@@ -86,15 +90,21 @@ bool ServerCore::MayConnect() {
 Server::Server(const ServeTask& task) : core_(task) {
   const std::string& host = task.settings.host;
   const asio::ip::address address = AddressOf(host, core_.io);
-  Listen(address);
   error_code no_address;
   asio::ip::make_address(host, no_address);
   const std::string token = address.is_loopback() ? "" : RandomToken();
-  core_.gate.emplace(port_, no_address ? host : "", token);
   const std::string name = no_address                 ? host
                            : address.is_unspecified() ? UrlAddress(OutwardAddress(core_.io))
                                                       : UrlAddress(address);
-  address_ = "http://" + name + (port_ == 80 ? "" : ":" + std::to_string(port_)) + "/";
+  const bool tls = task.settings.tls;
+  if (tls)
+    OpenTls(address, name);
+  else
+    port_ = Listen(address, acceptor_);
+  core_.gate.emplace(port_, no_address || tls ? name : "", token, tls);
+  const int usual = tls ? 443 : 80;
+  address_ = std::string(tls ? "https://" : "http://") + name +
+             (port_ == usual ? "" : ":" + std::to_string(port_)) + "/";
   if (!token.empty()) address_ += "?token=" + token;
 
   Accept();
@@ -113,28 +123,52 @@ Server::~Server() {
 }
 
 bool Server::has_page() const {
-  const auto& files = PageFiles();
+  const auto& files = core_.task.phone ? PhoneFiles() : PageFiles();
   return std::any_of(files.begin(), files.end(),
                      [](const PageFile& file) { return file.name == "index.html"; });
 }
 
-void Server::Listen(const asio::ip::address& host) {
+// The plain server listens on a port of its own, to this machine alone.
+void Server::OpenTls(const asio::ip::address& host, const std::string& name) {
+#ifdef ALIDADE_TLS
+  tcp::acceptor outer(core_.io);
+  port_ = Listen(host, outer);
+  acceptor_.open(tcp::v4());
+  acceptor_.bind({asio::ip::address_v4::loopback(), 0});
+  acceptor_.listen();
+  std::vector<std::string> names = {"localhost", "127.0.0.1"};
+  const bool brackets = name.size() > 1 && name.front() == '[';
+  const std::string bare = brackets ? name.substr(1, name.size() - 2) : name;
+  if (bare != names[0] && bare != names[1]) names.push_back(bare);
+  const TlsCertificate certificate = MakeCertificate(names);
+  fingerprint_ = certificate.fingerprint;
+  const ServeSettings& settings = core_.task.settings;
+  door_ = std::make_unique<TlsDoor>(core_.io, std::move(outer), acceptor_.local_endpoint().port(),
+                                    certificate, settings.max_connections, settings.patience);
+#else
+  static_cast<void>(host);
+  static_cast<void>(name);
+  throw std::runtime_error(
+      "this program was built without TLS (Debian: libssl-dev, then build again)");
+#endif
+}
+
+int Server::Listen(const asio::ip::address& host, tcp::acceptor& acceptor) {
   const ServeSettings& settings = core_.task.settings;
   const int tries = settings.port_given || settings.port == 0 ? 1 : kPortsTried;
   error_code error;
   for (int port = settings.port; port < settings.port + tries && port <= 65535; ++port) {
     const tcp::endpoint endpoint(host, static_cast<unsigned short>(port));
-    acceptor_ = tcp::acceptor(core_.io);
-    acceptor_.open(endpoint.protocol(), error);
+    acceptor = tcp::acceptor(core_.io);
+    acceptor.open(endpoint.protocol(), error);
     if (error) break;
-    acceptor_.set_option(asio::socket_base::reuse_address(true), error);
-    acceptor_.set_option(asio::socket_base::send_buffer_size(kSendBuffer), error);
-    if (host.is_v6()) acceptor_.set_option(asio::ip::v6_only(false), error);
-    acceptor_.bind(endpoint, error);
-    if (!error) acceptor_.listen(asio::socket_base::max_listen_connections, error);
+    acceptor.set_option(asio::socket_base::reuse_address(true), error);
+    acceptor.set_option(asio::socket_base::send_buffer_size(kSendBuffer), error);
+    if (host.is_v6()) acceptor.set_option(asio::ip::v6_only(false), error);
+    acceptor.bind(endpoint, error);
+    if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
     if (!error) {
-      port_ = acceptor_.local_endpoint().port();
-      return;
+      return acceptor.local_endpoint().port();
     }
     if (error != asio::error::address_in_use) break;
   }
@@ -187,11 +221,17 @@ void Server::Finish() {
   error_code ignored;
   acceptor_.close(ignored);
   rest_.cancel();
+#ifdef ALIDADE_TLS
+  if (door_) door_->Close();
+#endif
   for (const auto& one : core_.sessions) {
     if (const auto session = one.lock()) session->Close();
   }
   for (const auto& one : core_.clients) {
     if (const auto client = one.lock()) client->Finish();
+  }
+  for (const auto& one : core_.pages) {
+    if (const auto page = one.lock()) page->Finish();
   }
 }
 

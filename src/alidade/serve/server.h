@@ -14,9 +14,17 @@
 
 #include "alidade/serve/gate.h"
 #include "alidade/serve/serve_module.h"
+#ifdef ALIDADE_TLS
+#include "alidade/serve/tls_door.h"
+#else
+namespace alidade {
+class TlsDoor {};
+}  // namespace alidade
+#endif
 
 namespace alidade {
 
+class FrameClient;
 class HttpSession;
 class StreamClient;
 
@@ -33,6 +41,7 @@ struct ServerCore {
   std::optional<Gate> gate;
   std::vector<std::weak_ptr<HttpSession>> sessions;
   std::vector<std::weak_ptr<StreamClient>> clients;
+  std::vector<std::weak_ptr<FrameClient>> pages;  // that send pictures
   std::shared_ptr<std::atomic<int>> viewers = std::make_shared<std::atomic<int>>(0);
 
   bool MayJoin();  // one viewer more
@@ -52,9 +61,12 @@ class Server : public ViewerServer {
   int port() const override { return port_; }
   int viewers() const override { return *core_.viewers; }
   bool has_page() const override;
+  const std::string& fingerprint() const override { return fingerprint_; }
 
  private:
-  void Listen(const boost::asio::ip::address& host);
+  // At the port of the settings or one after it; its number.
+  int Listen(const boost::asio::ip::address& host, boost::asio::ip::tcp::acceptor& acceptor);
+  void OpenTls(const boost::asio::ip::address& host, const std::string& name);
   void Accept();
   void Run();
   void Finish();
@@ -62,7 +74,8 @@ class Server : public ViewerServer {
   ServerCore core_;
   boost::asio::ip::tcp::acceptor acceptor_{core_.io};
   boost::asio::steady_timer rest_{core_.io};  // after connections could not be taken
-  std::string address_;
+  std::unique_ptr<TlsDoor> door_;             // null without TLS
+  std::string address_, fingerprint_;
   int port_ = 0;
   std::promise<void> ended_;
   std::thread thread_;

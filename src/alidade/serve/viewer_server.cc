@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/module/load_module.h"
+#include "alidade/serve/response.h"
 #include "alidade/serve/serve_module.h"
 #include "alidade/version.h"
 
@@ -47,6 +48,43 @@ void ServeSettings::Check() const {
   check(patience >= 0.1 && patience <= 3600, "patience", "within 0.1…3600");
 }
 
+namespace {
+
+std::unique_ptr<ViewerServer> Start(ServeTask& task, const nlohmann::json& info) {
+  const ServeModule& module = TheServeModule();
+  if (module.start == nullptr) {
+    ThrowUsage("the viewer needs " + std::string(kServeModuleFile) +
+               ", which is built where Boost (Debian: libboost-dev) is found: " + module.problem);
+  }
+  task.info = info.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string problem;
+  std::unique_ptr<ViewerServer> server(module.start(task, &problem));
+  if (!server) ThrowUsage("the page cannot be served: " + problem);
+  return server;
+}
+
+}  // namespace
+
+bool HasCore(const std::string& core_folder, const std::string& variant) {
+  return !FindCore("/core/" + variant + "/alidade.wasm", core_folder).empty();
+}
+
+std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
+                                             const std::string& core_folder, FrameHost* frames) {
+  settings.Check();
+  const nlohmann::json info = {{"mode", "phone"},
+                               {"connected", frames != nullptr},
+                               {"core", HasCore(core_folder, "single")},
+                               {"threads", HasCore(core_folder, "threads")},
+                               {"program", "alidade " ALIDADE_VERSION}};
+  ServeTask task;
+  task.settings = settings;
+  task.phone = true;
+  task.core_folder = core_folder;
+  task.frames = frames;
+  return Start(task, info);
+}
+
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
                                           const std::string& replay_path,
                                           const std::string& title) {
@@ -55,17 +93,11 @@ std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamH
   const nlohmann::json info = {{"mode", hub != nullptr ? "live" : "replay"},
                                {"title", title},
                                {"program", "alidade " ALIDADE_VERSION}};
-  const ServeModule& module = TheServeModule();
-  if (module.start == nullptr) {
-    ThrowUsage("the viewer needs " + std::string(kServeModuleFile) +
-               ", which is built where Boost (Debian: libboost-dev) is found: " + module.problem);
-  }
-  ServeTask task{settings, hub, hub == nullptr ? replay_path : "", ""};
-  task.info = info.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  std::string problem;
-  std::unique_ptr<ViewerServer> server(module.start(task, &problem));
-  if (!server) ThrowUsage("the viewer cannot be served: " + problem);
-  return server;
+  ServeTask task;
+  task.settings = settings;
+  task.hub = hub;
+  if (hub == nullptr) task.replay_path = replay_path;
+  return Start(task, info);
 }
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "alidade/serve/frame_host.h"
 #include "alidade/stream/stream_hub.h"
 
 namespace alidade {
@@ -27,6 +28,7 @@ struct ServeSettings {
   // Seconds in which a request must have come, a part of a file must have been taken, and a viewer
   // must have given some sign of life (it is asked for one after half of that).
   double patience = 10;
+  bool tls = false;    // https, with a certificate made on the spot
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
@@ -39,6 +41,8 @@ class ViewerServer {
   virtual int port() const = 0;
   virtual int viewers() const = 0;    // who are connected to the live stream now
   virtual bool has_page() const = 0;  // false: built without Node.js, a plain page says so
+  // SHA-256 of the certificate, as browsers show it; empty without TLS.
+  virtual const std::string& fingerprint() const = 0;
 };
 
 // Live when there is a `hub`, which must outlive the server; else the recorded stream in the file
@@ -46,5 +50,13 @@ class ViewerServer {
 // file cannot be read. Returns once connections are taken.
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
                                           const std::string& replay_path, const std::string& title);
+
+// The page for phones. `core_folder`: where the core as WebAssembly is (scripts/wasm: build-wasm);
+// empty: nowhere. `frames`, which must outlive the server: who works on pictures that pages send;
+// null: nobody does.
+std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
+                                             const std::string& core_folder, FrameHost* frames);
+// Which variants of the core are in a folder: "single", "threads".
+bool HasCore(const std::string& core_folder, const std::string& variant);
 
 }  // namespace alidade

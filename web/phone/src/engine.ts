@@ -26,17 +26,18 @@ export class LocalEngine implements Engine {
   private refuse: ((error: Error) => void) | null = null;
   private readonly waiting = new Map<Saved, { resolve(bytes: Uint8Array<ArrayBuffer>): void; reject(error: Error): void }>();
 
-  constructor(private readonly hooks: Hooks) {
+  // `threads`: the module that has them is there.
+  constructor(private readonly hooks: Hooks, private readonly threads: boolean) {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(data);
     this.worker.onerror = (event) => this.fail(event.message || 'the Worker could not be started');
   }
 
   get free(): boolean { return this.ready === null && this.working === 0; }
 
-  // With threads where the page is cross-origin isolated, and both modules are there.
+  // With threads where the page is cross-origin isolated.
   async begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
     const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
-    const threads = self.crossOriginIsolated && cores > 1 && await there('core/threads/alidade.mjs') ? cores : 1;
+    const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
     const base = new URL(threads > 1 ? 'core/threads/' : 'core/single/', document.baseURI).href;
     await new Promise<void>((resolve, reject) => {
       this.ready = resolve;
@@ -84,13 +85,5 @@ export class LocalEngine implements Engine {
     if (this.refuse) this.refuse(new Error(text));
     else this.hooks.failed(text);
     this.ready = this.refuse = null;
-  }
-}
-
-async function there(address: string): Promise<boolean> {
-  try {
-    return (await fetch(address, { method: 'HEAD' })).ok;
-  } catch {
-    return false;
   }
 }

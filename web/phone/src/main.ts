@@ -40,7 +40,7 @@ let lastTime = -1;     // seconds: of the last picture of the camera
 let grab: { canvas: OffscreenCanvas; context: OffscreenCanvasRenderingContext2D } | null = null;
 let focusHeld = false;
 let wake: WakeLockSentinel | null = null;
-let info: { connected?: boolean; core?: boolean } = {};
+let info: { connected?: boolean; core?: boolean; threads?: boolean } = {}; // info.json: what the server offers
 const counters = { processed: 0, milliseconds: [] as number[] };
 let watch: ((done: Done) => void) | null = null; // for tests
 
@@ -83,7 +83,7 @@ function take(messages: readonly Uint8Array[]): void {
   for (const bytes of messages) {
     try {
       const message = decode(bytes);
-      if (message.kind === 'hello' && state.hello) { // the map is begun anew
+      if (message.kind === 'hello' && state.hello && !(engine instanceof RemoteEngine && engine.goesOn())) { // the map is begun anew
         state = new State();
         map.forget();
         setCube(null);
@@ -127,7 +127,7 @@ async function begin(width: number, height: number): Promise<void> {
   forget();
   grab = null;
   const remote = Boolean(info.connected && (choices.connected || info.core === false));
-  engine = remote ? new RemoteEngine(hooks) : new LocalEngine(hooks);
+  engine = remote ? new RemoteEngine(hooks) : new LocalEngine(hooks, info.threads ?? false);
   angle = screen.orientation?.angle ?? 0;
   upright = height > width;
   write(byId('state-word'), 'Loading');
@@ -149,6 +149,7 @@ function forget(): void {
 }
 
 async function startCamera(): Promise<void> {
+  await asked;
   const button = byId('start') as HTMLButtonElement;
   button.disabled = true;
   try {
@@ -208,6 +209,7 @@ async function openFile(chosen: File): Promise<void> {
   stopCamera();
   file?.close();
   file = null;
+  await asked;
   try {
     const opened = await VideoFile.open(video, chosen);
     file = opened;
@@ -383,7 +385,7 @@ async function askInfo(): Promise<void> {
   byId('set-connected-row').hidden = !(info.connected && info.core !== false);
   if (info.connected) write(byId('unless'), info.core === false ? ': they go to the computer that serves this page, which does the work.' : ', unless you have the computer that serves this page do the work.');
 }
-void askInfo();
+const asked = askInfo();
 
 if ('serviceWorker' in navigator && isSecureContext) {
   void navigator.serviceWorker.register('sw.js' + location.search).then(({ installing, waiting, active }) => {

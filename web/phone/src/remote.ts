@@ -26,6 +26,7 @@ export class RemoteEngine implements Engine {
   private start: Omit<Start, 'kind' | 'base' | 'threads'> | null = null;
   private readonly sent = new Map<number, { time: number; bitmap: ImageBitmap; turn: number }>();
   private pending: Uint8Array[] = []; // messages since the last frame's text
+  private resumed = false; // the next hello is of the map that is known
   private begun: { resolve(): void; reject(error: Error): void } | null = null;
 
   constructor(private readonly hooks: Hooks) {}
@@ -50,6 +51,13 @@ export class RemoteEngine implements Engine {
   ask(what: Saved): Promise<Uint8Array<ArrayBuffer>> {
     if (what === 'finish') return Promise.resolve(new Uint8Array());
     return Promise.reject(new Error('it is on the computer that does the work'));
+  }
+
+  // A hello has come: whether the map goes on that was there before the connection was lost.
+  goesOn(): boolean {
+    const { resumed } = this;
+    this.resumed = false;
+    return resumed;
   }
 
   close(): void {
@@ -117,6 +125,7 @@ export class RemoteEngine implements Engine {
     if (told.welcome) {
       this.open = true;
       this.tries = 0;
+      this.resumed = told.resumed === true;
       this.number = Math.max(this.number, (told.last ?? -1) + 1);
       this.hooks.lost('');
       this.begun?.resolve();

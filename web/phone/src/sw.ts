@@ -31,16 +31,31 @@ worker.addEventListener('fetch', (event) => {
   const { request } = event;
   const address = new URL(request.url);
   const scope = new URL(worker.registration.scope);
-  if (request.method !== 'GET' && request.method !== 'HEAD') return;
+  if (request.method !== 'GET') return;
   if (address.origin !== scope.origin || !address.pathname.startsWith(scope.pathname)) return;
   const name = address.pathname.slice(scope.pathname.length) || 'index.html';
-  if (!FILES.includes(name) && !name.startsWith('core/')) return; // info.json and what else is the program's own
+  if (name === 'info.json') return event.respondWith(freshInfo(request, new URL(name, scope).href));
+  if (!FILES.includes(name) && !name.startsWith('core/')) return;
   event.respondWith((async () => {
     const cache = await caches.open(CACHE);
     const kept = await cache.match(new URL(name, scope).href);
-    if (kept) return request.method === 'HEAD' ? new Response(null, { headers: kept.headers }) : kept;
+    if (kept) return kept;
     const answer = await fetch(request);
-    if (answer.ok && request.method === 'GET') await cache.put(new URL(name, scope).href, answer.clone());
+    if (answer.ok) await cache.put(new URL(name, scope).href, answer.clone());
     return answer;
   })());
 });
+
+// What the server offers now; offline what it offered last, but for the work that it did.
+async function freshInfo(request: Request, name: string): Promise<Response> {
+  const cache = await caches.open(CACHE);
+  try {
+    const answer = await fetch(request);
+    if (answer.ok) await cache.put(name, answer.clone());
+    return answer;
+  } catch (error) {
+    const kept = await cache.match(name);
+    if (!kept) throw error;
+    return Response.json({ ...await kept.json() as object, connected: false });
+  }
+}

@@ -25,9 +25,9 @@ export async function startSite(isolated: boolean): Promise<Site> {
       response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
       response.setHeader('Content-Security-Policy', POLICY);
     }
-    if (name === 'info.json') { // of no interest here, and not in the console as missing
+    if (name === 'info.json') { // as the program's
       response.setHeader('Content-Type', 'application/json');
-      return response.end('{"mode":"phone","connected":false,"core":true}');
+      return response.end(JSON.stringify({ mode: 'phone', connected: false, core: true, threads: existsSync(join(WEB, 'core/dist/threads/alidade.wasm')) }));
     }
     if (!existsSync(file)) {
       response.statusCode = 404;

@@ -31,7 +31,7 @@ export async function run(...args: string[]): Promise<void> {
   if (status !== 0) throw new Error(`alidade ${args.join(' ')}: ${status}\n${said}`);
 }
 
-// One that serves the page; the address is in its first line.
+// One that serves the page; the address is the first that it prints.
 export async function start(...args: string[]): Promise<Program> {
   const child = spawn(BINARY, args, { stdio: ['ignore', 'pipe', 'pipe'] });
   let said = '';
@@ -39,7 +39,7 @@ export async function start(...args: string[]): Promise<Program> {
   const address = new Promise<string>((done, failed) => {
     child.stdout.on('data', (text) => {
       said += text;
-      const match = said.includes('\n') && /http:\/\/[^\s]+/.exec(said.slice(0, said.indexOf('\n')));
+      const match = /https?:\/\/[^\s]+(?=[^\n]*\n)/.exec(said);
       if (match) done(match[0]);
     });
     child.stderr.on('data', (text) => { said += text; });

@@ -64,6 +64,9 @@ class PhoneSlam {
   // The viewer's messages since they were taken last (src/alidade/stream). The first call begins
   // them; who takes none for long gets all that is known, anew.
   std::vector<std::string> TakeMessages();
+  // For one who joins now: hello and all that is known. What TakeMessages() gives next goes on
+  // from it.
+  std::vector<std::string> WholeState();
   // TUM format: every frame that has a pose.
   std::string Trajectory() const;
   // Landmarks as a binary PLY point cloud.

@@ -1,4 +1,4 @@
-#include "phone_slam.h"
+#include "alidade/phone/phone_slam.h"
 
 #include <algorithm>
 #include <chrono>
@@ -187,6 +187,14 @@ std::vector<std::string> PhoneSlam::TakeMessages() {
   waiting_ = 0;
   if (!std::exchange(behind_, false)) return std::exchange(messages_, {});
   messages_.clear();
+  return encoder_->Whole();
+}
+
+std::vector<std::string> PhoneSlam::WholeState() {
+  if (!encoder_) BeginMessages();
+  messages_.clear();
+  waiting_ = 0;
+  behind_ = false;
   return encoder_->Whole();
 }
 

@@ -1,0 +1,123 @@
+// alidade phone: the page for phones, and, when asked to, the computer that does its work.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "alidade/base/error.h"
+#include "alidade/run/loop.h"
+#include "alidade/serve/viewer_server.h"
+#include "commands.h"
+#include "phone_host.h"
+#include "qr_code.h"
+#include "viewer_flags.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PhoneArguments {
+  std::optional<std::string> port, host;
+  bool tls = false, connected = false;
+  std::string core, out;
+  std::vector<std::string> set;
+};
+
+// Beside the installed program, or in the tree it was built in; empty: nowhere.
+std::string FindCoreFolder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();
+  for (const fs::path& folder : {program / "../share/alidade/core", program / "../../build-wasm"}) {
+    if (HasCore(folder.string(), "single")) return fs::weakly_canonical(folder, error).string();
+  }
+  return {};
+}
+
+int Phone(const PhoneArguments& arguments) {
+  ServeSettings settings = ServeSettingsFor(arguments.port, arguments.host);
+  settings.tls = arguments.tls;
+  const std::string core = arguments.core.empty() ? FindCoreFolder() : arguments.core;
+  if (!arguments.core.empty() && !HasCore(core, "single"))
+    ThrowUsage("--core " + core + ": there is no single/alidade.wasm (scripts/wasm builds it)");
+  if (core.empty() && !arguments.connected)
+    ThrowUsage(
+        "the core for browsers was not built: scripts/wasm does it (some minutes, once), or let "
+        "this computer do the work with --connected");
+  std::unique_ptr<PhoneHost> host;
+  if (arguments.connected) {
+    PhoneHostSettings serving;
+    serving.out = arguments.out;
+    for (const std::string& one : arguments.set) {
+      const size_t equal = one.find('=');
+      if (equal == std::string::npos) ThrowUsage("--set is NAME=VALUE, not '" + one + "'");
+      serving.phone.slam.Set(one.substr(0, equal), one.substr(equal + 1));
+    }
+    host = std::make_unique<PhoneHost>(serving);
+  } else if (!arguments.out.empty() || !arguments.set.empty()) {
+    ThrowUsage("--out and --set are for --connected: otherwise the phone does the work");
+  }
+  CatchInterrupts();
+  const auto server = StartPhonePage(settings, core, host.get());
+  const std::string& address = server->address();
+  const bool local = address.find("//127.") != std::string::npos ||
+                     address.find("//localhost") != std::string::npos ||
+                     address.find("//[::1]") != std::string::npos;
+  if (!local) std::fputs(QrCode(address).c_str(), stdout);
+  std::printf("The page for phones is at %s (Ctrl-C ends)\n", address.c_str());
+  if (arguments.connected)
+    std::printf("Pages may send their pictures here%s\n",
+                core.empty() ? "; the core for browsers was not built (scripts/wasm), so all do"
+                             : ": Settings, Work on the computer that serves this page");
+  if (!server->fingerprint().empty())
+    std::printf(
+        "The certificate was made just now: the phone's browser asks once whether to go on.\n"
+        "Its SHA-256 fingerprint: %s\n",
+        server->fingerprint().c_str());
+  if (!local && !arguments.tls)
+    std::printf("warning: browsers give no camera to a page that is not secure: add --tls\n");
+  std::fflush(stdout);
+  while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return 0;
+}
+
+}  // namespace
+
+void AddPhoneCommand(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("phone", "Serve the page for phones: SLAM in the browser");
+  auto arguments = std::make_shared<PhoneArguments>();
+  command->add_option("--port", arguments->port,
+                      "Port to listen on (8090, or the next that is free)");
+  command->add_option("--host", arguments->host,
+                      "Address to listen on (127.0.0.1: this machine only; 0.0.0.0: all); any "
+                      "other than this machine's own gives an address with a secret in it");
+  command->add_flag("--tls", arguments->tls,
+                    "https, with a certificate made on the spot: phones' browsers give the camera "
+                    "to secure pages only");
+  command->add_flag("--connected", arguments->connected,
+                    "Pages may send their pictures here, and this computer does the work: for old "
+                    "phones");
+  command->add_option("--core", arguments->core,
+                      "Folder of the core as WebAssembly (scripts/wasm; default: beside the "
+                      "program, or build-wasm of the tree it was built in)");
+  command->add_option("--out", arguments->out,
+                      "With --connected: folder for each page's map, trajectory and points, "
+                      "written when it has gone for five minutes, or at the end");
+  command->add_option("--set", arguments->set,
+                      "With --connected: a setting, NAME=VALUE, as for run");
+  command->footer(
+      "\nExamples:\n"
+      "  alidade phone                                  on this machine: http://127.0.0.1:8090/\n"
+      "  alidade phone --host 0.0.0.0 --tls             for a phone in the same network: scan the "
+      "code\n"
+      "  alidade phone --host 0.0.0.0 --tls --connected --out maps\n"
+      "                                                 the same, and the work is done here\n"
+      "\nPrints the address, and goes on until Ctrl-C. docs/phone.md tells the rest.");
+  command->callback([arguments, &action] { action = [arguments] { return Phone(*arguments); }; });
+}
+
+}  // namespace alidade

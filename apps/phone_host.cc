@@ -1,0 +1,297 @@
+#include "phone_host.h"
+
+#include <chrono>
+#include <cmath>
+#include <condition_variable>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/files/image_codec.h"
+
+namespace alidade {
+namespace {
+
+using SessionClock = std::chrono::steady_clock;
+constexpr size_t kFrameHead = 16;  // bytes before the JPEG: number, zero, seconds
+
+const char* NameOfState(TrackState state) {
+  return state == TrackState::kTracking ? "tracking"
+         : state == TrackState::kLost   ? "lost"
+                                        : "initialising";
+}
+
+FrameMessage Text(const nlohmann::json& told) {
+  return {told.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), true};
+}
+
+FrameMessage Skipped(uint32_t number, const std::string& problem = "") {
+  nlohmann::json told = {{"frame", number}, {"skipped", true}};
+  if (!problem.empty()) told["problem"] = problem;
+  return Text(told);
+}
+
+std::vector<FrameMessage> Binary(std::vector<std::string> messages) {
+  std::vector<FrameMessage> all;
+  for (std::string& message : messages) all.push_back({std::move(message), false});
+  return all;
+}
+
+}  // namespace
+
+// One map, and the thread that works on it. A page is seated at a time; the newest one stays.
+class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
+ public:
+  PhoneSession(std::string name, int width, int height, double fov,
+               const PhoneHostSettings& settings)
+      : name_(std::move(name)),
+        width_(width),
+        height_(height),
+        out_(settings.out),
+        slam_(width, height, fov, settings.phone),
+        left_(SessionClock::now()),
+        thread_([this] { Work(); }) {}
+
+  ~PhoneSession() {
+    {
+      const std::lock_guard lock(mutex_);
+      end_ = true;
+    }
+    wake_.notify_all();
+    thread_.join();
+  }
+
+  bool SameSize(int width, int height) const { return width == width_ && height == height_; }
+
+  // A page takes its seat; one that is there leaves.
+  int Sit(FrameTell tell, bool resumed) {
+    const std::lock_guard lock(mutex_);
+    if (tell_) tell_({Text({{"error", "another page goes on with this session"}})}, true);
+    tell_ = std::move(tell);
+    welcome_ = true;
+    resumed_ = resumed;
+    wake_.notify_all();
+    return ++seat_;
+  }
+
+  void Leave(int seat) {
+    const std::lock_guard lock(mutex_);
+    if (seat != seat_) return;
+    tell_ = nullptr;
+    left_ = SessionClock::now();
+  }
+
+  // Seconds without a page; below 0: there is one.
+  double Alone() {
+    const std::lock_guard lock(mutex_);
+    if (tell_) return -1;
+    return std::chrono::duration<double>(SessionClock::now() - left_).count();
+  }
+
+  void Take(int seat, const std::string& bytes) {
+    const std::lock_guard lock(mutex_);
+    if (seat != seat_ || !tell_) return;
+    SentFrame frame;
+    if (bytes.size() <= kFrameHead) {
+      tell_({Text({{"error", "a picture is 16 bytes and a JPEG"}})}, true);
+      return;
+    }
+    std::memcpy(&frame.number, bytes.data(), sizeof(frame.number));  // little endian, as here
+    std::memcpy(&frame.time, bytes.data() + 8, sizeof(frame.time));
+    if (last_ >= 0 && frame.number <= static_cast<uint32_t>(last_)) {
+      tell_({Skipped(frame.number)}, false);  // it was here before
+      return;
+    }
+    last_ = frame.number;
+    frame.jpeg = bytes.substr(kFrameHead);
+    if (waiting_) tell_({Skipped(waiting_->number)}, false);  // the newest one wins
+    waiting_ = std::move(frame);
+    wake_.notify_all();
+  }
+
+ private:
+  struct SentFrame {
+    uint32_t number = 0;
+    double time = 0;
+    std::string jpeg;
+  };
+
+  void Work() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+      wake_.wait(lock, [this] { return end_ || welcome_ || waiting_; });
+      if (end_) break;
+      if (std::exchange(welcome_, false)) {
+        const nlohmann::json hello = {{"welcome", true}, {"last", last_}, {"resumed", resumed_}};
+        std::vector<FrameMessage> messages = Binary(slam_.WholeState());
+        messages.insert(messages.begin(), Text(hello));
+        if (tell_) tell_(std::move(messages), false);
+        continue;
+      }
+      const SentFrame frame = std::move(*waiting_);
+      waiting_.reset();
+      lock.unlock();
+      std::vector<FrameMessage> told = WorkOn(frame);
+      lock.lock();
+      // A page that has come meanwhile is given the whole, which holds this.
+      if (tell_ && !welcome_) tell_(std::move(told), false);
+    }
+    lock.unlock();
+    Write();
+  }
+
+  // Nothing a page sends ends the session.
+  std::vector<FrameMessage> WorkOn(const SentFrame& frame) {
+    try {
+      if (!std::isfinite(frame.time)) return {Skipped(frame.number, "its time is no number")};
+      const cv::Size size = JpegSize(frame.jpeg);
+      if (size.width != width_ || size.height != height_)
+        return {Skipped(frame.number, "no JPEG of the size that was told")};
+      const DecodedImage decoded = DecodeJpeg(frame.jpeg, ImageUse::kGray);
+      if (!decoded.problem.empty()) return {Skipped(frame.number, decoded.problem)};
+      const cv::Mat image = decoded.image.isContinuous() ? decoded.image : decoded.image.clone();
+      const PhoneFrame result = slam_.Track(image.data, 1, frame.time);
+      std::vector<FrameMessage> messages = Binary(slam_.TakeMessages());
+      messages.push_back(Text(Answer(frame.number, result)));
+      return messages;
+    } catch (const std::exception& error) {
+      return {Skipped(frame.number, error.what())};
+    }
+  }
+
+  static nlohmann::json Answer(uint32_t number, const PhoneFrame& frame) {
+    const TrackResult& result = frame.result;
+    nlohmann::json told = {{"frame", number},
+                           {"state", NameOfState(result.state)},
+                           {"reason", result.state == TrackState::kTracking ? "" : result.reason},
+                           {"predicted", result.predicted},
+                           {"milliseconds", frame.milliseconds},
+                           {"keyframes", frame.keyframes},
+                           {"landmarks", frame.landmarks},
+                           {"matches", frame.matches},
+                           {"features", frame.features},
+                           {"fov", frame.fov},
+                           {"fovSigma", frame.fov_sigma},
+                           {"pose", nullptr},
+                           {"skipped", false}};
+    if (result.state == TrackState::kTracking || result.predicted) {
+      const Eigen::Quaterniond q(result.T_world_camera.R);
+      const Eigen::Vector3d& t = result.T_world_camera.t;
+      told["pose"] = {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
+    }
+    return told;
+  }
+
+  void Write() {
+    if (out_.empty()) return;
+    try {
+      slam_.Finish();
+      const std::filesystem::path folder =
+          std::filesystem::path(out_) / ("session-" + name_.substr(0, 8));
+      std::filesystem::create_directories(folder);
+      AtomicWriteFile((folder / "map.alidade").string(), slam_.slam().SaveMap());
+      AtomicWriteFile((folder / "trajectory.txt").string(), slam_.Trajectory());
+      AtomicWriteFile((folder / "landmarks.ply").string(), slam_.Cloud());
+      std::printf("%s: map.alidade, trajectory.txt, landmarks.ply\n", folder.c_str());
+    } catch (const std::exception& error) {
+      std::fprintf(stderr, "alidade: warning: session %s was not written: %s\n", name_.c_str(),
+                   error.what());
+    }
+  }
+
+  const std::string name_;
+  const int width_, height_;
+  const std::string out_;
+  PhoneSlam slam_;  // the thread's alone
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  FrameTell tell_;  // null: no page
+  std::optional<SentFrame> waiting_;
+  int64_t last_ = -1;  // number of the last frame taken
+  int seat_ = 0;
+  bool welcome_ = false, resumed_ = false, end_ = false;
+  SessionClock::time_point left_;
+  std::thread thread_;
+};
+
+namespace {
+
+class Seat : public FrameSeat {
+ public:
+  Seat(std::shared_ptr<PhoneSession> session, int seat)
+      : session_(std::move(session)), seat_(seat) {}
+  ~Seat() override { session_->Leave(seat_); }
+  void Take(std::string bytes) override { session_->Take(seat_, bytes); }
+
+ private:
+  std::shared_ptr<PhoneSession> session_;
+  int seat_;
+};
+
+bool IsName(const std::string& text) {
+  return text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+}  // namespace
+
+PhoneHost::PhoneHost(PhoneHostSettings settings) : settings_(std::move(settings)) {}
+
+PhoneHost::~PhoneHost() = default;
+
+std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell tell,
+                                           std::string* problem) {
+  try {
+    const nlohmann::json given = nlohmann::json::parse(hello);
+    const auto name = given.at("session").get<std::string>();
+    const int width = given.at("width").get<int>();
+    const int height = given.at("height").get<int>();
+    const double fov =
+        given.contains("fov") && given["fov"].is_number() ? given["fov"].get<double>() : 0;
+    if (!IsName(name)) ThrowInput("a session is 32 hexadecimal digits");
+    if (width < 1 || height < 1 || width > settings_.max_pixels / height)
+      ThrowInput("pictures of " + std::to_string(width) + "x" + std::to_string(height) +
+                 " pixels are not taken");
+    const std::lock_guard lock(mutex_);
+    for (auto it = sessions_.begin(); it != sessions_.end();)
+      it = it->second->Alone() > settings_.keep_seconds ? sessions_.erase(it) : std::next(it);
+    auto found = sessions_.find(name);
+    const bool resumed = found != sessions_.end();
+    if (resumed && !found->second->SameSize(width, height))
+      ThrowInput("this session has pictures of another size");
+    if (!resumed) {
+      if (static_cast<int>(sessions_.size()) >= settings_.max_sessions) {
+        // The one without a page for longest makes room.
+        auto oldest = sessions_.end();
+        for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
+          if (it->second->Alone() >= 0 &&
+              (oldest == sessions_.end() || it->second->Alone() > oldest->second->Alone()))
+            oldest = it;
+        }
+        if (oldest == sessions_.end())
+          ThrowInput(std::to_string(settings_.max_sessions) + " pages are served already");
+        sessions_.erase(oldest);
+      }
+      found =
+          sessions_
+              .emplace(name, std::make_shared<PhoneSession>(name, width, height, fov, settings_))
+              .first;
+    }
+    const int seat = found->second->Sit(std::move(tell), resumed);
+    return std::make_unique<Seat>(found->second, seat);
+  } catch (const Error& error) {
+    *problem = error.what();
+  } catch (const nlohmann::json::exception&) {
+    *problem = "the first message is JSON: session, width, height, fov";
+  } catch (const std::exception& error) {
+    *problem = error.what();
+  }
+  return nullptr;
+}
+
+}  // namespace alidade

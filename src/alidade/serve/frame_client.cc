@@ -1,0 +1,122 @@
+#include "alidade/serve/frame_client.h"
+
+#include <boost/asio/post.hpp>
+#include <boost/beast/core/buffers_to_string.hpp>
+#include <boost/beast/websocket/error.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
+#include <utility>
+
+namespace alidade {
+namespace {
+
+namespace frame_beast = boost::beast;
+namespace frame_websocket = boost::beast::websocket;
+
+constexpr size_t kMostPicture = size_t{4} << 20;  // bytes of a message: a JPEG of 4 megapixels
+constexpr size_t kFrameClientFrame = size_t{64} << 10;  // bytes of a WebSocket frame
+
+// The text in a JSON string: no quotes, backslashes or control characters.
+std::string Harmless(const std::string& text) {
+  std::string plain;
+  for (const char c : text) plain += (c == '"' || c == '\\' || (c >= 0 && c < ' ')) ? ' ' : c;
+  return plain;
+}
+
+}  // namespace
+
+FrameClient::FrameClient(frame_beast::tcp_stream stream, boost::asio::io_context& io,
+                         FrameHost& host, const ServeSettings& settings)
+    : io_(io), host_(host), socket_(std::move(stream)) {
+  const auto patience = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(settings.patience));
+  frame_beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has timers of its own
+  socket_.set_option(frame_websocket::stream_base::timeout{patience, patience, true});
+  socket_.read_message_max(kMostPicture);
+  socket_.write_buffer_bytes(kFrameClientFrame);
+  socket_.auto_fragment(true);
+}
+
+void FrameClient::Start(const Request& upgrade) {
+  socket_.async_accept(upgrade, [self = shared_from_this()](frame_beast::error_code error) {
+    if (error) return;
+    self->open_ = true;
+    if (self->last_) return self->Pump();
+    self->Read();
+  });
+}
+
+void FrameClient::Finish() {
+  seat_.reset();
+  last_ = true;
+  Pump();
+}
+
+void FrameClient::Read() {
+  socket_.async_read(heard_, [self = shared_from_this()](frame_beast::error_code error, size_t) {
+    if (error) return self->End();
+    std::string bytes = frame_beast::buffers_to_string(self->heard_.cdata());
+    self->heard_.consume(self->heard_.size());
+    self->Hear(std::move(bytes), self->socket_.got_text());
+    if (!self->last_) self->Read();
+  });
+}
+
+void FrameClient::Hear(std::string bytes, bool text) {
+  if (seat_) {
+    if (!text) seat_->Take(std::move(bytes));
+    return;
+  }
+  if (!text) return Refuse("the first message says who sends: text");
+  std::string problem;
+  // Only what is posted may hold the client for a moment: it is to end in its own thread.
+  seat_ = host_.Join(
+      bytes,
+      [io = &io_, client = weak_from_this()](std::vector<FrameMessage> messages, bool last) {
+        boost::asio::post(*io, [client, told = std::move(messages), last]() mutable {
+          if (const auto self = client.lock()) self->Add(std::move(told), last);
+        });
+      },
+      &problem);
+  if (!seat_) Refuse(problem);
+}
+
+void FrameClient::Refuse(const std::string& why) {
+  Add({{"{\"error\":\"" + Harmless(why) + "\"}", true}}, true);
+}
+
+void FrameClient::Add(std::vector<FrameMessage> messages, bool last) {
+  if (last_) return;
+  for (FrameMessage& message : messages) waiting_.push_back(std::move(message));
+  last_ = last;
+  Pump();
+}
+
+void FrameClient::Pump() {
+  if (!open_ || sending_) return;
+  if (waiting_.empty()) {
+    if (!last_) return;
+    open_ = false;
+    seat_.reset();
+    socket_.async_close(frame_websocket::close_code::going_away,
+                        [self = shared_from_this()](frame_beast::error_code) { self->End(); });
+    return;
+  }
+  sending_ = true;
+  socket_.text(waiting_.front().text);
+  socket_.async_write(boost::asio::buffer(waiting_.front().bytes),
+                      [self = shared_from_this()](frame_beast::error_code error, size_t) {
+                        self->sending_ = false;
+                        self->waiting_.pop_front();
+                        if (error) return self->End();
+                        self->Pump();
+                      });
+}
+
+void FrameClient::End() {
+  open_ = false;
+  seat_.reset();
+  frame_beast::get_lowest_layer(socket_).close();
+}
+
+}  // namespace alidade

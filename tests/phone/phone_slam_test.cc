@@ -1,0 +1,83 @@
+// The core as a page wants it, natively.
+#include "alidade/phone/phone_slam.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/stream/stream_scene.h"
+#include "support/expect_error.h"
+#include "support/walked_room.h"
+
+namespace alidade::phone_test {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+PhoneFrame Walk(PhoneSlam& slam, const WalkedRoom& room, std::vector<std::string>* messages) {
+  PhoneFrame last;
+  for (size_t i = 0; i < room.frames.size(); ++i) {
+    last = slam.Track(room.frames[i].image.data, 1, static_cast<double>(i) / 30);
+    if (!messages) continue;
+    for (std::string& message : slam.TakeMessages()) messages->push_back(std::move(message));
+  }
+  return last;
+}
+
+TEST(PhoneSlam, TellsWhereTheCameraIsAndWhatItSees) {
+  const WalkedRoom room = WalkRoom({.actors = 0, .frames = 90});
+  PhoneSlam slam(room.camera, PhoneSettings::Default(false));
+  std::vector<std::string> messages = slam.TakeMessages();
+  ASSERT_EQ(messages.size(), 1);  // hello
+  const PhoneFrame last = Walk(slam, room, &messages);
+  EXPECT_EQ(last.result.state, TrackState::kTracking);
+  EXPECT_GT(last.keyframes, 2);
+  EXPECT_GT(last.landmarks, 100);
+  EXPECT_GT(last.matches, 30);
+  EXPECT_EQ(last.fov_sigma, 0);  // it was given
+  slam.Finish();
+  EXPECT_THAT(slam.Cloud(), StartsWith("ply\nformat binary_little_endian"));
+  const std::string trajectory = slam.Trajectory();
+  EXPECT_GT(std::count(trajectory.begin(), trajectory.end(), '\n'), 60);
+  // Who takes the messages, and who joins at the end, know the same.
+  StreamScene told, joined;
+  for (const std::string& message : slam.TakeMessages()) messages.push_back(message);
+  for (const std::string& message : messages) told.Take(message);
+  for (const std::string& message : slam.WholeState()) joined.Take(message);
+  EXPECT_EQ(told.keyframes.size(), joined.keyframes.size());
+  EXPECT_EQ(told.landmarks.size(), joined.landmarks.size());
+  EXPECT_EQ(static_cast<int>(told.keyframes.size()), slam.slam().Snapshot().keyframe_count());
+}
+
+TEST(PhoneSlam, AnUnknownCameraIsAssumedAndSaidToBe) {
+  const WalkedRoom room = WalkRoom({.actors = 0, .frames = 3});
+  PhoneSlam slam(room.camera.width, room.camera.height, 0, PhoneSettings::Default(false));
+  const PhoneFrame last = Walk(slam, room, nullptr);
+  EXPECT_NEAR(last.fov, 66, 0.1);
+  EXPECT_GT(last.fov_sigma, 10);
+  PhoneSlam upright(300, 400, 0, PhoneSettings::Default(false));
+  const std::vector<uint8_t> grey(300 * 400, 90);
+  EXPECT_NEAR(upright.Track(grey.data(), 1, 0).fov, 52, 1);  // 66 along the longer side
+}
+
+TEST(PhoneSlam, ColoursAreTurnedToGrey) {
+  PhoneSlam slam(64, 48, 60, PhoneSettings::Default(false));
+  const std::vector<uint8_t> pixels(size_t{64} * 48 * 4, 90);
+  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitialising);
+}
+
+TEST(PhoneSlam, WhatCannotBeIsRefused) {
+  const PhoneSettings settings = PhoneSettings::Default(false);
+  EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { PhoneSlam(64, 48, 200, settings); }),
+              HasSubstr("field of view"));
+  PhoneSlam slam(64, 48, 60, settings);
+  const std::vector<uint8_t> grey(64 * 48, 90);
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { slam.Track(grey.data(), 1, NAN); }),
+              HasSubstr("time"));
+}
+
+}  // namespace
+}  // namespace alidade::phone_test
