@@ -74,8 +74,8 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     const std::lock_guard lock(mutex_);
     if (tell_) tell_({Text({{"error", "another page goes on with this session"}})}, true);
     tell_ = std::move(tell);
-    welcome_ = true;
-    resumed_ = resumed;
+    tell_({Text({{"welcome", true}, {"last", last_}, {"resumed", resumed}})}, false);
+    whole_ = true;
     wake_.notify_all();
     return ++seat_;
   }
@@ -125,13 +125,10 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   void Work() {
     std::unique_lock lock(mutex_);
     for (;;) {
-      wake_.wait(lock, [this] { return end_ || welcome_ || waiting_; });
+      wake_.wait(lock, [this] { return end_ || whole_ || waiting_; });
       if (end_) break;
-      if (std::exchange(welcome_, false)) {
-        const nlohmann::json hello = {{"welcome", true}, {"last", last_}, {"resumed", resumed_}};
-        std::vector<FrameMessage> messages = Binary(slam_.WholeState());
-        messages.insert(messages.begin(), Text(hello));
-        if (tell_) tell_(std::move(messages), false);
+      if (std::exchange(whole_, false)) {
+        if (tell_) tell_(Binary(slam_.WholeState()), false);
         continue;
       }
       const SentFrame frame = std::move(*waiting_);
@@ -140,7 +137,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
       std::vector<FrameMessage> told = WorkOn(frame);
       lock.lock();
       // A page that has come meanwhile is given the whole, which holds this.
-      if (tell_ && !welcome_) tell_(std::move(told), false);
+      if (tell_ && !whole_) tell_(std::move(told), false);
     }
     lock.unlock();
     Write();
@@ -215,7 +212,8 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   std::optional<SentFrame> waiting_;
   int64_t last_ = -1;  // number of the last frame taken
   int seat_ = 0;
-  bool welcome_ = false, resumed_ = false, end_ = false;
+  bool whole_ = false;  // the page is owed the whole state
+  bool end_ = false;
   SessionClock::time_point left_;
   std::thread thread_;
 };

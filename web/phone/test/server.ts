@@ -8,18 +8,19 @@ declare const WEB: string; // by tools/test.mjs
 
 const TYPES: Record<string, string> = {
   html: 'text/html; charset=utf-8', js: 'text/javascript', mjs: 'text/javascript', css: 'text/css', svg: 'image/svg+xml', txt: 'text/plain; charset=utf-8',
-  wasm: 'application/wasm', webmanifest: 'application/manifest+json',
+  wasm: 'application/wasm', jpg: 'image/jpeg', webmanifest: 'application/manifest+json',
 };
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
   "style-src 'self'; img-src 'self' blob: data:; media-src 'self' blob:; connect-src 'self'; manifest-src 'self'";
 
 export interface Site { address: string; close(): Promise<void> }
 
-export async function startSite(isolated: boolean): Promise<Site> {
+// `more`: other files, by name.
+export async function startSite(isolated: boolean, more: Readonly<Record<string, string>> = {}): Promise<Site> {
   const http = createServer((request, response) => {
     const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
     const name = path === '/' ? 'index.html' : path.slice(1);
-    const file = name.startsWith('core/') ? join(WEB, 'core/dist', name.slice(5)) : join(WEB, 'phone/dist', name);
+    const file = more[name] ?? (name.startsWith('core/') ? join(WEB, 'core/dist', name.slice(5)) : join(WEB, 'phone/dist', name));
     if (isolated) {
       response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
       response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
