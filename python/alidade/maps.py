@@ -91,7 +91,7 @@ class MapPart:
 
     @property
     def covisibility(self) -> numpy.ndarray:
-        """(e, 3): ids of two keyframes, the smaller first, and how many points both see."""
+        """(e, 3): ids of two keyframes, the smaller first, and how many points both saw when that was last counted."""
         return self._core.covisibility()
 
     @property
@@ -181,7 +181,7 @@ class Map:
 
     @property
     def covisibility(self) -> numpy.ndarray:
-        """(e, 3): ids of two keyframes, the smaller first, and how many points both see."""
+        """(e, 3): ids of two keyframes, the smaller first, and how many points both saw when that was last counted."""
         return self._main().covisibility
 
     @property

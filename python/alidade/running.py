@@ -64,7 +64,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     first, last: frame numbers, both included.
     record: keep the stream for `alidade view` (True: run.stream in the folder; or a path). viewer: show the run in a
         browser while it goes on (True, or a port); host: the address it listens on. write_masks: what was left out.
-    progress: called with a Progress some 20 times a second, from this thread; what it raises ends the run.
+    progress: called with a Progress when there is news, 20 times a second at most, from this thread; what it raises
+        ends the run.
 
     Raises Error. Ctrl-C ends the run early: what was done by then is written, then KeyboardInterrupt is raised (as
     is what `progress` raised), with the Result as its attribute ``result`` where there is one. One run at a time;
@@ -118,14 +119,17 @@ def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load:
     if viewer is not None and viewer is not False:
         options["viewer"] = "" if viewer is True else int(viewer)
 
+    outcome: Dict[str, Any] = {}
+    last: Dict[str, Any] = {}
+
     def told(values: Dict[str, Any]) -> None:
         tell_warnings()
-        if progress is not None:
-            values["total"] = values["total"] if values["total"] >= 0 else None
-            values["viewer"] = values["viewer"] or None
-            progress(Progress(**values))
-
-    outcome: Dict[str, Any] = {}
+        if progress is None or values == last:
+            return
+        last.update(values)
+        values["total"] = values["total"] if values["total"] >= 0 else None
+        values["viewer"] = values["viewer"] or None
+        progress(Progress(**values))
 
     def result() -> Result:
         made = outcome.get("map")

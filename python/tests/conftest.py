@@ -13,7 +13,7 @@ DESK = "synth:desk?frames=40&width=320&height=240&seed=3"
 @pytest.fixture(scope="session")
 def desk():
     """Frames of a rendered desk, RGB-D."""
-    with alidade.open(DESK, sensor="rgbd", color=True) as recording:
+    with alidade.open(DESK, sensor="rgbd") as recording:
         frames = list(recording)
     return recording, frames
 

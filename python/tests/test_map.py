@@ -12,7 +12,7 @@ def slam(desk):
     recording, frames = desk
     with alidade.Slam(recording.camera, sensor="rgbd", semidense=True) as made:
         for frame in frames:
-            made.track(frame.time, frame.color, depth=frame.depth)
+            made.track(frame.time, numpy.dstack([frame.image] * 3), depth=frame.depth)
     return made
 
 
@@ -30,14 +30,17 @@ def test_points_are_seen_where_they_lie(slam):
     numpy.testing.assert_allclose(numpy.linalg.norm(points.normals, axis=1), 1, atol=1e-4)
 
 
-def test_covisibility_counts_shared_points(slam):
+def test_covisibility_is_of_keyframes_that_share_points(slam):
     made = slam.map()
     seen = made.observations
     of = {k: set(seen.points[seen.keyframes == k]) for k in made.keyframes.ids}
-    edges = made.covisibility
-    assert edges.shape[1] == 3 and len(edges) > 0
-    for a, b, shared in edges:
-        assert a < b and len(of[a] & of[b]) == shared
+    edges = {(a, b): shared for a, b, shared in made.covisibility}
+    assert made.covisibility.shape == (len(edges), 3) and min(edges.values()) > 0
+    for a in made.keyframes.ids:
+        for b in made.keyframes.ids[made.keyframes.ids > a]:
+            shared = len(of[a] & of[b])
+            if shared > 50:  # counted when either was last worked on: a fifth may have gone or come since
+                assert shared / edges[a, b] == pytest.approx(1, abs=0.3)
     assert made.loops.shape[1] == 2
 
 
