@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import urllib.request
 
 import numpy
 import pytest
@@ -31,7 +32,7 @@ def test_all_levels_give_the_bytes_of_the_program(tmp_path, program, sensor):
     assert read(tmp_path, "slam.txt") == read(tmp_path / "program", "trajectory.txt")
     slam.save(tmp_path / "slam.alidade")
     assert read(tmp_path, "slam.alidade") == read(tmp_path / "program", "map.alidade")
-    assert numpy.abs(slam.trajectory() - result.trajectory).max() < 1e-9
+    numpy.testing.assert_allclose(slam.trajectory(), result.trajectory, rtol=0, atol=1e-6)  # files round
 
     saved = alidade.Map.load(tmp_path / "program")
     assert saved.to_bytes() == read(tmp_path / "program", "map.alidade")
@@ -122,3 +123,36 @@ def test_a_detector_that_is_a_function(tmp_path):
 def test_the_stream_is_recorded(tmp_path):
     result = alidade.run(DESK, sensor="rgbd", last=9, record=True, out=tmp_path / "out")
     assert read(result.folder, "run.stream").startswith(b"ALIDSTR1")
+
+
+def test_the_viewer_serves_while_it_runs():
+    if not os.path.isfile(os.path.join(os.path.dirname(alidade.__file__), "libalidade_serve.so")):
+        pytest.skip("built without the viewer")
+    answers = []
+
+    def look(progress):
+        if progress.viewer and not answers:
+            with urllib.request.urlopen(progress.viewer, timeout=60) as page:
+                answers.append(page.status)
+
+    alidade.run(DESK, sensor="rgbd", last=9, viewer=0, progress=look)
+    assert answers == [200]
+
+
+@pytest.mark.skipif("ALIDADE_DATA" not in os.environ, reason="ALIDADE_DATA names no real recordings")
+@pytest.mark.parametrize("name", ["kitchen", "euroc_micro"])  # depth; a stereo pair to be rectified
+def test_a_real_recording_gives_the_bytes_of_the_program(tmp_path, program, name):
+    source = os.path.join(os.environ["ALIDADE_DATA"], name)
+    if not os.path.isdir(source):
+        pytest.skip(f"no recording '{name}'")
+    program("run", source, "--last", 39, "--out", tmp_path / "program", "--quiet")
+    result = alidade.run(source, last=39)
+    with alidade.open(source, last=39) as recording:
+        with alidade.Slam(recording.camera, sensor=recording.sensor, mounting=recording.mounting) as slam:
+            for frame in recording:
+                slam.track(frame.time, frame.image, depth=frame.depth, right=frame.right, stamp=frame.stamp)
+    slam.save_trajectory(tmp_path / "slam.txt")
+    theirs = read(tmp_path / "program", "trajectory.txt")
+    assert read(result.folder, "trajectory.txt") == theirs == read(tmp_path, "slam.txt")
+    assert slam.map().to_bytes() == read(tmp_path / "program", "map.alidade")
+    numpy.testing.assert_array_equal(result.trajectory, numpy.loadtxt(tmp_path / "program" / "trajectory.txt"))
