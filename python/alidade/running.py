@@ -81,7 +81,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
 def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[str] = None,
              dynamics: Optional[str] = None, detector: Union[None, PathLike, Detector] = None,
              camera: Union[None, PathLike, Camera] = None, fov: Union[None, float, str] = None,
-             profile: str = "desktop", config: Optional[PathLike] = None,
+             calibrate_first: bool = True, profile: str = "desktop", config: Optional[PathLike] = None,
              settings: Optional[Mapping[str, Any]] = None, out: Optional[PathLike] = None,
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
@@ -90,12 +90,12 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Finds the poses of a recording in a map, which stays as it is, as ``alidade localize`` does. Poses are in the
     map's world. map: a Map, or the path of one; all else as for run()."""
-    result = _run(dict(
-        source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, profile=profile, settings=settings,
-        schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host,
+    return _run(dict(
+        source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
+        profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
+        first=first, last=last, host=host,
         write_masks=write_masks, localise=True),
         detector, camera, config, map, out, record, viewer, progress)
-    return result
 
 
 def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any, record: Any,

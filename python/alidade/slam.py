@@ -85,7 +85,7 @@ _open: "weakref.WeakSet[Slam]" = weakref.WeakSet()
 class Slam:
     """Visual SLAM: images in, poses and a map out.
 
-    camera: of the images. sensor: "mono", "stereo" (camera.baseline) or "rgbd" (camera.depth_factor).
+    camera: of the images; or a camera.yaml. sensor: "mono", "stereo" (camera.baseline) or "rgbd" (camera.depth_factor).
     semidense: map shape too. dynamics: "off", "geometry" or "full". profile: "desktop" or "phone". seed: of every
     random choice. localise: only find poses in the map that is loaded, and leave it as it is.
     schedule: "inline" (default: each frame's work is done when track() returns; the same result every time) or
@@ -104,7 +104,7 @@ class Slam:
     No image is copied on the way in when its pixels lie side by side, and none is kept.
     """
 
-    def __init__(self, camera: Camera, *, sensor: str = "mono", semidense: bool = False,
+    def __init__(self, camera: Union[Camera, PathLike], *, sensor: str = "mono", semidense: bool = False,
                  dynamics: Optional[str] = None, detector: Union[None, PathLike, Detector] = None,
                  profile: str = "desktop", config: Optional[PathLike] = None,
                  settings: Optional[Mapping[str, Any]] = None, schedule: str = "inline",
@@ -115,6 +115,8 @@ class Slam:
             localise=localise, settings={**(settings or {}), **more_settings},
             detector=detector if detector is None or callable(detector) else os.fspath(detector),
             config=None if config is None else os.fspath(config))
+        if not isinstance(camera, Camera):
+            camera = Camera.from_yaml(camera, sensor)
         self._core = _core.Slam(camera, options, mounting)
         _open.add(self)
 

@@ -35,7 +35,11 @@ class CallableDetector : public Detector {
       std::stable_sort(found.begin(), found.end(),
                        [](const Detection& a, const Detection& b) { return a.score > b.score; });
       return found;
-    } catch (const py::error_already_set& error) {  // must not leave without the GIL
+    } catch (const py::error_already_set& error) {   // must not leave without the GIL
+      if (error.matches(PyExc_KeyboardInterrupt)) {  // is not the detector's: raised again, later
+        PyErr_SetInterrupt();
+        return {};
+      }
       ThrowInput(error.what());
     } catch (const py::cast_error& error) {
       ThrowInput(error.what());

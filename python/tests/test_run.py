@@ -1,6 +1,8 @@
 """Whole runs: the same as the program's, and stopped in the middle."""
 
+import inspect
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -74,6 +76,16 @@ def test_errors_are_pythons(tmp_path):
         alidade.run(DESK, semi_dense=True)
     with pytest.raises(alidade.UsageError, match="sensor"):
         alidade.run(DESK, sensor="lidar")
+
+
+@pytest.mark.parametrize("command, function", [("run", alidade.run), ("localize", alidade.localize)])
+def test_every_option_of_the_program_is_here(program, command, function):
+    names = set(re.findall(r"--([a-z][a-z-]+)", program(command, "--help").split("Examples:")[0]))
+    names -= {"help", "quiet", "no-calibrate-first"}
+    ours = set(inspect.signature(function).parameters)
+    known = {name.replace("-", "_") for name in names} - {"set"}
+    assert len(known) > 15 and not known - ours
+    assert "settings" in ours and "progress" in ours
 
 
 def test_what_progress_raises_ends_the_run():

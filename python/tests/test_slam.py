@@ -2,6 +2,7 @@
 
 import gc
 import os
+import signal
 import subprocess
 import sys
 import textwrap
@@ -198,6 +199,22 @@ def test_a_detector_is_heard(desk):
     slam.track(frames[1].time, frames[1].image, depth=frames[1].depth, color=color)
     numpy.testing.assert_array_equal(kept[1], color)
     assert slam.mover_mask().shape == (240, 320)
+
+
+def test_ctrl_c_in_a_detector_is_not_the_detectors(desk):
+    recording, frames = desk
+
+    def interrupted(image):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    slam = made(recording, detector=interrupted)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            play(slam, frames[:3])
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert slam.health()["detector"] is None
 
 
 def test_a_thousand_come_and_go():
