@@ -95,7 +95,7 @@ def _estimate(estimate: Any, span: Span) -> Tuple[Any, Span]:
     if not isinstance(estimate, Result):
         return estimate, span
     known = estimate.stats["span"]
-    return estimate.trajectory, span or (tuple(known) if known else None)
+    return estimate.trajectory, span or ((known[0], known[1]) if known else None)
 
 
 def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "se3",
@@ -108,16 +108,16 @@ def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: 
     span: first and last frame of the recording in seconds, which coverage is judged over; None: the Result's, or the
     estimate's own.
     """
-    estimate, span = _estimate(estimate, span)
-    return TrajectoryError(**_core.ate(truth, estimate, align, association, max_dt, span))
+    poses, span = _estimate(estimate, span)
+    return TrajectoryError(**_core.ate(truth, poses, align, association, max_dt, span))
 
 
 def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: float = 1.0, unit: str = "s",
         pairs: str = "all", align: str = "se3", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
     """Relative pose error: drift over a fixed step. delta: in seconds (unit "s") or poses ("frames"). pairs: "all",
     from every pose, as TUM's tool; "consecutive": without overlap. All else as for ate()."""
-    estimate, span = _estimate(estimate, span)
-    trans, rot = _core.rpe(truth, estimate, delta, unit, pairs, align, max_dt, span)
+    poses, span = _estimate(estimate, span)
+    trans, rot = _core.rpe(truth, poses, delta, unit, pairs, align, max_dt, span)
     return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Any, Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy
 
@@ -74,7 +74,7 @@ class Cloud:
 class MapPart:
     """One of the maps in a Map, with a world of its own. Arrays are made when they are asked for."""
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: _core.MapPart) -> None:
         self._core = core
 
     @property
@@ -119,7 +119,7 @@ class Map:
     ``keyframes``, ``points``, ``observations``, ``covisibility``, ``loops`` and ``cloud()`` are of that one.
     """
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: _core.Map) -> None:
         self._core = core
 
     @classmethod

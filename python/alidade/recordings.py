@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Any, Iterator, Optional
+from typing import Iterator, Optional
 
 import numpy
 
@@ -42,7 +42,7 @@ class Frame:
 class Recording:
     """Frames of a recording, in order: ``for frame in recording``. Made by alidade.open()."""
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: _core.Source) -> None:
         self._core = core
         info = core.info()
         self.name: str = info["name"]

@@ -68,7 +68,8 @@ class Result:
     def stats(self) -> Dict[str, Any]:
         """stats.json."""
         with open(self.file("stats.json"), encoding="utf-8") as file:
-            return json.load(file)
+            stats: Dict[str, Any] = json.load(file)
+        return stats
 
     @property
     def map(self) -> Map:

@@ -49,6 +49,15 @@ def test_the_stubs_are_of_this_module():
         assert "return" in getattr(alidade, name).__annotations__
 
 
+def test_the_types_agree():
+    if subprocess.run([sys.executable, "-m", "mypy", "--version"], capture_output=True, check=False).returncode != 0:
+        pytest.skip("mypy is not installed")
+    done = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports",
+                           "--disable-error-code=type-arg", "--cache-dir", os.devnull, PACKAGE],
+                          capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+
+
 def test_settings_have_the_names_of_the_program():
     assert alidade.settings()["tracker.extractor.features"] == "1000"
     assert re.fullmatch(r"\d+\.\d+\.\d+", alidade.__version__)
