@@ -123,7 +123,7 @@ def test_a_wheel_is_made_without_a_network(tmp_path):
     assert made.returncode == 0, made.stdout + made.stderr
     environment["PYTHONPATH"] = str(tmp_path / "there")
     code = ("import alidade; print(alidade.__file__); "
-            "print(alidade.run('synth:desk?frames=3&width=160&height=120', sensor='rgbd').stats['tracked'])")
+            "print(alidade.run('synth:desk?frames=3&width=320&height=240', sensor='rgbd').stats['tracked'])")
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False,
                          cwd=tmp_path)
     assert ran.stdout.splitlines() == [str(tmp_path / "there" / "alidade" / "__init__.py"), "3"], ran.stderr
