@@ -93,7 +93,8 @@ class GlScreen {
       glRenderbufferStorage(GL_RENDERBUFFER, formats[i], width, height);
       glFramebufferRenderbuffer(GL_FRAMEBUFFER, places[i], GL_RENDERBUFFER, buffers_[i]);
     }
-    EXPECT_EQ(glCheckFramebufferStatus(GL_FRAMEBUFFER), static_cast<GLenum>(GL_FRAMEBUFFER_COMPLETE));
+    EXPECT_EQ(glCheckFramebufferStatus(GL_FRAMEBUFFER),
+              static_cast<GLenum>(GL_FRAMEBUFFER_COMPLETE));
   }
   ~GlScreen() {
     glDeleteFramebuffers(1, &frame_);

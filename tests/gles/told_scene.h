@@ -52,9 +52,9 @@ struct Change {
 class Teller {
  public:
   explicit Teller(const Camera& camera) : camera_(camera) {
-    const auto told = stream::CreateCamera(
-        builder_, static_cast<uint16_t>(camera.width), static_cast<uint16_t>(camera.height),
-        camera.fx, camera.fy, camera.cx, camera.cy);
+    const auto told = stream::CreateCamera(builder_, static_cast<uint16_t>(camera.width),
+                                           static_cast<uint16_t>(camera.height), camera.fx,
+                                           camera.fy, camera.cx, camera.cy);
     stream::HelloBuilder hello(builder_);
     hello.add_camera(told);
     Take(stream::Body::Hello, hello.Finish().Union());
@@ -64,8 +64,8 @@ class Teller {
     std::vector<flatbuffers::Offset<stream::KeyFrame>> keyframes;
     for (const Change::NewKeyFrame& k : change.keyframes) {
       const stream::Pose pose = PackPose(k.T_world_camera);
-      keyframes.push_back(stream::CreateKeyFrame(builder_, k.id, k.map, KeyFrameId::kNone, 0, 0,
-                                                 &pose, k.scale));
+      keyframes.push_back(
+          stream::CreateKeyFrame(builder_, k.id, k.map, KeyFrameId::kNone, 0, 0, &pose, k.scale));
     }
     std::vector<stream::Move> moves;
     for (const Change::NewKeyFrame& k : change.moves)
@@ -117,15 +117,15 @@ class Teller {
       PackFeature(use, camera_, packed);
     }
     const auto bytes = builder_.CreateVector(packed);
-    const stream::Pose pose = PackPose(T_reference_camera);
-    const stream::Pose guessed = PackPose(guess ? *guess : Se3());
     const bool tracked = reference != KeyFrameId::kNone;
+    const stream::Pose pose = PackPose(T_reference_camera);
+    const stream::Pose in_world = PackPose(guess ? *guess : Se3());
     stream::FrameBuilder frame(builder_);
     frame.add_number(number_++);
     frame.add_state(tracked ? stream::State::tracking : stream::State::lost);
     frame.add_reference(reference);
     if (tracked) frame.add_t_reference_camera(&pose);
-    if (guess) frame.add_t_world_camera(&guessed);
+    if (guess || tracked) frame.add_t_world_camera(&in_world);
     frame.add_predicted(guess != nullptr);
     frame.add_features(bytes);
     Take(stream::Body::Frame, frame.Finish().Union());

@@ -143,11 +143,12 @@ void TakeCamera(const stream::Camera& told, StreamScene& scene) {
 }
 
 void TakeNow(const stream::Frame& told, SceneNow& now) {
-  now = {told.number(),
-         static_cast<int>(told.state()),
-         told.time(),
-         TextFrom(told.reason()),
-         {told.map()}};
+  now = {};
+  now.number = told.number();
+  now.state = static_cast<int>(told.state());
+  now.time = told.time();
+  now.reason = TextFrom(told.reason());
+  now.map = {told.map()};
   if (told.state() == stream::State::tracking)
     now.T_world_camera = PoseFrom(told.t_world_camera(), "a frame");
   if (told.predicted()) now.T_world_guess = PoseFrom(told.t_world_camera(), "a frame");
