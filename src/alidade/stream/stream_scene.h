@@ -4,12 +4,15 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "alidade/base/ids.h"
+#include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/io/cloud.h"
 
 namespace alidade {
 
@@ -55,7 +58,23 @@ struct SceneBox {
 struct SceneEvent {
   int kind = 0;  // stream::EventKind
   int number = 0;
+  double time = 0;   // seconds
+  bool bad = false;  // lost, cut, given up, warned of
   std::string text;
+};
+
+// The last frame, as it was when it was done.
+struct SceneNow {
+  int number = 0;
+  int state = 0;    // TrackState
+  double time = 0;  // seconds
+  std::string reason;
+  MapId map;                          // none: no pose
+  std::optional<Se3> T_world_camera;  // when tracked
+  uint32_t keyframes = 0, landmarks = 0, matches = 0, maps = 0;
+  std::vector<float> ms;  // of stream.fbs' stages; below 0: not run
+  int picture_width = 0, picture_height = 0;
+  std::string picture, picture_type;  // empty: none
 };
 
 class StreamScene {
@@ -65,6 +84,8 @@ class StreamScene {
   void Take(std::string_view message);
 
   int width = 0, height = 0;  // of the camera
+  Camera camera;              // size, focal lengths, centre, distortion and baseline
+  Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
   std::string source, unit;
   uint64_t version = 0;  // of the map
   std::map<KeyFrameId, SceneKeyFrame> keyframes;
@@ -75,6 +96,7 @@ class StreamScene {
   uint32_t told_keyframes = 0, told_landmarks = 0, matches = 0;  // counts of the last frame
 
   // Of the last frame.
+  SceneNow now;
   std::vector<SceneFeature> features;
   std::vector<SceneBox> boxes;
   float detection_age = -1;  // seconds; below 0: the detector has not answered
@@ -82,6 +104,7 @@ class StreamScene {
 
   Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world
   Se3 PoseOf(const SceneFrame& frame) const;  // T_world_camera; needs a reference
+  void AddDepth(const SceneKeyFrame& keyframe, Cloud& points_world) const;  // its semi-dense points
 };
 
 }  // namespace alidade
