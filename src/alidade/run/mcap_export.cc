@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<RosPose> PathOf(const Trajectory& trajectory) {
+std::vector<RosPose> RosPathOf(const Trajectory& trajectory) {
   std::vector<RosPose> path;
   for (const StampedPose& pose : trajectory)
     path.push_back({RosTime::FromSeconds(pose.time), pose.T_world_camera});
@@ -29,7 +29,7 @@ std::vector<RosPose> PathOf(const Trajectory& trajectory) {
 
 // The whole of what is known at the end.
 void TellState(RosLog& log, double time, const FinalState& state) {
-  if (!state.trajectory.empty()) log.Path(time, PathOf(state.trajectory));
+  if (!state.trajectory.empty()) log.Path(time, RosPathOf(state.trajectory));
   if (state.landmarks) log.Landmarks(time, *state.landmarks);
   if (state.shape) log.Shape(time, *state.shape);
 }
@@ -60,7 +60,7 @@ McapCounts TellKnown(const Trajectory& frames, const FinalState& state,
   return CountsOf(static_cast<int>(frames.size()), state, file);
 }
 
-std::string Whole(const std::optional<double>& number) {
+std::string CountText(const std::optional<double>& number) {
   return number ? std::to_string(static_cast<long>(*number)) : "not known";
 }
 
@@ -68,11 +68,11 @@ std::vector<RosStatus> StatusOf(const ResultFolder& result) {
   RosStatus state;
   state.name = "alidade: run";
   state.hardware_id = result.source;
-  state.message = Whole(result.tracked) + " of " + Whole(result.frames) + " frames tracked";
-  state.values = {{"keyframes", Whole(result.keyframes)},
-                  {"landmarks", Whole(result.landmarks)},
-                  {"loops", Whole(result.loops)},
-                  {"maps", Whole(result.maps)}};
+  state.message = CountText(result.tracked) + " of " + CountText(result.frames) + " frames tracked";
+  state.values = {{"keyframes", CountText(result.keyframes)},
+                  {"landmarks", CountText(result.landmarks)},
+                  {"loops", CountText(result.loops)},
+                  {"maps", CountText(result.maps)}};
   std::vector<float> medians;
   for (const MedianBar& bar : result.milliseconds)
     medians.push_back(bar.median > 0 ? static_cast<float>(bar.median) : -1.f);
