@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "alidade/io/files/file.h"
+#include "alidade/run/mcap_export.h"
+#include "alidade/version.h"
 #include "arguments.h"
 #include "commands.h"
 #include "export_folder.h"
@@ -22,7 +24,7 @@ struct ExportOptions {
   int min_observations = 1;  // landmarks fewer keyframes see are left out
 };
 
-enum class Target { kPly, kPcd, kTum, kColmap };
+enum class Target { kPly, kPcd, kTum, kColmap, kMcap };
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -36,7 +38,8 @@ Plan PlanOf(const ExportOptions& options) {
                                      {{"ply", Target::kPly},
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
-                                      {"colmap", Target::kColmap}});
+                                      {"colmap", Target::kColmap},
+                                      {"mcap", Target::kMcap}});
   auto form = Choice<Form>("--format", options.format,
                            {{"text", Form::kText},
                             {"binary", Form::kBinary},
@@ -47,6 +50,9 @@ Plan PlanOf(const ExportOptions& options) {
   }
   if (target != Target::kColmap && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
+  }
+  if (target == Target::kMcap && form != Form::kDefault && form != Form::kBinary) {
+    ThrowUsage("--format cannot be '" + options.format + "': MCAP is binary");
   }
   if (form == Form::kDefault) form = target == Target::kColmap ? Form::kBoth : Form::kBinary;
   return {target, form};
@@ -70,8 +76,37 @@ void WriteExportFile(const std::string& path, const std::string& bytes) {
   AtomicWriteFile(path, bytes);
 }
 
+// A recorded stream, results or a map.
+int ExportToMcap(const ExportOptions& options) {
+  const std::string stream = StreamIn(options.map), program = "alidade " ALIDADE_VERSION;
+  std::error_code error;
+  if (std::filesystem::equivalent(stream.empty() ? options.map : stream, options.out, error))
+    ThrowUsage("OUT is what is exported; name another");
+  const bool map = stream.empty() && !IsFolder(options.map);
+  if (!map && (options.part != 0 || options.min_observations != 1)) {
+    ThrowUsage("--part and --min-observations choose from a map: name the file map.alidade");
+  }
+  McapCounts counts;
+  if (map) {
+    const SavedMap saved = ReadSavedMap(options.map);
+    const MapPart part = SeenOften(saved, PartOf(saved, options), options.min_observations);
+    counts = ExportMap(saved, part, options.out, program);
+  } else if (stream.empty()) {
+    counts = ExportResults(options.map, options.out, program);
+  } else {
+    counts = ExportStream(stream, options.out, program);
+  }
+  const std::string shape =
+      counts.shape > 0 ? ", " + std::to_string(counts.shape) + " points of shape" : "";
+  std::printf("%s: %d %s, %zu landmarks%s, %.1f MB\n", options.out.c_str(), counts.frames,
+              map ? "keyframes" : "frames", counts.landmarks, shape.c_str(),
+              1e-6 * static_cast<double>(counts.bytes));
+  return 0;
+}
+
 int ExportCommand(const ExportOptions& options) {
   const Plan plan = PlanOf(options);
+  if (plan.target == Target::kMcap) return ExportToMcap(options);
   std::error_code error;
   if (std::filesystem::equivalent(SavedMapPath(options.map), options.out, error)) {
     ThrowUsage("OUT is the map itself; name another");
@@ -102,6 +137,8 @@ int ExportCommand(const ExportOptions& options) {
       what = std::to_string(part.keyframes.size()) + " images, " + what;
       break;
     }
+    case Target::kMcap:  // above
+      break;
   }
   std::printf("%s: %s\n", options.out.c_str(), what.c_str());
   return 0;
@@ -110,9 +147,11 @@ int ExportCommand(const ExportOptions& options) {
 }  // namespace
 
 void AddExportCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("export", "A map as what other programs read");
+  CLI::App* command = app.add_subcommand("export", "A map, or a run, as what other programs read");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("MAP", options->map, "The map: a file, or the folder `run` left")
+  command
+      ->add_option("MAP", options->map,
+                   "The map: a file, or the folder `run` left (for mcap also a recorded stream)")
       ->required()
       ->type_name("PATH");
   command
@@ -123,9 +162,10 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command
       ->add_option("--to", options->to,
                    "ply, pcd: the landmarks; tum: the keyframes' trajectory; colmap: a sparse "
-                   "model of both")
+                   "model of both; mcap: the run as it was (if it was recorded), its path and "
+                   "points, for Foxglove, Lichtblick, Rerun and ros2")
       ->required()
-      ->type_name("ply|pcd|tum|colmap");
+      ->type_name("ply|pcd|tum|colmap|mcap");
   command
       ->add_option("--format", options->format,
                    "How numbers are written; by default binary for ply and pcd, text for tum, and "
@@ -145,6 +185,7 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command->footer(
       "\nExamples:\n"
       "  alidade export alidade-out/kitchen --to ply kitchen.ply\n"
+      "  alidade export alidade-out/kitchen --to mcap kitchen.mcap      open it in Foxglove\n"
       "  alidade export map.alidade --to colmap model && colmap model_analyzer --path model");
   command->callback([options, &action] { action = [options] { return ExportCommand(*options); }; });
 }

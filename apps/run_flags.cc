@@ -12,6 +12,8 @@ constexpr char kExamples[] =
     "  alidade run walk.mp4                         a video: its camera is found first\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
     "  alidade run my_recording --viewer            watch it in a browser\n"
+    "  alidade run my_recording --record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag "
+    "play\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
     "  alidade run my_recording --semidense         the shape of the place as well\n"
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
@@ -53,7 +55,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option("--record", options.record,
                   "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
-                  "among the results, or FILE)")
+                  "among the results, or FILE); FILE.mcap is for Foxglove, Rerun and ros2 instead")
       ->expected(0, 1)
       ->default_str("");
   command

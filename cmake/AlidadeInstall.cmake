@@ -8,7 +8,7 @@ set(ALIDADE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Alidade)
 # What is in the library: all floors but those that only the program and tests need.
 get_property(ALIDADE_FLOORS GLOBAL PROPERTY ALIDADE_FLOORS)
 set(PARTS ${ALIDADE_FLOORS} alidade_module alidade_io_files alidade_onnx)
-list(REMOVE_ITEM PARTS alidade_synth alidade_view)
+list(REMOVE_ITEM PARTS alidade_synth alidade_view alidade_ros)
 set(OBJECTS)
 foreach(PART ${PARTS})
   list(APPEND OBJECTS $<TARGET_OBJECTS:${PART}>)

@@ -19,7 +19,8 @@ const std::map<std::string, int> kFloors = {
     {"base", 0},     {"geometry", 1}, {"features", 2}, {"io", 2},         {"detect", 2},
     {"optimize", 2}, {"synth", 2},    {"place", 3},    {"evaluation", 3}, {"map", 4},
     {"tracking", 5}, {"mapping", 5},  {"looping", 5},  {"semidense", 5},  {"dynamics", 5},
-    {"system", 6},   {"view", 7},     {"stream", 7},   {"phone", 8},      {"gles", 8},
+    {"system", 6},   {"view", 7},     {"stream", 7},   {"ros", 7},        {"phone", 8},
+    {"gles", 8},
     {"run", 8},      {"serve", 8},    {"apps", 9}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
@@ -59,7 +60,8 @@ std::string FolderOf(const std::string& path) {
 
 bool IsPortable(const std::string& path) {
   const std::string folder = FolderOf(path);
-  if (kFloors.at(folder) > 6 && folder != "stream" && folder != "phone" && folder != "gles")
+  if (kFloors.at(folder) > 6 && folder != "stream" && folder != "phone" && folder != "gles" &&
+      folder != "ros")
     return false;
   return std::none_of(kOuterFolders.begin(), kOuterFolders.end(),
                       [&](const std::string& outer) { return StartsWith(path, outer + "/"); });

@@ -140,6 +140,12 @@ void TakeCamera(const stream::Camera& told, StreamScene& scene) {
   camera.distortion = {};
   if (const auto* k = told.distortion(); k && k->size() == camera.distortion.size())
     std::copy(k->begin(), k->end(), camera.distortion.begin());
+  if (const auto* turn = told.r_camera_rectified()) {
+    if (turn->size() != 9) Refuse("a rotation of the camera");
+    for (unsigned i = 0; i < 9; ++i) scene.R_camera_rectified(i / 3, i % 3) = turn->Get(i);
+    const Eigen::Matrix3d& R = scene.R_camera_rectified;
+    if (!(R * R.transpose()).isIdentity(1e-6)) Refuse("a rotation of the camera");
+  }
 }
 
 void TakeNow(const stream::Frame& told, SceneNow& now) {
@@ -221,8 +227,11 @@ void StreamScene::Take(std::string_view bytes) {
   } else if (const stream::Frame* frame = message.body_as_Frame()) {
     TakeFrame(*frame, *this);
   } else if (const stream::Event* event = message.body_as_Event()) {
+    const stream::EventKind kind = event->kind();
+    const bool bad = kind == stream::EventKind::lost || kind == stream::EventKind::cut ||
+                     kind == stream::EventKind::given_up || kind == stream::EventKind::warning;
     events.push_back(
-        {static_cast<int>(event->kind()), event->number(), event->time(), TextFrom(event->text())});
+        {static_cast<int>(kind), event->number(), event->time(), bad, TextFrom(event->text())});
   }
 }
 
@@ -249,6 +258,18 @@ Se3 StreamScene::PoseOf(const SceneFrame& frame) const {
   Se3 T_reference_camera = frame.T_reference_camera;
   T_reference_camera.t *= keyframe.scale;
   return keyframe.T_world_camera * T_reference_camera;
+}
+
+void StreamScene::AddDepth(const SceneKeyFrame& keyframe, Cloud& points_world) const {
+  const auto* bytes = reinterpret_cast<const uint8_t*>(keyframe.depth.data());
+  for (size_t i = 0; i + kPackedPoint <= keyframe.depth.size(); i += kPackedPoint) {
+    const CloudPoint point =
+        UnpackPoint(bytes + i, keyframe.depth_least, keyframe.depth_most, width, height);
+    const Eigen::Vector3d p =
+        camera.Unproject({point.x, point.y}, keyframe.scale / point.inverse_depth);
+    points_world.points.push_back((keyframe.T_world_camera * p).cast<float>());
+    points_world.colors.push_back({point.red, point.green, point.blue});
+  }
 }
 
 }  // namespace alidade

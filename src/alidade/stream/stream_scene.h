@@ -12,6 +12,7 @@
 #include "alidade/base/ids.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/io/cloud.h"
 
 namespace alidade {
 
@@ -58,7 +59,8 @@ struct SceneBox {
 struct SceneEvent {
   int kind = 0;  // stream::EventKind
   int number = 0;
-  double time = 0;  // seconds
+  double time = 0;   // seconds
+  bool bad = false;  // lost, cut, given up, warned of
   std::string text;
 };
 
@@ -85,6 +87,7 @@ class StreamScene {
 
   int width = 0, height = 0;  // of the camera
   Camera camera;              // size, focal lengths, centre, distortion and baseline
+  Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
   std::string source, unit;
   uint64_t version = 0;  // of the map
   // Of the last map change taken; no two changes in a process have the same one, whichever scene
@@ -110,6 +113,7 @@ class StreamScene {
   std::optional<Se3> CameraPose() const;
   Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world
   Se3 PoseOf(const SceneFrame& frame) const;  // T_world_camera; needs a reference
+  void AddDepth(const SceneKeyFrame& keyframe, Cloud& points_world) const;  // its semi-dense points
 };
 
 }  // namespace alidade
