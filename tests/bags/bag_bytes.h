@@ -1,5 +1,5 @@
-// Containers of messages as bytes: ROS bag 2.0, MCAP, rosbag2's database. Written by what the formats
-// say, apart from what reads them.
+// Containers of messages as bytes: ROS bag 2.0, MCAP, rosbag2's database. Written by what the
+// formats say, apart from what reads them.
 #pragma once
 
 #include <bzlib.h>
@@ -8,6 +8,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <map>
@@ -32,8 +33,8 @@ inline std::string Packed(const std::string& format, const std::string& bytes) {
   }
   if (format == "lz4") {
     std::string packed(LZ4F_compressFrameBound(bytes.size(), nullptr), '\0');
-    return packed.substr(0, LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(),
-                                               bytes.size(), nullptr));
+    return packed.substr(
+        0, LZ4F_compressFrame(packed.data(), packed.size(), bytes.data(), bytes.size(), nullptr));
   }
   if (format == "zstd") {
     std::string packed(ZSTD_compressBound(bytes.size()), '\0');
@@ -58,6 +59,7 @@ struct BagForm {
   bool closed = true;   // with what a recorder writes at the end
   bool chunks = true;   // MCAP alone
   size_t chunk_messages = 4;
+  bool padded = true;  // bag alone: its first record takes 4 KB
 };
 
 class BagBytes {
@@ -97,7 +99,7 @@ class BagBytes {
         Field("index_pos", Little(index_at)) +
         Field("conn_count", Little(static_cast<uint32_t>(connections_.size()))) +
         Field("chunk_count", Little(chunks));
-    return Record(3, fields, std::string(4027 - fields.size(), ' '));
+    return Record(3, fields, std::string(form_.padded ? 4027 - fields.size() : 0, ' '));
   }
   static std::string Time(int64_t ns) {
     return Little(static_cast<uint32_t>(ns / 1'000'000'000)) +
@@ -122,26 +124,29 @@ class BagBytes {
       }
       indexes[connection.id] +=
           Time(message.log_time) + Little(static_cast<uint32_t>(plain.size()));
-      plain += Record(2,
-                      Field("conn", Little(connection.id)) + Field("time", Time(message.log_time)),
-                      message.bytes);
+      plain +=
+          Record(2, Field("conn", Little(connection.id)) + Field("time", Time(message.log_time)),
+                 message.bytes);
     }
     const uint64_t place = file.size();
-    file += Record(5, Field("compression", form_.packing) +
-                          Field("size", Little(static_cast<uint32_t>(plain.size()))),
+    file += Record(5,
+                   Field("compression", form_.packing) +
+                       Field("size", Little(static_cast<uint32_t>(plain.size()))),
                    Packed(form_.packing, plain));
     std::string counts;
     for (const auto& [id, entries] : indexes) {
       const auto count = static_cast<uint32_t>(entries.size() / 12);
       counts += Little(id) + Little(count);
-      file += Record(4, Field("ver", Little(uint32_t{1})) + Field("conn", Little(id)) +
-                            Field("count", Little(count)),
+      file += Record(4,
+                     Field("ver", Little(uint32_t{1})) + Field("conn", Little(id)) +
+                         Field("count", Little(count)),
                      entries);
     }
-    infos += Record(6, Field("ver", Little(uint32_t{1})) + Field("chunk_pos", Little(place)) +
-                           Field("start_time", Time(messages[first].log_time)) +
-                           Field("end_time", Time(messages[first].log_time)) +
-                           Field("count", Little(static_cast<uint32_t>(indexes.size()))),
+    infos += Record(6,
+                    Field("ver", Little(uint32_t{1})) + Field("chunk_pos", Little(place)) +
+                        Field("start_time", Time(messages[first].log_time)) +
+                        Field("end_time", Time(messages[first].log_time)) +
+                        Field("count", Little(static_cast<uint32_t>(indexes.size()))),
                     counts);
   }
 
@@ -192,8 +197,8 @@ class McapBytes {
     std::string records;
   };
   static uint32_t Crc(const std::string& bytes) {
-    return static_cast<uint32_t>(crc32(0, reinterpret_cast<const Bytef*>(bytes.data()),
-                                       static_cast<uInt>(bytes.size())));
+    return static_cast<uint32_t>(
+        crc32(0, reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uInt>(bytes.size())));
   }
   static std::string Record(char op, const std::string& content) {
     return std::string(1, op) + Little(static_cast<uint64_t>(content.size())) + content;
@@ -206,17 +211,16 @@ class McapBytes {
     if (is_new) {
       channel.id = static_cast<uint16_t>(channels_.size());
       const std::string type = ros1_ ? message.type : Ros2Type(message.type);
-      channel.records =
-          Record(3, Little(channel.id) + Sized32(type) + Sized32(ros1_ ? "ros1msg" : "ros2msg") +
-                        Sized32("...")) +
-          Record(4, Little(channel.id) + Little(channel.id) + Sized32(message.topic) +
-                        Sized32(ros1_ ? "ros1" : "cdr") + Sized32(""));
+      channel.records = Record(3, Little(channel.id) + Sized32(type) +
+                                      Sized32(ros1_ ? "ros1msg" : "ros2msg") + Sized32("...")) +
+                        Record(4, Little(channel.id) + Little(channel.id) + Sized32(message.topic) +
+                                      Sized32(ros1_ ? "ros1" : "cdr") + Sized32(""));
       plain += channel.records;
     }
     const auto time = static_cast<uint64_t>(message.log_time);
     entries[channel.id] += Little(time) + Little(static_cast<uint64_t>(plain.size()));
-    plain += Record(5, Little(channel.id) + Little(uint32_t{0}) + Little(time) + Little(time) +
-                           message.bytes);
+    plain += Record(
+        5, Little(channel.id) + Little(uint32_t{0}) + Little(time) + Little(time) + message.bytes);
   }
 
   void AddChunk(const std::string& plain, int64_t start,
@@ -225,10 +229,10 @@ class McapBytes {
     const std::string packing = form_.packing == "none" ? "" : form_.packing;
     const std::string packed = Packed(packing, plain);
     const auto time = static_cast<uint64_t>(start);
-    const std::string chunk = Record(
-        6, Little(time) + Little(time) + Little(static_cast<uint64_t>(plain.size())) +
-               Little(Crc(plain)) + Sized32(packing) +
-               Little(static_cast<uint64_t>(packed.size())) + packed);
+    const std::string chunk =
+        Record(6, Little(time) + Little(time) + Little(static_cast<uint64_t>(plain.size())) +
+                      Little(Crc(plain)) + Sized32(packing) +
+                      Little(static_cast<uint64_t>(packed.size())) + packed);
     const uint64_t chunk_at = file.size();
     file += chunk;
     std::string index, offsets;
@@ -262,7 +266,7 @@ inline void WriteDatabase(const std::string& path, const std::vector<WrittenMess
     sqlite3_step(statement);
     sqlite3_finalize(statement);
   };
-  run("PRAGMA page_size=1024");
+  run("PRAGMA page_size=512");
   run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT NOT NULL, type TEXT NOT NULL, "
       "serialization_format TEXT NOT NULL, offered_qos_profiles TEXT NOT NULL)");
   run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER NOT NULL, timestamp INTEGER "

@@ -1,5 +1,5 @@
-// Messages of sensor_msgs as bytes, for ROS 1 or as CDR: written by what the formats say, apart from
-// what reads them.
+// Messages of sensor_msgs as bytes, for ROS 1 or as CDR: written by what the formats say, apart
+// from what reads them.
 #pragma once
 
 #include <array>

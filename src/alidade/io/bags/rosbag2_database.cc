@@ -128,15 +128,16 @@ class Rosbag2Database : public IndexedBag {
   void IndexMessages() {
     const Statement messages =
         Prepare("SELECT id, topic_id, timestamp FROM messages WHERE id > ?1 ORDER BY id");
-    sqlite3_int64 last = std::numeric_limits<sqlite3_int64>::min(), step = 1;
+    constexpr sqlite3_int64 kLeast = std::numeric_limits<sqlite3_int64>::min(),
+                            kMost = std::numeric_limits<sqlite3_int64>::max();
     constexpr sqlite3_int64 kMostStep = sqlite3_int64{1} << 24;
+    sqlite3_int64 last = kLeast, step = 1;
     while (true) {
       sqlite3_bind_int64(messages.get(), 1, last);
       int result = SQLITE_ROW;
       while ((result = sqlite3_step(messages.get())) == SQLITE_ROW) {
         const sqlite3_int64 id = sqlite3_column_int64(messages.get(), 0);
-        if (id <= last && !Topics().empty() && last != std::numeric_limits<sqlite3_int64>::min())
-          break;  // a tree that goes in circles
+        if (id <= last) break;  // a tree that is damaged may go in circles
         last = id;
         step = 1;
         const auto topic = topics_of_.find(sqlite3_column_int64(messages.get(), 1));
@@ -145,9 +146,13 @@ class Rosbag2Database : public IndexedBag {
             {sqlite3_column_int64(messages.get(), 2), static_cast<uint64_t>(id), 0, 0});
       }
       if (result == SQLITE_DONE) return;
-      if (step == 1) Warn(Complaint() + "; what can be read of it is read");
+      if (step == 1) {
+        Warn((result == SQLITE_ROW ? std::string("is damaged: its messages are out of order")
+                                   : Complaint()) +
+             "; what can be read of it is read");
+      }
       sqlite3_reset(messages.get());
-      if (step > kMostStep) return;
+      if (step > kMostStep || last > kMost - step) return;
       last = last < 0 ? step : last + step;
       step *= 2;
     }

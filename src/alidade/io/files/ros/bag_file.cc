@@ -10,6 +10,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/module/load_module.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/image_list.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
@@ -35,32 +36,6 @@ bool BeginsAsBag(const std::string& path) {
          bytes.substr(0, 15) == "SQLite format 3";
 }
 
-// Digits count as numbers: "x_2" comes before "x_10".
-bool NaturallyBefore(const std::string& a, const std::string& b) {
-  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
-  size_t i = 0, j = 0;
-  while (i < a.size() && j < b.size()) {
-    if (digit(a[i]) && digit(b[j])) {
-      size_t end_i = i, end_j = j;
-      while (end_i < a.size() && digit(a[end_i])) ++end_i;
-      while (end_j < b.size() && digit(b[end_j])) ++end_j;
-      while (i + 1 < end_i && a[i] == '0') ++i;
-      while (j + 1 < end_j && b[j] == '0') ++j;
-      const std::string x = a.substr(i, end_i - i), y = b.substr(j, end_j - j);
-      if (x.size() != y.size()) return x.size() < y.size();
-      if (x != y) return x < y;
-      i = end_i;
-      j = end_j;
-    } else if (a[i] != b[j]) {
-      return a[i] < b[j];
-    } else {
-      ++i;
-      ++j;
-    }
-  }
-  return a.size() - i < b.size() - j || (a.size() - i == b.size() - j && a < b);
-}
-
 // "walk" of walk_0.mcap and walk_12.mcap.zstd.
 std::string StemOf(const std::string& name) {
   const std::string stem = name.substr(0, name.find('.'));
@@ -78,16 +53,16 @@ void CheckIsOne(const std::string& folder, const std::vector<std::string>& names
   }
 }
 
-struct Module {
+struct BagsModule {
   BagOpenFunction* open = nullptr;
   std::string problem;
 };
 
-const Module& TheModule() {
-  static const Module module = [] {
+const BagsModule& TheBagsModule() {
+  static const BagsModule module = [] {
     const LoadedModule loaded = LoadModule(kBagsModuleFile, {"alidade_bags_open"});
-    if (loaded.symbols.empty()) return Module{nullptr, loaded.problem};
-    return Module{reinterpret_cast<BagOpenFunction*>(loaded.symbols[0]), {}};
+    if (loaded.symbols.empty()) return BagsModule{nullptr, loaded.problem};
+    return BagsModule{reinterpret_cast<BagOpenFunction*>(loaded.symbols[0]), {}};
   }();
   return module;
 }
@@ -162,7 +137,7 @@ std::vector<std::string> FilesOfBag(const std::string& path) {
 }
 
 std::unique_ptr<BagFile> OpenBagFile(const std::string& path) {
-  const Module& module = TheModule();
+  const BagsModule& module = TheBagsModule();
   if (module.open == nullptr)
     ThrowInput(path + " needs " + kBagsModuleFile + ": " + module.problem);
   const std::vector<std::string> files = FilesOfBag(path);

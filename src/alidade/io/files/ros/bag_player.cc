@@ -12,11 +12,11 @@
 namespace alidade {
 namespace {
 
-constexpr double kMaxDepthDelay =
+constexpr double kDepthWithin =
     0.02;  // seconds: over half a frame at 30 Hz, as TUM's tools have it
 // Seconds: cameras that are triggered together, whose drivers stamp them apart. A turn of 60
 // degrees a second moves the picture by 2 pixels in it.
-constexpr double kMaxPairDelay = 0.003;
+constexpr double kPairWithin = 0.003;
 
 }  // namespace
 
@@ -30,11 +30,11 @@ BagPlayer::BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const Chose
       frames_(*bag_, chosen.image.topic) {
   if (right_) {
     right_stamps_.emplace(*bag_, right_->topic);
-    right_finder_.emplace(frames_, *right_stamps_, max_dt.value_or(kMaxPairDelay));
+    right_finder_.emplace(frames_, *right_stamps_, max_dt.value_or(kPairWithin));
   }
   if (depth_) {
     depth_stamps_.emplace(*bag_, depth_->topic);
-    depth_finder_.emplace(frames_, *depth_stamps_, max_dt.value_or(kMaxDepthDelay));
+    depth_finder_.emplace(frames_, *depth_stamps_, max_dt.value_or(kDepthWithin));
   }
 }
 

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-bool Holds(const std::string& text, const std::string& word) {
+bool HasWord(const std::string& text, const std::string& word) {
   return text.find(word) != std::string::npos;
 }
 
@@ -80,12 +80,12 @@ class Chooser {
   static bool IsRegistered(const PictureTopic& depth, const PictureTopic& image) {
     if (!depth.depth || !depth.problem.empty() || depth.size != image.size) return false;
     if (depth.frame_id == image.frame_id) return true;
-    if (Holds(depth.base, "depth_registered")) return true;
+    if (HasWord(depth.base, "depth_registered")) return true;
     const size_t aligned = depth.base.find("aligned_depth_to_");
     if (aligned == std::string::npos) return false;
     const size_t from = aligned + std::string("aligned_depth_to_").size();
     const std::string view = depth.base.substr(from, depth.base.find('/', from) - from);
-    return Holds(image.base, view);
+    return HasWord(image.base, view);
   }
 
   std::optional<PictureTopic> DepthFor(const PictureTopic& image) const {
@@ -138,12 +138,12 @@ class Chooser {
         "debug", "mask", "overlay", "detect", "feature", "disparity", "annotat"};
     int score = 0;
     if (image.messages * 5 < most_messages) score -= 1000;
-    for (const char* word : kMadeOfOthers) score -= Holds(image.base, word) ? 500 : 0;
+    for (const char* word : kMadeOfOthers) score -= HasWord(image.base, word) ? 500 : 0;
     if (WantsDepth() && DepthFor(image)) score += 100;
     if (WantsRight() && RightFor(image)) score += 50;
     if (InfoTopicOf(bag_, image) >= 0) score += 20;
     if (!RightNameOf(image.name).empty()) score += 10;  // cam0 rather than cam1
-    if (Holds(image.base, "rgb") || Holds(image.base, "color")) score += 5;
+    if (HasWord(image.base, "rgb") || HasWord(image.base, "color")) score += 5;
     if (!image.compressed) score += 1;
     return score;
   }

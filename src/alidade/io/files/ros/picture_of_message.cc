@@ -67,6 +67,8 @@ cv::Mat RawPixels(const RosPicture& picture, int type) {
   }
   const size_t row_bytes = static_cast<size_t>(columns) * CV_ELEM_SIZE(type);
   const size_t step = picture.step == 0 ? row_bytes : picture.step;
+  if (step % static_cast<size_t>(CV_ELEM_SIZE1(type)) != 0)
+    ThrowInput("is damaged: its rows have an odd length");
   // The last row may end with its pixels.
   if (step < row_bytes || picture.data.size() < row_bytes ||
       (picture.data.size() - row_bytes) / step + 1 < static_cast<size_t>(rows))
