@@ -35,6 +35,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   const SourceInfo info = OpenAnySource(source, wanted)->Info();
   if (info.kind == "camera")
     ThrowUsage("calibrate takes recordings, not " + source + ": it plays them more than once");
+  if (!info.told.empty() && !options.run.quiet) std::printf("%s\n", info.told.c_str());
   // What lies beside the images is not looked at: that is what is asked for.
   if (!wanted.fov_degrees) wanted.fov_degrees = AssumedFov({info.camera.width, info.camera.height});
   wanted.fov_rough = true;

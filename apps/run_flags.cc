@@ -11,6 +11,8 @@ constexpr char kExamples[] =
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
     "  alidade run walk.mp4                         a video: its camera is found first\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
+    "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
+    "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   these topics\n"
     "  alidade run my_recording --viewer            watch it in a browser\n"
     "  alidade run my_recording --record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag "
     "play\n"
@@ -23,9 +25,11 @@ constexpr char kExamples[] =
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
-      .add_option("SOURCE", options.source,
-                  "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, camera:0 or "
-                  "synth:SCENE?frames=N&...")
+      .add_option(
+          "SOURCE", options.source,
+          "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, ROS recording (.bag, .db3, "
+          ".mcap, rosbag2 folder; ?image=TOPIC&depth=TOPIC... chooses), camera:0 or "
+          "synth:SCENE?frames=N&...")
       ->required();
   command.add_option("--sensor", options.sensor,
                      "mono, stereo or rgbd; default: what the recording has");

@@ -53,13 +53,13 @@ install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake)
 
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_dnn)  # what is installed is built
+  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_bags alidade_dnn)  # what is installed is built
   if(TARGET alidade_serve)
     add_dependencies(alidade alidade_serve)
   endif()
 endif()
 # The program and the library find them beside themselves, see base/module.
-install(TARGETS alidade_media alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS alidade_media alidade_bags alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET alidade_serve)
   install(TARGETS alidade_serve LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endif()

@@ -24,7 +24,7 @@ const std::map<std::string, int> kFloors = {
     {"run", 8},      {"serve", 8},    {"apps", 9}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
-const std::array<std::string, 4> kOuterFolders = {"base/module", "io/files", "io/media",
+const std::array<std::string, 5> kOuterFolders = {"base/module", "io/files", "io/media", "io/bags",
                                                   "detect/onnx"};
 
 // Not to be had in WebAssembly, or not in clang 14's libc++.
