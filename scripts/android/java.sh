@@ -27,6 +27,9 @@ if [ -n "$stubs" ]; then
   refuses "a resource that is not there is refused by aapt2" resources "$work/wrong.xml"
   check "aapt2 takes the app's resources and manifest" resources "$app/AndroidManifest.xml"
   check "the app's Java compiles against the public API 29" compiles "$app/java"
+  check "and so does what tests it" javac --release 11 -Xlint:all -cp "$stubs:$work/classes" -d "$work/classes" tests/android/java/Check.java tests/android/lens/LensTest.java
+  java -cp "$work/classes:$stubs" org.alidade.phone.LensTest >"$work/lens.log" 2>&1 || true
+  count "what a camera tells of its lens" "$work/lens.log"
   rm -rf "$work/wrong" && cp -r "$app/java" "$work/wrong"
   sed -i 's/\.acquireLatestImage(/.acquireLastestImage(/' "$work/wrong/org/alidade/phone/CameraFeed.java"
   refuses "a misspelt method is refused" compiles "$work/wrong"

@@ -90,7 +90,9 @@ final class CameraFeed {
 
   private void open() {
     try {
-      reader = ImageReader.newInstance(size.getWidth(), size.getHeight(), ImageFormat.YUV_420_888, BUFFERS);
+      reader =
+          ImageReader.newInstance(
+              size.getWidth(), size.getHeight(), ImageFormat.YUV_420_888, BUFFERS);
       reader.setOnImageAvailableListener(this::take, handler);
       manager.openCamera(id, new DeviceListener(), handler);
     } catch (CameraAccessException | SecurityException | IllegalArgumentException e) {
@@ -173,14 +175,24 @@ final class CameraFeed {
     request.set(
         CaptureRequest.CONTROL_VIDEO_STABILIZATION_MODE,
         CaptureRequest.CONTROL_VIDEO_STABILIZATION_MODE_OFF);
-    if (has(CameraCharacteristics.LENS_INFO_AVAILABLE_OPTICAL_STABILIZATION, CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE_OFF)) {
+    if (has(
+        CameraCharacteristics.LENS_INFO_AVAILABLE_OPTICAL_STABILIZATION,
+        CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE_OFF)) {
       request.set(
           CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE,
           CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE_OFF);
     }
+    // What LENS_DISTORTION tells is of pictures that nobody has straightened.
+    if (has(
+        CameraCharacteristics.DISTORTION_CORRECTION_AVAILABLE_MODES,
+        CaptureRequest.DISTORTION_CORRECTION_MODE_OFF)) {
+      request.set(
+          CaptureRequest.DISTORTION_CORRECTION_MODE, CaptureRequest.DISTORTION_CORRECTION_MODE_OFF);
+    }
     Float nearest = characteristics.get(CameraCharacteristics.LENS_INFO_MINIMUM_FOCUS_DISTANCE);
     boolean movable = nearest != null && nearest > 0;
-    if (movable && has(CameraCharacteristics.CONTROL_AF_AVAILABLE_MODES, CaptureRequest.CONTROL_AF_MODE_OFF)) {
+    if (movable
+        && has(CameraCharacteristics.CONTROL_AF_AVAILABLE_MODES, CaptureRequest.CONTROL_AF_MODE_OFF)) {
       request.set(CaptureRequest.CONTROL_AF_MODE, CaptureRequest.CONTROL_AF_MODE_OFF);
       request.set(CaptureRequest.LENS_FOCUS_DISTANCE, (float) Math.min(FOCUS_DIOPTRES, nearest));
     }
@@ -195,8 +207,8 @@ final class CameraFeed {
     return false;
   }
 
-  // The range that ends nearest to 30, and of these the one that begins latest from 15 on: a fixed
-  // rate, unless it is dark.
+  // The range that ends nearest to 30 from below, and of these the one that begins at 15 or next
+  // above.
   private Range<Integer> frameRates() {
     Range<Integer>[] ranges =
         characteristics.get(CameraCharacteristics.CONTROL_AE_AVAILABLE_TARGET_FPS_RANGES);
@@ -210,13 +222,15 @@ final class CameraFeed {
   }
 
   private static int worth(Range<Integer> range) {
-    int slowest = range.getLower() >= LEAST_FPS ? MOST_FPS - range.getLower() : range.getLower() - MOST_FPS;
-    return 100 * range.getUpper() + slowest;
+    // From 15 on lower is better (in the dark pictures may take longer); below, higher is.
+    int lower = range.getLower();
+    return 100 * range.getUpper() + (lower >= LEAST_FPS ? MOST_FPS - lower : lower - MOST_FPS);
   }
 
   private static String backCamera(CameraManager manager) throws CameraAccessException {
     for (String each : manager.getCameraIdList()) {
-      Integer facing = manager.getCameraCharacteristics(each).get(CameraCharacteristics.LENS_FACING);
+      Integer facing =
+          manager.getCameraCharacteristics(each).get(CameraCharacteristics.LENS_FACING);
       if (facing != null && facing == CameraCharacteristics.LENS_FACING_BACK) return each;
     }
     throw new CameraAccessException(

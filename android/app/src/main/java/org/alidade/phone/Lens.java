@@ -57,7 +57,8 @@ final class Lens {
   static double[] fieldOfView(
       double focal, double across, int arrayWidth, int arrayHeight, int width, int height) {
     if (!(focal > 0) || !(across > 0)) return new double[0];
-    double used = across * width * pixelsPerPixel(arrayWidth, arrayHeight, width, height) / arrayWidth;
+    double share = width * pixelsPerPixel(arrayWidth, arrayHeight, width, height) / arrayWidth;
+    double used = across * share;
     return new double[] {Math.toDegrees(2 * Math.atan(used / (2 * focal)))};
   }
 

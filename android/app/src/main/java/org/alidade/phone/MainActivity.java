@@ -104,9 +104,10 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
           settings.fov() > 0
               ? new double[] {settings.fov()}
               : Lens.of(feed.characteristics(), size.getWidth(), size.getHeight());
-      String wanted = size + " " + settings.fov() + " " + settings.detector() + "\n" + settings.forCore();
+      String core = settings.forCore(), detector = settings.detector();
+      String wanted = size + " " + settings.fov() + " " + detector + "\n" + core;
       if (connector == null || !wanted.equals(madeWith)) {
-        show(new SlamConnector(size.getWidth(), size.getHeight(), lens, settings.forCore(), settings.detector()));
+        show(new SlamConnector(size.getWidth(), size.getHeight(), lens, core, detector));
         madeWith = wanted;
       }
       connector.cameraBack();
