@@ -45,6 +45,7 @@ if [ -n "$stubs" ]; then
     rm -rf "$work/smali" && cp -r android/webview/smali "$work/smali"
     sed -i 's/->loadUrl(/->loadUrls(/' "$work/smali/Main.smali"
     refuses "a misspelt method in it is refused" java -cp "build/android/classes:$stubs:$work/page.jar" org.alidade.phone.SmaliCheck "$work/smali"
+    grep -q 'NoSuchMethod.*loadUrls' "$work/log" && pass "and named" || fail "and named"
   else
     skip "the page's bytecode: no smali or enjarify (scripts/setup --android)"
   fi

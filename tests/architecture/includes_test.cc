@@ -19,8 +19,8 @@ const std::map<std::string, int> kFloors = {
     {"base", 0},     {"geometry", 1}, {"features", 2}, {"io", 2},         {"detect", 2},
     {"optimize", 2}, {"synth", 2},    {"place", 3},    {"evaluation", 3}, {"map", 4},
     {"tracking", 5}, {"mapping", 5},  {"looping", 5},  {"semidense", 5},  {"dynamics", 5},
-    {"system", 6},   {"view", 7},     {"stream", 7},   {"phone", 8},      {"run", 8},
-    {"serve", 8},    {"apps", 9},     {"android", 9}};
+    {"system", 6},   {"view", 7},     {"stream", 7},   {"phone", 8},      {"gles", 8},
+    {"run", 8},      {"serve", 8},    {"apps", 9},     {"android", 9}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 4> kOuterFolders = {"base/module", "io/files", "io/media",
@@ -58,7 +58,8 @@ std::string FolderOf(const std::string& path) {
 }
 
 bool IsPortable(const std::string& path) {
-  if (kFloors.at(FolderOf(path)) > 6 && FolderOf(path) != "stream" && FolderOf(path) != "phone")
+  const std::string folder = FolderOf(path);
+  if (kFloors.at(folder) > 6 && folder != "stream" && folder != "phone" && folder != "gles")
     return false;
   return std::none_of(kOuterFolders.begin(), kOuterFolders.end(),
                       [&](const std::string& outer) { return StartsWith(path, outer + "/"); });
