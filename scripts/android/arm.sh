@@ -2,7 +2,7 @@
 root=
 if ! command -v aarch64-linux-gnu-g++ >/dev/null || ! command -v qemu-aarch64-static >/dev/null; then
   skip "the core on ARM: no cross-compiler or qemu (scripts/setup --android)"
-elif [ ${#FRAMES[@]} -eq 0 ]; then
+elif [ ${#PICTURES[@]} -eq 0 ]; then
   skip "the core on ARM: no JDK, whose headers the bridge needs (scripts/setup --android)"
 else
   root=$(scripts/arm64-sysroot) || { root=; skip "the core on ARM: its libraries could not be fetched"; }
@@ -18,17 +18,18 @@ if [ -n "$root" ]; then
   emulated=(env "QEMU_LD_PREFIX=$root" "QEMU_SET_ENV=LD_LIBRARY_PATH=$lib:$lib/lapack:$lib/blas" qemu-aarch64-static)
 
   # The same pictures on both: the same map, or poses that differ by less than 1e-4 of the map's unit.
-  for frames in "${FRAMES[@]}"; do
+  for pictures in "${PICTURES[@]}"; do
     replay_both() {
-      build/bin/alidade_replay "$work/$frames.frames" "$work/$frames.here.txt" "$work/$frames.here.map" &&
-        "${emulated[@]}" "$arm/bin/alidade_replay" "$work/$frames.frames" "$work/$frames.arm.txt" "$work/$frames.arm.map"
+      build/bin/alidade_frames "${SOURCE[$pictures]/data:/${ALIDADE_DATA:-}/}" 60 "${WIDTH[$pictures]}" "$work/$pictures.frames" &&
+        build/bin/alidade_replay "$work/$pictures.frames" "$work/$pictures.here.txt" "$work/$pictures.here.map" &&
+        "${emulated[@]}" "$arm/bin/alidade_replay" "$work/$pictures.frames" "$work/$pictures.arm.txt" "$work/$pictures.arm.map"
     }
-    check "the core runs over 60 $frames pictures on both" replay_both
+    check "the core runs over 60 $pictures pictures on both" replay_both
     tail -2 "$work/log"
-    if cmp -s "$work/$frames.here.map" "$work/$frames.arm.map" && cmp -s "$work/$frames.here.txt" "$work/$frames.arm.txt"; then
-      pass "$frames: trajectory and map are the same bytes on ARM and here"
+    if cmp -s "$work/$pictures.here.map" "$work/$pictures.arm.map" && cmp -s "$work/$pictures.here.txt" "$work/$pictures.arm.txt"; then
+      pass "$pictures: trajectory and map are the same bytes on ARM and here"
     else
-      check "$frames: trajectories differ by less than 1e-4 of the unit" python3 tests/android/compare.py "$work/$frames.here.txt" "$work/$frames.arm.txt" 1e-4
+      check "$pictures: trajectories differ by less than 1e-4 of the unit" python3 tests/android/compare.py "$work/$pictures.here.txt" "$work/$pictures.arm.txt" 1e-4
       tail -1 "$work/log"
     fi
   done
@@ -41,5 +42,5 @@ if [ -n "$root" ]; then
     grep -E '^\[  FAILED' "$work/features.log" | head
   fi
   java=$root/usr/lib/jvm/java-17-openjdk-arm64/bin/java
-  bridge "bridge on a JVM for ARM, ${FRAMES[-1]} pictures" "$PWD/$arm/lib" "$work/${FRAMES[-1]}.frames" 20 "${emulated[@]}" "$java"
+  bridge "bridge on a JVM for ARM" "${PICTURES[-1]}" 20 "$PWD/$arm/lib" "${emulated[@]}" "$java"
 fi

@@ -1,5 +1,6 @@
-// For the bridge's tests: an OpenGL ES 3 context without a screen, as GLSurfaceView gives its thread one, and the colours that were drawn.
-// Native methods of org.alidade.phone.Screen; a library of its own, no part of the app.
+// For the bridge's tests: an OpenGL ES 3 context without a screen, as GLSurfaceView gives its
+// thread one, and the colours that were drawn. Native methods of org.alidade.phone.Screen; a
+// library of its own, no part of the app.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 #include <GLES3/gl3.h>
@@ -10,16 +11,26 @@ EGLDisplay g_display = EGL_NO_DISPLAY;
 }  // namespace
 
 extern "C" JNIEXPORT jlong JNICALL Java_org_alidade_phone_Screen_nativeOpen(JNIEnv*, jclass,
-                                                                           jint width,
-                                                                           jint height) {
+                                                                            jint width,
+                                                                            jint height) {
   if (g_display == EGL_NO_DISPLAY) {
     g_display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA,
                                       reinterpret_cast<void*>(EGL_DEFAULT_DISPLAY), nullptr);
     if (g_display == EGL_NO_DISPLAY || !eglInitialize(g_display, nullptr, nullptr)) return 0;
   }
-  const EGLint wanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE,
-                           EGL_OPENGL_ES3_BIT, EGL_RED_SIZE, 8, EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8,
-                           EGL_DEPTH_SIZE, 16, EGL_NONE};
+  const EGLint wanted[] = {EGL_SURFACE_TYPE,
+                           EGL_PBUFFER_BIT,
+                           EGL_RENDERABLE_TYPE,
+                           EGL_OPENGL_ES3_BIT,
+                           EGL_RED_SIZE,
+                           8,
+                           EGL_GREEN_SIZE,
+                           8,
+                           EGL_BLUE_SIZE,
+                           8,
+                           EGL_DEPTH_SIZE,
+                           16,
+                           EGL_NONE};
   EGLConfig config = nullptr;
   EGLint found = 0;
   if (!eglChooseConfig(g_display, wanted, &config, 1, &found) || found == 0) return 0;
@@ -43,7 +54,7 @@ extern "C" JNIEXPORT void JNICALL Java_org_alidade_phone_Screen_nativeClose(JNIE
 }
 
 extern "C" JNIEXPORT void JNICALL Java_org_alidade_phone_Screen_nativeRead(JNIEnv* env, jclass,
-                                                                          jint width, jint height,
-                                                                          jobject into) {
+                                                                           jint width, jint height,
+                                                                           jobject into) {
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, env->GetDirectBufferAddress(into));
 }

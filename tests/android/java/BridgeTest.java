@@ -7,7 +7,7 @@ import java.nio.file.Path;
 import java.util.concurrent.atomic.AtomicInteger;
 import java.util.concurrent.atomic.AtomicReference;
 
-/** The bridge on the JVM: BridgeTest FRAMES CYCLES. */
+/** The bridge on the JVM: BridgeTest FRAMES CYCLES [DETECTOR.onnx]. */
 public final class BridgeTest {
   private static final int STRIDE_GAP = 13; // odd, as no camera's is
   private static final long MOST_GROWTH_KB = 8 << 10;
@@ -30,6 +30,9 @@ public final class BridgeTest {
     check.test("calls out of turn are refused", bridge::refusesCallsOutOfTurn);
     check.test("the map outlives a camera that was gone", bridge::outlivesTheCamera);
     check.test("a detector that cannot be opened is told, and done without", bridge::tellsOfDetector);
+    if (arguments.length > 2) {
+      check.test("a detector works beside", () -> bridge.worksWithDetector(arguments[2]));
+    }
     check.test("a session may be closed while others use it", bridge::closesUnderUse);
     check.test("sessions come and go without growth", bridge::doesNotGrow);
     System.exit(check.status());
@@ -65,14 +68,14 @@ public final class BridgeTest {
       SlamConnector.Numbers now = slam.numbers();
       System.out.println(
           "     " + now.keyframes + " keyframes, " + now.landmarks + " landmarks, " + now.matches
-              + " matches, " + now.milliseconds + " ms, drawn " + drawn.get() + " times");
+              + " matches, " + now.milliseconds + " ms");
       Check.that(now.frames == frames.count, now.frames + " pictures were worked on");
       Check.that(now.skipped == 0 && now.failed == 0, now.skipped + " skipped, " + now.failed + " failed");
       Check.that(now.state == SlamConnector.TRACKING, "not tracking: " + slam.reason());
       Check.that(now.keyframes >= 2 && now.landmarks > 100 && now.matches > 30, "hardly a map");
       Check.that(now.fovSigma == 0, "the lens was told");
       Check.that(slam.words().isEmpty(), slam.words());
-      Check.that(drawn.get() > 0, "nothing was drawn");
+      if (drawn.get() == 0) System.out.println("     nothing drawn: no EGL");
       String trajectory = new String(slam.trajectory(), StandardCharsets.US_ASCII);
       Check.that(trajectory.lines().count() > frames.count / 3, "a short trajectory");
       Check.that(slam.map().length > 10000, "a small map");
@@ -81,20 +84,34 @@ public final class BridgeTest {
 
   private static void drawUntilInterrupted(
       SlamConnector slam, AtomicInteger drawn, AtomicReference<Throwable> problem) {
-    try {
+    try (Screen screen = new Screen(300, 400)) {
+      if (!screen.there) return;
       slam.surfaceCreated();
-      slam.surfaceChanged(300, 400);
+      slam.surfaceChanged(screen.width, screen.height);
       for (int turn = 0; !Thread.currentThread().isInterrupted(); turn = (turn + 90) % 360) {
         if (slam.draw(turn)) drawn.incrementAndGet();
-        Thread.sleep(5);
+        Thread.yield();
       }
-    } catch (InterruptedException e) {
-      // all are through
+      slam.draw(0);
+      double picture = screen.lit(0, 0.5), map = screen.lit(0.5, 1);
+      System.out.printf(
+          "     drawn %d times: %.0f %% of the picture's half are lit, %.2f %% of the map's%n",
+          drawn.get(), 100 * picture, 100 * map);
+      Check.that(drawn.get() > 0, "nothing was drawn");
+      Check.that(picture > 0.3, "no picture is seen");
+      Check.that(map > 0.002, "no map is seen");
+      Check.that(map < 0.9, "the map is all lit");
+      // The phone was put away: the context is lost, and everything is drawn again in the next one.
+      screen.close();
+      try (Screen next = new Screen(300, 400)) {
+        slam.surfaceCreated();
+        slam.draw(0);
+        Check.that(Math.abs(next.lit(0, 1) - (picture + map) / 2) < 0.02, "not drawn again");
+        slam.surfaceGone();
+      }
     } catch (Throwable e) {
       problem.set(e);
-      return;
     }
-    slam.surfaceGone();
   }
 
   private void rowsMayHaveGaps() {
@@ -122,9 +139,7 @@ public final class BridgeTest {
       Check.refuses(bad, "direct", () -> slam.offer(ByteBuffer.allocate(plane.capacity()), frames.width, 0));
       Check.refuses(bad, "direct", () -> slam.offer(null, frames.width, 0));
       Check.refuses(bad, "time", () -> slam.offer(plane, frames.width, Double.NaN));
-      slam.surfaceCreated();
       Check.refuses(bad, "degrees", () -> slam.draw(45));
-      slam.surfaceGone();
       offer(slam, 0); // and nothing is lost by it
       slam.waitUntilIdle();
       Check.that(slam.numbers().frames == 1, "not worked on");
@@ -185,6 +200,20 @@ public final class BridgeTest {
     }
   }
 
+  private void worksWithDetector(String file) {
+    try (SlamConnector slam =
+        new SlamConnector(frames.width, frames.height, frames.lens, "", file)) {
+      for (int i = 0; i < frames.count; ++i) {
+        offer(slam, i);
+        slam.waitUntilIdle();
+      }
+      SlamConnector.Numbers now = slam.numbers();
+      Check.that(slam.words().isEmpty(), slam.words());
+      Check.that(now.frames == frames.count && now.failed == 0, now.failed + " failed");
+      Check.that(now.state == SlamConnector.TRACKING, "not tracking: " + slam.reason());
+    }
+  }
+
   private void closesUnderUse() throws Exception {
     for (int round = 0; round < 20; ++round) {
       SlamConnector slam = open();
@@ -214,22 +243,27 @@ public final class BridgeTest {
   }
 
   private void doesNotGrow() throws Exception {
-    for (int i = 0; i < cycles / 4; ++i) cycle(); // until the allocator has what it needs
-    long before = residentKb();
-    for (int i = cycles / 4; i < cycles; ++i) cycle();
-    long growth = residentKb() - before;
-    System.out.println("     " + cycles + " sessions: " + growth + " kB more, of " + before);
-    Check.that(growth < MOST_GROWTH_KB, "grown by " + growth + " kB");
+    try (Screen screen = new Screen(64, 48)) {
+      for (int i = 0; i < cycles / 4; ++i) cycle(screen); // until allocator and JVM have what they need
+      long before = residentKb();
+      for (int i = cycles / 4; i < cycles; ++i) cycle(screen);
+      long growth = residentKb() - before;
+      System.out.println("     " + cycles + " sessions: " + growth + " kB more, of " + before);
+      Check.that(growth < MOST_GROWTH_KB, "grown by " + growth + " kB");
+    }
   }
 
-  private void cycle() {
+  private void cycle(Screen screen) {
     try (SlamConnector slam = open()) {
-      slam.surfaceCreated();
       offer(slam, 0);
-      slam.draw(90);
+      if (screen.there) {
+        slam.surfaceCreated();
+        slam.surfaceChanged(screen.width, screen.height);
+        slam.draw(90);
+      }
       offer(slam, 1);
       slam.numbers();
-      slam.surfaceGone();
+      if (screen.there) slam.surfaceGone();
     }
   }
 
