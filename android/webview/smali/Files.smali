@@ -35,7 +35,7 @@
 # Browsers refuse a script or a WebAssembly module that is not said to be one.
 .method static typeOf(Ljava/lang/String;)Ljava/lang/String;
     .registers 5
-    const-string v1, ".html text/html .js text/javascript .mjs text/javascript .css text/css .svg image/svg+xml .wasm application/wasm .webmanifest application/manifest+json"
+    const-string v1, ".html text/html .txt text/plain .js text/javascript .mjs text/javascript .css text/css .svg image/svg+xml .wasm application/wasm .webmanifest application/manifest+json"
     const-string v2, " "
     invoke-virtual {v1, v2}, Ljava/lang/String;->split(Ljava/lang/String;)[Ljava/lang/String;
     move-result-object v0

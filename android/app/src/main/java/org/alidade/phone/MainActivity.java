@@ -191,14 +191,20 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
                 getString(
                     R.string.numbers,
                     now.keyframes, now.landmarks, now.matches, now.milliseconds, now.fov));
-            String problem = trouble.isEmpty() ? connector.words() : trouble;
-            words.setText(problem.isEmpty() ? advice(now) : problem);
+            words.setText(firstOf(trouble, connector.words(), renderer.problem(), advice(now)));
           } else {
             words.setText(trouble);
           }
           ui.postDelayed(this, NUMBERS_EVERY_MS);
         }
       };
+
+  private static String firstOf(String... texts) {
+    for (String text : texts) {
+      if (!text.isEmpty()) return text;
+    }
+    return "";
+  }
 
   private String advice(SlamConnector.Numbers now) {
     switch (now.state) {

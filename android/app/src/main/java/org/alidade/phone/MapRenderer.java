@@ -10,13 +10,19 @@ final class MapRenderer implements GLSurfaceView.Renderer {
   private boolean created;
   private int width = 1, height = 1;
   private volatile int rotation; // degrees clockwise
+  private volatile String problem = "";
 
   /** How the picture is turned to stand upright; any thread. */
   void turn(int degrees) {
     rotation = degrees;
   }
 
-  /** Draws another session from now on (null: none), which may begin when the surface is there already. */
+  /** Why nothing is drawn; any thread. */
+  String problem() {
+    return problem;
+  }
+
+  /** Draws another session from now on (null: none); the surface may be there already. */
   void show(SlamConnector next) {
     if (connector != null && created) connector.surfaceGone();
     connector = next;
@@ -48,6 +54,12 @@ final class MapRenderer implements GLSurfaceView.Renderer {
 
   @Override
   public void onDrawFrame(GL10 gl) {
-    if (connector != null) connector.draw(rotation);
+    if (connector == null) return;
+    try {
+      connector.draw(rotation);
+      problem = "";
+    } catch (IllegalArgumentException | IllegalStateException e) {
+      problem = e.getMessage(); // the map goes on without being drawn
+    }
   }
 }
