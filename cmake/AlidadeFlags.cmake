@@ -42,6 +42,9 @@ if(EMSCRIPTEN)
   target_compile_definitions(alidade_flags INTERFACE CV_WASM_SIMD=1)
   target_compile_options(alidade_flags INTERFACE "SHELL:-include wasm_simd128.h")
 endif()
+if(ANDROID)
+  target_compile_options(alidade_flags INTERFACE -Wno-error)  # compilers of Google's that nobody has tried
+endif()
 if(ALIDADE_SANITIZE)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # compiles in half the time of -O2 -g, runs nearly as fast
   if(ALIDADE_FUZZ)
