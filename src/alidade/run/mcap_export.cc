@@ -119,8 +119,8 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
   return TellKnown(frames, state, result.camera, StatusOf(result), out, program);
 }
 
-McapCounts ExportMap(const SavedMap& saved, const MapPart& part, const std::string& out,
-                     const std::string& program) {
+McapCounts ExportMapToMcap(const SavedMap& saved, const MapPart& part, const std::string& out,
+                           const std::string& program) {
   double voxel = SemiDenseSettings().voxel;
   for (const auto& [name, value] : saved.settings) {
     if (name == "semidense.voxel") voxel = std::strtod(value.c_str(), nullptr);

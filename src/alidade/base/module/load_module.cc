@@ -18,12 +18,13 @@ std::vector<std::string> PlacesToLook(const std::string& file) {
     places.push_back((folder / ".." / ALIDADE_LIBDIR / file).string());
   };
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) add(program);
+  // What holds this code first: beside Python's interpreter may lie modules of another version.
   Dl_info here{};
   if (dladdr(reinterpret_cast<void*>(&LoadModule), &here) != 0 && here.dli_fname != nullptr) {
     add(fs::absolute(here.dli_fname, error));
   }
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) add(program);
   places.push_back(file);
   return places;
 }
