@@ -23,5 +23,6 @@ void AddCompareCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
 void AddBenchCommand(CLI::App& app, Action& action);
+void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
 
 }  // namespace alidade
