@@ -75,8 +75,8 @@ void AddPhoneRow(const std::string& name, const PhoneRecording& recording, const
   const Summary frame = Summarise(run.frame);
   table.labels.push_back(name);
   table.rows.push_back({MedianMilliseconds(run.extract), MedianMilliseconds(run.track),
-                        MedianMilliseconds(run.map), frame.median, frame.mean, judged.ate_cm,
-                        judged.coverage, static_cast<double>(run.keyframes)});
+                        MedianMilliseconds(run.map), frame.median, frame.mean, run.cpu,
+                        judged.ate_cm, judged.coverage, static_cast<double>(run.keyframes)});
 }
 
 // Turns of the reference before and after each run: how fast the machine was meanwhile.
@@ -113,10 +113,11 @@ std::vector<Section> BenchPhone(const std::string& source, int frames) {
   Terminal terminal(false);
   Section section;
   section.name = "phone " + source;
-  Table table{source + ": " + std::to_string(recording.recording.frames.size()) +
-                  " frames; median ms of each part (mapping: per keyframe), of a whole frame, and "
-                  "its mean",
-              {"extract", "track", "map", "frame", "mean", "ATE cm", "cover %", "keyframes"}};
+  Table table{
+      source + ": " + std::to_string(recording.recording.frames.size()) +
+          " frames; median ms of each part (mapping: per keyframe), of a whole frame, and "
+          "its mean",
+      {"extract", "track", "map", "frame", "mean", "CPU", "ATE cm", "cover %", "keyframes"}};
   std::array<double, 3> native{kUntold, kUntold, kUntold}, wasm = native;
   const std::vector<PhoneVariant> steps = PhoneSteps();
   const auto run = [&](const PhoneVariant& variant, const std::string& name) {
@@ -146,7 +147,8 @@ std::vector<Section> BenchPhone(const std::string& source, int frames) {
   terminal.SetProgress("");
   table.note =
       "One thread and the inline schedule where nothing else is said. cover: frames with a "
-      "pose in the largest map, at the end. ";
+      "pose in the largest map, at the end. CPU: mean ms of all threads, whatever else the machine "
+      "does. ";
   table.note += recording.truth.empty() ? "No truth is known of this recording. " : "";
   table.note += problem.empty() ? "WASM: Node.js, one thread." : "WASM was left out: " + problem;
   section.tables.push_back(std::move(table));

@@ -32,6 +32,8 @@ struct PhoneRun {
   std::vector<double> frame, extract, track, map;
   Trajectory trajectory;  // of the largest map
   int keyframes = 0;
+  double cpu =
+      0;  // milliseconds of all threads, per frame: what else the machine does is not in it
 };
 
 PhoneRun RunNative(const PhoneRecording& recording, const PhoneVariant& variant);

@@ -47,6 +47,7 @@ PhoneRun RunNative(const PhoneRecording& from, const PhoneVariant& variant) {
   record.source = recording.info;
   record.settings = variant.settings;
   Slam slam(recording.info.camera, variant.settings);
+  const double cpu_start = ProcessCpuSeconds();
   const Stopwatch clock;
   for (const SourceFrame& frame : recording.frames) {
     record.stamps.push_back(frame.stamp);
@@ -57,10 +58,16 @@ PhoneRun RunNative(const PhoneRecording& from, const PhoneVariant& variant) {
     if (ahead > 0) std::this_thread::sleep_for(std::chrono::duration<double>(ahead));
     slam.Track({frame.time, frame.image, {}, {}});
   }
+  const double cpu = (ProcessCpuSeconds() - cpu_start) * 1e3 / record.frames;
   slam.Finish();
   const RunResults results = ResultsOf(slam, record);
-  return {results.times.frame, results.times.extract,           results.times.track,
-          results.times.map,   results.maps.front().trajectory, results.map.keyframe_count()};
+  return {results.times.frame,
+          results.times.extract,
+          results.times.track,
+          results.times.map,
+          results.maps.front().trajectory,
+          results.map.keyframe_count(),
+          cpu};
 }
 
 }  // namespace alidade::bench

@@ -102,7 +102,8 @@ std::optional<PhoneRun> RunWasm(const PhoneRecording& from, const SlamSettings& 
     return std::nullopt;
   }
   const json result = json::parse(ReadFile(folder / "result.json"));
-  PhoneRun run{result["frame"], result["extract"], result["track"], result["map"], {}, 0};
+  PhoneRun run{result["frame"], result["extract"], result["track"], result["map"], {}, 0,
+               result["cpu"]};
   run.keyframes = result["keyframes"];
   run.trajectory = ParseTumTrajectory(result["trajectory"].get<std::string>(), "the trajectory");
   return run;

@@ -21,6 +21,7 @@ const picture = new Uint8Array(job.width * job.height);
 const frames = openSync(join(folder, 'frames.gray'), 'r');
 let keyframes = 0;
 slam.messages();  // hello
+const before = process.cpuUsage();
 for (const time of job.times) {
   if (readSync(frames, picture) !== picture.length) throw new Error('frames.gray is too short');
   keyframes = slam.track(picture, time).counts.keyframes;
@@ -30,7 +31,8 @@ for (const time of job.times) {
     STAGES.forEach((name, i) => { if ((message.ms[i] ?? -1) >= 0) stages[name].push(message.ms[i]!); });
   }
 }
+const { user, system } = process.cpuUsage(before);
 closeSync(frames);
 slam.finish();
-writeFileSync(join(folder, 'result.json'), JSON.stringify({ ...stages, keyframes, trajectory: slam.trajectory() }));
+writeFileSync(join(folder, 'result.json'), JSON.stringify({ ...stages, cpu: (user + system) / 1e3 / job.times.length, keyframes, trajectory: slam.trajectory() }));
 slam.delete();
