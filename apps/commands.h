@@ -25,5 +25,6 @@ void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
 void AddBenchCommand(CLI::App& app, Action& action);
+void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
 
 }  // namespace alidade

@@ -42,6 +42,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddInfoCommand(app, action);
   alidade::AddCalibrateCommand(app, action);
   alidade::AddBenchCommand(app, action);
+  alidade::AddDescribeCommands(app, action);
 }
 
 // Where to read on: the innermost subcommand that was named.
