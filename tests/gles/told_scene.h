@@ -147,6 +147,7 @@ class Teller {
   }
 
   StreamScene scene;
+  std::vector<std::string> messages;  // all of them
 
  private:
   PackedCloud Pack(const std::vector<ToldPoint>& points) const {
@@ -169,7 +170,9 @@ class Teller {
 
   void Take(stream::Body kind, flatbuffers::Offset<void> body) {
     builder_.Finish(stream::CreateMessage(builder_, kind, body), stream::MessageIdentifier());
-    scene.Take({reinterpret_cast<const char*>(builder_.GetBufferPointer()), builder_.GetSize()});
+    messages.emplace_back(reinterpret_cast<const char*>(builder_.GetBufferPointer()),
+                          builder_.GetSize());
+    scene.Take(messages.back());
     builder_.Clear();
   }
 
