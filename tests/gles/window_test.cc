@@ -1,11 +1,10 @@
 // alidade-gl, as a user has it: a recorded run drawn in a window, on a screen of the test's own
 // (Xvfb).
 #include <gtest/gtest.h>
-#include <unistd.h>
+#include <sys/wait.h>
 
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
@@ -14,19 +13,14 @@
 #include "alidade/gles/orbit.h"
 #include "gles/expected.h"
 #include "gles/told_scene.h"
+#include "support/temp_folder.h"
 
 namespace alidade::gles_test::window_test {
 namespace {
 
-namespace fs = std::filesystem;
-
 class Window : public testing::Test {
  protected:
-  Window() : folder_(fs::temp_directory_path() / ("alidade-gl-" + std::to_string(getpid()))) {
-    fs::create_directories(folder_);
-  }
-  ~Window() override { fs::remove_all(folder_); }
-  std::string Path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string Path(const std::string& name) const { return folder_ / name; }
 
   // The file's format, by docs/stream.md.
   void Write(const Teller& teller) const {
@@ -64,7 +58,7 @@ class Window : public testing::Test {
   }
 
  private:
-  fs::path folder_;
+  const TempFolder folder_;
 };
 
 TEST_F(Window, ShowsTheEndOfARunWhereItsMapIs) {
@@ -84,7 +78,7 @@ TEST_F(Window, ShowsTheEndOfARunWhereItsMapIs) {
   for (uint32_t k = 0; k < 4; ++k) teller.TellFrame(k, {});
   Write(teller);
   const Outcome outcome =
-      Run(Path("") + " --width 500 --height 400 --screenshot " + Path("shot.png"), true);
+      Run(Path(".") + " --width 500 --height 400 --screenshot " + Path("shot.png"), true);
   ASSERT_EQ(outcome.status, 0) << outcome.text;
   const cv::Mat image = cv::imread(Path("shot.png"));
   ASSERT_EQ(image.size(), cv::Size(500, 400)) << outcome.text;
@@ -109,12 +103,12 @@ TEST_F(Window, SaysWhyThereIsNone) {
   Outcome outcome = Run(Path("nothing.stream"), false);
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.text.find("nothing.stream"), std::string::npos) << outcome.text;
-  outcome = Run(Path(""), false);
+  outcome = Run(Path("."), false);
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.text.find("--record"), std::string::npos) << outcome.text;
-  EXPECT_EQ(Run("--speed fast " + Path(""), false).status, 2);
+  EXPECT_EQ(Run("--speed fast " + Path("."), false).status, 2);
   Write(Teller(Camera::FromFieldOfView(640, 480, 70)));
-  outcome = Run(Path(""), false);
+  outcome = Run(Path("."), false);
   EXPECT_EQ(outcome.status, 3);
   EXPECT_NE(outcome.text.find("no window"), std::string::npos) << outcome.text;
   outcome = Run("--help", false);
