@@ -130,6 +130,12 @@ GLFWwindow* Open(const WindowSettings& settings) {
   return window;
 }
 
+// In the upper left corner, three tenths of the window wide and not over half of it high.
+gles::Area CornerFor(const cv::Size& picture, int width, int height) {
+  const double most = std::min(0.3 * width, 0.5 * height * picture.width / picture.height);
+  return {0, 0, most / width, most * picture.height / picture.width / height};
+}
+
 void Save(const std::string& path, int width, int height) {
   cv::Mat rgba(height, width, CV_8UC4), bgr;
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
@@ -160,6 +166,7 @@ void ShowRun(StreamPlayer& player, const WindowSettings& settings) {
   Clock::time_point before = Clock::now();
   double played = 0;  // seconds of the recording
   uint64_t fitted = 0;
+  cv::Size size;  // of the camera's picture
   while (!glfwWindowShouldClose(window)) {
     const Clock::time_point now = Clock::now();
     if (!hands.paused)
@@ -167,13 +174,16 @@ void ShowRun(StreamPlayer& player, const WindowSettings& settings) {
     before = now;
     player.PlayTo(at_once ? std::numeric_limits<double>::infinity() : played);
     const StreamScene& scene = player.scene();
-    if (const cv::Mat picture = player.TakePicture(); !picture.empty())
+    if (const cv::Mat picture = player.TakePicture(); !picture.empty()) {
       renderer.SetCameraPicture(picture.data, picture.cols, picture.rows, picture.step, 0);
+      size = picture.size();
+    }
     if (!hands.led && fitted != scene.told) hands.orbit.Fit(scene);
     fitted = hands.led ? 0 : scene.told;
     int width = 1, height = 1;
     glfwGetFramebufferSize(window, &width, &height);
     if (width > 0 && height > 0) {  // not while it is an icon
+      if (!size.empty()) hands.view.picture = CornerFor(size, width, height);
       renderer.Resize(width, height);
       renderer.Show(scene);
       hands.orbit.Apply(hands.view);

@@ -118,10 +118,15 @@ TEST_F(Layers, SemiDensePointsHaveTheirPlacesAndColours) {
   const Lens lens(view, kWidth, kHeight);
   int compared = 0, wrong = 0;
   for (const Change::NewCloud& cloud : change.clouds) {
+    const std::vector<Eigen::Vector3d> kept = KeptPoints(teller.scene, cloud.keyframe);
+    ASSERT_EQ(kept.size(), cloud.points.size());
     const Change::NewKeyFrame& k = change.keyframes[cloud.keyframe];
-    for (const ToldPoint& point : cloud.points) {
-      points.push_back(k.T_world_camera * (k.scale * point.p));
-      const auto at = lens.See(points.back());
+    for (size_t i = 0; i < kept.size(); ++i) {
+      const ToldPoint& point = cloud.points[i];
+      const Eigen::Vector3d truth = k.T_world_camera * (k.scale * point.p);
+      ASSERT_LT((kept[i] - truth).norm(), 2e-4 * k.scale * point.p.norm());
+      points.push_back(kept[i]);
+      const auto at = lens.See(kept[i]);
       if (!at) continue;
       ++compared;
       const Pixel told{static_cast<uint8_t>(point.red), static_cast<uint8_t>(point.green), 255,

@@ -79,10 +79,9 @@ TEST(Orbit, FitsTheMapAndStandsUpright) {
     upright.R.col(1) = -up;
     upright.R.col(2) = ahead;
     upright.R.col(0) = upright.R.col(1).cross(ahead);
-    // Turned clockwise by so much its picture is upright: the camera itself is turned the other
-    // way.
+    // Its picture is turned counterclockwise when the camera is turned clockwise.
     const double angle = rotation * 3.14159265358979 / 180;
-    const Se3 held{upright.R * ExpSo3({0, 0, -angle}), {}};
+    const Se3 held{upright.R * ExpSo3({0, 0, angle}), {}};
     Teller teller(Camera::FromFieldOfView(640, 480, 60));
     Change change;
     for (uint32_t k = 0; k < 10; ++k) {

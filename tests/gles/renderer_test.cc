@@ -92,10 +92,9 @@ TEST_F(WholeRenderer, TwoHundredThousandPointsAreUploadedOnceAndMoveForAFewBytes
   view.point_size = 1;
   const auto points = [&] {
     std::vector<Eigen::Vector3d> all;
-    for (const auto& cloud : change.clouds) {
-      const SceneKeyFrame& k = teller.scene.keyframes.at({cloud.keyframe});
-      for (const ToldPoint& point : cloud.points)
-        all.push_back(k.T_world_camera * (k.scale * point.p));
+    for (uint32_t k = 0; k < kKeyFrames; ++k) {
+      const std::vector<Eigen::Vector3d> kept = KeptPoints(teller.scene, k);
+      all.insert(all.end(), kept.begin(), kept.end());
     }
     return all;
   };
@@ -127,7 +126,8 @@ TEST_F(WholeRenderer, ShowsAfterManyChangesWhatOneSeesWhoCameLate) {
   const GlScreen screen(kWidth, kHeight);
   Renderer renderer;
   renderer.Resize(kWidth, kHeight);
-  const ViewSettings view = FromAside();
+  ViewSettings view = FromAside();
+  view.point_size = 3;
   std::vector<uint8_t> luma(40 * 30, 90);
   uint32_t next_keyframe = 0, next_landmark = 0;
   std::vector<uint32_t> keyframes, landmarks;
@@ -199,11 +199,12 @@ TEST_F(WholeRenderer, ShowsAfterManyChangesWhatOneSeesWhoCameLate) {
     EXPECT_EQ(stats.points, late_stats.points);
     EXPECT_EQ(stats.segments, late_stats.segments);
     late.Release();
-    // Soft edges that lie over each other are rounded in another order.
+    // Soft edges that lie over each other are rounded in another order, and of two points at one
+    // depth the one drawn last is seen. A point in a wrong place would be nine pixels.
     int different = 0;
     for (size_t i = 0; i < shot.pixels.size(); ++i)
       different += Difference(shot.pixels[i], expected.pixels[i]) > 3;
-    ASSERT_EQ(different, 0) << "after step " << step;
+    ASSERT_LE(different, 4) << "after step " << step;
     ASSERT_GT(CountLit(shot, view), 500);
   }
   EXPECT_GT(culled, 5);

@@ -49,6 +49,21 @@ struct Change {
   std::vector<NewCloud> clouds;
 };
 
+// Of the semi-dense points of a keyframe, in the world, as the stream kept them; unpacked by the
+// stream's own code.
+inline std::vector<Eigen::Vector3d> KeptPoints(const StreamScene& scene, uint32_t keyframe) {
+  const SceneKeyFrame& k = scene.keyframes.at({keyframe});
+  std::vector<Eigen::Vector3d> points;
+  for (size_t at = 0; at < k.depth.size(); at += kPackedPoint) {
+    const CloudPoint point =
+        UnpackPoint(reinterpret_cast<const uint8_t*>(&k.depth[at]), k.depth_least, k.depth_most,
+                    scene.camera.width, scene.camera.height);
+    const Eigen::Vector3d p = scene.camera.Unproject({point.x, point.y}, 1 / point.inverse_depth);
+    points.push_back(k.T_world_camera * (k.scale * p));
+  }
+  return points;
+}
+
 class Teller {
  public:
   explicit Teller(const Camera& camera) : camera_(camera) {
@@ -132,6 +147,7 @@ class Teller {
   }
 
   StreamScene scene;
+  std::vector<std::string> messages;  // all of them
 
  private:
   PackedCloud Pack(const std::vector<ToldPoint>& points) const {
@@ -142,9 +158,9 @@ class Teller {
     for (const ToldPoint& point : points) {
       const Eigen::Vector2d pixel = camera_.Project(point.p);
       DepthPixel told;
-      told.x = static_cast<decltype(told.x)>(pixel.x());
-      told.y = static_cast<decltype(told.y)>(pixel.y());
-      told.inverse_depth = static_cast<decltype(told.inverse_depth)>(1 / point.p.z());
+      told.x = static_cast<uint16_t>(std::lround(pixel.x()));
+      told.y = static_cast<uint16_t>(std::lround(pixel.y()));
+      told.inverse_depth = static_cast<float>(1 / point.p.z());
       told.rgb = {static_cast<uint8_t>(point.red), static_cast<uint8_t>(point.green),
                   static_cast<uint8_t>(point.blue)};
       depth.pixels.push_back(told);
@@ -154,7 +170,9 @@ class Teller {
 
   void Take(stream::Body kind, flatbuffers::Offset<void> body) {
     builder_.Finish(stream::CreateMessage(builder_, kind, body), stream::MessageIdentifier());
-    scene.Take({reinterpret_cast<const char*>(builder_.GetBufferPointer()), builder_.GetSize()});
+    messages.emplace_back(reinterpret_cast<const char*>(builder_.GetBufferPointer()),
+                          builder_.GetSize());
+    scene.Take(messages.back());
     builder_.Clear();
   }
 
