@@ -35,8 +35,9 @@ OptionText DescribeOption(const CLI::Option& option) {
   }
   text.required = option.get_required();
   text.takes_value = option.get_type_size() != 0;
-  text.repeats = option.get_expected_max() >= CLI::detail::expected_max_vector_size ||
-                 option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll;
+  text.repeats =
+      text.takes_value && (option.get_expected_max() >= CLI::detail::expected_max_vector_size ||
+                           option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll);
   if (text.takes_value) {
     text.value_optional = option.get_expected_min() == 0;
     text.placeholder = option.get_type_name();

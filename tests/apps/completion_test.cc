@@ -60,7 +60,7 @@ class Completed : public testing::Test {
   }
   std::vector<std::string> Fish(const std::string& line) {
     Write(folder_ / "ask", "cd " + folder_.path() + "; source script\ncomplete -C '" + line +
-                               "' | string split -f1 \\t\n");
+                               "' | string split -f1 \\t; true\n");
     return LinesOf("HOME=" + folder_.path() + " fish --no-config " + (folder_ / "ask"));
   }
   // zsh completes at its prompt alone: it gets one, and a widget that writes down what was added.
@@ -155,7 +155,7 @@ TEST_F(Completed, ZshOffersCommandsOptionsWordsAndFiles) {
 }
 
 TEST(Completion, AnUnknownShellIsRefused) {
-  const ProgramResult result = RunAlidade({"completion", "fsh"});
+  const ProgramResult result = RunAlidade({"completion", "fihs"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("did you mean 'fish'"));
 }
@@ -175,7 +175,7 @@ TEST(ManPages, ThereIsOneForEachCommandAndTheirReaderHasNothingToComplainOf) {
     for (const std::string& word : command) page += "-" + word;
     ASSERT_TRUE(fs::exists(folder / (page + ".1"))) << page;
     if (!reader) continue;
-    const auto lines = LinesOf("LC_ALL=C.UTF-8 groff -K utf8 -man -Tutf8 -ww -P-c -b -rLL=500n " +
+    const auto lines = LinesOf("LC_ALL=C.UTF-8 groff -K utf8 -man -Tutf8 -ww -P-cbou -rLL=500n " +
                                (folder / (page + ".1")));
     std::string text;
     for (const std::string& line : lines) {
@@ -190,7 +190,8 @@ TEST(ManPages, ThereIsOneForEachCommandAndTheirReaderHasNothingToComplainOf) {
       const size_t start = line.find("--");
       if (line.rfind("  -", 0) != 0 || start == std::string::npos) continue;
       const std::string option = line.substr(start, line.find_first_of(" ,", start) - start);
-      EXPECT_THAT(text, HasSubstr(option.substr(0, option.find('{')))) << page;
+      EXPECT_NE(text.find(option.substr(0, option.find('{'))), std::string::npos)
+          << option << " is not in " << page;
       ++options;
     }
     EXPECT_GT(options, 0) << page;
