@@ -26,12 +26,12 @@ if [ -n "$root" ]; then
     }
     check "the core runs over 60 $pictures pictures on both" replay_both
     tail -2 "$work/log"
-    if cmp -s "$work/$pictures.here.map" "$work/$pictures.arm.map" && cmp -s "$work/$pictures.here.txt" "$work/$pictures.arm.txt"; then
-      pass "$pictures: trajectory and map are the same bytes on ARM and here"
-    else
-      check "$pictures: trajectories differ by less than 1e-4 of the unit" python3 tests/android/compare.py "$work/$pictures.here.txt" "$work/$pictures.arm.txt" 1e-4
-      tail -1 "$work/log"
-    fi
+    here=$work/$pictures.here on_arm=$work/$pictures.arm
+    check "$pictures: places are less than 1e-4 of the unit apart" python3 tests/android/compare.py "$here.txt" "$on_arm.txt" 1e-4
+    tail -1 "$work/log"
+    cmp -s "$here.txt" "$on_arm.txt" && echo "     the trajectory is the same bytes" || echo "     the trajectory differs in its last digits"
+    # Rounding of sines, exponentials and the like is the C library's, which has other versions of them for each processor.
+    echo "     of the map's $(stat -c %s "$here.map") bytes $(cmp -l "$here.map" "$on_arm.map" | wc -l) differ"
   done
 
   # NEON against scalar code, OpenCV's and closed forms: what tests/features holds.
