@@ -192,7 +192,7 @@ test('a recorded stream that is exported gives the same messages', options, asyn
   const map = await readIndexed(at('map.mcap'));
   assertRows(poseRows(map), table(at('streamed/keyframes.txt')));
   assert.equal(points(map.on('/alidade/landmarks')[0].message).length, vertices(at('streamed/landmarks.ply')));
-  assert.equal(points(map.on('/alidade/semidense')[0].message).length, vertices(at('streamed/semidense.ply')));
+  assert.equal(map.on('/alidade/semidense').length, 0); // which saved maps do not hold
 });
 
 async function interrupted(signal: NodeJS.Signals, name: string): Promise<number | null> {
