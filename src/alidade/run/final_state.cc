@@ -4,7 +4,6 @@
 
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
-#include "alidade/map/depth_cloud.h"
 
 namespace alidade {
 namespace {
@@ -29,20 +28,17 @@ FinalState FinalStateIn(const std::string& results) {
   return state;
 }
 
-FinalState FinalStateOf(const SavedMap& saved, const MapPart& part, double voxel) {
+FinalState FinalStateOf(const SavedMap& saved, const MapPart& part) {
   FinalState state;
-  std::vector<PlacedDepth> depth;
   for (KeyFrameId id : part.keyframes) {
     const KeyFrame& keyframe = *saved.map.Find(id);
     state.trajectory.push_back({keyframe.frame->time, keyframe.T_camera_world.Inverse(), {}});
-    if (keyframe.depth && !keyframe.depth->pixels.empty()) depth.push_back(PlaceDepth(keyframe));
   }
   std::stable_sort(state.trajectory.begin(), state.trajectory.end(),
                    [](const StampedPose& a, const StampedPose& b) { return a.time < b.time; });
   state.landmarks.emplace();
   for (LandmarkId id : part.landmarks)
     state.landmarks->points.push_back(saved.map.Find(id)->p_world.cast<float>());
-  if (!depth.empty()) state.shape = MakeDepthCloud(depth, saved.camera, voxel);
   return state;
 }
 

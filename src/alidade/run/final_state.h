@@ -19,8 +19,7 @@ struct FinalState {
 // Throws Error (input) when one cannot be read.
 FinalState FinalStateIn(const std::string& results);
 
-// Of one of the maps in a file: its keyframes, landmarks and, with `voxel` (metres; 0: all points),
-// the depth of its keyframes.
-FinalState FinalStateOf(const SavedMap& saved, const MapPart& part, double voxel);
+// Of one of the maps in a file: its keyframes and landmarks. Saved maps have no shape.
+FinalState FinalStateOf(const SavedMap& saved, const MapPart& part);
 
 }  // namespace alidade

@@ -1,7 +1,5 @@
 #include "alidade/run/mcap_export.h"
 
-#include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <vector>
 
@@ -13,7 +11,6 @@
 #include "alidade/run/result_folder.h"
 #include "alidade/run/stream_file.h"
 #include "alidade/run/stream_to_ros.h"
-#include "alidade/semidense/settings.h"
 
 namespace alidade {
 namespace {
@@ -121,11 +118,7 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
 
 McapCounts ExportMapToMcap(const SavedMap& saved, const MapPart& part, const std::string& out,
                            const std::string& program) {
-  double voxel = SemiDenseSettings().voxel;
-  for (const auto& [name, value] : saved.settings) {
-    if (name == "semidense.voxel") voxel = std::strtod(value.c_str(), nullptr);
-  }
-  const FinalState state = FinalStateOf(saved, part, voxel);
+  const FinalState state = FinalStateOf(saved, part);
   return TellKnown(state.trajectory, state, saved.camera, {}, out, program);
 }
 

@@ -85,12 +85,14 @@ void StreamToRos::TellPicture() {
   Camera camera = scene_.camera;
   const double x = static_cast<double>(now.picture_width) / camera.width;
   const double y = static_cast<double>(now.picture_height) / camera.height;
-  camera.fx *= x;
-  camera.fy *= y;
-  camera.cx = (camera.cx + 0.5) * x - 0.5;  // edges lie on edges
-  camera.cy = (camera.cy + 0.5) * y - 0.5;
-  camera.width = now.picture_width;
-  camera.height = now.picture_height;
+  if (x != 1 || y != 1) {
+    camera.fx *= x;
+    camera.fy *= y;
+    camera.cx = (camera.cx + 0.5) * x - 0.5;  // edges lie on edges
+    camera.cy = (camera.cy + 0.5) * y - 0.5;
+    camera.width = now.picture_width;
+    camera.height = now.picture_height;
+  }
   const bool jpeg = now.picture_type == "image/jpeg";
   log_.Picture(now.time, jpeg ? "jpeg" : now.picture_type, now.picture);
   log_.Calibration(now.time, camera);
