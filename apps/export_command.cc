@@ -7,6 +7,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/run/export_map.h"
+#include "alidade/run/mcap_export.h"
+#include "alidade/version.h"
 #include "commands.h"
 
 namespace alidade {
@@ -17,8 +19,36 @@ struct ExportOptions {
   ExportSettings how;
 };
 
+// A recorded stream, results or a map.
+int ExportToMcap(const ExportOptions& options) {
+  const std::string stream = StreamIn(options.map), program = "alidade " ALIDADE_VERSION;
+  std::error_code error;
+  if (std::filesystem::equivalent(stream.empty() ? options.map : stream, options.out, error))
+    ThrowUsage("OUT is what is exported; name another");
+  const bool map = stream.empty() && !std::filesystem::is_directory(options.map, error);
+  if (!map && (options.how.part != 0 || options.how.min_observations != 1)) {
+    ThrowUsage("--part and --min-observations choose from a map: name the file map.alidade");
+  }
+  McapCounts counts;
+  if (map) {
+    const SavedMap saved = ReadSavedMap(options.map);
+    counts = ExportMapToMcap(saved, PartFor(saved, options.how), options.out, program);
+  } else if (stream.empty()) {
+    counts = ExportResults(options.map, options.out, program);
+  } else {
+    counts = ExportStream(stream, options.out, program);
+  }
+  const std::string shape =
+      counts.shape > 0 ? ", " + std::to_string(counts.shape) + " points of shape" : "";
+  std::printf("%s: %d %s, %zu landmarks%s, %.1f MB\n", options.out.c_str(), counts.frames,
+              map ? "keyframes" : "frames", counts.landmarks, shape.c_str(),
+              1e-6 * static_cast<double>(counts.bytes));
+  return 0;
+}
+
 int ExportCommand(const ExportOptions& options) {
   options.how.Check();
+  if (options.how.to == "mcap") return ExportToMcap(options);
   std::error_code error;
   if (std::filesystem::equivalent(SavedMapPath(options.map), options.out, error)) {
     ThrowUsage("OUT is the map itself; name another");
@@ -31,9 +61,11 @@ int ExportCommand(const ExportOptions& options) {
 }  // namespace
 
 void AddExportCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("export", "A map as what other programs read");
+  CLI::App* command = app.add_subcommand("export", "A map, or a run, as what other programs read");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("MAP", options->map, "The map: a file, or the folder `run` left")
+  command
+      ->add_option("MAP", options->map,
+                   "The map: a file, or the folder `run` left (for mcap also a recorded stream)")
       ->required()
       ->type_name("PATH");
   command
@@ -44,9 +76,10 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command
       ->add_option("--to", options->how.to,
                    "ply, pcd: the landmarks; tum: the keyframes' trajectory; colmap: a sparse "
-                   "model of both")
+                   "model of both; mcap: the run as it was (if it was recorded), its path and "
+                   "points, for Foxglove, Lichtblick, Rerun and ros2")
       ->required()
-      ->type_name("ply|pcd|tum|colmap");
+      ->type_name("ply|pcd|tum|colmap|mcap");
   command
       ->add_option("--format", options->how.format,
                    "How numbers are written; by default binary for ply and pcd, text for tum, and "
@@ -66,6 +99,7 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command->footer(
       "\nExamples:\n"
       "  alidade export alidade-out/kitchen --to ply kitchen.ply\n"
+      "  alidade export alidade-out/kitchen --to mcap kitchen.mcap      open it in Foxglove\n"
       "  alidade export map.alidade --to colmap model && colmap model_analyzer --path model");
   command->callback([options, &action] { action = [options] { return ExportCommand(*options); }; });
 }

@@ -2,13 +2,14 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "alidade/base/error.h"
 #include "alidade/run/loop.h"
+#include "alidade/run/mcap_export.h"
+#include "alidade/run/record_file.h"
 #include "alidade/run/saved_map.h"
 #include "alidade/run/stream_file.h"
 #include "alidade/serve/viewer_server.h"
@@ -59,16 +60,11 @@ std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& pa
   return messages;
 }
 
-// What is to be replayed: the file itself, or the one in the folder of a run; empty: none.
-std::string StreamIn(const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path file =
-      fs::is_directory(path, error) ? fs::path(path) / "run.stream" : fs::path(path);
-  return file.extension() == ".stream" && fs::is_regular_file(file, error) ? file.string() : "";
-}
-
 int View(const ViewArguments& arguments) {
+  if (IsMcap(arguments.what))
+    ThrowInput(arguments.what +
+               ": MCAP files are for Foxglove, Lichtblick, Rerun and ros2 (docs/mcap.md); `alidade "
+               "view` shows results, run.stream and maps");
   const std::string recorded = StreamIn(arguments.what);
   std::unique_ptr<StillHub> hub;
   if (recorded.empty()) {
@@ -94,12 +90,16 @@ void AddViewCommand(CLI::App& app, Action& action) {
   command
       ->add_option("WHAT", arguments->what,
                    "Folder of results, a recorded stream (run.stream) or a map (map.alidade)")
-      ->required();
-  command->add_option("--port", arguments->port,
-                      "Port to listen on (8090, or the next that is free)");
-  command->add_option("--host", arguments->host,
-                      "Address to listen on (127.0.0.1: this machine only); any other gives an "
-                      "address with a secret in it");
+      ->required()
+      ->type_name("PATH");
+  command
+      ->add_option("--port", arguments->port, "Port to listen on (8090, or the next that is free)")
+      ->type_name("PORT");
+  command
+      ->add_option("--host", arguments->host,
+                   "Address to listen on (127.0.0.1: this machine only); any other gives an "
+                   "address with a secret in it")
+      ->type_name("ADDRESS");
   command->footer(
       "\nExamples:\n"
       "  alidade run kitchen --record && alidade view alidade-out/kitchen     the run, replayed\n"

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/base/log.h"
@@ -55,16 +56,21 @@ std::string Joined(const std::vector<std::string>& messages) {
   return all;
 }
 
-alidade::PhoneSettings SettingsOf(int threads, const std::string& text) {
-  alidade::SetThreadCount(std::max(1, threads));
-  auto phone = alidade::PhoneSettings::Default(threads > 1);
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
   for (size_t begin = 0; begin < text.size();) {
     const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    const size_t equal = line.find('=');
-    if (equal != std::string::npos) phone.slam.Set(line.substr(0, equal), line.substr(equal + 1));
+    lines.push_back(text.substr(begin, end - begin));
     begin = end + 1;
   }
+  return lines;
+}
+
+alidade::PhoneSettings SettingsOf(int threads, const char* settings, const char* classes) {
+  alidade::SetThreadCount(std::max(1, threads));
+  auto phone = alidade::PhoneSettings::Default(threads > 1);
+  phone.SetLines(settings);
+  phone.detector_classes = Lines(classes);
   return phone;
 }
 
@@ -75,11 +81,12 @@ extern "C" {
 EMSCRIPTEN_KEEPALIVE const char* alidade_error() { return last_error.c_str(); }
 
 // `fov`: horizontal, degrees; 0: nothing is known. `settings`: lines of name=value, as after --set.
+// `classes`: of a detector whose answers will come (alidade_detected), a line each; empty: none.
 EMSCRIPTEN_KEEPALIVE Session* alidade_new(int width, int height, double fov, int threads,
-                                          const char* settings) {
+                                          const char* settings, const char* classes) {
   return Guarded(
       [&] {
-        const alidade::PhoneSettings phone = SettingsOf(threads, settings);
+        const alidade::PhoneSettings phone = SettingsOf(threads, settings, classes);
         return new Session(std::make_unique<PhoneSlam>(width, height, fov, phone), width, height);
       },
       static_cast<Session*>(nullptr));
@@ -87,7 +94,8 @@ EMSCRIPTEN_KEEPALIVE Session* alidade_new(int width, int height, double fov, int
 
 // `camera`: fx fy cx cy k1 k2 p1 p2 k3.
 EMSCRIPTEN_KEEPALIVE Session* alidade_new_calibrated(int width, int height, const double* camera,
-                                                     int threads, const char* settings) {
+                                                     int threads, const char* settings,
+                                                     const char* classes) {
   return Guarded(
       [&] {
         alidade::Camera c;
@@ -98,7 +106,7 @@ EMSCRIPTEN_KEEPALIVE Session* alidade_new_calibrated(int width, int height, cons
         c.cx = camera[2];
         c.cy = camera[3];
         std::copy(camera + 4, camera + 9, c.distortion.begin());
-        const alidade::PhoneSettings phone = SettingsOf(threads, settings);
+        const alidade::PhoneSettings phone = SettingsOf(threads, settings, classes);
         return new Session(std::make_unique<PhoneSlam>(c, phone), width, height);
       },
       static_cast<Session*>(nullptr));
@@ -137,7 +145,8 @@ EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels,
                             q.x(),
                             q.y(),
                             q.z(),
-                            q.w()};
+                            q.w(),
+                            static_cast<double>(frame.number)};
         return session->numbers.data();
       },
       nullptr);
@@ -157,6 +166,20 @@ EMSCRIPTEN_KEEPALIVE int alidade_features(Session* session, const float** at) {
   }
   *at = session->features.data();
   return static_cast<int>(session->features.size() / 3);
+}
+
+// What a detector found in the picture of that number: class, score, x, y, width, height of each.
+EMSCRIPTEN_KEEPALIVE int alidade_detected(Session* session, int number, const float* found,
+                                          int count) {
+  return Guarded(
+      [&] {
+        std::vector<alidade::Detection> detections;
+        for (const float* d = found; d != found + 6 * count; d += 6)
+          detections.push_back({static_cast<int>(d[0]), d[1], {d[2], d[3], d[4], d[5]}});
+        session->slam->Detected(number, std::move(detections));
+        return 0;
+      },
+      -1);
 }
 
 enum Bytes { kMessages = 0, kTrajectory = 1, kMap = 2, kCloud = 3 };

@@ -1,10 +1,10 @@
-#include "alidade/detect/onnx/model_file.h"
+#include "alidade/detect/model_file.h"
 
 #include <gtest/gtest.h>
 
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
-#include "alidade/detect/onnx/protobuf.h"
+#include "alidade/detect/protobuf.h"
 #include "detect/tiny_network.h"
 #include "support/expect_error.h"
 

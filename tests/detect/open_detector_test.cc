@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "alidade/base/random.h"
-#include "alidade/detect/onnx/model_file.h"
+#include "alidade/detect/model_file.h"
 #include "detect/tiny_network.h"
 #include "support/expect_error.h"
 #include "support/temp_folder.h"

@@ -1,5 +1,5 @@
 #include "alidade/detect/class_names.h"
-#include "alidade/detect/onnx/model_file.h"
+#include "alidade/detect/model_file.h"
 #include "fuzz/targets.h"
 
 namespace alidade::fuzz {

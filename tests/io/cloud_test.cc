@@ -111,6 +111,39 @@ TEST(Pcd, NormalsAndSigmasHaveFieldsOfTheirOwn) {
   EXPECT_EQ(body.size(), 2u * 8 * 4);
 }
 
+TEST(Ply, IsReadAgainAsItWasWritten) {
+  Cloud cloud = kCloud;
+  for (int more = 0; more < 3; ++more) {
+    if (more == 1) cloud.normals = {{0, 0, -1}, {0.6f, 0.8f, 0}};
+    if (more == 2) cloud.sigmas = {0.25f, 1e-3f};
+    for (const CloudFormat format : {CloudFormat::kAscii, CloudFormat::kBinary}) {
+      const std::string bytes = EncodePly(cloud, format);
+      const Cloud read = DecodePly(bytes, "a.ply");
+      EXPECT_EQ(read.points, cloud.points);
+      EXPECT_EQ(read.colors, cloud.colors);
+      EXPECT_EQ(read.normals, cloud.normals);
+      EXPECT_EQ(read.sigmas, cloud.sigmas);
+      // Cut off anywhere it is refused, but in the last number of a text.
+      const size_t most = format == CloudFormat::kAscii ? bytes.rfind(' ') : bytes.size() - 1;
+      for (size_t length = 0; length <= most; ++length)
+        EXPECT_THROW(DecodePly(bytes.substr(0, length), "a.ply"), Error) << length;
+    }
+  }
+  EXPECT_TRUE(DecodePly(EncodePly({}, CloudFormat::kAscii), "a.ply").points.empty());
+}
+
+TEST(Ply, OfOthersIsRefused) {
+  for (const char* bytes :
+       {"", "ply\n", "solid x\nend_header\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\nend_header\n1\n",
+        "ply\nformat ascii 1.0\nelement vertex 1e9\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n1 2 3\n",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+        "property float z\nend_header\n1 two 3\n"}) {
+    EXPECT_THROW(DecodePly(bytes, "a.ply"), Error) << bytes;
+  }
+}
+
 TEST(Ply, ListsOfDifferentLengthsAreRefused) {
   Cloud cloud = kCloud;
   cloud.sigmas = {0.25f};

@@ -63,10 +63,83 @@ TEST(PhoneSlam, AnUnknownCameraIsAssumedAndSaidToBe) {
   EXPECT_NEAR(upright.Track(grey.data(), 1, 0).fov, 52, 1);  // 66 along the longer side
 }
 
+// What is left out of the last picture's features in the middle of it, of all there.
+struct LeftOut {
+  int inside = 0, left_out = 0, elsewhere_left_out = 0;
+};
+
+// Says of each tenth picture that a person fills the middle third, twelve pictures late.
+LeftOut WalkPast(PhoneSlam& slam, const WalkedRoom& room, bool person) {
+  const cv::Rect2f middle(110, 60, 100, 140);
+  for (int i = 0; i < static_cast<int>(room.frames.size()); ++i) {
+    const PhoneFrame frame =
+        slam.Track(room.frames[static_cast<size_t>(i)].image.data, 1, i / 30.0);
+    EXPECT_EQ(frame.number, i);
+    if (i >= 12 && i % 10 == 2)
+      slam.Detected(i - 12,
+                    person ? std::vector<Detection>{{0, 0.9f, middle}} : std::vector<Detection>{});
+  }
+  LeftOut counts;
+  for (const FeatureUse& use : slam.slam().Features()) {
+    const bool inside = std::abs(use.x - 160) < 25 && std::abs(use.y - 130) < 35;
+    const bool out = use.static_probability < 0.5f;
+    counts.inside += inside;
+    counts.left_out += inside && out;
+    counts.elsewhere_left_out += !inside && out && !middle.contains({use.x, use.y});
+  }
+  return counts;
+}
+
+TEST(PhoneSlam, WhatADetectorFindsIsLeftOutHoweverLateItAnswers) {
+  const WalkedRoom room = WalkRoom({.actors = 0, .frames = 60});
+  PhoneSettings settings = PhoneSettings::Default(false);
+  settings.detector_classes = {"person", "chair"};
+  PhoneSlam with(room.camera, settings), without(room.camera, settings);
+  const LeftOut person = WalkPast(with, room, true), nobody = WalkPast(without, room, false);
+  // Features are looked for elsewhere; those that are there are left out.
+  EXPECT_GT(nobody.inside, 10);
+  EXPECT_LT(nobody.left_out, 0.2 * nobody.inside);
+  EXPECT_LT(person.inside - person.left_out, 0.2 * nobody.inside);
+  EXPECT_LT(person.elsewhere_left_out, 50);
+  const auto seen = with.slam().Detections();
+  ASSERT_TRUE(seen.has_value());
+  EXPECT_EQ(seen->names, std::vector<std::string>{"person"});
+  EXPECT_GE(seen->frames_ago, 12);
+  EXPECT_FALSE(with.slam().MoverMask().empty());
+}
+
+TEST(PhoneSlam, DetectionsThatCannotBeAreRefusedAndThoseWithoutADetectorIgnored) {
+  const std::vector<uint8_t> grey(64 * 48, 90);
+  PhoneSettings settings = PhoneSettings::Default(false);
+  PhoneSlam none(64, 48, 60, settings);
+  none.Track(grey.data(), 1, 0);
+  none.Detected(0, {{7, 1, {0, 0, 9, 9}}});
+  settings.detector_classes = {"person"};
+  PhoneSlam slam(64, 48, 60, settings);
+  slam.Track(grey.data(), 1, 0);
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          slam.Detected(0, {{7, 1, {0, 0, 9, 9}}});
+                        }),
+              HasSubstr("class 7 of 1"));
+  slam.Detected(99, {{0, 1, {0, 0, 9, 9}}});  // of a picture to come
+  slam.Track(grey.data(), 1, 0.1);
+  EXPECT_FALSE(slam.slam().Detections().has_value());
+}
+
 TEST(PhoneSlam, ColoursAreTurnedToGrey) {
   PhoneSlam slam(64, 48, 60, PhoneSettings::Default(false));
   const std::vector<uint8_t> pixels(size_t{64} * 48 * 4, 90);
   EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitialising);
+}
+
+TEST(PhoneSettings, AreSetByLines) {
+  PhoneSettings settings = PhoneSettings::Default(false);
+  settings.SetLines("tracker.extractor.features=300\n\nsemidense.enabled=true");
+  EXPECT_EQ(settings.slam.tracker.extractor.features, 300);
+  EXPECT_TRUE(settings.slam.semidense.enabled);
+  EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { settings.SetLines("tracker.no_such=1"); }),
+              HasSubstr("tracker.no_such"));
 }
 
 TEST(PhoneSlam, WhatCannotBeIsRefused) {

@@ -126,6 +126,21 @@ void ExpectPath(const StreamScene& scene, const Slam& slam) {
   EXPECT_GT(compared, 10);
 }
 
+// That the last frame's camera is where the system now says it is.
+void ExpectNow(const StreamScene& scene, const Slam& slam) {
+  EXPECT_EQ(scene.camera.fx, slam.camera().fx);
+  EXPECT_EQ(scene.camera.cy, slam.camera().cy);
+  EXPECT_EQ(scene.camera.height, slam.camera().height);
+  const FramePose pose = slam.Trajectory().back();
+  ASSERT_TRUE(pose.tracked);
+  const std::optional<Se3> camera = scene.CameraPose();
+  ASSERT_TRUE(camera);
+  EXPECT_LT((camera->Inverse() * pose.T_world_camera).Log().norm(), 1e-6);
+  ASSERT_TRUE(scene.now.T_world_camera);
+  EXPECT_EQ(scene.now.number, scene.path.back().number);
+  EXPECT_EQ(scene.ActiveMap(), scene.keyframes.at(scene.path.back().reference).map);
+}
+
 void ExpectSame(const StreamScene& a, const StreamScene& b) {
   ASSERT_EQ(a.keyframes.size(), b.keyframes.size());
   ASSERT_EQ(a.landmarks.size(), b.landmarks.size());
@@ -162,9 +177,14 @@ TEST_P(StreamOfARun, GivesTheMapBack) {
   Streamed run(Phone(GetParam()));
   run.Play(Steps(0, 48, 3));
   if (!GetParam()) ExpectMap(run.scene, run.slam.Snapshot());
+  ExpectNow(run.scene, run.slam);
+  const uint64_t told = run.scene.told;
   run.Play({kBlack, kBlack, kBlack});
+  EXPECT_FALSE(run.scene.CameraPose() && !run.scene.now.T_world_guess);
   run.Play(Steps(330, 480, 6));
   ExpectSame(run.scene, Late(run.encoder));
+  EXPECT_GT(run.scene.told, told);
+  EXPECT_NE(Late(run.encoder).told, Late(run.encoder).told);
   run.Play(Steps(486, 640, 6), 5);  // hardly looked at
   run.Finish();
   ExpectMap(run.scene, run.slam.Snapshot());

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "alidade/detect/late_detector.h"
 #include "support/expect_error.h"
 #include "support/scripted_detector.h"
 
@@ -252,6 +253,23 @@ TEST_F(ThreadedFeed, EndsWhileFramesAreOfferedAndWhileItRests) {
   for (int i = 0; i < 20; ++i) {
     const auto feed = Feed();
     for (int number = 0; number < i; ++number) feed->Offer(number, Picture(number));
+  }
+}
+
+TEST(LateFeed, AnswersComeFromElsewhereAndNoneIsOfAFrameToCome) {
+  for (const bool threaded : {false, true}) {
+    const auto detector = std::make_shared<LateDetector>(std::vector<std::string>{"person"});
+    DetectionFeed feed(detector, {}, threaded, 1);
+    feed.Offer(0, Picture(0));
+    EXPECT_FALSE(feed.Take(0).has_value());
+    detector->Bring({0, {}});
+    feed.Offer(5, Picture(5));
+    EXPECT_EQ(feed.Take(5)->number, 0);
+    EXPECT_FALSE(feed.Take(6).has_value());
+    detector->Bring({9, {}});
+    EXPECT_FALSE(feed.Take(7).has_value());
+    EXPECT_EQ(feed.failure(), nullptr);  // it was never asked
+    EXPECT_TRUE(feed.milliseconds().All().empty());
   }
 }
 

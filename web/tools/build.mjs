@@ -42,7 +42,7 @@ export async function buildPhone() {
   const { metafile } = await build({ ...main, define, write: false, metafile: true });
   const packages = bundled(metafile);
   await build({ ...main, define: { ...define, BUNDLED: JSON.stringify(packages.map(({ name, version: number, licence }) => ({ name, version: number, licence }))) } });
-  await build({ ...options, entryPoints: [join(from, 'worker.ts')], outfile: join(to, 'worker.js') });
+  for (const name of ['worker', 'detector_worker']) await build({ ...options, entryPoints: [join(from, `${name}.ts`)], outfile: join(to, `${name}.js`) });
   await build({ ...options, entryPoints: [join(from, 'phone.css')], outfile: join(to, 'phone.css') });
   for (const name of ['index.html', 'icon.svg', 'manifest.webmanifest']) copyFileSync(join(from, name), join(to, name));
   writeFileSync(join(to, 'licences.txt'), licences(packages));

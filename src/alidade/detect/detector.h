@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,11 @@ class Detector {
   // Throws Error (input) when the network gives no usable answer.
   virtual std::vector<Detection> Detect(const cv::Mat& image) = 0;
   virtual const std::vector<std::string>& ClassNames() const = 0;
+
+  // Of one that works elsewhere (late_detector.h): nobody calls Detect(), TakeAnswer() gives what
+  // has come since it was asked last, the newest.
+  virtual bool AnswersLate() const { return false; }
+  virtual std::optional<FrameDetections> TakeAnswer() { return {}; }
 };
 
 }  // namespace alidade

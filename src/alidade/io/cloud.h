@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "alidade/base/api.h"
@@ -24,5 +25,8 @@ enum class CloudFormat { kAscii, kBinary };  // binary is little endian, on any 
 // The file's bytes. Throw Error (usage) on a cloud whose lists differ in length.
 std::string EncodePly(const Cloud& cloud, CloudFormat format);
 std::string EncodePcd(const Cloud& cloud, CloudFormat format);  // colours as the field `rgb`
+
+// What EncodePly() wrote. Throws Error (input), naming `name`, on any other bytes.
+Cloud DecodePly(std::string_view bytes, const std::string& name);
 
 }  // namespace alidade

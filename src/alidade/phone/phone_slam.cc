@@ -52,6 +52,16 @@ PhoneSettings PhoneSettings::Default(bool threaded) {
   return settings;
 }
 
+void PhoneSettings::SetLines(const std::string& lines) {
+  for (size_t begin = 0; begin < lines.size();) {
+    const size_t end = std::min(lines.find('\n', begin), lines.size());
+    const std::string line = lines.substr(begin, end - begin);
+    const size_t equal = line.find('=');
+    if (equal != std::string::npos) slam.Set(line.substr(0, equal), line.substr(equal + 1));
+    begin = end + 1;
+  }
+}
+
 PhoneSlam::PhoneSlam(int width, int height, double fov, PhoneSettings settings)
     : settings_(std::move(settings)), camera_(AssumedCamera(width, height, fov)), known_(fov > 0) {
   if (!known_) {
@@ -72,7 +82,13 @@ PhoneSlam::~PhoneSlam() = default;
 
 void PhoneSlam::Begin() {
   focal_ = camera_.fx;
-  slam_ = std::make_unique<Slam>(camera_, settings_.slam);
+  std::shared_ptr<Detector> detector = settings_.detector;
+  if (!settings_.detector_classes.empty()) {
+    settings_.slam.dynamics.mode = DynamicsMode::kFull;
+    detector = detector_ = std::make_shared<LateDetector>(settings_.detector_classes);
+  }
+  slam_ = std::make_unique<Slam>(camera_, settings_.slam, detector);
+  first_ = frames_;
   StreamSource source;
   source.program = std::string("alidade ") + ALIDADE_VERSION;
   source.source = "camera";
@@ -105,12 +121,19 @@ PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
   frame.result = slam_->Track(input);
   const MapSnapshot map = slam_->Snapshot();
   StreamFrame told;
-  told.number = frames_++;
+  told.number = frame.number = frames_++;
   told.time = time;
   told.result = frame.result;
   const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
   if (!last.empty()) told.pose = last.back();
   told.features = slam_->Features();
+  told.mover_mask = slam_->MoverMask();
+  if (const auto seen = slam_->Detections()) {
+    told.detection_age = seen->seconds_ago;
+    for (size_t i = 0; i < seen->detections.size(); ++i)
+      told.detections.push_back(
+          {seen->detections[i].box, seen->detections[i].score, seen->names[i]});
+  }
   told.map = map;
   frame.keyframes = map.keyframe_count();
   frame.landmarks = map.landmark_count();
@@ -159,6 +182,19 @@ void PhoneSlam::AskForCamera() {
   settings_.slam.start.two_view.lens_uncertainty = 3 * found.focal_sigma;
   ++restarts_;
   Begin();
+}
+
+void PhoneSlam::Detected(int number, std::vector<Detection> detections) {
+  if (!detector_ || number < first_) return;  // of a map that was begun anew since
+  // From pixels of the picture as it came to those that are worked on.
+  const Camera used = slam_->camera();
+  const float x = static_cast<float>(used.width) / static_cast<float>(camera_.width);
+  const float y = static_cast<float>(used.height) / static_cast<float>(camera_.height);
+  for (Detection& found : detections) {
+    const cv::Rect2f& box = found.box;
+    found.box = {box.x * x, box.y * y, box.width * x, box.height * y};
+  }
+  detector_->Bring({slam_->first_number() + number - first_, std::move(detections)});
 }
 
 void PhoneSlam::Finish() {

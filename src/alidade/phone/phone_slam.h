@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/detect/late_detector.h"
 #include "alidade/map/camera_estimate.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/system/slam.h"
@@ -30,6 +31,13 @@ struct PhoneSettings {
   // is not looked for while the lens is only assumed, shifted the focal lengths of real recordings
   // by 1 to 5 %.
   double model_sigma = 0.03;
+  // Of people and other things that move; goes with slam.dynamics.mode = full. Null: none.
+  std::shared_ptr<Detector> detector;
+  // Of a detector elsewhere, which answers through Detected(), instead; any: what it finds is left
+  // out (dynamics.mode is full then, whatever it was).
+  std::vector<std::string> detector_classes;
+  // Lines of name=value, each as after --set. Throws Error (usage) on what cannot be.
+  void SetLines(const std::string& lines);
   // The phone profile, in the order that a single thread does things unless `threaded`; at most so
   // many keyframes, since a page's memory is small.
   static PhoneSettings Default(bool threaded);
@@ -38,6 +46,7 @@ struct PhoneSettings {
 // What is known after a frame.
 struct PhoneFrame {
   TrackResult result;
+  int number = 0;  // counted from 0
   int keyframes = 0, landmarks = 0, maps = 0;
   int features = 0, matches = 0;  // of the frame
   double milliseconds = 0;        // it took
@@ -59,6 +68,9 @@ class PhoneSlam {
   // seconds. Throws Error on what Slam::Track() refuses.
   PhoneFrame Track(const uint8_t* pixels, int channels, double time);
   void Finish();
+  // What a detector found in an earlier picture (PhoneFrame::number), in its pixels; it may come
+  // many pictures late. Throws Error (input) on classes that were not named.
+  void Detected(int number, std::vector<Detection> detections);
   Slam& slam() { return *slam_; }
 
   // The viewer's messages since they were taken last (src/alidade/stream). The first call begins
@@ -85,6 +97,8 @@ class PhoneSlam {
   std::optional<CameraEstimate> before_;
   int ask_at_ = 0, restarts_ = 0, frames_ = 0;
   std::unique_ptr<Slam> slam_;
+  std::shared_ptr<LateDetector> detector_;  // null: there is none
+  int first_ = 0;                           // number of the first frame of slam_
   StreamSource source_;
   std::unique_ptr<StreamEncoder> encoder_;  // null: nobody asked
   std::vector<std::string> messages_;

@@ -9,11 +9,13 @@
 #include "alidade/run/choice.h"
 #include "alidade/run/export_folder.h"
 #include "alidade/run/map_export.h"
+#include "alidade/run/mcap_export.h"
+#include "alidade/version.h"
 
 namespace alidade {
 namespace {
 
-enum class Target { kPly, kPcd, kTum, kColmap };
+enum class Target { kPly, kPcd, kTum, kColmap, kMcap };
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -27,7 +29,8 @@ Plan PlanOf(const ExportSettings& settings) {
                                      {{"ply", Target::kPly},
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
-                                      {"colmap", Target::kColmap}});
+                                      {"colmap", Target::kColmap},
+                                      {"mcap", Target::kMcap}});
   auto form = Choice<Form>("--format", settings.format,
                            {{"text", Form::kText},
                             {"binary", Form::kBinary},
@@ -38,6 +41,9 @@ Plan PlanOf(const ExportSettings& settings) {
   }
   if (target != Target::kColmap && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
+  }
+  if (target == Target::kMcap && form != Form::kDefault && form != Form::kBinary) {
+    ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
   }
   if (form == Form::kDefault) form = target == Target::kColmap ? Form::kBoth : Form::kBinary;
   return {target, form};
@@ -65,10 +71,14 @@ void WriteExportFile(const std::string& path, const std::string& bytes) {
 
 void ExportSettings::Check() const { PlanOf(*this); }
 
+MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
+  return SeenOften(saved, PartOf(saved, settings.part), settings.min_observations);
+}
+
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
                       const std::string& out) {
   const Plan plan = PlanOf(settings);
-  const MapPart part = SeenOften(saved, PartOf(saved, settings.part), settings.min_observations);
+  const MapPart part = PartFor(saved, settings);
   const auto cloud_format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
   std::string what = std::to_string(part.landmarks.size()) + " points";
   switch (plan.target) {
@@ -93,6 +103,10 @@ std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
       what = std::to_string(part.keyframes.size()) + " images, " + what;
       break;
     }
+    case Target::kMcap:
+      ExportMapToMcap(saved, part, out, "alidade " ALIDADE_VERSION);
+      what = std::to_string(part.keyframes.size()) + " keyframes, " + what;
+      break;
   }
   return what;
 }

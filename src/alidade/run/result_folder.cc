@@ -38,6 +38,31 @@ MedianBar BarIn(const json& stats, const char* stage) {
   return {*median, *p95, *max};
 }
 
+std::optional<Camera> CameraIn(const json& stats) {
+  if (!stats.contains("camera")) return std::nullopt;
+  const json& told = stats["camera"];
+  const auto width = NumberIn(told, "width"), height = NumberIn(told, "height");
+  const auto fx = NumberIn(told, "fx"), fy = NumberIn(told, "fy");
+  const auto cx = NumberIn(told, "cx"), cy = NumberIn(told, "cy");
+  constexpr double kMostSide = 1e6;  // pixels
+  if (!width || !height || !fx || !fy || !cx || !cy) return std::nullopt;
+  if (!(*width > 0 && *width<kMostSide&& * height> 0 && *height < kMostSide)) return std::nullopt;
+  Camera camera;
+  camera.width = static_cast<int>(*width);
+  camera.height = static_cast<int>(*height);
+  camera.fx = *fx;
+  camera.fy = *fy;
+  camera.cx = *cx;
+  camera.cy = *cy;
+  if (told.contains("distortion") && told["distortion"].is_array()) {
+    for (size_t i = 0; i < camera.distortion.size() && i < told["distortion"].size(); ++i) {
+      const json& k = told["distortion"][i];
+      if (k.is_number()) camera.distortion[i] = k.get<double>();
+    }
+  }
+  return camera;
+}
+
 }  // namespace
 
 ResultFolder ReadResultFolder(const std::string& path) {
@@ -51,6 +76,7 @@ ResultFolder ReadResultFolder(const std::string& path) {
     ThrowInput(file + " is not one that `alidade run` wrote");
   ResultFolder result;
   result.path = path;
+  result.camera = CameraIn(stats);
   result.source = WordIn(stats, "source");
   result.sensor = WordIn(stats, "sensor");
   result.frames = NumberIn(stats, "frames");

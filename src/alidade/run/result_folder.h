@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "alidade/evaluation/ate.h"
+#include "alidade/geometry/camera.h"
 #include "alidade/view/plots.h"
 
 namespace alidade {
@@ -18,6 +19,7 @@ struct ResultFolder {
   std::optional<double> frames, tracked, coverage, initialised_at, keyframes, landmarks, loops,
       relocalisations, maps, cpu_s, peak_mb;
   std::vector<MedianBar> milliseconds;  // one for each of kResultStages
+  std::optional<Camera> camera;         // of the recording's images (stereo, fisheye: as rectified)
   TimeSpan span;                        // of the recording, seconds
   std::optional<double> first_pose;     // in any map, seconds
   std::vector<std::array<double, 2>> lost_spans;

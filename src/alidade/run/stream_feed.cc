@@ -30,6 +30,7 @@ StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRec
   source.frames = record.source.frames;
   source.live = record.source.kind == "camera";
   source.camera = slam.camera();
+  source.R_camera_rectified = record.source.R_camera_rectified;
   source.truth = TruthOf(TruthBeside(record.source_path));
   return source;
 }
@@ -71,8 +72,8 @@ void StreamFeed::Begin(const Slam& slam, const RunRecord& record, const std::str
     encoder_ = std::make_unique<StreamEncoder>(SourceOf(program_, slam, record), settings_.stream);
     playback_.may_pause = record.source.kind != "camera";
     if (file_path_) {
-      file_ = std::make_unique<StreamFileWriter>(file_path_->empty() ? folder + "/run.stream"
-                                                                     : *file_path_);
+      file_ = MakeRecordFile(file_path_->empty() ? folder + "/run.stream" : *file_path_, program_,
+                             settings_);
     }
     Tell({encoder_->Hello(), encoder_->Playback(playback_)});
   }
@@ -183,7 +184,7 @@ void StreamFeed::Encode(Shown& shown) {
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->Add(shown.frame));
   ++frames_;
-  if (file_ && shown.frame.time - whole_time_ >= settings_.whole_seconds) {
+  if (file_ && file_->takes_whole() && shown.frame.time - whole_time_ >= settings_.whole_seconds) {
     if (whole_time_ > -1e300) {
       for (const std::string& message : encoder_->Whole()) file_->Write(message);
     }
@@ -235,9 +236,18 @@ void StreamFeed::TellEnd() {
 }
 
 void StreamFeed::End(const RunSummary& summary, const std::string& folder) {
-  (void)summary, (void)folder;
+  (void)summary;
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
-  if (file_) file_->Close();
+  if (!file_) return;
+  try {
+    file_->Close(folder);
+    bytes_ = file_->bytes();
+  } catch (const Error&) {  // the disk is full
+    file_ = nullptr;
+    throw;
+  } catch (...) {
+    Fail();
+  }
   file_ = nullptr;
 }
 

@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "alidade/run/stream_file.h"
+#include "alidade/run/record_file.h"
 #include "alidade/run/stream_settings.h"
 #include "alidade/run/watcher.h"
 #include "alidade/stream/stream_encoder.h"
@@ -24,7 +24,8 @@ namespace alidade {
 
 class StreamFeed : public RunWatcher, public StreamHub {
  public:
-  // `file`: where the stream is kept; nothing: nowhere. Empty: run.stream among the results.
+  // `file`: where the stream is kept, as MCAP when it ends in .mcap; nothing: nowhere. Empty:
+  // run.stream among the results.
   StreamFeed(std::string program, std::optional<std::string> file,
              const StreamFeedSettings& settings = {});
   ~StreamFeed() override;
@@ -69,7 +70,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
 
   std::mutex encoder_mutex_;  // of all down to the next mutex
   std::unique_ptr<StreamEncoder> encoder_;
-  std::unique_ptr<StreamFileWriter> file_;
+  std::unique_ptr<RecordFile> file_;
   std::map<int, Take> takers_;
   int next_taker_ = 0;
   StreamPlayback playback_;

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
-#include <filesystem>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
@@ -18,44 +17,15 @@ size_t Filling(size_t size) { return (8 - size % 8) % 8; }
 
 }  // namespace
 
-StreamFileWriter::StreamFileWriter(const std::string& path)
-    : path_(path), draft_(TemporaryBeside(path)), file_(std::fopen(draft_.c_str(), "wb")) {
-  if (!file_) ThrowInput(path + ": cannot be written (" + std::strerror(errno) + ")");
-  failed_ = std::fwrite(kMagic.data(), 1, kMagic.size(), file_) != kMagic.size();
-  bytes_ = kMagic.size();
-}
-
-StreamFileWriter::~StreamFileWriter() {
-  if (!file_) return;
-  std::fclose(file_);
-  std::error_code error;
-  std::filesystem::remove(draft_, error);
-}
+StreamFileWriter::StreamFileWriter(const std::string& path) : file_(path) { file_.Write(kMagic); }
 
 bool StreamFileWriter::Write(std::string_view message) {
-  if (failed_ || !file_) return false;
   char header[kHeader] = {};
   const auto size = static_cast<uint32_t>(message.size());
   std::memcpy(header, &size, sizeof size);
   constexpr char kZeros[8] = {};
-  const size_t filling = Filling(message.size());
-  failed_ = std::fwrite(header, 1, kHeader, file_) != kHeader ||
-            std::fwrite(message.data(), 1, message.size(), file_) != message.size() ||
-            std::fwrite(kZeros, 1, filling, file_) != filling;
-  bytes_ += kHeader + message.size() + filling;
-  return !failed_;
-}
-
-void StreamFileWriter::Close() {
-  if (!file_) return;
-  const bool closed = std::fclose(file_) == 0;
-  file_ = nullptr;
-  std::error_code error;
-  if (closed && !failed_) std::filesystem::rename(draft_, path_, error);
-  if (!closed || failed_ || error) {
-    std::filesystem::remove(draft_, error);
-    ThrowInput(path_ + ": could not be written whole (is the disk full?)");
-  }
+  return file_.Write({header, kHeader}) && file_.Write(message) &&
+         file_.Write({kZeros, Filling(message.size())});
 }
 
 StreamFileReader::StreamFileReader(const std::string& path) {

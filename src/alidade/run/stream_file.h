@@ -8,6 +8,8 @@
 #include <string>
 #include <string_view>
 
+#include "alidade/run/draft_file.h"
+
 namespace alidade {
 
 // Written beside its place, and there once it is closed.
@@ -15,20 +17,14 @@ class StreamFileWriter {
  public:
   // Throws Error (input) when it cannot be made.
   explicit StreamFileWriter(const std::string& path);
-  ~StreamFileWriter();  // without Close(): nothing stays
-  StreamFileWriter(const StreamFileWriter&) = delete;
-  StreamFileWriter& operator=(const StreamFileWriter&) = delete;
 
   // False when the disk is full or gone; nothing more is written then.
   bool Write(std::string_view message);
-  void Close();  // throws Error (input) when not all of it could be written
-  size_t bytes() const { return bytes_; }
+  void Close() { file_.Close(); }  // throws Error (input) when not all of it could be written
+  size_t bytes() const { return file_.bytes(); }
 
  private:
-  std::string path_, draft_;
-  std::FILE* file_ = nullptr;
-  size_t bytes_ = 0;
-  bool failed_ = false;
+  DraftFile file_;
 };
 
 // Message by message.

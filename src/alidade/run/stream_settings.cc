@@ -11,6 +11,8 @@ constexpr auto kVisit = [](auto& s, auto&& visit) {
   visit("stream.detection_seconds", s.stream.detection_seconds);
   visit("stream.edge_shared", s.stream.edge_shared);
   visit("stream.landmark_tolerance", s.stream.landmark_tolerance);
+  visit("stream.mcap_rate", s.mcap_rate);
+  visit("stream.mcap_seconds", s.mcap_seconds);
   visit("stream.outline_tolerance", s.stream.outline_tolerance);
   visit("stream.path_frames", s.stream.path_frames);
   visit("stream.picture_quality", s.picture_quality);
@@ -31,6 +33,8 @@ void StreamFeedSettings::Check() const {
   check(picture_quality >= 1 && picture_quality <= 100, "picture_quality", "within 1…100");
   check(pictures_hz >= 0, "pictures_hz", "at least 0");
   check(whole_seconds > 0, "whole_seconds", "above 0");
+  check(mcap_seconds >= 0, "mcap_seconds", "at least 0");
+  check(mcap_rate > 0, "mcap_rate", "above 0");
   check(waiting >= 1, "waiting", "at least 1");
 }
 

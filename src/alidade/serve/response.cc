@@ -42,9 +42,17 @@ std::string_view Words(int status) {
   }
 }
 
-constexpr std::array<std::string_view, 5> kCoreFiles = {
-    "single/alidade.mjs", "single/alidade.wasm", "threads/alidade.mjs", "threads/alidade.wasm",
-    "threads/alidade.worker.js"};
+constexpr std::array<std::string_view, 11> kCoreFiles = {"single/alidade.mjs",
+                                                         "single/alidade.wasm",
+                                                         "threads/alidade.mjs",
+                                                         "threads/alidade.wasm",
+                                                         "threads/alidade.worker.js",
+                                                         "detector/alidade_detector.mjs",
+                                                         "detector/alidade_detector.wasm",
+                                                         "detector/ort.wasm.min.mjs",
+                                                         "detector/ort-wasm-simd-threaded.mjs",
+                                                         "detector/ort-wasm-simd-threaded.wasm",
+                                                         "detector/onnxruntime-licence.txt"};
 
 }  // namespace
 

@@ -143,9 +143,13 @@ std::string StreamEncoder::Hello() const {
   fb::FlatBufferBuilder builder;
   const Camera& c = source_.camera;
   const std::vector<double> distortion(c.distortion.begin(), c.distortion.end());
-  const auto camera = stream::CreateCameraDirect(builder, static_cast<uint16_t>(c.width),
-                                                 static_cast<uint16_t>(c.height), c.fx, c.fy, c.cx,
-                                                 c.cy, &distortion, c.baseline);
+  std::vector<double> turn;  // row by row
+  if (!source_.R_camera_rectified.isIdentity(0)) {
+    for (int i = 0; i < 9; ++i) turn.push_back(source_.R_camera_rectified(i / 3, i % 3));
+  }
+  const auto camera = stream::CreateCameraDirect(
+      builder, static_cast<uint16_t>(c.width), static_cast<uint16_t>(c.height), c.fx, c.fy, c.cx,
+      c.cy, &distortion, c.baseline, turn.empty() ? nullptr : &turn);
   std::vector<stream::TruePose> truth;
   for (const StreamTruth& pose : source_.truth)
     truth.push_back({pose.time, PackPose(pose.T_world_camera)});

@@ -1,5 +1,7 @@
 #include "alidade/stream/stream_scene.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "alidade/base/error.h"
@@ -35,6 +37,11 @@ void Check(const flatbuffers::Vector<uint8_t>* bytes, size_t each, const char* w
   if (bytes && bytes->size() % each != 0) Refuse(std::string("half a ") + what);
 }
 
+uint64_t NextTold() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 void TakeKeyFrame(const stream::KeyFrame& told, StreamScene& scene) {
   SceneKeyFrame& keyframe = scene.keyframes[{told.id()}];
   keyframe.map = {told.map()};
@@ -68,6 +75,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
     scene.events.clear();
   }
   scene.version = change.version();
+  scene.told = NextTold();
   if (change.keyframes()) {
     for (const stream::KeyFrame* told : *change.keyframes()) TakeKeyFrame(*told, scene);
   }
@@ -101,6 +109,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
       Refuse("a range of depth");
     found->second.depth_least = cloud.least();
     found->second.depth_most = cloud.most();
+    found->second.depth_told = scene.told;
     found->second.depth.clear();
     if (any) {
       found->second.depth.assign(reinterpret_cast<const char*>(cloud.points()->data()),
@@ -119,6 +128,50 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
   }
 }
 
+void TakeCamera(const stream::Camera& told, StreamScene& scene) {
+  Camera& camera = scene.camera;
+  scene.width = camera.width = told.width();
+  scene.height = camera.height = told.height();
+  camera.fx = told.fx();
+  camera.fy = told.fy();
+  camera.cx = told.cx();
+  camera.cy = told.cy();
+  camera.baseline = told.baseline();
+  camera.distortion = {};
+  if (const auto* k = told.distortion(); k && k->size() == camera.distortion.size())
+    std::copy(k->begin(), k->end(), camera.distortion.begin());
+  if (const auto* turn = told.r_camera_rectified()) {
+    if (turn->size() != 9) Refuse("a rotation of the camera");
+    for (unsigned i = 0; i < 9; ++i) scene.R_camera_rectified(i / 3, i % 3) = turn->Get(i);
+    const Eigen::Matrix3d& R = scene.R_camera_rectified;
+    if (!(R * R.transpose()).isIdentity(1e-6)) Refuse("a rotation of the camera");
+  }
+}
+
+void TakeNow(const stream::Frame& told, SceneNow& now) {
+  now = {};
+  now.number = told.number();
+  now.state = static_cast<int>(told.state());
+  now.time = told.time();
+  now.reason = TextFrom(told.reason());
+  now.map = {told.map()};
+  if (told.state() == stream::State::tracking)
+    now.T_world_camera = PoseFrom(told.t_world_camera(), "a frame");
+  if (told.predicted()) now.T_world_guess = PoseFrom(told.t_world_camera(), "a frame");
+  now.keyframes = told.keyframes();
+  now.landmarks = told.landmarks();
+  now.matches = told.matches();
+  now.maps = told.maps();
+  if (told.ms()) now.ms.assign(told.ms()->begin(), told.ms()->end());
+  const stream::Picture* picture = told.picture();
+  if (!picture || !picture->bytes()) return;
+  now.picture_width = picture->width();
+  now.picture_height = picture->height();
+  now.picture_type = TextFrom(picture->type());
+  now.picture.assign(reinterpret_cast<const char*>(picture->bytes()->data()),
+                     picture->bytes()->size());
+}
+
 void TakeFrame(const stream::Frame& told, StreamScene& scene) {
   Check(told.features(), kPackedFeature, "feature");
   SceneFrame frame{told.number(), static_cast<int>(told.state()), told.time(), {}, {}};
@@ -128,6 +181,7 @@ void TakeFrame(const stream::Frame& told, StreamScene& scene) {
     frame.T_reference_camera = PoseFrom(told.t_reference_camera(), "a frame");
   }
   scene.path.push_back(frame);
+  TakeNow(told, scene.now);
   ++scene.frames;
   scene.told_keyframes = told.keyframes();
   scene.told_landmarks = told.landmarks();
@@ -165,10 +219,7 @@ void StreamScene::Take(std::string_view bytes) {
   const stream::Message& message = *stream::GetMessage(data);
   if (const stream::Hello* hello = message.body_as_Hello()) {
     if (hello->version() > 1) ThrowInput("the stream is of a newer version");
-    if (hello->camera()) {
-      width = hello->camera()->width();
-      height = hello->camera()->height();
-    }
+    if (hello->camera()) TakeCamera(*hello->camera(), *this);
     source = TextFrom(hello->source());
     unit = TextFrom(hello->unit());
   } else if (const stream::MapChange* change = message.body_as_MapChange()) {
@@ -176,8 +227,25 @@ void StreamScene::Take(std::string_view bytes) {
   } else if (const stream::Frame* frame = message.body_as_Frame()) {
     TakeFrame(*frame, *this);
   } else if (const stream::Event* event = message.body_as_Event()) {
-    events.push_back({static_cast<int>(event->kind()), event->number(), TextFrom(event->text())});
+    const stream::EventKind kind = event->kind();
+    const bool bad = kind == stream::EventKind::lost || kind == stream::EventKind::cut ||
+                     kind == stream::EventKind::given_up || kind == stream::EventKind::warning;
+    events.push_back(
+        {static_cast<int>(kind), event->number(), event->time(), bad, TextFrom(event->text())});
   }
+}
+
+MapId StreamScene::ActiveMap() const {
+  for (auto frame = path.rbegin(); frame != path.rend(); ++frame) {
+    const auto reference = keyframes.find(frame->reference);
+    if (reference != keyframes.end()) return reference->second.map;
+  }
+  return keyframes.empty() ? MapId{} : keyframes.rbegin()->second.map;
+}
+
+std::optional<Se3> StreamScene::CameraPose() const {
+  if (!path.empty() && keyframes.count(path.back().reference) != 0) return PoseOf(path.back());
+  return now.T_world_guess;
 }
 
 Eigen::Vector3d StreamScene::PointOf(const SceneLandmark& landmark) const {
@@ -190,6 +258,18 @@ Se3 StreamScene::PoseOf(const SceneFrame& frame) const {
   Se3 T_reference_camera = frame.T_reference_camera;
   T_reference_camera.t *= keyframe.scale;
   return keyframe.T_world_camera * T_reference_camera;
+}
+
+void StreamScene::AddDepth(const SceneKeyFrame& keyframe, Cloud& points_world) const {
+  const auto* bytes = reinterpret_cast<const uint8_t*>(keyframe.depth.data());
+  for (size_t i = 0; i + kPackedPoint <= keyframe.depth.size(); i += kPackedPoint) {
+    const CloudPoint point =
+        UnpackPoint(bytes + i, keyframe.depth_least, keyframe.depth_most, width, height);
+    const Eigen::Vector3d p =
+        camera.Unproject({point.x, point.y}, keyframe.scale / point.inverse_depth);
+    points_world.points.push_back((keyframe.T_world_camera * p).cast<float>());
+    points_world.colors.push_back({point.red, point.green, point.blue});
+  }
 }
 
 }  // namespace alidade

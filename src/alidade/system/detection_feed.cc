@@ -12,7 +12,11 @@ namespace alidade {
 
 DetectionFeed::DetectionFeed(std::shared_ptr<Detector> detector, const DynamicsSettings& settings,
                              bool threaded, uint64_t seed)
-    : detector_(std::move(detector)), settings_(settings), threaded_(threaded), random_(seed) {
+    : detector_(std::move(detector)),
+      settings_(settings),
+      late_(detector_ && detector_->AnswersLate()),
+      threaded_(threaded && !late_),
+      random_(seed) {
   if (detector_ && threaded_) thread_ = std::thread([this] { Run(); });
 }
 
@@ -60,7 +64,7 @@ std::optional<FrameDetections> DetectionFeed::Detect(int number, const cv::Mat& 
 }
 
 void DetectionFeed::Offer(int number, const cv::Mat& image) {
-  if (!detector_ || failed_) return;
+  if (!detector_ || late_ || failed_) return;
   if (threaded_) {
     cv::Mat copy = image.clone();
     {
@@ -75,6 +79,10 @@ void DetectionFeed::Offer(int number, const cv::Mat& image) {
 }
 
 std::optional<FrameDetections> DetectionFeed::Take(int number) {
+  if (late_) {
+    std::optional<FrameDetections> answer = detector_->TakeAnswer();
+    return answer && answer->number <= number ? answer : std::nullopt;
+  }
   std::lock_guard<std::mutex> lock(mutex_);
   std::optional<FrameDetections> newest;
   const int due = threaded_ ? number : number - settings_.detector_latency_frames;

@@ -20,7 +20,7 @@ namespace alidade {
 
 // Threaded: a thread of its own that takes the newest frame whenever it is free. Inline: the
 // first frame and every k-th after it, each answer handed over a fixed number of frames later: the
-// same every time.
+// same every time. One that answers late is given nothing: its answers come from elsewhere.
 class DetectionFeed {
  public:
   // `detector` may be null: then there are never answers.
@@ -43,6 +43,7 @@ class DetectionFeed {
 
   std::shared_ptr<Detector> detector_;
   DynamicsSettings settings_;
+  bool late_;  // it works elsewhere
   bool threaded_;
   Random random_;
   mutable std::mutex mutex_;

@@ -172,6 +172,9 @@ void VisitStart(Settings& i, Visit&& visit) {
   visit("start.min_beyond_turn", i.two_view.min_beyond_turn);
   visit("start.min_beyond_lens", i.two_view.min_beyond_lens);
   visit("start.lens_uncertainty", i.two_view.lens_uncertainty);
+  visit("start.still_memory", i.still_memory);
+  visit("start.min_still_motion", i.min_still_motion);
+  visit("start.min_still_frames", i.min_still_frames);
 }
 
 template <typename Settings, typename Visit>

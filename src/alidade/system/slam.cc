@@ -99,7 +99,8 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
                                       movers_.Expected());
   extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
-  if (settings_.sensor == Sensor::kMono && state_ != TrackState::kTracking)
+  if (settings_.sensor == Sensor::kMono &&
+      (state_ != TrackState::kTracking || young_.WantsGlance(number)))
     frame->glance = Glance(prepared.image);
   last_ = {};
   last_keyframe_ = {};
@@ -164,6 +165,9 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
     return GiveUpStart("the first points did not hold");
   if (young_.IsYoung(*frame, tracker_.reference(), map) && movers_.FollowsMover())
     return GiveUpStart("the first points moved");
+  if (estimate.tracked && settings_.sensor == Sensor::kMono &&
+      young_.IsYoung(*frame, tracker_.reference(), map) && young_.StandsStill(estimate.placed))
+    return GiveUpStart("something moves, the camera seems to stand still");
   if (estimate.tracked) return Accept(std::move(estimate), map);
   Lose();
   return WithoutPose("too few landmarks found", frame->time, map);

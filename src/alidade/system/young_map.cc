@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
+
+#include "alidade/base/median.h"
+#include "alidade/features/glance.h"
 
 namespace alidade {
 
@@ -32,6 +36,14 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
                                      [](LandmarkId landmark) { return landmark.valid(); }));
   trial_left_ = settings_.start.trial_frames;
   started_ = frame->number;
+  first_glance_ = views->a->glance;
+  still_ = moved_ = 0;
+  first_pixels_.clear();
+  const KeyFrame& parent = *map.Find(keyframe.parent);
+  for (size_t i = 0; i < parent.landmarks.size(); ++i) {
+    if (parent.landmarks[i].valid())
+      first_pixels_[parent.landmarks[i]] = views->a->keypoints[i].pixel();
+  }
   return Begun{{frame, keyframe.T_camera_world, keyframe.landmarks, begun_points_, {}},
                id,
                map,
@@ -50,8 +62,25 @@ bool YoungMap::Confirm(const TrackEstimate& estimate) {
 }
 
 bool YoungMap::IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapshot& map) const {
-  constexpr int kYoung = 40;  // frames
   return started_ >= 0 && frame.number - started_ <= kYoung && map.MapOf(reference) == map_;
+}
+
+bool YoungMap::StandsStill(const PlacedFrame& placed) {
+  constexpr int kFewest = 20;  // landmarks of the first view that must be in sight
+  const MonoStartSettings& settings = settings_.start;
+  std::vector<double> motion;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const auto first = first_pixels_.find(placed.matches[i]);
+    if (first != first_pixels_.end())
+      motion.push_back((placed.frame->keypoints[i].pixel() - first->second).norm());
+  }
+  // A camera that came back to where it was shows the same picture, too.
+  if (static_cast<int>(motion.size()) < kFewest ||
+      UpperMedian(motion) < settings.min_still_motion * placed.frame->image.cols)
+    return false;
+  const bool stays = StillShare(first_glance_, placed.frame->glance) >= settings.max_still_picture;
+  ++(stays ? still_ : moved_);
+  return still_ >= settings.min_still_frames && still_ > moved_;
 }
 
 void YoungMap::GiveUp() {

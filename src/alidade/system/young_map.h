@@ -2,7 +2,9 @@
 // confirm them before the map is believed.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 
 #include "alidade/map/map_store.h"
@@ -35,9 +37,16 @@ class YoungMap {
   // So young that it had better be begun again than kept, if it is of something that moves.
   // `reference`: the keyframe the tracker leans on.
   bool IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapshot& map) const;
+  // Whether frame `number` needs its Glance(): the map is young.
+  bool WantsGlance(int number) const { return started_ >= 0 && number - started_ <= kYoung; }
+  // A frame that was placed in the young map. True when frames have shown that the camera stands
+  // still: it is said to have moved, and yet the picture behind stays where it was.
+  bool StandsStill(const PlacedFrame& placed);
   void GiveUp();  // out of the map, frames placed in it included; begins anew
 
  private:
+  static constexpr int kYoung = 40;  // frames
+
   SlamSettings settings_;
   Workers& workers_;
   MonoStart start_;
@@ -46,6 +55,9 @@ class YoungMap {
   int begun_points_ = 0;  // landmarks it began with
   MapId map_;
   KeyFrameId keyframes_[2];  // it began with
+  cv::Mat first_glance_;     // of the first of them, and where its landmarks are seen there
+  std::map<LandmarkId, Eigen::Vector2d> first_pixels_;
+  int still_ = 0, moved_ = 0;  // frames since that show the first picture again, and that do not
 };
 
 }  // namespace alidade

@@ -47,6 +47,9 @@ void MonoStartSettings::Check() const {
   require(max_still_share > 0 && max_still_share <= 1, "max_still_share must lie in (0, 1]");
   require(max_still_picture > 0, "max_still_picture must be positive");
   require(min_still_area >= 0, "min_still_area must not be negative");
+  require(still_memory >= 0, "still_memory must not be negative");
+  require(min_still_motion > 0, "min_still_motion must be positive");
+  require(min_still_frames >= 1, "min_still_frames must be at least 1");
   require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
           "trial_share must lie in [0, 1]");
 }
@@ -133,7 +136,10 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
   std::vector<Reference> kept;
   for (Reference& reference : references_) {
     MonoStartResult tried;
-    const Step step = Try(reference, frame, tried);
+    Step step = Try(reference, frame, tried);
+    if (step == Step::kStillCamera) still_ = frame->number;
+    if (step == Step::kStarts && still_ && frame->number - *still_ <= settings_.still_memory)
+      step = Step::kStillCamera;
     farthest_ = std::max(farthest_, step);
     if (step == Step::kStarts) {  // the oldest that can has the most parallax
       references_.clear();

@@ -43,6 +43,14 @@ struct MonoStartSettings {
   // in each direction (StillShare() in features/glance.h): where a camera starts to move 0 to 0.09
   // do, before a camera on a tripod 0.15 to 0.6.
   double max_still_picture = 0.13;
+  // What moves hides the rest now and then: after a pair was refused for that, none of the next so
+  // many frames begins a map.
+  int still_memory = 10;
+  // The same is asked of each frame of a young map in which its first landmarks have moved by so
+  // much of the image's width (median): it is given up when so many of these frames, and more than
+  // half of them, show the picture of the first again.
+  double min_still_motion = 0.02;
+  int min_still_frames = 8;
   int trial_frames = 5;      // frames that must confirm the map before it is believed
   double trial_share = 0.3;  // of its points that should be in sight, tracked in each of them
   void Check() const;        // throws Error (usage) naming the field that cannot be
@@ -98,6 +106,8 @@ class MonoStart {
   MonoStartSettings settings_;
   std::vector<Reference> references_;  // oldest first
   Step farthest_ = Step::kNoFrame;     // of the last frame's pairs
+  // Number of the last frame that a pair was refused with because the camera stands still.
+  std::optional<int> still_;
 };
 
 }  // namespace alidade

@@ -16,13 +16,14 @@ interface Core {
   stringToUTF8(text: string, at: number, bytes: number): void;
   lengthBytesUTF8(text: string): number;
   _alidade_error(): number;
-  _alidade_new(width: number, height: number, fov: number, threads: number, settings: number): number;
-  _alidade_new_calibrated(width: number, height: number, camera: number, threads: number, settings: number): number;
+  _alidade_new(width: number, height: number, fov: number, threads: number, settings: number, classes: number): number;
+  _alidade_new_calibrated(width: number, height: number, camera: number, threads: number, settings: number, classes: number): number;
   _alidade_delete(session: number): void;
   _alidade_pixels(session: number): number;
   _alidade_track(session: number, channels: number, time: number): number;
   _alidade_reason(session: number): number;
   _alidade_features(session: number, at: number): number;
+  _alidade_detected(session: number, number: number, found: number, count: number): number;
   _alidade_bytes(session: number, what: number, at: number): number;
   _alidade_finish(session: number): number;
 }
@@ -40,6 +41,8 @@ export interface SlamOptions {
   fov?: number;                     // horizontal field of view, degrees; left out: found on the way
   camera?: Calibration;             // instead of `fov`
   settings?: Record<string, string | number | boolean>;  // as after --set of the program, e.g. { 'semidense.enabled': true }
+  /** Names of the classes of a detector whose answers will come (detected()): what it finds of people, animals and vehicles is left out. */
+  classes?: readonly string[];
   /** Threads; needs a page that is cross-origin isolated, and the threaded module. Default: 1. */
   threads?: number;
   /** Where alidade.mjs and alidade.wasm are: a folder's address, ending in /. Default: beside this file, in single/ or threads/. */
@@ -55,6 +58,7 @@ export interface Pose {
 }
 
 export interface Frame {
+  number: number;           // of the pictures given to track(), from 0
   state: State;
   pose: Pose | null;        // null: not known
   predicted: boolean;       // the pose is a guess: lost for a moment only
@@ -68,8 +72,15 @@ export interface Frame {
 
 export interface Feature { x: number; y: number; matched: boolean }  // pixels of the picture as it is worked on
 
+export interface Detection {
+  class: number;                                           // of the classes named
+  score: number;                                           // 0…1
+  x: number; y: number; width: number; height: number;     // pixels of the picture, from edge to edge: the first one covers 0 to 1
+}
+
 const STATES: State[] = ['initialising', 'tracking', 'lost'];
-const NUMBERS = 19;
+const NUMBERS = 20;
+const DETECTION = 6; // numbers of one
 const enum Bytes { Messages = 0, Trajectory = 1, Map = 2, Cloud = 3 }
 
 /** What went wrong, as the core says it. */
@@ -105,19 +116,26 @@ export class Slam {
       throw new AlidadeError(`pictures of ${width}x${height} pixels cannot be`);
     const lines = Object.entries(options.settings ?? {})
       .map(([name, value]) => `${name}=${typeof value === 'boolean' ? Number(value) : value}`).join('\n');
-    const text = core._malloc(core.lengthBytesUTF8(lines) + 1);
-    core.stringToUTF8(lines, text, core.lengthBytesUTF8(lines) + 1);
+    const copy = (words: string) => {
+      const bytes = core.lengthBytesUTF8(words) + 1;
+      const at = core._malloc(bytes);
+      core.stringToUTF8(words, at, bytes);
+      return at;
+    };
+    const text = copy(lines);
+    const classes = copy((options.classes ?? []).map((name) => name.replaceAll('\n', ' ')).join('\n'));
     let session: number;
     if (options.camera) {
       const { fx, fy, cx, cy, distortion = [0, 0, 0, 0, 0] } = options.camera;
       const numbers = core._malloc(9 * 8);
       new Float64Array(core.HEAPU8.buffer, numbers, 9).set([fx, fy, cx, cy, ...distortion]);
-      session = core._alidade_new_calibrated(width, height, numbers, threads, text);
+      session = core._alidade_new_calibrated(width, height, numbers, threads, text, classes);
       core._free(numbers);
     } else {
-      session = core._alidade_new(width, height, options.fov ?? 0, threads, text);
+      session = core._alidade_new(width, height, options.fov ?? 0, threads, text, classes);
     }
     core._free(text);
+    core._free(classes);
     if (session === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
     return new Slam(core, session, width, height);
   }
@@ -135,6 +153,7 @@ export class Slam {
     const n = Array.from(new Float64Array(core.HEAPU8.buffer, at, NUMBERS)) as [number, ...number[]];
     const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, restarts] = n as number[] & { length: 19 };
     return {
+      number: n[19]!,
       state: STATES[state!] ?? 'lost',
       pose: placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null,
       predicted: predicted === 1,
@@ -142,6 +161,17 @@ export class Slam {
       counts: { keyframes: keyframes!, landmarks: landmarks!, matches: matches!, features: features!, maps: maps! },
       milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, restarts: restarts!,
     };
+  }
+
+  /** What a detector found in an earlier picture, Frame.number; it may come many pictures late. The numbers of a Detection one after the other will do as well. */
+  detected(number: number, found: readonly Detection[] | Float32Array): void {
+    const core = this.#live();
+    const numbers = found instanceof Float32Array ? found : Float32Array.from(found.flatMap((d) => [d.class, d.score, d.x, d.y, d.width, d.height]));
+    const at = core._malloc(Math.max(4, numbers.byteLength));
+    new Float32Array(core.HEAPU8.buffer, at, numbers.length).set(numbers);
+    const told = core._alidade_detected(this.#session, number, at, Math.floor(numbers.length / DETECTION));
+    core._free(at);
+    if (told !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
   }
 
   /** The last picture's features. */

@@ -99,6 +99,42 @@ test('a camera nobody calibrated is found on the way', onKitchen, async () => {
   slam.delete();
 });
 
+test('a detector that answers late: what it finds is left out', onKitchen, async () => {
+  const recording = open(kitchen);
+  const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, classes: ['person', 'dog'] });
+  const box = { class: 0, score: 0.9, x: 160, y: 120, width: 320, height: 300 };
+  for (let i = 0; i < 60; ++i) {
+    const frame = slam.track(recording.gray(i), Number(recording.times[i]));
+    assert.equal(frame.number, i);
+    if (i >= 10 && i % 5 === 0) slam.detected(i - 10, [box]);
+  }
+  const inside = slam.features().filter(({ x, y }) => Math.abs(x - 200) < 60 && Math.abs(y - 170) < 60); // pictures are worked on 400 wide
+  const matched = inside.filter((feature) => feature.matched).length;
+  assert.ok(matched < 0.2 * slam.features().filter((feature) => feature.matched).length, `${matched} of ${slam.features().length}`);
+  assert.throws(() => slam.detected(59, [{ ...box, class: 2 }]), /class 2 of 2/);
+  slam.detected(59, []);
+  slam.delete();
+});
+
+test('shape: what it costs a keyframe', onKitchen, async () => {
+  const recording = open(kitchen);
+  const frames = 300;
+  const pictures = Array.from({ length: frames }, (_, i) => recording.gray(i));
+  const cost = async (semidense: boolean) => {
+    const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, settings: { 'semidense.enabled': semidense } });
+    const before = process.cpuUsage();
+    for (let i = 0; i < frames; ++i) slam.track(pictures[i]!, Number(recording.times[i]));
+    const { user, system } = process.cpuUsage(before);
+    const { keyframes } = slam.track(pictures[frames - 1]!, Number(recording.times[frames - 1]) + 1 / 30).counts;
+    slam.delete();
+    return { milliseconds: (user + system) / 1000, keyframes };
+  };
+  await cost(true); // Node compiles what is hot a second time
+  const [without, withShape] = [await cost(false), await cost(true)];
+  console.log(`semi-dense depth: ${((withShape.milliseconds - without.milliseconds) / withShape.keyframes).toFixed(1)} ms of CPU a keyframe (${withShape.keyframes} of ${frames} frames, ${without.milliseconds.toFixed(0)} ms without, ${withShape.milliseconds.toFixed(0)} with)`);
+  assert.equal(withShape.keyframes, without.keyframes); // it changes nothing of the map
+});
+
 test('what cannot be is refused in words, and nothing is lost', options, async () => {
   await assert.rejects(create({ width: 0, height: 10 }), /0x10/);
   await assert.rejects(create({ width: 64, height: 48, fov: 200 }), /field of view/);

@@ -46,6 +46,9 @@ export class LocalEngine implements Engine {
     });
   }
 
+  // The Worker of a detector, at any time after begin().
+  connect(port: MessagePort): void { this.send({ kind: 'detector', port }, [port]); }
+
   push(bitmap: ImageBitmap, time: number, turn: number): void {
     ++this.working;
     this.send({ kind: 'picture', number: this.number++, time, bitmap, turn }, [bitmap]);

@@ -3,6 +3,7 @@ import { decode, DecodeError, State } from '@alidade/scene';
 import { byId, write } from '../../viewer/src/dom.ts';
 import { CameraProblem, holdFocus, openCamera, workingSize } from './camera.ts';
 import { Cube } from './cube.ts';
+import { DetectorHost } from './detector.ts';
 import { LocalEngine } from './engine.ts';
 import type { Engine, Hooks } from './engine.ts';
 import { MapView } from './map_view.ts';
@@ -12,7 +13,7 @@ import { Recorder } from './recorder.ts';
 import { RemoteEngine } from './remote.ts';
 import { download, showOffers } from './save.ts';
 import type { Offer } from './save.ts';
-import { bind, coreSettings, load } from './settings.ts';
+import { bind, coreSettings, detectorClasses, load } from './settings.ts';
 import { VideoFile } from './video_file.ts';
 import { advice, lensText, STATE_WORDS } from './words.ts';
 
@@ -25,6 +26,7 @@ const choices = load();
 const video = byId('video') as HTMLVideoElement;
 const picture = new PictureView();
 const map = new MapView(() => state);
+const detector = new DetectorHost(choices, (text) => notice(text, 'detector'));
 const notices = new Map<string, string>(); // by what they are about
 let state = new State();
 let phase: Phase = 'idle';
@@ -132,7 +134,9 @@ async function begin(width: number, height: number): Promise<void> {
   upright = height > width;
   write(byId('state-word'), 'Loading');
   write(byId('advice'), remote ? 'Asking for the computer that does the work …' : 'The core (4 MB, the first time) …');
-  await engine.begin({ ...workingSize(width, height), fov: choices.fov, settings: coreSettings(choices) });
+  const classes = remote ? [] : detectorClasses(choices);
+  await engine.begin({ ...workingSize(width, height), fov: choices.fov, settings: coreSettings(choices), classes });
+  if (classes.length > 0) detector.connect(engine as LocalEngine);
 }
 
 function forget(): void {
@@ -402,6 +406,7 @@ Object.assign(window, {
     get cube() { return cube; },
     get shown() { return shown; },
     get scene() { return map.scene; },
+    detector,
     counters,
     watch(hook: (done: Done) => void) { watch = hook; },
   },

@@ -12,14 +12,14 @@ export class MapView {
 
   constructor(private readonly state: () => State) {
     this.scene = make();
-    if (!this.scene) return;
     const system = matchMedia('(prefers-color-scheme: dark)');
     const theme = () => {
       document.documentElement.dataset.theme = system.matches ? 'dark' : 'light';
-      this.scene!.colours(colours());
+      this.scene?.colours(colours());
     };
     system.addEventListener('change', theme);
     theme();
+    if (!this.scene) return;
     new ResizeObserver(() => this.scene!.resize()).observe(byId('scene'));
     for (const button of document.querySelectorAll<HTMLElement>('[data-view]')) {
       button.addEventListener('click', () => {

@@ -1,6 +1,6 @@
 // The camera picture as it was worked on, with its features and the cube.
 import type { Frame as StreamFrame, State } from '@alidade/scene';
-import { features } from '../../viewer/src/picture_marks.ts';
+import { boxes, features, outlines } from '../../viewer/src/picture_marks.ts';
 import { byId } from '../../viewer/src/dom.ts';
 import type { Cube } from './cube.ts';
 import type { Point } from './lens.ts';
@@ -27,7 +27,13 @@ export class PictureView {
     draw.rotate((-turn * Math.PI) / 2);
     draw.translate(-w / 2, -h / 2);
     const style = getComputedStyle(document.documentElement);
-    if (marks && frame) features({ draw, w, h, ratio: Math.max(w, h) / 480, colour: (name) => style.getPropertyValue(name) }, frame, MARKS);
+    const onto = { draw, w, h, ratio: Math.max(w, h) / 480, colour: (name: string) => style.getPropertyValue(name) };
+    const camera = state.hello?.camera;
+    if (marks && frame) {
+      outlines(onto, frame);
+      features(onto, frame, MARKS);
+      if (camera) boxes(onto, frame, camera.width, camera.height);
+    }
     if (cube) this.drawCube(cube, state, w, h);
   }
 

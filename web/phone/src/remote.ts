@@ -7,6 +7,7 @@ import type { Saved, Start } from './protocol.ts';
 const IN_FLIGHT = 2;
 const QUALITY = 0.8;            // of the JPEGs
 const AGAIN = [500, 1000, 2000, 4000]; // milliseconds between tries to connect
+const PATIENCE = 8000;          // milliseconds without a sign of the computer that owes one: browsers take minutes to see that a network is gone
 const MOST_BUFFERED = 1 << 20;  // bytes that the browser has not sent yet: beyond, pictures are left out
 
 interface Told {
@@ -23,6 +24,7 @@ export class RemoteEngine implements Engine {
   private tries = 0;
   private number = 0;
   private compressing = 0;
+  private patience = 0; // the timer
   private start: Omit<Start, 'kind' | 'base' | 'threads'> | null = null;
   private readonly sent = new Map<number, { time: number; bitmap: ImageBitmap; turn: number }>();
   private pending: Uint8Array[] = []; // messages since the last frame's text
@@ -62,6 +64,7 @@ export class RemoteEngine implements Engine {
 
   close(): void {
     this.over = true;
+    clearTimeout(this.patience);
     this.socket?.close();
     for (const { bitmap } of this.sent.values()) bitmap.close();
     this.sent.clear();
@@ -83,6 +86,22 @@ export class RemoteEngine implements Engine {
     head.setFloat64(8, time, true);
     this.sent.set(number, { time, bitmap, turn });
     this.socket.send(new Blob([head.buffer, jpeg]));
+    if (this.sent.size === 1) this.wait();
+  }
+
+  // Until something is heard, which `owed` says there should be; nothing within PATIENCE: the connection is given up.
+  private wait(owed = this.sent.size > 0): void {
+    clearTimeout(this.patience);
+    if (owed) this.patience = window.setTimeout(() => this.drop(), PATIENCE);
+  }
+
+  // Without waiting for the good-bye of one that may be gone.
+  private drop(): void {
+    const { socket } = this;
+    if (!socket) return;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.close();
+    this.closed();
   }
 
   private connect(): void {
@@ -92,6 +111,7 @@ export class RemoteEngine implements Engine {
     const socket = new WebSocket(address);
     this.socket = socket;
     socket.binaryType = 'arraybuffer';
+    this.wait(true);
     socket.onopen = () => {
       const { width, height, fov } = this.start!;
       socket.send(JSON.stringify({ session: this.session, width, height, fov }));
@@ -100,14 +120,17 @@ export class RemoteEngine implements Engine {
       if (typeof data === 'string') this.hear(JSON.parse(data) as Told);
       else this.pending.push(new Uint8Array(data));
       if (typeof data !== 'string' && this.sent.size === 0) this.flush();
+      this.wait();
     };
     socket.onclose = () => this.closed();
   }
 
   private closed(): void {
     this.open = false;
+    clearTimeout(this.patience);
     for (const { bitmap } of this.sent.values()) bitmap.close(); // unknown whether they came: newer ones follow
     this.sent.clear();
+    this.pending = []; // the whole follows
     if (this.over) return;
     this.hooks.lost('No connection to the computer that does the work. Trying again …');
     setTimeout(() => { if (!this.over) this.connect(); }, AGAIN[Math.min(this.tries++, AGAIN.length - 1)]);
@@ -142,7 +165,7 @@ export class RemoteEngine implements Engine {
     this.hooks.done({
       kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn,
       frame: {
-        state: told.state ?? 'lost', reason: told.reason ?? '', predicted: false,
+        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', predicted: false,
         pose: pose && { position: [pose[4]!, pose[5]!, pose[6]!], orientation: [pose[0]!, pose[1]!, pose[2]!, pose[3]!] },
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
         milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, restarts: 0,

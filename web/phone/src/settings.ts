@@ -5,10 +5,11 @@ export interface Choices {
   fov: number | null;      // horizontal, degrees; null: found on the way
   shape: boolean; moving: boolean; features: boolean; focus: boolean; connected: boolean;
   more: string;            // name=value lines
+  detector: { name: string; classes: readonly string[] } | null; // of the file that is kept (detector_file.ts)
 }
 
 const KEY = 'alidade-phone';
-const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '' };
+const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
 
 export function load(): Choices {
   try {
@@ -19,13 +20,16 @@ export function load(): Choices {
   }
 }
 
-function keep(choices: Choices): void {
+export function keep(choices: Choices): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(choices));
   } catch {
     // storage is switched off: nothing is remembered
   }
 }
+
+// Of the detector in use: none, where what moves is not left out.
+export function detectorClasses({ moving, detector }: Choices): readonly string[] { return moving ? detector?.classes ?? [] : []; }
 
 // As after --set of the program.
 export function coreSettings(choices: Choices): Record<string, string | number | boolean> {

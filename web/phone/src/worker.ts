@@ -1,14 +1,17 @@
 // The Worker: scales each picture, hands it to the core, and tells what came of it.
 import { Slam } from '../../core/src/index.ts';
-import type { FromWorker, Picture, Start, ToWorker } from './protocol.ts';
+import type { FromDetector, FromWorker, Look, Picture, Start, ToWorker } from './protocol.ts';
 
 const scope = self as unknown as { postMessage(message: FromWorker, transfer: Transferable[]): void; onmessage: ((event: MessageEvent<ToWorker>) => void) | null };
 
 let slam: Slam | null = null;
 let context: OffscreenCanvasRenderingContext2D | null = null;
 
-async function start({ base, threads, width, height, fov, settings }: Start): Promise<void> {
-  slam = await Slam.create({ width, height, base, threads, settings, ...(fov ? { fov } : {}) });
+let detector: MessagePort | null = null;
+let detectorFree = true;
+
+async function start({ base, threads, width, height, fov, settings, classes }: Start): Promise<void> {
+  slam = await Slam.create({ width, height, base, threads, settings, classes, ...(fov ? { fov } : {}) });
   context = new OffscreenCanvas(width, height).getContext('2d', { willReadFrequently: true });
   scope.postMessage({ kind: 'ready' }, []);
 }
@@ -29,6 +32,18 @@ function track({ number, time, bitmap, turn }: Picture): void {
   const frame = slam.track(image, time);
   const messages = slam.messages();
   scope.postMessage({ kind: 'done', number, time, frame, light: meanGreen(image.data), messages, bitmap, turn }, [bitmap, ...messages.map(({ buffer }) => buffer)]);
+  if (!detector || !detectorFree) return;
+  detectorFree = false;
+  detector.postMessage({ number: frame.number, width, height, pixels: image.data.buffer } satisfies Look, [image.data.buffer]);
+}
+
+// Between two pictures.
+function connect(port: MessagePort): void {
+  detector = port;
+  port.onmessage = ({ data }: MessageEvent<FromDetector>) => {
+    if (data.kind === 'free') detectorFree = true;
+    else slam?.detected(data.number, data.found);
+  };
 }
 
 // Of every 16th pixel: enough to tell the dark.
@@ -43,6 +58,7 @@ scope.onmessage = ({ data }) => {
   if (data.kind === 'start') return void start(data).catch(failed);
   try {
     if (data.kind === 'picture') return track(data);
+    if (data.kind === 'detector') return connect(data.port);
     if (!slam) return;
     if (data.what === 'finish') slam.finish();
     const bytes = data.what === 'map' ? slam.map() : data.what === 'cloud' ? slam.cloud() : new TextEncoder().encode(data.what === 'trajectory' ? slam.trajectory() : '');

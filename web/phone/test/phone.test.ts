@@ -27,7 +27,8 @@ const FRAMES = 300;
 interface Phone {
   counters: { processed: number; milliseconds: number[] };
   engine: { ask(what: string): Promise<Uint8Array> } | null;
-  state: { keyframes: Map<number, unknown>; landmarks: { size: number } };
+  state: { keyframes: Map<number, unknown>; landmarks: { size: number }; frame: { features: Uint8Array; detectionAge: number } | null };
+  detector: { looks: number; things: number; milliseconds: number };
   cube: unknown;
   watch(hook: (done: Done) => void): void;
 }

@@ -2,6 +2,8 @@
 import assert from 'node:assert/strict';
 import { existsSync, readdirSync, rmSync, mkdtempSync } from 'node:fs';
 import { request } from 'node:http';
+import { connect, createServer } from 'node:net';
+import type { AddressInfo, Socket } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
@@ -94,6 +96,63 @@ test('two pages send their pictures; the network goes and comes; each has a map 
   assert.equal(await program.ended, 0);
   assert.deepEqual(readdirSync(out).length, 2);
   for (const name of readdirSync(out)) assert.deepEqual(readdirSync(join(out, name)).sort(), ['landmarks.ply', 'map.alidade', 'trajectory.txt']);
+});
+
+// What lies between: a network that can fall silent, as one does when a phone leaves its reach. Nobody is told.
+async function network(to: number): Promise<{ port: number; cut(): void; heal(): void; close(): void }> {
+  let silent = false;
+  const sockets = new Set<Socket>();
+  const server = createServer((near) => {
+    const far = connect(to, '127.0.0.1');
+    for (const [from, into] of [[near, far], [far, near]] as const) {
+      sockets.add(from);
+      from.on('data', (data) => {
+        if (silent) return;
+        // The program answers to its own name only.
+        const asked = from === near && data.subarray(0, 4).toString('latin1') === 'GET ';
+        into.write(asked ? data.toString('latin1').replaceAll(`127.0.0.1:${port}`, `127.0.0.1:${to}`) : data, asked ? 'latin1' : undefined);
+      });
+      from.on('close', () => { if (!silent) into.destroy(); });
+      from.on('error', () => {});
+    }
+  });
+  await new Promise<void>((resolve) => { server.listen(0, '127.0.0.1', resolve); });
+  const { port } = server.address() as AddressInfo;
+  return {
+    port,
+    cut: () => { silent = true; },
+    heal: () => { // those that were cut stay so
+      for (const socket of sockets) socket.removeAllListeners('data').resume();
+      sockets.clear();
+      silent = false;
+    },
+    close: () => {
+      for (const socket of sockets) socket.destroy();
+      server.close();
+    },
+  };
+}
+
+test('a network that falls silent is seen to be gone, and gone on with once it is back', options, async () => {
+  const program = await start('phone', '--port', '0', '--connected');
+  const between = await network(program.port);
+  const { page } = await open(browser, `http://127.0.0.1:${between.port}/`, PHONE, connected);
+  await page.tap('#start');
+  await noting(page);
+  await tracking(page);
+  const before = await page.evaluate(() => window.phone.state.keyframes.size);
+  between.cut();
+  await page.waitForSelector('#notice:not([hidden])', { timeout: 40e3 });
+  assert.match((await page.textContent('#notice'))!, /No connection/);
+  between.heal();
+  await page.waitForSelector('#notice', { state: 'hidden', timeout: 60e3 });
+  await processed(page, 20);
+  await tracking(page);
+  assert.ok(await page.evaluate(() => window.phone.state.keyframes.size) >= before, 'the map was lost');
+  const seen = await numbers(page);
+  assert.equal(new Set(seen).size, seen.length, 'a picture was worked on twice');
+  await page.context().close();
+  between.close();
 });
 
 test('a program that is killed and started again is gone on with', options, async () => {

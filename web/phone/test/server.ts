@@ -13,6 +13,8 @@ const TYPES: Record<string, string> = {
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
   "style-src 'self'; img-src 'self' blob: data:; media-src 'self' blob:; connect-src 'self'; manifest-src 'self'";
 
+export const DETECTOR = join(process.env.ALIDADE_WASM ?? join(WEB, '../build-wasm'), 'detector/bin'); // scripts/wasm detector
+
 export interface Site { address: string; close(): Promise<void> }
 
 // `more`: other files, by name.
@@ -20,7 +22,7 @@ export async function startSite(isolated: boolean, more: Readonly<Record<string,
   const http = createServer((request, response) => {
     const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
     const name = path === '/' ? 'index.html' : path.slice(1);
-    const file = more[name] ?? (name.startsWith('core/') ? join(WEB, 'core/dist', name.slice(5)) : join(WEB, 'phone/dist', name));
+    const file = more[name] ?? (name.startsWith('core/detector/') ? join(DETECTOR, name.slice(14)) : name.startsWith('core/') ? join(WEB, 'core/dist', name.slice(5)) : join(WEB, 'phone/dist', name));
     if (isolated) {
       response.setHeader('Cross-Origin-Opener-Policy', 'same-origin');
       response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');

@@ -48,7 +48,7 @@ function hello(b: Builder, m: Hello): Offset {
   if (m.camera) {
     const c = m.camera;
     const distortion = fb.Camera.createDistortionVector(b, c.distortion);
-    camera = fb.Camera.createCamera(b, c.width, c.height, c.fx, c.fy, c.cx, c.cy, distortion, c.baseline);
+    camera = fb.Camera.createCamera(b, c.width, c.height, c.fx, c.fy, c.cx, c.cy, distortion, c.baseline, 0); // no rotation: as mounted
   }
   const truth = structs(b, m.truth, fb.Hello.startTruthVector,
     ({ time, T_world_camera: T }) => fb.TruePose.createTruePose(b, time, T[0], T[1], T[2], T[3], T[4], T[5], T[6]));

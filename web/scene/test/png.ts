@@ -26,7 +26,7 @@ export function png(width: number, height: number, rows: Uint8Array): Uint8Array
   return new Uint8Array(Buffer.concat([signature, chunk('IHDR', head), chunk('IDAT', deflateSync(rows, { level: 1 })), chunk('IEND', new Uint8Array(0))]));
 }
 
-// Grey, RGB or RGBA of 8 or 16 bits, not interlaced.
+// Grey, RGB or RGBA of 8 or 16 bits, or black and white (0, 1) of one; not interlaced.
 export function readPng(file: Buffer): { width: number; height: number; channels: number; samples: Uint16Array } {
   let at = 8;
   const data: Buffer[] = [];
@@ -40,8 +40,8 @@ export function readPng(file: Buffer): { width: number; height: number; channels
     at += 12 + length;
   }
   const raw = inflateSync(Buffer.concat(data));
-  const pixel = channels * bytes;
-  const stride = width * pixel;
+  const pixel = Math.ceil(channels * bytes);
+  const stride = Math.ceil(width * channels * bytes);
   const lines = Buffer.alloc(stride * height);
   for (let y = 0; y < height; ++y) {
     const filter = raw[y * (stride + 1)]!;
@@ -55,5 +55,6 @@ export function readPng(file: Buffer): { width: number; height: number; channels
       lines[y * stride + x] = raw[y * (stride + 1) + 1 + x]! + [0, left, up, (left + up) >> 1, paeth][filter]!;
     }
   }
+  if (bytes < 1) return { width, height, channels, samples: Uint16Array.from({ length: width * height }, (_, i) => (lines[Math.floor(i / width) * stride + ((i % width) >> 3)]! >> (7 - ((i % width) & 7))) & 1) };
   return { width, height, channels, samples: Uint16Array.from({ length: width * height * channels }, (_, i) => (bytes === 2 ? lines.readUInt16BE(2 * i) : lines[i]!)) };
 }

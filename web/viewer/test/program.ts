@@ -1,14 +1,13 @@
-// The real program, started and ended by the tests. ALIDADE_BINARY names it.
+// The real program as a server, started and ended by the tests.
 import { spawn } from 'node:child_process';
-import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+import { join } from 'node:path';
+import { BINARY, NO_BINARY } from '../../scene/test/binary.ts';
 import { SKIP } from './browser.ts';
 
-declare const WEB: string; // by tools/test.mjs
-
-export const BINARY = process.env.ALIDADE_BINARY ? resolve(process.env.ALIDADE_BINARY) : join(WEB, '../build/bin/alidade');
-export const NO_PROGRAM = SKIP || (existsSync(BINARY) ? false : `no ${BINARY} (scripts/build, or ALIDADE_BINARY)`);
+export { BINARY, run, table } from '../../scene/test/binary.ts';
+export const NO_PROGRAM = SKIP || NO_BINARY;
 
 export interface Program {
   address: string;
@@ -21,15 +20,6 @@ const folder = mkdtempSync(join(tmpdir(), 'alidade-page-'));
 const running = new Set<Program>();
 
 export const inFolder = (name: string) => join(folder, name);
-
-// Until it ends; throws what it said when that was no success.
-export async function run(...args: string[]): Promise<void> {
-  const child = spawn(BINARY, args, { stdio: ['ignore', 'ignore', 'pipe'] });
-  let said = '';
-  child.stderr.on('data', (text) => { said += text; });
-  const status = await new Promise((done) => child.on('close', done));
-  if (status !== 0) throw new Error(`alidade ${args.join(' ')}: ${status}\n${said}`);
-}
 
 // One that serves the page; the address is the first that it prints.
 export async function start(...args: string[]): Promise<Program> {
@@ -57,9 +47,4 @@ export async function endAll(): Promise<void> {
   for (const program of running) program.kill('SIGKILL');
   await Promise.all(ends);
   rmSync(folder, { recursive: true, force: true });
-}
-
-// Lines of numbers, those of comments and heads left out.
-export function table(path: string): number[][] {
-  return readFileSync(path, 'utf8').split('\n').filter((line) => /^[-+\d.]/.test(line)).map((line) => line.trim().split(/\s+/).map(Number));
 }

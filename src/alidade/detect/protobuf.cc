@@ -1,4 +1,4 @@
-#include "alidade/detect/onnx/protobuf.h"
+#include "alidade/detect/protobuf.h"
 
 namespace alidade {
 namespace {

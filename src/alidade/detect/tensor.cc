@@ -1,9 +1,9 @@
-#include "alidade/detect/onnx/tensor.h"
+#include "alidade/detect/tensor.h"
 
 #include <optional>
 
 #include "alidade/base/error.h"
-#include "alidade/detect/onnx/protobuf.h"
+#include "alidade/detect/protobuf.h"
 
 namespace alidade {
 namespace {

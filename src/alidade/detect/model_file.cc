@@ -1,4 +1,4 @@
-#include "alidade/detect/onnx/model_file.h"
+#include "alidade/detect/model_file.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <set>
 
 #include "alidade/base/error.h"
-#include "alidade/detect/onnx/protobuf.h"
-#include "alidade/detect/onnx/tensor.h"
+#include "alidade/detect/protobuf.h"
+#include "alidade/detect/tensor.h"
 
 namespace alidade {
 namespace {

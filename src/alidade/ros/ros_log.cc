@@ -1,0 +1,102 @@
+#include "alidade/ros/ros_log.h"
+
+#include <utility>
+
+namespace alidade {
+namespace {
+
+// x forward = z, y left = -x, z up = -y.
+Se3 MapFromWorld() {
+  Eigen::Matrix3d R;
+  R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  return {R, Eigen::Vector3d::Zero()};
+}
+
+RosHeader HeaderIn(const std::string& frame, double time) {
+  return {RosTime::FromSeconds(time), frame};
+}
+
+}  // namespace
+
+RosLog::RosLog(McapWriter::Sink sink, McapCompression compression, const std::string& library)
+    : writer_(std::move(sink), "ros2", library, std::move(compression)) {}
+
+void RosLog::SetRectification(const Eigen::Matrix3d& R_camera_rectified) {
+  rectification_.reset();
+  if (!R_camera_rectified.isIdentity(0)) rectification_ = R_camera_rectified;
+}
+
+size_t RosLog::Write(const char* topic, RosType type, double time, const std::string& message) {
+  auto channel = channels_.find(topic);
+  if (channel == channels_.end()) {
+    auto schema = schemas_.find(type);
+    if (schema == schemas_.end()) {
+      const uint16_t id = writer_.AddSchema(NameOf(type), "ros2msg", SchemaOf(type));
+      schema = schemas_.emplace(type, id).first;
+    }
+    // The profile wants the publishers' QoS to be told; empty: the default.
+    const uint16_t id =
+        writer_.AddChannel(schema->second, topic, "cdr", {{"offered_qos_profiles", ""}});
+    channel = channels_.emplace(topic, id).first;
+  }
+  writer_.Write(channel->second, RosTime::FromSeconds(time).nanoseconds(), message);
+  return message.size();
+}
+
+void RosLog::Pose(double time, const std::optional<Se3>& T_world_camera) {
+  Transforms(time, T_world_camera);
+  if (!T_world_camera) return;
+  Write("/alidade/pose", RosType::kPose, time,
+        EncodePose(HeaderIn(kRosWorld, time), *T_world_camera));
+}
+
+// What never changes is told with every frame, too: a recording is entered anywhere, and a topic of
+// its own (/tf_static) would have to be remembered from its begin.
+void RosLog::Transforms(double time, const std::optional<Se3>& T_world_camera) {
+  const RosTime stamp = RosTime::FromSeconds(time);
+  std::vector<RosTransform> transforms;
+  if (T_world_camera) transforms.push_back({stamp, kRosWorld, kRosCamera, *T_world_camera});
+  transforms.push_back({stamp, kRosMap, kRosWorld, MapFromWorld()});
+  if (rectification_) {
+    transforms.push_back(
+        {stamp, kRosCamera, kRosRectified, {*rectification_, Eigen::Vector3d::Zero()}});
+  }
+  Write("/tf", RosType::kTransforms, time, EncodeTransforms(transforms));
+}
+
+size_t RosLog::Path(double time, const std::vector<RosPose>& T_world_camera) {
+  return Write("/alidade/path", RosType::kPath, time,
+               EncodePath(HeaderIn(kRosWorld, time), T_world_camera));
+}
+
+size_t RosLog::Landmarks(double time, const Cloud& points_world) {
+  return Write("/alidade/landmarks", RosType::kCloud, time,
+               EncodeCloud(HeaderIn(kRosWorld, time), points_world));
+}
+
+size_t RosLog::Shape(double time, const Cloud& points_world) {
+  return Write("/alidade/semidense", RosType::kCloud, time,
+               EncodeCloud(HeaderIn(kRosWorld, time), points_world));
+}
+
+void RosLog::Picture(double time, const std::string& format, const std::string& bytes) {
+  Write("/camera/image/compressed", RosType::kImage, time,
+        EncodeImage(HeaderIn(PictureFrame(), time), format, bytes));
+}
+
+void RosLog::Calibration(double time, const Camera& camera) {
+  Write("/camera/camera_info", RosType::kCameraInfo, time,
+        EncodeCameraInfo(HeaderIn(PictureFrame(), time), camera));
+}
+
+void RosLog::Diagnostics(double time, const std::vector<RosStatus>& all) {
+  Write("/diagnostics", RosType::kDiagnostics, time,
+        EncodeDiagnostics(RosTime::FromSeconds(time), all));
+}
+
+void RosLog::Event(double time, RosLogLevel level, const std::string& text) {
+  Write("/alidade/events", RosType::kLog, time,
+        EncodeLog(RosTime::FromSeconds(time), level, "alidade", text));
+}
+
+}  // namespace alidade

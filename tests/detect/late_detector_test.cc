@@ -1,0 +1,54 @@
+// A detector whose answers are brought from elsewhere.
+#include "alidade/detect/late_detector.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "support/expect_error.h"
+
+namespace alidade::late_detector_test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(LateDetector, GivesTheNewestAnswerOnce) {
+  LateDetector detector({"person", "chair"});
+  EXPECT_FALSE(detector.TakeAnswer().has_value());
+  detector.Bring({3, {{0, 0.5f, {1, 2, 3, 4}}}});
+  detector.Bring({7, {{1, 0.6f, {1, 2, 3, 4}}}});
+  detector.Bring({5, {}});  // overtaken on its way
+  const auto answer = detector.TakeAnswer();
+  ASSERT_TRUE(answer.has_value());
+  EXPECT_EQ(answer->number, 7);
+  EXPECT_EQ(answer->detections.at(0).class_id, 1);
+  EXPECT_FALSE(detector.TakeAnswer().has_value());
+  detector.Bring({7, {}});  // brought twice
+  EXPECT_FALSE(detector.TakeAnswer().has_value());
+}
+
+TEST(LateDetector, WhatCannotBeIsRefusedAndNothingIsLost) {
+  LateDetector detector({"person"});
+  detector.Bring({1, {}});
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          detector.Bring({2, {{1, 1, {0, 0, 9, 9}}}});
+                        }),
+              HasSubstr("class 1 of 1"));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          detector.Bring({2, {{0, 1, {NAN, 0, 9, 9}}}});
+                        }),
+              HasSubstr("cannot be"));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          detector.Bring({2, {{0, 1, {0, 0, -9, 9}}}});
+                        }),
+              HasSubstr("cannot be"));
+  EXPECT_EQ(detector.TakeAnswer()->number, 1);
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { detector.Detect({}); }), HasSubstr("own time"));
+}
+
+}  // namespace
+}  // namespace alidade::late_detector_test

@@ -1,0 +1,103 @@
+// People left out: a detector's file that the user adds is run in a Worker of its own, beside the core's.
+import { byId, write } from '../../viewer/src/dom.ts';
+import { forgetFile, keepFile, keptFile, MOST_BYTES } from './detector_file.ts';
+import type { LocalEngine } from './engine.ts';
+import type { DetectorNews, ToDetector } from './protocol.ts';
+import { keep } from './settings.ts';
+import type { Choices } from './settings.ts';
+
+export class DetectorHost {
+  looks = 0;              // pictures that it has answered
+  things = 0;             // found in the last one
+  milliseconds = 0;       // that one took
+  private worker: Worker | null = null;
+  private opened: Promise<readonly string[]> | null = null; // the classes of the one in `worker`
+
+  // `stopped`: it has failed in the middle of things, said in words.
+  constructor(private readonly choices: Choices, private readonly stopped: (text: string) => void) {
+    const input = byId('set-detector') as HTMLInputElement;
+    input.addEventListener('change', () => {
+      const chosen = input.files?.[0];
+      input.value = '';
+      if (chosen) void this.add(chosen);
+    });
+    byId('remove-detector').addEventListener('click', () => void this.remove());
+    this.tell();
+  }
+
+  // Beside an engine that has begun with the classes of choices.detector; returns at once, the file is read meanwhile.
+  connect(engine: LocalEngine): void {
+    const { detector } = this.choices;
+    if (!detector) return;
+    void (async () => {
+      const model = this.opened ? null : await keptFile();
+      if (!this.opened && !model) throw new Error('the file is no longer there: add it again');
+      await (this.opened ?? this.open(model!));
+      const { port1, port2 } = new MessageChannel();
+      engine.connect(port1);
+      this.send({ kind: 'connect', port: port2 }, [port2]);
+    })().catch((error: Error) => this.stopped(`The detector ${detector.name} does not run: ${error.message}. Only what is seen to move is left out.`));
+  }
+
+  // Taken when it works: read, and run once.
+  private async add(file: File): Promise<void> {
+    this.tell(`Trying ${file.name} …`);
+    try {
+      if (file.size > MOST_BYTES) throw new Error('it is larger than 200 MB: that is no detector for a phone');
+      const model = await file.arrayBuffer();
+      const classes = await this.open(model);
+      await keepFile(model);
+      this.choices.detector = { name: file.name, classes };
+      this.choices.moving = true;
+      (byId('set-moving') as HTMLInputElement).checked = true;
+      keep(this.choices);
+      this.tell();
+    } catch (error) {
+      this.tell(`${file.name} was not taken: ${(error as Error).message}.`);
+    }
+  }
+
+  private async remove(): Promise<void> {
+    this.choices.detector = null;
+    keep(this.choices);
+    this.end();
+    this.tell();
+    await forgetFile();
+  }
+
+  private open(model: ArrayBuffer): Promise<readonly string[]> {
+    this.end();
+    const worker = this.worker = new Worker(new URL('detector_worker.js', document.baseURI), { type: 'module' });
+    this.opened = new Promise((resolve, reject) => {
+      worker.onerror = (event) => reject(new Error(event.message || 'its Worker could not be started'));
+      worker.onmessage = ({ data }: MessageEvent<DetectorNews>) => {
+        if (data.kind === 'opened') resolve(data.classes);
+        else if (data.kind === 'refused') reject(new Error(data.error));
+        else if (data.kind === 'looked') {
+          ++this.looks;
+          ({ things: this.things, milliseconds: this.milliseconds } = data);
+        } else {
+          this.end();
+          this.stopped(`The detector has stopped: ${data.error}. Only what is seen to move is left out.`);
+        }
+      };
+    });
+    this.opened.catch(() => this.end());
+    this.send({ kind: 'open', base: new URL('core/detector/', document.baseURI).href, model });
+    return this.opened;
+  }
+
+  private end(): void {
+    this.worker?.terminate();
+    this.worker = this.opened = null;
+  }
+
+  private send(message: ToDetector, transfer: Transferable[] = []): void { this.worker?.postMessage(message, transfer); }
+
+  private tell(problem = ''): void {
+    const { detector } = this.choices;
+    byId('remove-detector').hidden = detector === null;
+    const people = detector?.classes.includes('person');
+    write(byId('detector-note'), problem || (detector ? `${detector.name}: ${detector.classes.length} kinds of things${people ? ', people among them' : ''}` : 'none'));
+  }
+}
