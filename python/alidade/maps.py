@@ -144,17 +144,18 @@ class Map:
                min_observations: int = 1) -> str:
         """Writes what other programs read, as ``alidade export`` does; returns what it was, in words.
 
-        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a model of both, a folder).
-            None: by the ending of the path.
+        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a model of both, a folder), "mcap"
+            (both as ROS 2 messages). None: by the ending of the path.
         format: "text", "binary", "both" (colmap) or "default".
         min_observations: points that fewer keyframes see are left out.
         """
         where = os.fspath(path)
         if to is None:
-            to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum"}.get(os.path.splitext(where)[1])
+            to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum",
+                  ".mcap": "mcap"}.get(os.path.splitext(where)[1])
             if to is None:
-                raise UsageError(f'{where}: its ending does not say what to write; give to="ply", "pcd", "tum" or '
-                                 '"colmap"')
+                raise UsageError(f'{where}: its ending does not say what to write; give to="ply", "pcd", "tum", '
+                                 '"colmap" or "mcap"')
         return self._core.export(where, to, format, part, min_observations)
 
     @property

@@ -83,7 +83,7 @@ def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[Pat
          fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False) -> Recording:
     """Opens what ``alidade run`` can open, to be read frame by frame as arrays.
 
-    source: folder (TUM RGB-D, EuRoC, KITTI, images), video, "camera:0" or "synth:SCENE?frames=N".
+    source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
     sensor: "mono", "stereo" or "rgbd"; None: the best it has.
     camera: a camera.yaml instead of the recording's own calibration.
     fov: horizontal field of view in degrees instead of a calibration.

@@ -47,7 +47,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     """Tracks a recording, video or camera and maps what it sees, as ``alidade run`` does: the same options by the
     same names, the same bytes in every file.
 
-    source: folder (TUM RGB-D, EuRoC, KITTI, images), video, "camera:0" or "synth:SCENE?frames=N".
+    source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
     sensor: "mono", "stereo" or "rgbd"; None: what the recording has.
     semidense: map shape too: depth at every pixel with structure.
     dynamics: "off", "geometry" (leave out what moves) or "full" (and what a detector knows to).
@@ -62,8 +62,9 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     schedule: "inline" (the same result every time) or "threaded" (as live); rate: "realtime", "max" or frames per
         second. repeat: forth and back so many times. threads: for parallel loops, 0 = all cores; results are the same.
     first, last: frame numbers, both included.
-    record: keep the stream for `alidade view` (True: run.stream in the folder; or a path). viewer: show the run in a
-        browser while it goes on (True, or a port); host: the address it listens on. write_masks: what was left out.
+    record: keep the stream for `alidade view` (True: run.stream in the folder; or a path; one that ends in .mcap: as
+        MCAP). viewer: show the run in a browser while it goes on (True, or a port; Progress.viewer is its address);
+        host: the address it listens on. write_masks: pictures of what was left out as moving.
     progress: called with a Progress when there is news, 20 times a second at most, from this thread; what it raises
         ends the run.
 
