@@ -11,7 +11,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMostMisfit = 0.2;  // pixels: half of what a corner's place is known by
+constexpr double kMostMisfit =
+    0.5;  // pixels, at the worst place: half of what a keypoint is known by
 constexpr char kAdvice[] = " (give a camera file instead: --camera)";
 
 bool AllFinite(const RosCameraInfo& info) {
