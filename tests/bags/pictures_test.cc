@@ -55,7 +55,7 @@ cv::Mat GreyOf(const cv::Mat& color) {
 TEST(RosPictures, OfEightBitsAChannelComeOutExactly) {
   const cv::Mat color = Slopes(), gray = GreyOf(color);
   const auto check = [&](const std::string& encoding, int code) {
-    cv::Mat stored = color;
+    cv::Mat stored = color.clone();
     if (code >= 0) cv::cvtColor(color, stored, code);
     const DecodedImage decoded = Decoded(encoding, stored);
     EXPECT_EQ(Farthest(decoded.image, gray), 0) << encoding;

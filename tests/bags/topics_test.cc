@@ -128,7 +128,7 @@ TEST_F(Topics, WithoutStampsTheTimeOfWritingCounts) {
   std::vector<WrittenMessage> messages;
   for (int i = 0; i < 3; ++i) {
     WrittenMessage message = Picture("/cam/image", 0, 10 + i);
-    message.log_time = 1'000'000'000 * (i + 5);
+    message.log_time = int64_t{1'000'000'000} * (i + 5);
     messages.push_back(message);
   }
   const auto source = Open(messages);

@@ -11,7 +11,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMostMisfit = 0.2;  // pixels: half of what a corner's place is known by
+constexpr double kMostMisfit =
+    0.5;  // pixels, at the worst place: half of what a keypoint is known by
 constexpr char kAdvice[] = " (give a camera file instead: --camera)";
 
 bool AllFinite(const RosCameraInfo& info) {
@@ -147,6 +148,8 @@ std::optional<RawCamera> CameraOfInfo(const RosCameraInfo& info, bool rectified)
     ThrowInput("has focal lengths that are not positive" + std::string(kAdvice));
   if (!rectified) SetLens(info, camera);
   ApplyBinning(info, camera);
+  if (!(camera.fx > 0 && camera.fy > 0 && camera.width > 0 && camera.height > 0))
+    ThrowInput("has a size or a binning that cannot be" + std::string(kAdvice));
   return camera;
 }
 

@@ -14,7 +14,7 @@ namespace alidade {
 // it, binning and region of interest applied. Nothing when the camera was never calibrated (K is 0,
 // by REP 104). Throws Error (input), saying what to do, for lenses that cannot be worked with.
 // Models: plumb_bob; equidistant (fisheye); rational_polynomial where five coefficients come within
-// a fifth of a pixel of its eight.
+// half a pixel of its eight.
 std::optional<RawCamera> CameraOfInfo(const RosCameraInfo& info, bool rectified);
 
 // A second camera's: adds it, and where it is, to the left camera's calibration. By REP 104 the
