@@ -40,6 +40,11 @@ final class Screen implements AutoCloseable {
 
   @Override
   public void close() {
+    lose();
+  }
+
+  /** The context goes, with all that was made in it. */
+  void lose() {
     if (there && !closed) nativeClose();
     closed = true;
   }
