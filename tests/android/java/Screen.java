@@ -7,11 +7,13 @@ final class Screen implements AutoCloseable {
   private static final boolean LOADED = load();
   final int width, height;
   final boolean there; // false: no EGL here, nothing can be drawn
+  private final ByteBuffer pixels;
   private boolean closed;
 
   Screen(int width, int height) {
     this.width = width;
     this.height = height;
+    pixels = ByteBuffer.allocateDirect(4 * width * height);
     there = LOADED && nativeOpen(width, height) != 0;
   }
 
@@ -26,7 +28,6 @@ final class Screen implements AutoCloseable {
 
   /** How much of the rows from one share of the height to another, from the top, is brighter than the background. */
   double lit(double from, double to) {
-    ByteBuffer pixels = ByteBuffer.allocateDirect(4 * width * height);
     nativeRead(width, height, pixels);
     int lit = 0, all = 0;
     for (int row = (int) ((1 - to) * height); row < (int) ((1 - from) * height); ++row) {
@@ -40,6 +41,11 @@ final class Screen implements AutoCloseable {
 
   @Override
   public void close() {
+    lose();
+  }
+
+  /** The context goes, with all that was made in it. */
+  void lose() {
     if (there && !closed) nativeClose();
     closed = true;
   }
