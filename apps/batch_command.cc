@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "alidade/base/error.h"
@@ -52,16 +53,14 @@ RunOptions OptionsOf(const BatchItem& item) {
 
 std::string ProgramMark() {
   const std::string program = ReadFile(OwnProgram());
-  return std::to_string(program.size()) + ":" +
-         std::to_string(std::hash<std::string>{}(program));
+  return std::to_string(program.size()) + ":" + std::to_string(std::hash<std::string>{}(program));
 }
 
 // Reads the whole list before anything is run.
 std::vector<BatchWork> WorksOf(const BatchArguments& arguments) {
   const std::string mark = ProgramMark();
   std::vector<BatchWork> works;
-  for (BatchItem& item :
-       ParseBatchList(ReadFile(arguments.list), arguments.list, arguments.more)) {
+  for (BatchItem& item : ParseBatchList(ReadFile(arguments.list), arguments.list, arguments.more)) {
     try {
       const RunOptions options = OptionsOf(item);
       BatchWork work;
@@ -82,14 +81,17 @@ bool IsDone(const BatchFolder& folder, const BatchWork& work) {
          IsFile(folder.ResultOf(work.item) + "/stats.json");
 }
 
-// What a program said last, without "alidade: ".
+// Why it ended: its last "alidade: …" that is no warning, else the last line of all.
 std::string LastWords(const std::string& log) {
   if (!IsFile(log)) return "";
-  std::string text = ReadFile(log);
-  while (!text.empty() && text.back() == '\n') text.pop_back();
-  std::string line = text.substr(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
-  const std::string name = "alidade: ";
-  return line.rfind(name, 0) == 0 ? line.substr(name.size()) : line;
+  std::istringstream lines(ReadFile(log));
+  std::string last, why;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.rfind("alidade: ", 0) == 0 && line.rfind("alidade: warning: ", 0) != 0)
+      why = line.substr(9);
+    if (!line.empty()) last = line;
+  }
+  return why.empty() ? last : why;
 }
 
 std::string HowItEnded(const ProcessEnd& end, const std::string& log) {
@@ -169,8 +171,8 @@ void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
   events.ended = [&](size_t i, const ProcessEnd& end) {
     const BatchItem& item = todo[i].item;
     const std::string message = HowItEnded(end, folder.LogOf(item));
-    folder.SetDone(item, {todo[i].fingerprint, end.status, end.wall_s, end.cpu_s, end.peak_mb,
-                          message});
+    folder.SetDone(item,
+                   {todo[i].fingerprint, end.status, end.wall_s, end.cpu_s, end.peak_mb, message});
     folder.Note(end.status == 0                    ? "done"
                 : end.status == kInterruptedStatus ? "interrupted"
                                                    : "failed",
@@ -184,10 +186,9 @@ void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
   };
   events.waiting = [&] {
     if (!terminal.shows_progress()) return;
-    std::string line = std::to_string(of_all - todo.size() + ended) + " of " +
-                       std::to_string(of_all) + " done, " +
-                       std::to_string(static_cast<int>(1e-3 * clock.Milliseconds())) +
-                       " s; running:";
+    std::string line =
+        std::to_string(of_all - todo.size() + ended) + " of " + std::to_string(of_all) + " done, " +
+        std::to_string(static_cast<int>(1e-3 * clock.Milliseconds())) + " s; running:";
     for (const std::string& name : running) line += " " + name;
     terminal.SetProgress(line);
   };
@@ -306,16 +307,16 @@ constexpr char kFooter[] =
     "  alidade batch list.txt --out monday\n"
     "  alidade batch list.txt --out phone -- --profile phone      for every line\n"
     "  alidade batch list.txt --out tuesday --against monday      status 1 if anything got worse\n"
-    "  alidade batch list.txt --out all --slurm --merge           on a cluster, one map at the end\n"
+    "  alidade batch list.txt --out all --slurm --merge           on a cluster, one map at the "
+    "end\n"
     "\nWhat is done (same words, files and program) is not done again: after Ctrl-C the same "
     "command goes on.\nLeaves a folder for each, batch.json, batch.md and compare.html in --out "
     "(docs/batch.md). For times that compare: --jobs 1.\n"
     "Exit status 1: something failed or got worse.";
 
 // An option that says how much worse a figure may get.
-void AddWorse(CLI::App& command, const std::string& name, BatchArguments& arguments,
-              WorseBy& by, const std::string& what,
-              const std::vector<std::pair<std::string, double>>& units) {
+void AddWorse(CLI::App& command, const std::string& name, BatchArguments& arguments, WorseBy& by,
+              const std::string& what, const std::vector<std::pair<std::string, double>>& units) {
   command
       .add_option_function<std::string>(
           name,
@@ -336,7 +337,8 @@ void AddWorseOptions(CLI::App& command, BatchArguments& a) {
   AddWorse(command, "--worse-coverage", a, a.worse.coverage,
            "Fewer frames tracked: points (of 100 frames), or % of what it was (1points)",
            {{"points", 0.01}, {"point", 0.01}});
-  AddWorse(command, "--worse-ms", a, a.worse.ms, "Median time of a frame: %, ms (off)", {{"ms", 1}});
+  AddWorse(command, "--worse-ms", a, a.worse.ms, "Median time of a frame: %, ms (off)",
+           {{"ms", 1}});
   AddWorse(command, "--worse-cpu", a, a.worse.cpu, "Processor time: %, s (off)", {{"s", 1}});
   AddWorse(command, "--worse-memory", a, a.worse.memory, "Peak memory: %, MB (off)", {{"MB", 1}});
 }
@@ -347,7 +349,10 @@ std::string OwnProgram() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) ThrowInput("this program does not find itself: " + error.message());
-  return path.string();
+  // As the system calls one that was replaced meanwhile, by its successor's name or not.
+  const std::string name = path.string(), gone = " (deleted)";
+  const bool replaced = name.size() > gone.size() && name.ends_with(gone);
+  return replaced ? name.substr(0, name.size() - gone.size()) : name;
 }
 
 void AddBatchCommand(CLI::App& app, Action& action) {
@@ -373,13 +378,13 @@ void AddBatchCommand(CLI::App& app, Action& action) {
   command->add_flag("--merge", arguments->merge,
                     "Then make one map of all, as `alidade merge` does, in merged/");
   command->add_flag("--table", arguments->table, "Run nothing: make the table of what is done");
-  command
-      ->add_option("--only", arguments->only, "Run the Nth recording of the list, no table")
+  command->add_option("--only", arguments->only, "Run the Nth recording of the list, no table")
       ->check(CLI::Range(1, 1'000'000))
       ->type_name("N");
   AddWorseOptions(*command, *arguments);
-  command->add_flag("--slurm", arguments->slurm,
-                    "Submit an array of jobs to Slurm, and a job that makes the table after it")
+  command
+      ->add_flag("--slurm", arguments->slurm,
+                 "Submit an array of jobs to Slurm, and a job that makes the table after it")
       ->group("Slurm");
   command
       ->add_option("--sbatch", arguments->sbatch,

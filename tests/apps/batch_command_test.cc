@@ -41,16 +41,16 @@ TEST(BatchCommand, RunsAllCountsFailuresAndGoesOn) {
   EXPECT_EQ(first.status, 1) << first.err;
   EXPECT_THAT(first.out, HasSubstr("3 recordings, 1 failed"));
   EXPECT_THAT(first.out, HasSubstr("nowhere"));  // why
-  for (const char* file : {"/a/trajectory.txt", "/c/report.html", "/log/b.txt", "/batch.md",
-                           "/compare.html"})
+  for (const char* file :
+       {"/a/trajectory.txt", "/c/report.html", "/log/b.txt", "/batch.md", "/compare.html"})
     EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
   const auto json = nlohmann::json::parse(ReadText(out + "/batch.json"));
   ASSERT_EQ(json["recordings"].size(), 3u);
   EXPECT_EQ(json["recordings"][0]["state"], "ok");
   EXPECT_EQ(json["recordings"][1]["state"], "failed");
   // The same figures as the parts have.
-  const ProgramResult ate = RunAlidade(
-      {"evaluate", "ate", out + "/a/groundtruth.txt", out + "/a", "--json"});
+  const ProgramResult ate =
+      RunAlidade({"evaluate", "ate", out + "/a/groundtruth.txt", out + "/a", "--json"});
   EXPECT_EQ(json["recordings"][0]["ate"], nlohmann::json::parse(ate.out)["rmse"]);
   const auto stats = nlohmann::json::parse(ReadText(out + "/a/stats.json"));
   EXPECT_EQ(json["recordings"][0]["cpu_s"], stats["cpu_s"]);
@@ -77,8 +77,8 @@ TEST(BatchCommand, SameBytesAsRun) {
   WriteLines(folder / "list.txt", {kRoom + "20 --out a"});
   ASSERT_EQ(Batch({folder / "list.txt", "--out", folder / "out", "--", "--sensor", "rgbd"}).status,
             0);
-  ASSERT_EQ(
-      RunAlidade({"run", kRoom + "20", "--sensor", "rgbd", "--out", folder / "alone"}).status, 0);
+  ASSERT_EQ(RunAlidade({"run", kRoom + "20", "--sensor", "rgbd", "--out", folder / "alone"}).status,
+            0);
   for (const char* file : {"/trajectory.txt", "/map.alidade"})
     EXPECT_EQ(ReadText(folder / "out/a" + file), ReadText(folder / "alone" + file)) << file;
 }

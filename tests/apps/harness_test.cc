@@ -55,10 +55,11 @@ TEST(VslamLab, GetsTheTrajectoryOfARunInItsOwnForm) {
   };
   std::ostringstream calibration;
   calibration.precision(17);
-  calibration << "%YAML:1.0\n---\ncameras:\n- {cam_name: rgb_0, cam_type: gray, cam_model: pinhole, "
-              << "focal_length: [" << field("fx") << ", " << field("fy") << "], principal_point: ["
-              << field("cx") << ", " << field("cy") << "], image_dimension: [320, 240], fps: 30, "
-              << "depth_factor: " << field("depth_factor") << "}\n";
+  calibration
+      << "%YAML:1.0\n---\ncameras:\n- {cam_name: rgb_0, cam_type: gray, cam_model: pinhole, "
+      << "focal_length: [" << field("fx") << ", " << field("fy") << "], principal_point: ["
+      << field("cx") << ", " << field("cy") << "], image_dimension: [320, 240], fps: 30, "
+      << "depth_factor: " << field("depth_factor") << "}\n";
   folder.Write("calibration.yaml", calibration.str());
   const std::string command = "ALIDADE='" ALIDADE_BINARY "' '" + Script("vslam-lab") +
                               "' mode:rgbd sequence_path:'" + recording + "' calibration_yaml:'" +
