@@ -29,6 +29,9 @@ struct BatchWork {
   bool done = false;  // already, by the same program, from the same files
 };
 
+// Runs, tells and writes all of it; the exit status.
+int Batch(const BatchArguments& arguments);
+
 std::string OwnProgram();  // path of this executable
 
 // Writes the scripts of a Slurm array of what is not done, and of the job that makes the table once

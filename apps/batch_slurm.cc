@@ -41,9 +41,7 @@ CommandEnd OutputOf(const std::string& command) {
 }
 
 // Its number: "123" of "123;cluster". Empty with the status when sbatch failed.
-std::string JobOf(const CommandEnd& end) {
-  return end.out.substr(0, end.out.find_first_of(";\n"));
-}
+std::string JobOf(const CommandEnd& end) { return end.out.substr(0, end.out.find_first_of(";\n")); }
 
 // "1-4,7" of 1, 2, 3, 4, 7.
 std::string RangesOf(const std::vector<size_t>& numbers) {
@@ -90,18 +88,16 @@ int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
   if (!arguments.against.empty())
     table += " --against " + ForShell(fs::absolute(arguments.against).string());
   for (const std::string& option : arguments.worse_words) table += " " + ForShell(option);
-  AtomicWriteFile(slurm + "/array.sh",
-                  Script("#SBATCH --job-name=alidade\n#SBATCH --requeue\n"
-                         "#SBATCH --open-mode=append\n",
-                         batch + " --only \"$SLURM_ARRAY_TASK_ID\""));
+  AtomicWriteFile(slurm + "/array.sh", Script("#SBATCH --job-name=alidade\n#SBATCH --requeue\n"
+                                              "#SBATCH --open-mode=append\n",
+                                              batch + " --only \"$SLURM_ARRAY_TASK_ID\""));
   AtomicWriteFile(slurm + "/table.sh", Script("#SBATCH --job-name=alidade-table\n", table));
 
   std::string after;
   if (!tasks.empty()) {
-    const CommandEnd array = OutputOf(
-        "sbatch --parsable --array=" + RangesOf(tasks) + at_once + " --output=" +
-        ForShell(out + "/log/slurm-%A_%a.txt") + " " + arguments.sbatch + " " +
-        ForShell(slurm + "/array.sh"));
+    const CommandEnd array = OutputOf("sbatch --parsable --array=" + RangesOf(tasks) + at_once +
+                                      " --output=" + ForShell(out + "/log/slurm-%A_%a.txt") + " " +
+                                      arguments.sbatch + " " + ForShell(slurm + "/array.sh"));
     const std::string job = JobOf(array);
     if (array.status != 0 || job.empty()) ThrowInput("sbatch did not take the array (see above)");
     std::printf("%zu of %zu recordings are job %s, an array\n", tasks.size(), works.size(),
@@ -109,10 +105,9 @@ int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
     std::fflush(stdout);
     after = " --dependency=afterany:" + job;
   }
-  const CommandEnd end = OutputOf("sbatch --parsable" + after +
-                                  (arguments.wait ? " --wait" : "") + " --output=" +
-                                  ForShell(out + "/log/slurm-table.txt") + " " + arguments.sbatch +
-                                  " " + ForShell(slurm + "/table.sh"));
+  const CommandEnd end = OutputOf("sbatch --parsable" + after + (arguments.wait ? " --wait" : "") +
+                                  " --output=" + ForShell(out + "/log/slurm-table.txt") + " " +
+                                  arguments.sbatch + " " + ForShell(slurm + "/table.sh"));
   const std::string job = JobOf(end);
   if (job.empty()) ThrowInput("sbatch did not take the job of the table (see above)");
   if (!arguments.wait) {

@@ -17,7 +17,6 @@ namespace alidade::batch_command_test {
 namespace {
 
 using testing::HasSubstr;
-using testing::Not;
 
 const std::string kRoom = "synth:room?width=320&height=240&frames=";
 
@@ -41,16 +40,16 @@ TEST(BatchCommand, RunsAllCountsFailuresAndGoesOn) {
   EXPECT_EQ(first.status, 1) << first.err;
   EXPECT_THAT(first.out, HasSubstr("3 recordings, 1 failed"));
   EXPECT_THAT(first.out, HasSubstr("nowhere"));  // why
-  for (const char* file : {"/a/trajectory.txt", "/c/report.html", "/log/b.txt", "/batch.md",
-                           "/compare.html"})
+  for (const char* file :
+       {"/a/trajectory.txt", "/c/report.html", "/log/b.txt", "/batch.md", "/compare.html"})
     EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
   const auto json = nlohmann::json::parse(ReadText(out + "/batch.json"));
   ASSERT_EQ(json["recordings"].size(), 3u);
   EXPECT_EQ(json["recordings"][0]["state"], "ok");
   EXPECT_EQ(json["recordings"][1]["state"], "failed");
   // The same figures as the parts have.
-  const ProgramResult ate = RunAlidade(
-      {"evaluate", "ate", out + "/a/groundtruth.txt", out + "/a", "--json"});
+  const ProgramResult ate =
+      RunAlidade({"evaluate", "ate", out + "/a/groundtruth.txt", out + "/a", "--json"});
   EXPECT_EQ(json["recordings"][0]["ate"], nlohmann::json::parse(ate.out)["rmse"]);
   const auto stats = nlohmann::json::parse(ReadText(out + "/a/stats.json"));
   EXPECT_EQ(json["recordings"][0]["cpu_s"], stats["cpu_s"]);
@@ -77,8 +76,8 @@ TEST(BatchCommand, SameBytesAsRun) {
   WriteLines(folder / "list.txt", {kRoom + "20 --out a"});
   ASSERT_EQ(Batch({folder / "list.txt", "--out", folder / "out", "--", "--sensor", "rgbd"}).status,
             0);
-  ASSERT_EQ(
-      RunAlidade({"run", kRoom + "20", "--sensor", "rgbd", "--out", folder / "alone"}).status, 0);
+  ASSERT_EQ(RunAlidade({"run", kRoom + "20", "--sensor", "rgbd", "--out", folder / "alone"}).status,
+            0);
   for (const char* file : {"/trajectory.txt", "/map.alidade"})
     EXPECT_EQ(ReadText(folder / "out/a" + file), ReadText(folder / "alone" + file)) << file;
 }
@@ -118,7 +117,7 @@ TEST(BatchCommand, CtrlCLeavesWhatIsDone) {
   const auto json = nlohmann::json::parse(ReadText(out + "/batch.json"));
   EXPECT_EQ(json["recordings"][0]["state"], "ok");
   EXPECT_EQ(json["recordings"][1]["state"], "interrupted");
-  WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "16 --out b --sensor rgbd"});
+  WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "16&seed=2 --out b --sensor rgbd"});
   const ProgramResult rest = Batch({list, "--out", out, "--merge"});
   EXPECT_EQ(rest.status, 0) << rest.out << rest.err;
   EXPECT_THAT(rest.out, HasSubstr("1 of 2 recordings are done already"));
@@ -139,8 +138,10 @@ TEST(BatchCommand, RefusesAWrongListBeforeAnythingIsRun) {
   EXPECT_THAT(complaint("x --sensor sonar"), HasSubstr("list.txt:2: --sensor"));
   EXPECT_THAT(complaint("x --set tracker.nothing=1"), HasSubstr("list.txt:2: "));
   EXPECT_THAT(complaint("x --viewer"), HasSubstr("a batch is of many"));
+  WriteLines(list, {kRoom + "15"});
   const ProgramResult full = Batch({list, "--out", folder.path()});
-  EXPECT_NE(full.status, 0);  // the folder holds the list: it is no batch's
+  EXPECT_EQ(full.status, 3);  // it holds the list
+  EXPECT_THAT(full.err, HasSubstr("something else than a batch"));
 }
 
 }  // namespace

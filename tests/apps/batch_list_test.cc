@@ -23,8 +23,10 @@ TEST(WordsOfLine, AreThoseOfAShell) {
   EXPECT_THAT(WordsOfLine("a # b"), ElementsAre("a"));
   EXPECT_THAT(WordsOfLine("a#b"), ElementsAre("a#b"));
   EXPECT_THAT(WordsOfLine("# nothing"), ElementsAre());
-  EXPECT_THAT(WordsOfLine("synth:room?frames=30&seed=2"), ElementsAre("synth:room?frames=30&seed=2"));
-  EXPECT_THAT(WordsOfLine("~/x a~/b"), ElementsAre(std::string(std::getenv("HOME")) + "/x", "a~/b"));
+  EXPECT_THAT(WordsOfLine("synth:room?frames=30&seed=2"),
+              ElementsAre("synth:room?frames=30&seed=2"));
+  EXPECT_THAT(WordsOfLine("~/x a~/b"),
+              ElementsAre(std::string(std::getenv("HOME")) + "/x", "a~/b"));
 }
 
 TEST(WordsOfLine, SaysWhatIsWrong) {

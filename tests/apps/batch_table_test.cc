@@ -73,8 +73,10 @@ TEST(WorseThan, TellsWhatGrewAndWhatFailed) {
   EXPECT_THAT(WorseThan(before, now, {}),
               UnorderedElementsAre("b: ATE 0.1110 m, was 0.1000 m",
                                    "c: failed: no images | none, and was ok"));
-  EXPECT_THAT(WorseThan(before, {Ok("b", 0.104)}, {.ate = {0, 0.005}}), IsEmpty());
-  EXPECT_THAT(WorseThan(before, {Ok("b", 0.106)}, {.ate = {0, 0.005}}).size(), 1u);
+  WorseSettings by_length;
+  by_length.ate = {0, 0.005};
+  EXPECT_THAT(WorseThan(before, {Ok("b", 0.104)}, by_length), IsEmpty());
+  EXPECT_EQ(WorseThan(before, {Ok("b", 0.106)}, by_length).size(), 1u);
 }
 
 TEST(WorseThan, FewerFramesAreWorseAndTimesOnlyWhenAsked) {

@@ -19,7 +19,7 @@ namespace {
 
 struct Visit {
   MapToMerge map;
-  Se3 T_truth_world;  // of its first frame
+  Se3 T_truth_world;         // of its first frame
   std::vector<int> numbers;  // frame of the scene's path, by number in the recording
 };
 
@@ -58,7 +58,8 @@ double WorstOf(const MergedMaps& merged, const UnitedPart& part, const Visit& vi
   for (KeyFrameId id : merged.saved.map.KeyFrames()) {
     if (id.value < part.first_keyframe || id.value >= part.end_keyframe) continue;
     const KeyFrame& keyframe = *merged.saved.map.Find(id);
-    const int number = visit.numbers[static_cast<size_t>(keyframe.frame->number - part.first_frame)];
+    const int number =
+        visit.numbers[static_cast<size_t>(keyframe.frame->number - part.first_frame)];
     const Se3 truth = first.T_truth_world.Inverse() * Scene(scene).Pose(number);
     worst = std::max(worst, (keyframe.Centre() - truth.t).norm());
   }
@@ -135,15 +136,19 @@ TEST_F(MergeMapsOfARoom, AMergedMapIsGoneOnWith) {
 }
 
 TEST_F(MergeMapsOfARoom, WhatCannotBeTogetherIsSaid) {
-  EXPECT_THAT(MessageOf(ErrorKind::kUsage, [] { MergeMaps({early_->map}), testing::HasSubstr("two maps or more")); });
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [] { MergeMaps({early_->map, early_->map}), testing::HasSubstr("the same map")); });
+  const auto complaint = [](ErrorKind kind, const std::vector<MapToMerge>& maps) {
+    return MessageOf(kind, [&] { MergeMaps(maps); });
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(complaint(ErrorKind::kUsage, {early_->map}), HasSubstr("two maps or more"));
+  EXPECT_THAT(complaint(ErrorKind::kInput, {early_->map, early_->map}), HasSubstr("the same map"));
   MapToMerge other = late_->map;
   other.name = "other";
   other.saved.sensor = "mono";
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { MergeMaps({early_->map, other}), testing::HasSubstr("mono camera")); });
+  EXPECT_THAT(complaint(ErrorKind::kInput, {early_->map, other}), HasSubstr("mono camera"));
   other.saved.sensor = "rgbd";
   other.saved.camera.fx *= 1.1;
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { MergeMaps({early_->map, other}), testing::HasSubstr("another camera")); });
+  EXPECT_THAT(complaint(ErrorKind::kInput, {early_->map, other}), HasSubstr("another camera"));
 }
 
 }  // namespace

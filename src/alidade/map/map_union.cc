@@ -78,11 +78,13 @@ MapUnion Unite(std::span<const MapSnapshot> maps) {
     map.keyframes().ForEach([&](const KeyFrame& keyframe) {
       auto moved = Moved(keyframe, part);
       next_frame = std::max(next_frame, moved->frame->number + 1);
-      state->keyframes.Set(moved->id.value, std::move(moved), /*version=*/0);
+      const uint32_t id = moved->id.value;
+      state->keyframes.Set(id, std::move(moved), /*version=*/0);
     });
     map.landmarks().ForEach([&](const Landmark& landmark) {
       auto moved = Moved(landmark, part);
-      state->landmarks.Set(moved->id.value, std::move(moved), /*version=*/0);
+      const uint32_t id = moved->id.value;
+      state->landmarks.Set(id, std::move(moved), /*version=*/0);
     });
     all.parts.push_back(part);
   }

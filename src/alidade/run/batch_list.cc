@@ -52,8 +52,8 @@ std::string FolderNameOf(const std::string& source) {
 }
 
 void CheckFolderName(const std::string& name) {
-  static const std::set<std::string> kOurs = {"log",    "done",       "batch.json", "batch.md",
-                                              "merged", "batch.log",  "slurm",      "compare.html"};
+  static const std::set<std::string> kOurs = {"log",    "done",      "batch.json", "batch.md",
+                                              "merged", "batch.log", "slurm",      "compare.html"};
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
     ThrowUsage("--out " + name + ": here it is the name of a folder within the batch's --out");
   if (kOurs.count(name) > 0)
@@ -145,7 +145,8 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
         ThrowUsage("a line begins with its source, and options follow");
       if (const auto out = TakeOut(item.words)) {
         CheckFolderName(*out);
-        if (!taken.insert(*out).second) ThrowUsage("--out " + *out + ": another line has that name");
+        if (!taken.insert(*out).second)
+          ThrowUsage("--out " + *out + ": another line has that name");
         item.name = *out;
       }
       item.words.insert(item.words.end(), more.begin(), more.end());

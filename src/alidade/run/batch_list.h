@@ -1,4 +1,5 @@
-// The list `alidade batch` works through: a recording per line, with options as after `alidade run`.
+// The list `alidade batch` works through: a recording per line, with options as after `alidade
+// run`.
 #pragma once
 
 #include <string>

@@ -66,8 +66,7 @@ ProcessEnd EndOf(int state, const rusage& usage, const Stopwatch& clock) {
 
 }  // namespace
 
-void RunProcesses(const std::vector<ProcessTask>& tasks, int at_once,
-                  const ProcessEvents& events) {
+void RunProcesses(const std::vector<ProcessTask>& tasks, int at_once, const ProcessEvents& events) {
   std::map<pid_t, Running> running;
   size_t next = 0;
   bool told = false;

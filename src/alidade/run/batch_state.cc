@@ -136,11 +136,12 @@ std::optional<BatchDone> BatchFolder::DoneOf(const BatchItem& item) const {
 
 void BatchFolder::SetDone(const BatchItem& item, const BatchDone& done) {
   const nlohmann::ordered_json json = {
-      {"name", item.name},      {"words", item.words},   {"fingerprint", done.fingerprint},
-      {"status", done.status},  {"wall_s", done.wall_s}, {"cpu_s", done.cpu_s},
+      {"name", item.name},       {"words", item.words},    {"fingerprint", done.fingerprint},
+      {"status", done.status},   {"wall_s", done.wall_s},  {"cpu_s", done.cpu_s},
       {"peak_mb", done.peak_mb}, {"message", done.message}};
-  AtomicWriteFile(path_ + "/done/" + item.name + ".json",
-                  json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  AtomicWriteFile(
+      path_ + "/done/" + item.name + ".json",
+      json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
 void BatchFolder::Forget(const BatchItem& item) {
@@ -156,7 +157,8 @@ void BatchFolder::Note(const std::string& what, const BatchItem& item) {
   std::strftime(when, sizeof(when), "%Y-%m-%dT%H:%M:%SZ", &utc);
   const std::string line =
       std::string(when) + " " + HostName() + " " + what + " " + item.name + "\n";
-  const int fd = open((path_ + "/batch.log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const int fd =
+      open((path_ + "/batch.log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
   if (fd < 0) return;  // a diary that cannot be written stops nobody
   const auto written = write(fd, line.data(), line.size());
   (void)written;

@@ -18,7 +18,7 @@ std::string FingerprintOf(const BatchItem& item, const RunOptions& options,
 
 struct BatchDone {
   std::string fingerprint;
-  int status = 0;  // exit status; -N: ended by signal N
+  int status = 0;                             // exit status; -N: ended by signal N
   double wall_s = 0, cpu_s = 0, peak_mb = 0;  // of the process
   std::string message;                        // its last words, where it failed
 };

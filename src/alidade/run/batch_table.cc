@@ -25,9 +25,8 @@ std::string TextOf(const char* format, const std::optional<double>& value, doubl
   return text;
 }
 
-constexpr std::array kColumns = {"recording", "sensor",  "frames",  "tracked %", "maps",
-                                 "ATE m",     "RPE m/s", "RPE °/s", "ms",        "p95 ms",
-                                 "CPU s",     "MB"};
+constexpr std::array kColumns = {"recording", "sensor",  "frames", "tracked %", "maps",  "ATE m",
+                                 "RPE m/s",   "RPE °/s", "ms",     "p95 ms",    "CPU s", "MB"};
 
 std::vector<std::string> CellsOf(const BatchRow& row) {
   return {row.name,
@@ -63,23 +62,19 @@ std::string Padded(const std::string& text, size_t width, bool left) {
 
 struct Field {
   const char* name;
-  std::optional<double> BatchRow::* value;
+  std::optional<double> BatchRow::*value;
 };
-constexpr std::array kFields = {Field{"frames", &BatchRow::frames},
-                                Field{"coverage", &BatchRow::coverage},
-                                Field{"maps", &BatchRow::maps},
-                                Field{"keyframes", &BatchRow::keyframes},
-                                Field{"ate", &BatchRow::ate},
-                                Field{"rpe", &BatchRow::rpe},
-                                Field{"rpe_deg", &BatchRow::rpe_deg},
-                                Field{"ms", &BatchRow::ms},
-                                Field{"ms_p95", &BatchRow::ms_p95},
-                                Field{"cpu_s", &BatchRow::cpu_s},
-                                Field{"wall_s", &BatchRow::wall_s},
-                                Field{"peak_mb", &BatchRow::peak_mb}};
+constexpr std::array kFields = {
+    Field{"frames", &BatchRow::frames},   Field{"coverage", &BatchRow::coverage},
+    Field{"maps", &BatchRow::maps},       Field{"keyframes", &BatchRow::keyframes},
+    Field{"ate", &BatchRow::ate},         Field{"rpe", &BatchRow::rpe},
+    Field{"rpe_deg", &BatchRow::rpe_deg}, Field{"ms", &BatchRow::ms},
+    Field{"ms_p95", &BatchRow::ms_p95},   Field{"cpu_s", &BatchRow::cpu_s},
+    Field{"wall_s", &BatchRow::wall_s},   Field{"peak_mb", &BatchRow::peak_mb}};
 
 std::string Escaped(std::string text) {
-  for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2) text.insert(at, "\\");
+  for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
+    text.insert(at, "\\");
   return text;
 }
 
@@ -237,7 +232,7 @@ std::vector<std::string> WorseThan(const std::vector<BatchRow>& earlier,
     const char* name;
     const char* format;  // in what follows
     double factor;
-    std::optional<double> BatchRow::* value;
+    std::optional<double> BatchRow::*value;
     WorseBy by;
     double sign;  // +1: more is worse
   };

@@ -14,7 +14,7 @@ struct BatchRow {
   std::string state = "waiting";  // ok, failed, interrupted, waiting (not run so far)
   std::string message;            // why it failed
   // Of the run's own files; empty: not known.
-  std::optional<double> frames, coverage;  // coverage: 0…1
+  std::optional<double> frames, coverage;   // coverage: 0…1
   std::optional<double> ate, rpe, rpe_deg;  // metres; metres and degrees over one second
   std::optional<double> maps, keyframes;
   std::optional<double> ms, ms_p95;  // per frame

@@ -16,14 +16,15 @@
 namespace alidade {
 namespace {
 
-constexpr double kSameTime = 1e-6;      // seconds: stamps are written with 6 digits or more
-constexpr double kSamePlace = 1e-6;     // map units: poses are written with 9 digits
-constexpr double kTold = 1e-2;          // map units: keyframes this far apart tell directions
+constexpr double kSameTime = 1e-6;   // seconds: stamps are written with 6 digits or more
+constexpr double kSamePlace = 1e-6;  // map units: poses are written with 9 digits
+constexpr double kTold = 1e-2;       // map units: keyframes this far apart tell directions
 
 std::string OwnName(const std::string& path) {
   const std::filesystem::path whole = std::filesystem::path(path + "/").lexically_normal();
   std::filesystem::path last = whole.parent_path().filename();
-  if (last == "map.alidade") last = std::filesystem::absolute(whole).parent_path().parent_path().filename();
+  if (last == "map.alidade")
+    last = std::filesystem::absolute(whole).parent_path().parent_path().filename();
   if (last.extension() == ".alidade") last = last.stem();
   return last.empty() ? "map" : last.string();
 }
@@ -95,9 +96,9 @@ void ReadPaths(MergeInput& input) {
     if (!std::exchange(turn_known, true)) input.R_camera_rectified = TurnOf(input.saved.map, known);
     std::map<MapId, int> votes;
     for (const auto& [pose, id] : known) ++votes[input.saved.map.MapOf(id)];
-    const auto most = std::max_element(votes.begin(), votes.end(), [](const auto& a, const auto& b) {
-      return a.second < b.second;
-    });
+    const auto most =
+        std::max_element(votes.begin(), votes.end(),
+                         [](const auto& a, const auto& b) { return a.second < b.second; });
     input.paths.push_back({most->first, ReadTrajectory(frames), false});
   }
   if (!input.paths.empty()) return;
@@ -164,8 +165,8 @@ std::vector<Path> MovedPaths(const MergeInput& input, const UnitedPart& part,
       const KeyFrame& old = *input.saved.map.Find(id);
       if (old.map != path.world) continue;
       const KeyFrame& now = *merged.Find(KeyFrameId{id.value + part.first_keyframe});
-      moved.push_back({time, mounted(old.T_camera_world), mounted(now.T_camera_world),
-                       now.scale / old.scale});
+      moved.push_back(
+          {time, mounted(old.T_camera_world), mounted(now.T_camera_world), now.scale / old.scale});
       world = now.map;
     }
     Path there{world, path.frames, path.keyframes_only};

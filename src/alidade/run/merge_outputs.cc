@@ -79,9 +79,8 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
     number.emplace(world.id, number.size());
     ordered_json names = ordered_json::array();
     for (size_t i : world.inputs) names.push_back(inputs[i].name);
-    world_list.push_back({{"keyframes", world.keyframes},
-                          {"landmarks", world.landmarks},
-                          {"from", names}});
+    world_list.push_back(
+        {{"keyframes", world.keyframes}, {"landmarks", world.landmarks}, {"from", names}});
   }
   const std::string bytes = EncodeMap(merged.saved);
   MakeFolder(places.folder);
@@ -112,8 +111,10 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
                      {"found", join.found},
                      {"visible", join.visible}});
   }
-  const ordered_json all = {{"version", kMergeVersion}, {"worlds", world_list},
-                            {"recordings", recordings}, {"joins", joins},
+  const ordered_json all = {{"version", kMergeVersion},
+                            {"worlds", world_list},
+                            {"recordings", recordings},
+                            {"joins", joins},
                             {"ties", merged.ties}};
   AtomicWriteFile(places.folder + "/merge.json",
                   all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");

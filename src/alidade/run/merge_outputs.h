@@ -17,7 +17,8 @@ struct MergedWorld {
 // The one with the most keyframes first.
 std::vector<MergedWorld> WorldsOf(const MergedMaps& merged);
 
-// Where the results go: `out` itself when it ends in .alidade, else map.alidade in the folder `out`.
+// Where the results go: `out` itself when it ends in .alidade, else map.alidade in the folder
+// `out`.
 struct MergePlaces {
   std::string map, folder;  // the folder holds trajectories and merge.json
 };

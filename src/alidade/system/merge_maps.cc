@@ -109,7 +109,8 @@ class Merger {
   }
 
   void IndexPlaces() {
-    ForEachKeyFrame("learning places", [&](KeyFrameId id) { places_.Add(id, map().Find(id)->frame); });
+    ForEachKeyFrame("learning places",
+                    [&](KeyFrameId id) { places_.Add(id, map().Find(id)->frame); });
   }
 
   // Asks every keyframe for places of other maps. Whether any two were joined: then there are more
