@@ -242,6 +242,26 @@ TEST_F(Layers, OtherMapsAreFaintOrHidden) {
   EXPECT_NEAR(of(shot, 0.3)[0], (ground[0] + ink[0]) / 2.0, 2);
 }
 
+// The camera is found again in the first of two maps: nothing else is told.
+TEST_F(Layers, TheMapThatTheCameraComesBackToIsShown) {
+  Teller teller(Pinhole());
+  Change change;
+  change.keyframes = {{0, 0, Pose(0, 0, 0), 1}, {1, 1, Pose(0, 0, 0), 1}};
+  change.landmarks = {{0, 0, {0.3f, 0, 1}}, {1, 1, {-0.3f, 0, 1}}};
+  teller.Tell(change);
+  const ViewSettings view = Only(&ViewSettings::landmarks);
+  const GlScreen screen(kWidth, kHeight);
+  Renderer renderer;
+  renderer.Resize(kWidth, kHeight);
+  for (uint32_t reference : {1, 0, 1}) {
+    teller.TellFrame(reference, {});
+    renderer.Show(teller.scene);
+    renderer.Draw(view);
+    ExpectPoints(screen.Take(), view, {{reference == 0 ? 0.3f : -0.3f, 0, 1}});
+  }
+  renderer.Release();
+}
+
 // What is behind the eye does not come round to its front.
 TEST_F(Layers, LinesAreCutOffBehindTheEye) {
   Teller teller(Pinhole());

@@ -114,13 +114,7 @@ TEST_P(CameraPicture, IsFittedIntoItsArea) {
 
 TEST_P(CameraPicture, HasTheFeaturesOnTheirPixels) {
   const int rotation = GetParam();
-  Camera camera;
-  camera.width = 160;
-  camera.height = 120;
-  camera.fx = camera.fy = 150;
-  camera.cx = 80;
-  camera.cy = 60;
-  Teller teller(camera);
+  Teller teller(Camera::FromFieldOfView(160, 120, 60));
   Change change;
   change.keyframes = {{0, 0, {}, 1}};
   teller.Tell(change);

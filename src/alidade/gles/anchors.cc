@@ -92,7 +92,10 @@ void Anchors::SetCamera(const Se3& T_world_camera, bool shown) {
 
 size_t Anchors::Bind() {
   size_t bytes = 0;
-  if (texture_ == 0) glGenTextures(1, &texture_);
+  if (texture_ == 0) {
+    glGenTextures(1, &texture_);
+    rows_ = 0;
+  }
   glBindTexture(GL_TEXTURE_2D, texture_);
   const size_t needed = (anchors_.size() + kRow - 1) / kRow;
   if (needed > rows_) {

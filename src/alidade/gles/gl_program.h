@@ -4,6 +4,7 @@
 #include <GLES3/gl3.h>
 
 #include <string>
+#include <utility>
 
 namespace alidade::gles {
 

@@ -66,7 +66,10 @@ class GpuArray {
   // The buffer is bound to GL_ARRAY_BUFFER and holds the values. Bytes that were uploaded.
   size_t Upload() {
     size_t bytes = 0;
-    if (name_ == 0) glGenBuffers(1, &name_);
+    if (name_ == 0) {
+      glGenBuffers(1, &name_);
+      room_ = 0;
+    }
     glBindBuffer(GL_ARRAY_BUFFER, name_);
     if (values_.size() > room_) {
       room_ = std::max<size_t>(kPage, values_.size() + values_.size() / 2);

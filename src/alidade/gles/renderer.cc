@@ -63,14 +63,16 @@ void Renderer::SetCameraPicture(const uint8_t* luma, int width, int height, size
 
 void Renderer::Show(const StreamScene& scene) {
   Layers& layers = *layers_;
-  const bool anew = scene.told != told_;
+  const MapId active = scene.ActiveMap();  // found again in another one, no map has changed
+  const bool anew = scene.told != told_ || active != active_;
   if (anew) {
-    layers.anchors.Update(scene, scene.ActiveMap());
+    layers.anchors.Update(scene, active);
     layers.landmarks.Update(scene, layers.anchors);
     layers.points.Update(scene, layers.anchors);
     layers.frusta.Update(scene, layers.anchors);
     frustum_ = 0.05 * TypicalDistance(scene);
     told_ = scene.told;
+    active_ = active;
   }
   layers.path.Update(scene, layers.anchors, anew);
   layers.picture.Update(scene);
@@ -81,7 +83,8 @@ void Renderer::Show(const StreamScene& scene) {
 
 DrawStats Renderer::Draw(const ViewSettings& view) {
   view.Check();
-  while (glGetError() != GL_NO_ERROR) {  // others' errors are not ours to tell
+  // Others' errors are not ours to tell. Some drivers report a lost context for ever.
+  for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
   }
   GLint most[2] = {1, 1};
   glGetIntegerv(GL_MAX_VIEWPORT_DIMS, most);

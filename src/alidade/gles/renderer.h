@@ -57,6 +57,7 @@ class Renderer {
   std::unique_ptr<Layers> layers_;
   int width_ = 1, height_ = 1;
   uint64_t told_ = 0;   // StreamScene::told of what was shown
+  MapId active_;        // of what was shown
   double frustum_ = 0;  // world units
   bool lost_ = false;
 };
