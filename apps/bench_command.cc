@@ -15,6 +15,7 @@
 #include "bench/dynamic.h"
 #include "bench/large_map.h"
 #include "bench/lasting.h"
+#include "bench/phone.h"
 #include "bench/semidense.h"
 #include "bench/wild.h"
 #include "commands.h"
@@ -175,6 +176,22 @@ int RunLasting(std::vector<std::string> words, const BenchArguments& arguments) 
   return 0;
 }
 
+// `words`: recordings.
+int RunPhone(std::vector<std::string> words, const BenchArguments& arguments) {
+  if (!arguments.source.empty()) words.push_back(arguments.source);
+  if (words.empty()) words.emplace_back("synth:room?frames=300");
+  ordered_json sections = ordered_json::array();
+  for (const std::string& source : words) {
+    for (const bench::Section& section : bench::BenchPhone(source, arguments.frames)) {
+      Print(section);
+      sections.push_back(ToJson(section));
+    }
+    std::fflush(stdout);
+  }
+  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  return 0;
+}
+
 int RunWild(BenchArguments arguments) {
   if (arguments.names.size() > 1) ThrowUsage("bench wild takes no recordings: it renders its own");
   bench::WildOptions& options = arguments.wild;
@@ -192,6 +209,7 @@ int Run(BenchArguments arguments) {
   if (names[0] == "semidense") return RunSemiDense({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "dynamic") return RunDynamic({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "wild") return RunWild(arguments);
+  if (names[0] == "phone") return RunPhone({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "lasting") return RunLasting({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "large-map") {
     const bench::Section section = bench::BenchLargeMap(arguments.frames);
@@ -232,7 +250,8 @@ void AddRunOptions(CLI::App& command, BenchArguments& arguments) {
   command.add_option("--seeds", arguments.seeds, "Runs of each kind (dynamic: 1, wild: 3)")
       ->check(CLI::Range(1, 100))
       ->group("Of dynamic and wild");
-  command.add_option("--set", arguments.settings, "One setting of all runs, name=value")
+  command.add_option("--set", arguments.settings, "One setting of all runs")
+      ->type_name("NAME=VALUE")
       ->take_all()
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
@@ -243,7 +262,9 @@ void AddWildOptions(CLI::App& command, bench::WildOptions& options) {
   const std::string group = "Of wild";
   command.add_option("--cases", options.cases, "Which, with commas between them; default: all")
       ->group(group);
-  command.add_option("--profile", options.profile, "desktop or phone, of all cases")->group(group);
+  command.add_option("--profile", options.profile, "Of all cases")
+      ->type_name("desktop|phone")
+      ->group(group);
   command.add_flag("--check", options.check, "End with status 1 when there is a false pose or map")
       ->group(group);
 }
@@ -262,15 +283,18 @@ void AddDynamicOptions(CLI::App& command, bench::DynamicOptions& options) {
   const auto flag = [&](const std::string& name, bool& value, const std::string& help) {
     command.add_flag(name, value, help)->group("Of dynamic");
   };
-  add("--detector", options.detector, "Network that finds people (.onnx), for mode full");
-  add("--camera", options.camera, "Calibration (camera.yaml) instead of the recordings' own");
+  add("--detector", options.detector, "Network that finds people (.onnx), for mode full")
+      ->type_name("FILE");
+  add("--camera", options.camera, "Calibration (camera.yaml) instead of the recordings' own")
+      ->type_name("FILE");
   many("--sensor", options.sensors, "rgbd, stereo, mono; default: the recording's own, and mono");
   many("--plain", options.plain,
        "The same frames without people, DIR or DIR:first-last, for each recording");
   flag("--ablation", options.ablation, "What each part is worth");
   flag("--latency", options.latency, "Late and lost detections");
   flag("!--no-live", options.live, "Leave out the threaded runs, which take their time");
-  add("--pictures", options.pictures, "Folder for pictures of the features, before and after");
+  add("--pictures", options.pictures, "Folder for pictures of the features, before and after")
+      ->type_name("FOLDER");
 }
 
 }  // namespace
@@ -285,19 +309,25 @@ void AddBenchCommand(CLI::App& app, Action& action) {
                    "with depth (synth:room, synth:desk, synth:wall); or dynamic and recordings of "
                    "people (synth:room?actors=3); or lasting and recordings to be played forth and "
                    "back for hours (--sensor; --frames 20000); or large-map (--frames 10000: "
-                   "keyframes); or wild")
-      ->required();
-  command->add_option("--source", arguments->source,
-                      "Recording to take frames from (synth:room; place: synth:loop)");
+                   "keyframes); or wild; or phone and recordings of one camera: what the phone's "
+                   "parameters and threads are worth")
+      ->required()
+      ->type_name(
+          "features|ransac|ba|frame|place|semidense|dynamic|lasting|large-map|wild|phone|PATH");
+  command
+      ->add_option("--source", arguments->source,
+                   "Recording to take frames from (synth:room; place: synth:loop)")
+      ->type_name("PATH");
   command
       ->add_option("--frames", arguments->frames,
                    "Frames of it, at most (150; semidense: 200, recorded ones 600; dynamic: 200, "
-                   "recorded ones all; lasting: 20000; wild: all the case has)")
+                   "recorded ones all; lasting: 20000; wild: all the case has; phone: 600)")
       ->check(CLI::Range(2, 100000000));
   AddRunOptions(*command, *arguments);
   AddDynamicOptions(*command, arguments->dynamic);
   AddWildOptions(*command, arguments->wild);
-  command->add_option("--out", arguments->out, "JSON file to write the numbers to");
+  command->add_option("--out", arguments->out, "JSON file to write the numbers to")
+      ->type_name("FILE");
   command->callback([arguments, &action] { action = [arguments] { return Run(*arguments); }; });
 }
 

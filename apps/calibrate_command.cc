@@ -35,6 +35,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   const SourceInfo info = OpenAnySource(source, wanted)->Info();
   if (info.kind == "camera")
     ThrowUsage("calibrate takes recordings, not " + source + ": it plays them more than once");
+  if (!info.told.empty() && !options.run.quiet) std::printf("%s\n", info.told.c_str());
   // What lies beside the images is not looked at: that is what is asked for.
   if (!wanted.fov_degrees) wanted.fov_degrees = AssumedFov({info.camera.width, info.camera.height});
   wanted.fov_rough = true;
@@ -127,19 +128,26 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
   command
       ->add_option("RECORDING", options->sources,
                    "Recordings of one camera: anything `alidade run` takes, but for live cameras")
-      ->required();
-  command->add_option("--out", options->out, "Calibration to write (camera.yaml)");
-  command->add_option("--fov", options->run.fov,
-                      "Horizontal field of view to begin with, degrees (66 along the longer side)");
-  command->add_option("--profile", options->run.profile, "desktop or phone");
-  command->add_option("--first", options->run.first, "First frame, counted from 0");
-  command->add_option("--last", options->run.last, "Last frame, included");
-  command->add_option("--set", options->run.settings, "One setting, name=value; many times")
+      ->required()
+      ->type_name("PATH");
+  command->add_option("--out", options->out, "Calibration to write (camera.yaml)")
+      ->type_name("FILE");
+  command
+      ->add_option("--fov", options->run.fov,
+                   "Horizontal field of view to begin with, degrees (66 along the longer side)")
+      ->type_name("DEGREES");
+  command->add_option("--profile", options->run.profile, "As of `alidade run`")
+      ->type_name("desktop|phone");
+  command->add_option("--first", options->run.first, "First frame, counted from 0")->type_name("N");
+  command->add_option("--last", options->run.last, "Last frame, included")->type_name("N");
+  command->add_option("--set", options->run.settings, "One setting; may be given many times")
+      ->type_name("NAME=VALUE")
       ->take_all()
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command->add_option("--threads", options->run.threads,
-                      "Threads for parallel loops; 0 = all cores");
+  command
+      ->add_option("--threads", options->run.threads, "Threads for parallel loops; 0 = all cores")
+      ->type_name("N");
   command->add_flag("--quiet", options->run.quiet, "Say nothing but errors");
   command->footer(
       "\nNo target is needed: a minute of walking about a furnished room, moving sideways and\n"

@@ -20,8 +20,11 @@ void AddExportCommand(CLI::App& app, Action& action);
 void AddViewCommand(CLI::App& app, Action& action);
 void AddPhoneCommand(CLI::App& app, Action& action);
 void AddCompareCommand(CLI::App& app, Action& action);
+void AddMergeCommand(CLI::App& app, Action& action);
+void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
 void AddBenchCommand(CLI::App& app, Action& action);
+void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
 
 }  // namespace alidade

@@ -29,7 +29,8 @@ void AddCompareCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("compare", "Several runs beside each other, as a page");
   auto arguments = std::make_shared<CompareArguments>();
   command->add_option("RESULT", arguments->results, "Folders that `run` left, two or more")
-      ->required();
+      ->required()
+      ->type_name("FOLDER");
   command->add_option("--out", arguments->out, "The page: one HTML file that needs no other")
       ->type_name("FILE")
       ->capture_default_str();

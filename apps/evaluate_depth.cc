@@ -191,7 +191,7 @@ void AddEvaluateDepth(CLI::App& evaluate, Action& action) {
                    "The recording, with depth: a TUM RGB-D folder, what `alidade synth` wrote, or "
                    "synth:SCENE?...")
       ->required()
-      ->type_name("SOURCE");
+      ->type_name("PATH");
   depth
       ->add_option("RESULT", options->result,
                    "The folder `alidade run SEQUENCE --semidense` left (depth.txt)")
@@ -203,8 +203,10 @@ void AddEvaluateDepth(CLI::App& evaluate, Action& action) {
                    "one camera")
       ->type_name("auto|fit|none")
       ->capture_default_str();
-  depth->add_option("--camera", options->camera_file,
-                    "Calibration (camera.yaml) of the sequence instead of its own, as for `run`");
+  depth
+      ->add_option("--camera", options->camera_file,
+                   "Calibration (camera.yaml) of the sequence instead of its own, as for `run`")
+      ->type_name("FILE");
   depth->add_option("--max-dt", options->max_dt, "Largest difference of matched time stamps")
       ->type_name("SECONDS")
       ->capture_default_str();

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "alidade/run/map_export.h"
 #include "alidade/run/saved_map.h"
 #include "commands.h"
-#include "map_export.h"
 
 namespace alidade {
 namespace {

@@ -37,9 +37,12 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddViewCommand(app, action);
   alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);
+  alidade::AddMergeCommand(app, action);
+  alidade::AddBatchCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddCalibrateCommand(app, action);
   alidade::AddBenchCommand(app, action);
+  alidade::AddDescribeCommands(app, action);
 }
 
 // Where to read on: the innermost subcommand that was named.

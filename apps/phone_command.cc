@@ -90,25 +90,32 @@ int Phone(const PhoneArguments& arguments) {
 void AddPhoneCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand("phone", "Serve the page for phones: SLAM in the browser");
   auto arguments = std::make_shared<PhoneArguments>();
-  command->add_option("--port", arguments->port,
-                      "Port to listen on (8090, or the next that is free)");
-  command->add_option("--host", arguments->host,
-                      "Address to listen on (127.0.0.1: this machine only; 0.0.0.0: all); any "
-                      "other than this machine's own gives an address with a secret in it");
+  command
+      ->add_option("--port", arguments->port, "Port to listen on (8090, or the next that is free)")
+      ->type_name("PORT");
+  command
+      ->add_option("--host", arguments->host,
+                   "Address to listen on (127.0.0.1: this machine only; 0.0.0.0: all); any "
+                   "other than this machine's own gives an address with a secret in it")
+      ->type_name("ADDRESS");
   command->add_flag("--tls", arguments->tls,
                     "https, with a certificate made on the spot: phones' browsers give the camera "
                     "to secure pages only");
   command->add_flag("--connected", arguments->connected,
                     "Pages may send their pictures here, and this computer does the work: for old "
                     "phones");
-  command->add_option("--core", arguments->core,
-                      "Folder of the core as WebAssembly (scripts/wasm; default: beside the "
-                      "program, or build-wasm of the tree it was built in)");
-  command->add_option("--out", arguments->out,
-                      "With --connected: folder for each page's map, trajectory and points, "
-                      "written when it has gone for five minutes, or at the end");
-  command->add_option("--set", arguments->set,
-                      "With --connected: a setting, NAME=VALUE, as for run");
+  command
+      ->add_option("--core", arguments->core,
+                   "Folder of the core as WebAssembly (scripts/wasm; default: beside the "
+                   "program, or build-wasm of the tree it was built in)")
+      ->type_name("FOLDER");
+  command
+      ->add_option("--out", arguments->out,
+                   "With --connected: folder for each page's map, trajectory and points, "
+                   "written when it has gone for five minutes, or at the end")
+      ->type_name("FOLDER");
+  command->add_option("--set", arguments->set, "With --connected: a setting, as for run")
+      ->type_name("NAME=VALUE");
   command->footer(
       "\nExamples:\n"
       "  alidade phone                                  on this machine: http://127.0.0.1:8090/\n"

@@ -11,6 +11,8 @@ constexpr char kExamples[] =
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
     "  alidade run walk.mp4                         a video: its camera is found first\n"
     "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
+    "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
+    "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   these topics\n"
     "  alidade run my_recording --viewer            watch it in a browser\n"
     "  alidade run my_recording --record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag "
     "play\n"
@@ -23,57 +25,84 @@ constexpr char kExamples[] =
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
-      .add_option("SOURCE", options.source,
-                  "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, camera:0 or "
-                  "synth:SCENE?frames=N&...")
-      ->required();
-  command.add_option("--sensor", options.sensor,
-                     "mono, stereo or rgbd; default: what the recording has");
-  command.add_option("--camera", options.camera_file,
-                     "Calibration (camera.yaml) instead of the recording's own");
-  command.add_option(
-      "--fov", options.fov,
-      "Horizontal field of view, degrees, instead of a calibration; ~70: a guess to begin with");
+      .add_option(
+          "SOURCE", options.source,
+          "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, ROS recording (.bag, .db3, "
+          ".mcap, rosbag2 folder; ?image=TOPIC&depth=TOPIC... chooses), camera:0 or "
+          "synth:SCENE?frames=N&...")
+      ->required()
+      ->type_name("PATH");
+  command
+      .add_option("--sensor", options.sensor,
+                  "What to use of the recording; default: the best it has")
+      ->type_name("mono|stereo|rgbd");
+  command
+      .add_option("--camera", options.camera_file,
+                  "Calibration (camera.yaml) instead of the recording's own")
+      ->type_name("FILE");
+  command
+      .add_option("--fov", options.fov,
+                  "Horizontal field of view, degrees, instead of a calibration; ~70: a guess to "
+                  "begin with")
+      ->type_name("DEGREES");
   command.add_flag("--calibrate-first,!--no-calibrate-first", options.calibrate_first,
                    "Find a camera that nothing is known of by playing its recording beforehand, as "
                    "long as it takes (on; one camera only)");
-  command.add_option("--profile", options.profile,
-                     "desktop (1000 features, full size) or phone (500, 400 pixels wide)");
-  command.add_option("--config", options.config, "YAML file of settings");
-  command.add_option("--set", options.settings, "One setting, name=value; may be given many times")
+  command
+      .add_option("--profile", options.profile,
+                  "desktop (1000 features, full size) or phone (500, 400 pixels wide)")
+      ->type_name("desktop|phone");
+  command.add_option("--config", options.config, "YAML file of settings")->type_name("FILE");
+  command.add_option("--set", options.settings, "One setting; may be given many times")
+      ->type_name("NAME=VALUE")
       ->take_all()
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  command.add_option("--schedule", options.schedule,
-                     "inline (same result every time) or threaded (live); default: inline for "
-                     "recordings");
-  command.add_option("--rate", options.rate,
-                     "realtime, max or frames per second; default: realtime when threaded");
-  command.add_option("--repeat", options.repeat, "Play forth and back this many times");
-  command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores");
-  command.add_option("--seed", options.seed, "Seed of every random choice");
+  command
+      .add_option("--schedule", options.schedule,
+                  "inline (same result every time) or threaded (live); default: inline for "
+                  "recordings")
+      ->type_name("inline|threaded");
+  command
+      .add_option("--rate", options.rate,
+                  "How fast, FPS in frames per second; default: realtime when threaded")
+      ->type_name("realtime|max|FPS");
+  command.add_option("--repeat", options.repeat, "Play forth and back this many times")
+      ->type_name("N");
+  command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores")
+      ->type_name("N");
+  command.add_option("--seed", options.seed, "Seed of every random choice")->type_name("N");
   command
       .add_option("--record", options.record,
                   "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
                   "among the results, or FILE); FILE.mcap is for Foxglove, Rerun and ros2 instead")
+      ->type_name("FILE")
       ->expected(0, 1)
       ->default_str("");
   command
       .add_option("--viewer", options.viewer,
                   "Show the run in a browser while it goes on; prints the address (PORT: 8090, or "
                   "the next that is free)")
+      ->type_name("PORT")
       ->expected(0, 1)
       ->default_str("");
-  command.add_option("--host", options.host,
-                     "Address the viewer listens on (127.0.0.1: this machine only)");
-  command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)");
-  command.add_option("--first", options.first, "First frame, counted from 0");
-  command.add_option("--last", options.last, "Last frame, included");
-  command.add_option("--dynamics", options.dynamics,
-                     "off, geometry (leave out what moves) or full (and what a detector knows to)");
-  command.add_option("--detector", options.detector,
-                     "Network that finds people and other movers (YOLO, .onnx); implies "
-                     "--dynamics full");
+  command
+      .add_option("--host", options.host,
+                  "Address the viewer listens on (127.0.0.1: this machine only)")
+      ->type_name("ADDRESS");
+  command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)")
+      ->type_name("FOLDER");
+  command.add_option("--first", options.first, "First frame, counted from 0")->type_name("N");
+  command.add_option("--last", options.last, "Last frame, included")->type_name("N");
+  command
+      .add_option("--dynamics", options.dynamics,
+                  "off, geometry (leave out what moves) or full (and what a detector knows to)")
+      ->type_name("off|geometry|full");
+  command
+      .add_option("--detector", options.detector,
+                  "Network that finds people and other movers (YOLO, .onnx); implies "
+                  "--dynamics full")
+      ->type_name("FILE");
   command.add_flag("--write-masks", options.write_masks,
                    "What was left out as moving, a picture for every frame, in mask/");
   command.add_flag("--quiet", options.quiet, "Say nothing but errors");
@@ -85,7 +114,8 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
   options.localise = true;
   AddSharedOptions(command, options);
   command.add_option("--map", options.load, "Map to find poses in (map.alidade); stays as it is")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   command
       .add_flag("--semidense", options.semidense,
                 "Of `run` only: nothing is mapped here that could have shape")
@@ -99,8 +129,10 @@ void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
 
 void AddRunOptions(CLI::App& command, RunOptions& options) {
   AddSharedOptions(command, options);
-  command.add_option("--load", options.load,
-                     "Go on in a saved map (map.alidade) and add to it what is new");
+  command
+      .add_option("--load", options.load,
+                  "Go on in a saved map (map.alidade) and add to it what is new")
+      ->type_name("FILE");
   command.add_flag(
       "--semidense", options.semidense,
       "Map shape too: depth at every pixel with structure, as semidense.ply and depth/");

@@ -42,9 +42,12 @@ void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::st
   slam_ = &slam;
   record_ = &record;
   shown_at_ = -1e9;  // of finding the camera
-  if (quiet_ || !record.camera.found || !record.camera.found->usable) return;
+  const bool camera_found = record.camera.found && record.camera.found->usable;
+  if (quiet_ || (!camera_found && record.source.told.empty())) return;
   terminal_.SetProgress("");
-  std::printf("Camera found: %s\n", CameraInWords(record.camera.found->estimate).c_str());
+  if (!record.source.told.empty()) std::printf("%s\n", record.source.told.c_str());
+  if (camera_found)
+    std::printf("Camera found: %s\n", CameraInWords(record.camera.found->estimate).c_str());
   std::fflush(stdout);
 }
 

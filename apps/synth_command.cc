@@ -125,19 +125,23 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<SynthArguments>();
   SynthSettings& settings = arguments->settings;
   std::string names;
-  for (const std::string& name : SceneNames()) names += (names.empty() ? "" : ", ") + name;
-  command->add_option("SCENE", settings.scene, "One of " + names)->required();
+  for (const std::string& name : SceneNames()) names += (names.empty() ? "" : "|") + name;
+  command->add_option("SCENE", settings.scene, "The scene")->required()->type_name(names);
   command
       ->add_option("OUT", arguments->out,
                    "Folder to write to: new, empty, or an earlier recording of this command")
-      ->required();
+      ->required()
+      ->type_name("FOLDER");
   command
       ->add_option("--frames", arguments->frames,
                    "How many; default: once round the scene's path (room 600, street 1080 …)")
+      ->type_name("N")
       ->check(CLI::PositiveNumber);
-  command->add_option("--path", settings.path,
-                      "walk: the scene's own; turn: on the spot; turn-walk: 4 s on the spot, then "
-                      "the scene's own; still: as on a tripod (walk)");
+  command
+      ->add_option("--path", settings.path,
+                   "walk: the scene's own; turn: on the spot; turn-walk: 4 s on the spot, then "
+                   "the scene's own; still: as on a tripod (walk)")
+      ->type_name("walk|turn|turn-walk|still");
   command->add_option("--speed", settings.speed, "Times the scene's own (1)");
   command->add_option("--arm", settings.arm,
                       "Metres from the axis to the camera, with --path turn (0)");
@@ -162,8 +166,8 @@ void AddSynthCommand(CLI::App& app, Action& action) {
                       "The same with another number of milliseconds (0)");
   command->add_flag("--stereo", settings.stereo,
                     "A second camera, 0.11 m to the right (implied by euroc and kitti)");
-  command->add_option("--format", arguments->format,
-                      "tum, euroc or kitti; default: tum, with --stereo euroc");
+  command->add_option("--format", arguments->format, "Default: tum, with --stereo euroc")
+      ->type_name("tum|euroc|kitti");
   command->add_option("--seed", settings.seed, "Of textures, clutter, shake, noise and people (1)");
   command->add_option("--width", settings.width, "Pixels (640)");
   command->add_option("--height", settings.height, "Pixels (480)");

@@ -90,12 +90,16 @@ void AddViewCommand(CLI::App& app, Action& action) {
   command
       ->add_option("WHAT", arguments->what,
                    "Folder of results, a recorded stream (run.stream) or a map (map.alidade)")
-      ->required();
-  command->add_option("--port", arguments->port,
-                      "Port to listen on (8090, or the next that is free)");
-  command->add_option("--host", arguments->host,
-                      "Address to listen on (127.0.0.1: this machine only); any other gives an "
-                      "address with a secret in it");
+      ->required()
+      ->type_name("PATH");
+  command
+      ->add_option("--port", arguments->port, "Port to listen on (8090, or the next that is free)")
+      ->type_name("PORT");
+  command
+      ->add_option("--host", arguments->host,
+                   "Address to listen on (127.0.0.1: this machine only); any other gives an "
+                   "address with a secret in it")
+      ->type_name("ADDRESS");
   command->footer(
       "\nExamples:\n"
       "  alidade run kitchen --record && alidade view alidade-out/kitchen     the run, replayed\n"

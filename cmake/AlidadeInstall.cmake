@@ -53,19 +53,35 @@ install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake)
 
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_dnn)  # what is installed is built
+  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_bags alidade_dnn)  # what is installed is built
   if(TARGET alidade_serve)
     add_dependencies(alidade alidade_serve)
   endif()
 endif()
-# The program and the library find them beside themselves, see base/module.
-install(TARGETS alidade_media alidade_dnn LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# The program and the library find them in this folder, see base/module: two versions of them do not mix.
+install(TARGETS alidade_media alidade_bags alidade_dnn LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
 if(TARGET alidade_serve)
-  install(TARGETS alidade_serve LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(TARGETS alidade_serve LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
+endif()
+
+# The core for browsers, where scripts/wasm has built it: `alidade phone` serves it.
+foreach(VARIANT single threads)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/build-wasm/${VARIANT}/bin/
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/alidade/core/${VARIANT} OPTIONAL
+          FILES_MATCHING PATTERN alidade.wasm PATTERN alidade.mjs PATTERN alidade.worker.js)
+endforeach()
+
+# Completions and manual pages: what the program says of itself.
+if(TARGET alidade)
+  install(CODE "set(ALIDADE_PROGRAM \"$<TARGET_FILE:alidade>\")
+set(ALIDADE_SHARE \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_DATADIR}\")
+set(ALIDADE_MAN \"\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_MANDIR}\")
+set(ALIDADE_BUILD \"${CMAKE_BINARY_DIR}\")")
+  install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHelp.cmake)
 endif()
 
 configure_package_config_file(cmake/AlidadeConfig.cmake.in ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake
-                              INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR} PATH_VARS CMAKE_INSTALL_LIBDIR)
+                              INSTALL_DESTINATION ${ALIDADE_CMAKE_DIR} PATH_VARS ALIDADE_MODULE_DIR)
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/AlidadeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/AlidadeConfig.cmake ${CMAKE_BINARY_DIR}/AlidadeConfigVersion.cmake
         DESTINATION ${ALIDADE_CMAKE_DIR})

@@ -1,4 +1,4 @@
-# cmake -DWEB=web -DNPM=npm -DOUT=page_files.cc -P: builds the viewer's page and makes it part of a C++ file. What fails
+# cmake -DWEB=web -DNPM=npm -DMODE=ON -DOUT=page_files.cc -P: builds the viewer's page and makes it part of a C++ file. What fails
 # costs the page, not the build.
 set(PROBLEM "")
 set(MARK ${WEB}/node_modules/.alidade-lock)  # the lock file that node_modules was made from
@@ -29,6 +29,12 @@ if(NPM)
     endif()
   endif()
   run(run build)
+elseif(MODE STREQUAL "PREBUILT")
+  if(NOT EXISTS ${WEB}/viewer/dist/index.html)
+    set(PROBLEM "there is no ${WEB}/viewer/dist")
+  endif()
+elseif(NOT MODE)
+  set(PROBLEM "it was switched off (ALIDADE_WEB)")
 else()
   set(PROBLEM "Node.js 18 with npm was not found (scripts/setup)")
 endif()

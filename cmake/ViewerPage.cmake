@@ -1,11 +1,12 @@
 # alidade_viewer_page(OUT): makes the C++ file OUT that holds the files of the pages (web/viewer/dist, web/phone/dist), which npm
 # builds when Node.js is there; without, a plain page stands for it. Built again only when something in web/ has changed.
-option(ALIDADE_WEB "Build the viewer's page with npm" ON)
+# PREBUILT takes the pages as they are in web/: where packages are built there is no network (scripts/package).
+set(ALIDADE_WEB ON CACHE STRING "ON: build the pages with npm; PREBUILT: take those in web/*/dist; OFF: none")
 
 function(alidade_viewer_page OUT)
   set(WEB ${PROJECT_SOURCE_DIR}/web)
   set(NPM "")
-  if(ALIDADE_WEB)
+  if(ALIDADE_WEB AND NOT ALIDADE_WEB STREQUAL "PREBUILT")
     find_program(NODE_PROGRAM NAMES node nodejs)
     find_program(NPM_PROGRAM npm)
     if(NODE_PROGRAM AND NPM_PROGRAM AND EXISTS ${WEB}/package-lock.json)
@@ -22,7 +23,7 @@ function(alidade_viewer_page OUT)
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/BuildViewerPage.cmake)
   add_custom_command(
     OUTPUT ${OUT}
-    COMMAND ${CMAKE_COMMAND} -DWEB=${WEB} -DNPM=${NPM} -DOUT=${OUT} -P ${SCRIPT}
+    COMMAND ${CMAKE_COMMAND} -DWEB=${WEB} -DNPM=${NPM} -DMODE=${ALIDADE_WEB} -DOUT=${OUT} -P ${SCRIPT}
     DEPENDS ${SCRIPT} ${SOURCES} ${PROJECT_SOURCE_DIR}/src/alidade/stream/stream.fbs
     COMMENT "The viewer's page" VERBATIM)
 endfunction()

@@ -58,13 +58,7 @@ std::string Joined(const std::vector<std::string>& messages) {
 alidade::PhoneSettings SettingsOf(int threads, const std::string& text) {
   alidade::SetThreadCount(std::max(1, threads));
   auto phone = alidade::PhoneSettings::Default(threads > 1);
-  for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find('\n', begin), text.size());
-    const std::string line = text.substr(begin, end - begin);
-    const size_t equal = line.find('=');
-    if (equal != std::string::npos) phone.slam.Set(line.substr(0, equal), line.substr(equal + 1));
-    begin = end + 1;
-  }
+  phone.SetLines(text);
   return phone;
 }
 

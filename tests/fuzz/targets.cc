@@ -24,6 +24,10 @@ const std::vector<Target>& Targets() {
       {"onnx", Onnx},
       {"class_names", ClassNames},
       {"stream", Stream},
+      {"bag", Bag},
+      {"mcap", Mcap},
+      {"database", Database},
+      {"ros_message", RosMessage},
   };
   return targets;
 }

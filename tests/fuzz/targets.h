@@ -25,6 +25,10 @@ TargetFunction Trajectory;  // groundtruth.txt and its kin
 TargetFunction Onnx;        // what is read of a detector's file before OpenCV sees it
 TargetFunction ClassNames;  // of a detector's metadata
 TargetFunction Stream;      // a message of run.stream
+TargetFunction Bag;         // ROS bag 2.0, and the messages in it
+TargetFunction Mcap;        // the same of MCAP
+TargetFunction Database;    // and of rosbag2's databases
+TargetFunction RosMessage;  // pictures and calibrations as messages
 
 struct Target {
   std::string name;  // its folder in tests/fuzz/corpus

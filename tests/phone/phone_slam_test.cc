@@ -69,6 +69,15 @@ TEST(PhoneSlam, ColoursAreTurnedToGrey) {
   EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitialising);
 }
 
+TEST(PhoneSettings, AreSetByLines) {
+  PhoneSettings settings = PhoneSettings::Default(false);
+  settings.SetLines("tracker.extractor.features=300\n\nsemidense.enabled=true");
+  EXPECT_EQ(settings.slam.tracker.extractor.features, 300);
+  EXPECT_TRUE(settings.slam.semidense.enabled);
+  EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { settings.SetLines("tracker.no_such=1"); }),
+              HasSubstr("tracker.no_such"));
+}
+
 TEST(PhoneSlam, WhatCannotBeIsRefused) {
   const PhoneSettings settings = PhoneSettings::Default(false);
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { PhoneSlam(64, 48, 200, settings); }),

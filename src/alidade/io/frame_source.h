@@ -39,13 +39,16 @@ struct SourceFrame {
 
 struct SourceInfo {
   std::string name;  // short, usable in a file name
-  std::string kind;  // "tum", "euroc", "kitti", "images", "video", "synth", "camera"
+  std::string kind;  // "tum", "euroc", "kitti", "images", "video", "ros", "synth",
+                     // "camera"
   Sensor sensor = Sensor::kMono;
   Camera camera;                // after any rectification
   bool camera_guessed = false;  // nothing certain was known: field of view assumed
   // What the recording itself says of its lens, in words, where the field of view that is assumed
   // is by that ("26 mm in 35 mm equivalents"); else empty.
   std::string lens_told;
+  // What was chosen of what the recording has, for people; empty where there was nothing to choose.
+  std::string told;
   // Rotation from the rectified camera's frame to that of the camera as mounted: trajectories are
   // the latter's.
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();

@@ -26,7 +26,8 @@ IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe)
 }  // namespace
 
 std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIndex& places,
-                                           KeyFrameId id, const LoopSettings& settings) {
+                                           KeyFrameId id, const LoopSettings& settings,
+                                           const std::function<bool(KeyFrameId)>& may_be) {
   const KeyFrame& keyframe = *map.Find(id);
   const IdSet<KeyFrameId> near = Surroundings(map, keyframe);
   std::vector<KeyFrameId> neighbours;
@@ -35,9 +36,11 @@ std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIn
   for (double score : places.Scores(*keyframe.frame, neighbours)) likest = std::max(likest, score);
   std::vector<KeyFrameId> chosen;
   int in_this_map = 0, in_others = 0;
-  const auto may_be = [&](KeyFrameId other) { return !near.Contains(other) && map.Find(other); };
+  const auto lives_afar = [&](KeyFrameId other) {
+    return !near.Contains(other) && map.Find(other) && (!may_be || may_be(other));
+  };
   for (const PlaceMatch& match :
-       places.Query(*keyframe.frame, may_be, static_cast<size_t>(settings.group))) {
+       places.Query(*keyframe.frame, lives_afar, static_cast<size_t>(settings.group))) {
     if (match.score < settings.score_share * likest) break;
     const KeyFrame& other = *map.Find(match.id);
     int& count = other.map == keyframe.map ? in_this_map : in_others;

@@ -33,10 +33,11 @@ LoopCloser::LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera,
 
 // In its own map a place is held against the way since; in another map only against other places:
 // where several would do, as along a corridor of equal doors, none is taken.
-std::optional<LoopMatch> LoopCloser::Recognise(const MapSnapshot& map, KeyFrameId id) const {
+std::optional<LoopMatch> LoopCloser::Recognise(
+    const MapSnapshot& map, KeyFrameId id, const std::function<bool(KeyFrameId)>& may_be) const {
   std::optional<LoopMatch> elsewhere;
   bool ambiguous = false;
-  for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_)) {
+  for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_, may_be)) {
     const bool here = map.MapOf(place) == map.MapOf(id);
     if (!here && ambiguous) continue;
     std::optional<LoopMatch> match = VerifyLoop(map, id, place, camera_, settings_);

@@ -20,6 +20,10 @@ class LoopCloser {
   // `camera`: as the frames are; depth_factor and baseline 0 for monocular use.
   LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera, LoopSettings settings);
 
+  // The place a keyframe sees again, among keyframes of the index that `may_be` (empty: any) lets
+  // pass; nothing when it is not certain.
+  std::optional<LoopMatch> Recognise(const MapSnapshot& map, KeyFrameId id,
+                                     const std::function<bool(KeyFrameId)>& may_be = {}) const;
   // Enters a mapped keyframe into the index; a match when it sees an old place again.
   std::optional<LoopMatch> Add(KeyFrameId id);
   void SetEntered(std::vector<KeyFrameId> ids) { entered_ = std::move(ids); }  // of a loaded map
@@ -36,8 +40,6 @@ class LoopCloser {
   int merges() const { return merges_; }
 
  private:
-  std::optional<LoopMatch> Recognise(const MapSnapshot& map, KeyFrameId id) const;
-
   MapStore& map_;
   PlaceIndex& places_;
   Camera camera_;

@@ -52,6 +52,16 @@ PhoneSettings PhoneSettings::Default(bool threaded) {
   return settings;
 }
 
+void PhoneSettings::SetLines(const std::string& lines) {
+  for (size_t begin = 0; begin < lines.size();) {
+    const size_t end = std::min(lines.find('\n', begin), lines.size());
+    const std::string line = lines.substr(begin, end - begin);
+    const size_t equal = line.find('=');
+    if (equal != std::string::npos) slam.Set(line.substr(0, equal), line.substr(equal + 1));
+    begin = end + 1;
+  }
+}
+
 PhoneSlam::PhoneSlam(int width, int height, double fov, PhoneSettings settings)
     : settings_(std::move(settings)), camera_(AssumedCamera(width, height, fov)), known_(fov > 0) {
   if (!known_) {
@@ -72,7 +82,7 @@ PhoneSlam::~PhoneSlam() = default;
 
 void PhoneSlam::Begin() {
   focal_ = camera_.fx;
-  slam_ = std::make_unique<Slam>(camera_, settings_.slam);
+  slam_ = std::make_unique<Slam>(camera_, settings_.slam, settings_.detector);
   StreamSource source;
   source.program = std::string("alidade ") + ALIDADE_VERSION;
   source.source = "camera";

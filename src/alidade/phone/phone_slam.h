@@ -30,6 +30,10 @@ struct PhoneSettings {
   // is not looked for while the lens is only assumed, shifted the focal lengths of real recordings
   // by 1 to 5 %.
   double model_sigma = 0.03;
+  // Of people and other things that move; goes with slam.dynamics.mode = full. Null: none.
+  std::shared_ptr<Detector> detector;
+  // Lines of name=value, each as after --set. Throws Error (usage) on what cannot be.
+  void SetLines(const std::string& lines);
   // The phone profile, in the order that a single thread does things unless `threaded`; at most so
   // many keyframes, since a page's memory is small.
   static PhoneSettings Default(bool threaded);

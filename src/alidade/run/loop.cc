@@ -22,11 +22,12 @@ namespace {
 constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
 constexpr double kBlack = 10;      // mean grey level
 
-volatile std::sig_atomic_t g_interrupted = 0;  // signals so far
+std::atomic<int> g_interrupted{0};  // requests so far
+static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may touch nothing else");
 
 void Interrupt(int) {
   if (g_interrupted == 2) _exit(kInterruptedStatus);
-  g_interrupted = g_interrupted + 1;
+  ++g_interrupted;
 }
 
 // Waits for the workers; a second signal gives up what is left.
@@ -172,6 +173,12 @@ void CatchInterrupts() {
   std::signal(SIGINT, Interrupt);
   std::signal(SIGTERM, Interrupt);
 }
+
+void RequestInterrupt() {
+  if (g_interrupted < 2) ++g_interrupted;
+}
+
+void ForgetInterrupts() { g_interrupted = 0; }
 
 bool Interrupted() { return g_interrupted != 0; }
 

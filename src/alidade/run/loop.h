@@ -20,6 +20,10 @@ inline FrameInput InputOf(const SourceFrame& frame) {
 // second one does not wait for them, a third ends the program.
 void CatchInterrupts();
 bool Interrupted();
+// The same for who has signal handlers of his own (Python): any thread may ask, once to end the run
+// and write its results, twice to wait for no worker. Forget it before the next run.
+void RequestInterrupt();
+void ForgetInterrupts();
 inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
 
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames

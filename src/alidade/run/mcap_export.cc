@@ -116,8 +116,8 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
   return TellKnown(frames, state, result.camera, StatusOf(result), out, program);
 }
 
-McapCounts ExportMap(const SavedMap& saved, const MapPart& part, const std::string& out,
-                     const std::string& program) {
+McapCounts ExportMapToMcap(const SavedMap& saved, const MapPart& part, const std::string& out,
+                           const std::string& program) {
   const FinalState state = FinalStateOf(saved, part);
   return TellKnown(state.trajectory, state, saved.camera, {}, out, program);
 }

@@ -30,7 +30,7 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
                          const std::string& program);
 
 // A map: its keyframes are the frames.
-McapCounts ExportMap(const SavedMap& saved, const MapPart& part, const std::string& out,
-                     const std::string& program);
+McapCounts ExportMapToMcap(const SavedMap& saved, const MapPart& part, const std::string& out,
+                           const std::string& program);
 
 }  // namespace alidade

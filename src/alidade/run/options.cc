@@ -19,6 +19,8 @@ void CheckRunOptions(const RunOptions& options) {
   }
   if (options.host && !options.viewer)
     ThrowUsage("--host is where the viewer listens: it needs --viewer");
+  if (options.detector && options.own_detector)
+    ThrowUsage("a run has one detector: a file's, or the caller's own");
   CheckThreads(options.threads);
   if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
   if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
@@ -66,13 +68,13 @@ RunSettings SettingsFrom(const RunOptions& options) {
   if (options.semidense) settings.semidense.enabled = true;
   if (options.dynamics) {
     settings.dynamics.mode = DynamicsModeNamed("--dynamics", *options.dynamics);
-  } else if (options.detector) {
+  } else if (HasDetector(options)) {
     settings.dynamics.mode = DynamicsMode::kFull;
   }
   const DynamicsMode mode = settings.dynamics.mode;
-  if (mode == DynamicsMode::kFull && !options.detector)
+  if (mode == DynamicsMode::kFull && !HasDetector(options))
     ThrowUsage("--dynamics full needs --detector MODEL.onnx");
-  if (mode != DynamicsMode::kFull && options.detector)
+  if (mode != DynamicsMode::kFull && HasDetector(options))
     ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
   if (mode == DynamicsMode::kOff && options.write_masks)
     ThrowUsage("--write-masks needs --dynamics geometry or full: nothing is left out without");

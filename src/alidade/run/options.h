@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "alidade/detect/detector.h"
 #include "alidade/io/files/open_source.h"
 #include "alidade/run/run_settings.h"
 
@@ -25,6 +27,7 @@ struct RunOptions {
   bool localise = false;  // only find poses in the loaded map
   bool semidense = false;
   std::optional<std::string> dynamics, detector;
+  std::shared_ptr<Detector> own_detector;  // instead of a file's: the caller's own
   bool write_masks = false;
   std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
   std::optional<std::string> viewer;  // show it in a browser: the port; empty: one that is free
@@ -36,6 +39,11 @@ struct RunOptions {
 inline constexpr int kMostThreads = 256;
 // Of --threads: throws Error (usage) for a number that cannot be.
 void CheckThreads(int threads);
+
+// A file's, or the caller's own.
+inline bool HasDetector(const RunOptions& options) {
+  return options.detector || options.own_detector;
+}
 
 // Throws Error (usage) for flags that do not go together.
 void CheckRunOptions(const RunOptions& options);

@@ -104,7 +104,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (saved && saved->camera.width < record.source.camera.width)
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down
   LearnCamera(options, wanted, saved ? &saved->camera : nullptr, watchers, record);
-  std::shared_ptr<Detector> detector;
+  std::shared_ptr<Detector> detector = options.own_detector;
   if (options.detector)
     detector = OpenDetector(*options.detector, record.settings.dynamics.detector);
   Slam slam(record.source.camera, record.settings, detector);

@@ -1,5 +1,7 @@
 #include "alidade/stream/stream_scene.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "alidade/base/error.h"
@@ -35,6 +37,11 @@ void Check(const flatbuffers::Vector<uint8_t>* bytes, size_t each, const char* w
   if (bytes && bytes->size() % each != 0) Refuse(std::string("half a ") + what);
 }
 
+uint64_t NextTold() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 void TakeKeyFrame(const stream::KeyFrame& told, StreamScene& scene) {
   SceneKeyFrame& keyframe = scene.keyframes[{told.id()}];
   keyframe.map = {told.map()};
@@ -68,6 +75,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
     scene.events.clear();
   }
   scene.version = change.version();
+  scene.told = NextTold();
   if (change.keyframes()) {
     for (const stream::KeyFrame* told : *change.keyframes()) TakeKeyFrame(*told, scene);
   }
@@ -101,6 +109,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
       Refuse("a range of depth");
     found->second.depth_least = cloud.least();
     found->second.depth_most = cloud.most();
+    found->second.depth_told = scene.told;
     found->second.depth.clear();
     if (any) {
       found->second.depth.assign(reinterpret_cast<const char*>(cloud.points()->data()),
@@ -148,6 +157,7 @@ void TakeNow(const stream::Frame& told, SceneNow& now) {
   now.map = {told.map()};
   if (told.state() == stream::State::tracking)
     now.T_world_camera = PoseFrom(told.t_world_camera(), "a frame");
+  if (told.predicted()) now.T_world_guess = PoseFrom(told.t_world_camera(), "a frame");
   now.keyframes = told.keyframes();
   now.landmarks = told.landmarks();
   now.matches = told.matches();
@@ -223,6 +233,19 @@ void StreamScene::Take(std::string_view bytes) {
     events.push_back(
         {static_cast<int>(kind), event->number(), event->time(), bad, TextFrom(event->text())});
   }
+}
+
+MapId StreamScene::ActiveMap() const {
+  for (auto frame = path.rbegin(); frame != path.rend(); ++frame) {
+    const auto reference = keyframes.find(frame->reference);
+    if (reference != keyframes.end()) return reference->second.map;
+  }
+  return keyframes.empty() ? MapId{} : keyframes.rbegin()->second.map;
+}
+
+std::optional<Se3> StreamScene::CameraPose() const {
+  if (!path.empty() && keyframes.count(path.back().reference) != 0) return PoseOf(path.back());
+  return now.T_world_guess;
 }
 
 Eigen::Vector3d StreamScene::PointOf(const SceneLandmark& landmark) const {

@@ -25,7 +25,8 @@ struct SceneKeyFrame {
   double scale = 1;
   std::vector<uint32_t> covisible, loops;
   float depth_least = 0, depth_most = 0;
-  std::string depth;  // packed points (pack.h)
+  std::string depth;        // packed points (pack.h)
+  uint64_t depth_told = 0;  // StreamScene::told when they were; 0: never
 };
 
 // Told in a keyframe: p_world = T_world_camera * (scale * p).
@@ -71,6 +72,7 @@ struct SceneNow {
   std::string reason;
   MapId map;                          // none: no pose
   std::optional<Se3> T_world_camera;  // when tracked
+  std::optional<Se3> T_world_guess;   // when lost a moment ago: where the last motion leads
   uint32_t keyframes = 0, landmarks = 0, matches = 0, maps = 0;
   std::vector<float> ms;  // of stream.fbs' stages; below 0: not run
   int picture_width = 0, picture_height = 0;
@@ -88,6 +90,9 @@ class StreamScene {
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
   std::string source, unit;
   uint64_t version = 0;  // of the map
+  // Of the last map change taken; no two changes in a process have the same one, whichever scene
+  // takes them: who has drawn a scene with this value knows that it has its map.
+  uint64_t told = 0;
   std::map<KeyFrameId, SceneKeyFrame> keyframes;
   std::map<LandmarkId, SceneLandmark> landmarks;
   std::vector<SceneFrame> path;
@@ -102,6 +107,10 @@ class StreamScene {
   float detection_age = -1;  // seconds; below 0: the detector has not answered
   int outlines = 0;          // of what was left out
 
+  // The map that the last frame with a pose is in, else that of the newest keyframe; none: no map.
+  MapId ActiveMap() const;
+  // T_world_camera of the last frame, by the map as it is now, or the guess; none: not known.
+  std::optional<Se3> CameraPose() const;
   Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world
   Se3 PoseOf(const SceneFrame& frame) const;  // T_world_camera; needs a reference
   void AddDepth(const SceneKeyFrame& keyframe, Cloud& points_world) const;  // its semi-dense points

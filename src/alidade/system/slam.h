@@ -181,6 +181,8 @@ class Slam {
   cv::Mat MoverMask() const;
   // The newest answer that had come by then; nothing before the first one, and without a detector.
   std::optional<ShownDetections> Detections() const;
+  // The map with all that is saved of it: cheap, a value to read, keep or encode (EncodeMap()).
+  SavedMap Saved() const;
   std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
   StageTimes Times() const;
   LatestTimes Latest() const;

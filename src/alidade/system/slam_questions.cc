@@ -82,12 +82,14 @@ SlamCounts Slam::Counts() const {
 
 SemiDenseReport Slam::SemiDense() const { return impl_->workers_.SemiDense(); }
 
-std::string Slam::SaveMap() const {
+SavedMap Slam::Saved() const {
   // Places first: they are never ahead of the map then, which may grow meanwhile.
   SavedPlaces places = impl_->workers_.places().Save();
-  return EncodeMap({Snapshot(), impl_->CameraNow(), NameOf(impl_->settings_.sensor),
-                    impl_->settings_.All(), std::move(places)});
+  return {Snapshot(), impl_->CameraNow(), NameOf(impl_->settings_.sensor), impl_->settings_.All(),
+          std::move(places)};
 }
+
+std::string Slam::SaveMap() const { return EncodeMap(Saved()); }
 
 StageTimes Slam::Times() const {
   StageTimes times;

@@ -1,5 +1,6 @@
 // build/bin/fuzz_make_corpus FOLDER: writes the files of tests/fuzz/corpus that are not text:
-// small maps, networks, and a rendered room in the kinds of PNG and JPEG there are.
+// small maps, networks, ROS recordings, and a rendered room in the kinds of PNG and JPEG there
+// are.
 #include <png.h>
 
 #include <filesystem>
@@ -10,6 +11,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/synth/recording.h"
+#include "bags.h"
 #include "detect/tiny_network.h"
 #include "support/map_bytes.h"
 #include "support/saved_map.h"
@@ -177,4 +179,5 @@ int main(int argc, char** argv) {
   alidade::WriteMaps();
   alidade::WriteNetworks();
   alidade::WritePictures();
+  alidade::WriteBags(alidade::Write);
 }

@@ -13,18 +13,22 @@ std::vector<std::string> PlacesToLook(const std::string& file) {
   std::vector<std::string> places;
   const auto add = [&](const fs::path& binary) {
     const fs::path folder = binary.parent_path();
-    places.push_back((folder / file).string());
-    places.push_back((folder / "../lib" / file).string());
-    places.push_back((folder / ".." / ALIDADE_LIBDIR / file).string());
+    places.push_back((folder / file).string());             // what holds both: a Python wheel
+    places.push_back((folder / "../lib" / file).string());  // the build folder
+    places.push_back((folder / ALIDADE_MODULES / file).string());  // an installed library
+    places.push_back(
+        (folder / ".." / ALIDADE_LIBDIR / ALIDADE_MODULES / file).string());  // program
   };
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) add(program);
+  // What holds this code first: beside Python's interpreter may lie modules of another version.
   Dl_info here{};
   if (dladdr(reinterpret_cast<void*>(&LoadModule), &here) != 0 && here.dli_fname != nullptr) {
     add(fs::absolute(here.dli_fname, error));
   }
-  places.push_back(file);
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (!error) add(program);
+  places.push_back(file);  // on the search path of who is linked with the static library
+  places.push_back(std::string(ALIDADE_INSTALLED) + "/" + file);
   return places;
 }
 

@@ -14,7 +14,8 @@ struct LoadedModule {
 };
 
 // Looks beside what holds this code (the program, or a library such as a Python module), in the
-// library folder next to it, and where the system keeps libraries. Never unloaded: call it once.
+// folder of modules below the library folder next to it, where the system keeps libraries, and
+// where this version was meant to be installed. Never unloaded: call it once.
 LoadedModule LoadModule(const std::string& file, const std::vector<std::string>& names);
 
 }  // namespace alidade

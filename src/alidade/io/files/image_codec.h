@@ -16,6 +16,9 @@ struct DecodedImage {
                         // empty when what is stored is grey
 };
 
+// Whatever they are, by how they begin: JPEG, PNG, or what else the media module knows.
+DecodedImage DecodeImageBytes(std::string_view bytes, ImageUse use);
+
 bool LooksLikeJpeg(std::string_view bytes);
 bool LooksLikePng(std::string_view bytes);
 DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use);

@@ -21,7 +21,9 @@ std::string LowerEnding(std::string_view path) {
   return ending;
 }
 
-DecodedImage Decode(std::string_view bytes, ImageUse use) {
+}  // namespace
+
+DecodedImage DecodeImageBytes(std::string_view bytes, ImageUse use) {
   if (bytes.empty()) return {{}, "is empty"};
   if (LooksLikeJpeg(bytes)) return DecodeJpeg(bytes, use);
   if (LooksLikePng(bytes)) return DecodePng(bytes, use);
@@ -31,9 +33,11 @@ DecodedImage Decode(std::string_view bytes, ImageUse use) {
   return both;
 }
 
+namespace {
+
 DecodedImage ReadDecoded(const std::string& path, ImageUse use) {
   const std::string bytes = ReadFile(path);
-  DecodedImage decoded = Decode(bytes, use);
+  DecodedImage decoded = DecodeImageBytes(bytes, use);
   if (!decoded.problem.empty()) ThrowInput(path + " " + decoded.problem);
   return decoded;
 }
@@ -59,7 +63,7 @@ cv::Size ReadImageSize(const std::string& path) {
   } else if (LooksLikePng(bytes)) {
     size = PngSize(bytes);
   } else {
-    const DecodedImage decoded = Decode(bytes, ImageUse::kGray);
+    const DecodedImage decoded = DecodeImageBytes(bytes, ImageUse::kGray);
     if (!decoded.problem.empty()) ThrowInput(path + " " + decoded.problem);
     size = decoded.image.size();
   }

@@ -13,6 +13,8 @@
 #include "alidade/io/files/kitti_recording.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/files/recording.h"
+#include "alidade/io/files/ros/bag_file.h"
+#include "alidade/io/files/ros/bag_source.h"
 #include "alidade/io/files/tum_recording.h"
 #include "alidade/io/files/video_source.h"
 #include "alidade/io/text.h"
@@ -22,6 +24,12 @@ namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
+
+// A folder of images, listed or not, whatever else lies in it.
+bool IsKnownFolder(const std::string& path) {
+  return IsFolder(path) &&
+         (IsTumFolder(path) || IsEurocFolder(path) || IsKittiFolder(path) || IsImageFolder(path));
+}
 
 Recording ReadRecording(const std::string& folder, const SourceOptions& options) {
   if (IsTumFolder(folder)) return ReadTumRecording(folder);
@@ -36,7 +44,7 @@ Recording ReadRecording(const std::string& folder, const SourceOptions& options)
   ThrowInput(folder +
              " is no recording: known are TUM RGB-D folders (rgb.txt), EuRoC (mav0/), KITTI "
              "odometry (image_0/ and "
-             "times.txt) and folders of images");
+             "times.txt), folders of images and ROS recordings (.bag, .db3, .mcap)");
 }
 
 Sensor ChooseSensor(const Recording& recording, const std::string& path,
@@ -107,6 +115,8 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
   std::unique_ptr<FrameSource> source;
   if (const auto number = LiveCameraNumber(path)) {
     source = OpenLiveCameraSource(*number, options);
+  } else if (IsBagSource(path) && !IsKnownFolder(path)) {
+    source = OpenBagSource(path, options);
   } else if (IsFolder(path)) {
     source = OpenRecording(path, options);
   } else if (!IsThere(path)) {

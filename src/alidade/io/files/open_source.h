@@ -24,8 +24,10 @@ struct SourceOptions {
 };
 
 // `path` is known by what it holds: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/), KITTI odometry
-// (image_0/ times.txt), a folder of images, a video file, or `camera:N`. Throws Error: kInput when
-// it cannot be read or is none of these, kUsage when it has not what the options ask for.
+// (image_0/ times.txt), a folder of images, a video file, a ROS recording (.bag, .db3, .mcap or
+// rosbag2's folder; `?image=TOPIC&depth=TOPIC…` behind it chooses), or `camera:N`. Throws Error:
+// kInput when it cannot be read or is none of these, kUsage when it has not what the options ask
+// for.
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options = {});
 
 }  // namespace alidade

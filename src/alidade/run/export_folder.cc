@@ -1,4 +1,4 @@
-#include "export_folder.h"
+#include "alidade/run/export_folder.h"
 
 #include <array>
 #include <filesystem>

@@ -1,4 +1,4 @@
-#include "map_export.h"
+#include "alidade/run/map_export.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,0 +1,95 @@
+"""Recordings as NumPy arrays."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Iterator, Optional
+
+import numpy
+
+from . import _core
+from ._log import tell_warnings
+from .camera import Camera, PathLike
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame of a recording."""
+
+    time: float
+    """seconds"""
+    stamp: str
+    """the time as written in the recording"""
+    number: int
+    """in the recording, from 0"""
+    image: Optional[numpy.ndarray]
+    """(h, w) uint8, grey; None when it could not be read: see ``problem``"""
+    right: Optional[numpy.ndarray] = None
+    """stereo: the right image, rectified"""
+    depth: Optional[numpy.ndarray] = None
+    """RGB-D: (h, w) uint16 in camera.depth_factor per metre, or float32 metres"""
+    color: Optional[numpy.ndarray] = None
+    """(h, w, 3) uint8, blue green red; when it was asked for and there is any"""
+    problem: str = ""
+    """why it could not be read; empty: it could"""
+    true_pose: Optional[numpy.ndarray] = None
+    """rendered recordings: (4, 4) T_world_camera, in a world of its own"""
+    true_depth: Optional[numpy.ndarray] = None
+    """rendered recordings: (h, w) float32, metres along z, 0 = nothing there"""
+
+
+class Recording:
+    """Frames of a recording, in order: ``for frame in recording``. Made by alidade.open()."""
+
+    def __init__(self, core: _core.Source) -> None:
+        self._core = core
+        info = core.info()
+        self.name: str = info["name"]
+        self.kind: str = info["kind"]
+        """tum, euroc, kitti, images, video, synth, camera"""
+        self.sensor: str = info["sensor"]
+        """mono, stereo or rgbd"""
+        self.camera: Camera = info["camera"]
+        """after any rectification: for Slam"""
+        self.camera_guessed: bool = info["camera_guessed"]
+        """nothing certain is known of it"""
+        self.frames: Optional[int] = info["frames"] if info["frames"] >= 0 else None
+        """how many there are; None: unknown"""
+        self.mounting: numpy.ndarray = info["mounting"]
+        """(4, 4), from the rectified camera's frame to the camera's as mounted: for Slam"""
+
+    def __iter__(self) -> Iterator[Frame]:
+        return self
+
+    def __next__(self) -> Frame:
+        frame = self._core.next()
+        tell_warnings()
+        if frame is None:
+            raise StopIteration
+        return Frame(**frame)
+
+    def close(self) -> None:
+        self._core.close()
+
+    def __enter__(self) -> Recording:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[PathLike] = None,
+         fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False) -> Recording:
+    """Opens what ``alidade run`` can open, to be read frame by frame as arrays.
+
+    source: folder (TUM RGB-D, EuRoC, KITTI, images), video, "camera:0" or "synth:SCENE?frames=N".
+    sensor: "mono", "stereo" or "rgbd"; None: the best it has.
+    camera: a camera.yaml instead of the recording's own calibration.
+    fov: horizontal field of view in degrees instead of a calibration.
+    first, last: frame numbers from 0, both included; -1: to the end.
+    color: frames have their colours as well, where there are any.
+    """
+    options = {"source": os.fspath(source), "sensor": sensor, "fov": fov, "first": first, "last": last,
+               "camera_file": None if camera is None else os.fspath(camera)}
+    return Recording(_core.open(options, color))

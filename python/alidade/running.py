@@ -1,0 +1,147 @@
+"""Whole runs: a recording in, a trajectory and a map out."""
+
+from __future__ import annotations
+
+import dataclasses
+import os
+import tempfile
+from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Union
+
+from . import _core
+from ._log import tell_warnings
+from .camera import Camera, PathLike
+from .maps import Map
+from .results import Result
+
+Detection = Tuple[Union[str, int], float, float, float, float, float]
+Detector = Callable[[Any], Iterable[Detection]]
+
+
+@dataclasses.dataclass(frozen=True)
+class Progress:
+    """How far a run is."""
+
+    stage: str
+    """opening, calibrating (an unknown camera is looked for), running, finishing"""
+    frames: int
+    """done"""
+    total: Optional[int]
+    """None: unknown"""
+    state: str
+    """initialising, tracking or lost"""
+    keyframes: int
+    points: int
+    viewer: Optional[str] = None
+    """address, with ``viewer=``"""
+
+
+def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = False, dynamics: Optional[str] = None,
+        detector: Union[None, PathLike, Detector] = None, camera: Union[None, PathLike, Camera] = None,
+        fov: Union[None, float, str] = None, calibrate_first: bool = True, profile: str = "desktop",
+        config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
+        load: Union[None, PathLike, Map] = None, out: Optional[PathLike] = None, schedule: Optional[str] = None,
+        rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
+        first: int = 0, last: int = -1, record: Union[None, bool, PathLike] = None,
+        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False,
+        progress: Optional[Callable[[Progress], None]] = None) -> Result:
+    """Tracks a recording, video or camera and maps what it sees, as ``alidade run`` does: the same options by the
+    same names, the same bytes in every file.
+
+    source: folder (TUM RGB-D, EuRoC, KITTI, images), video, "camera:0" or "synth:SCENE?frames=N".
+    sensor: "mono", "stereo" or "rgbd"; None: what the recording has.
+    semidense: map shape too: depth at every pixel with structure.
+    dynamics: "off", "geometry" (leave out what moves) or "full" (and what a detector knows to).
+    detector: a YOLO network (.onnx), or a function of an image that gives (class, score, x, y, width, height) of
+        each thing; see Slam. Implies dynamics="full".
+    camera: a camera.yaml, or a Camera, instead of the recording's own; fov: horizontal field of view in degrees
+        (70, or "~70" for a guess). calibrate_first: find a camera that nothing is known of by playing beforehand.
+    profile: "desktop" or "phone"; config: a YAML file of settings; settings: {"tracker.extractor.features": 1500}:
+        by the names of ``--set`` (alidade.settings() has them all).
+    load: a map to go on in (a Map, or its path).
+    out: folder for the results. None: a temporary one, which goes with the Result.
+    schedule: "inline" (the same result every time) or "threaded" (as live); rate: "realtime", "max" or frames per
+        second. repeat: forth and back so many times. threads: for parallel loops, 0 = all cores; results are the same.
+    first, last: frame numbers, both included.
+    record: keep the stream for `alidade view` (True: run.stream in the folder; or a path). viewer: show the run in a
+        browser while it goes on (True, or a port); host: the address it listens on. write_masks: what was left out.
+    progress: called with a Progress when there is news, 20 times a second at most, from this thread; what it raises
+        ends the run.
+
+    Raises Error. Ctrl-C ends the run early: what was done by then is written, then KeyboardInterrupt is raised (as
+    is what `progress` raised), with the Result as its attribute ``result`` where there is one. One run at a time;
+    others wait their turn.
+    """
+    return _run(dict(
+        source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
+        calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks),
+        detector, camera, config, load, out, record, viewer, progress)
+
+
+def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[str] = None,
+             dynamics: Optional[str] = None, detector: Union[None, PathLike, Detector] = None,
+             camera: Union[None, PathLike, Camera] = None, fov: Union[None, float, str] = None,
+             calibrate_first: bool = True, profile: str = "desktop", config: Optional[PathLike] = None,
+             settings: Optional[Mapping[str, Any]] = None, out: Optional[PathLike] = None,
+             schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
+             seed: Optional[int] = None, first: int = 0, last: int = -1,
+             record: Union[None, bool, PathLike] = None, viewer: Union[None, bool, int] = None,
+             host: Optional[str] = None, write_masks: bool = False,
+             progress: Optional[Callable[[Progress], None]] = None) -> Result:
+    """Finds the poses of a recording in a map, which stays as it is, as ``alidade localize`` does. Poses are in the
+    map's world. map: a Map, or the path of one; all else as for run()."""
+    return _run(dict(
+        source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
+        profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
+        first=first, last=last, host=host,
+        write_masks=write_masks, localise=True),
+        detector, camera, config, map, out, record, viewer, progress)
+
+
+def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any, record: Any,
+         viewer: Any, progress: Optional[Callable[[Progress], None]]) -> Result:
+    scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # goes with the last who holds it
+    options["detector"] = detector if detector is None or callable(detector) else os.fspath(detector)
+    if isinstance(camera, Camera):
+        options["camera_file"] = os.path.join(scratch.name, "camera.yaml")
+        camera.to_yaml(options["camera_file"])
+    elif camera is not None:
+        options["camera_file"] = os.fspath(camera)
+    if isinstance(load, Map):
+        options["load"] = os.path.join(scratch.name, "map.alidade")
+        load.save(options["load"])
+    elif load is not None:
+        options["load"] = os.fspath(load)
+    options["config"] = None if config is None else os.fspath(config)
+    options["out"] = os.path.join(scratch.name, "result") if out is None else os.fspath(out)
+    if record is not None and record is not False:
+        options["record"] = "" if record is True else os.fspath(record)
+    if viewer is not None and viewer is not False:
+        options["viewer"] = "" if viewer is True else int(viewer)
+
+    outcome: Dict[str, Any] = {}
+    last: Dict[str, Any] = {}
+
+    def told(values: Dict[str, Any]) -> None:
+        tell_warnings()
+        if progress is None or values == last:
+            return
+        last.update(values)
+        values["total"] = values["total"] if values["total"] >= 0 else None
+        values["viewer"] = values["viewer"] or None
+        progress(Progress(**values))
+
+    def result() -> Result:
+        made = outcome.get("map")
+        return Result(outcome["folder"], _map=None if made is None else Map(made),
+                      _keeper=scratch if out is None else None)
+
+    try:
+        _core.run(options, told, outcome)
+    except BaseException as error:
+        if os.path.isfile(os.path.join(outcome.get("folder", ""), "stats.json")):
+            error.result = result()  # type: ignore[attr-defined]
+        raise
+    finally:
+        tell_warnings()
+    return result()

@@ -1,0 +1,144 @@
+#include "arrays.h"
+
+#include <cmath>
+#include <utility>
+
+#include "alidade/base/error.h"
+
+namespace alidade::python {
+namespace {
+
+std::string ShapeOf(const py::array& array) {
+  return py::str(py::tuple(array.attr("shape"))).cast<std::string>() + " of " +
+         py::str(array.dtype()).cast<std::string>();
+}
+
+// Pixels side by side, rows below each other.
+bool HasRows(const py::array& array, py::ssize_t pixel_bytes) {
+  const bool pixels = array.shape(1) < 2 || array.strides(1) == pixel_bytes;
+  const bool channels = array.ndim() < 3 || array.shape(2) < 2 || array.strides(2) == 1;
+  const bool rows = array.shape(0) < 2 || array.strides(0) >= array.shape(1) * pixel_bytes;
+  return pixels && channels && rows;
+}
+
+WrappedImage Wrap(const py::array& given, int type, py::ssize_t pixel_bytes) {
+  py::array array = given;
+  if (!HasRows(array, pixel_bytes))
+    array = py::module_::import("numpy").attr("ascontiguousarray")(array);
+  const auto rows = static_cast<int>(array.shape(0)), columns = static_cast<int>(array.shape(1));
+  const auto least = static_cast<size_t>(columns * pixel_bytes);
+  const size_t step = rows > 1 ? static_cast<size_t>(array.strides(0)) : least;
+  return {cv::Mat(rows, columns, type, const_cast<void*>(array.data()), step), array};
+}
+
+py::array ArrayFrom(const py::handle& value, const std::string& name) {
+  py::array array = py::array::ensure(value);
+  if (!array) {
+    PyErr_Clear();
+    ThrowInput(name + " is no array");
+  }
+  if (array.size() == 0) ThrowInput(name + " is empty: " + ShapeOf(array));
+  return array;
+}
+
+void FillPose(const Se3& pose, double* out) {
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) out[4 * row + column] = pose.R(row, column);
+    out[4 * row + 3] = pose.t[row];
+    out[12 + row] = 0;
+  }
+  out[15] = 1;
+}
+
+}  // namespace
+
+WrappedImage WrapImage(const py::handle& value, const std::string& name) {
+  if (value.is_none()) return {};
+  const py::array array = ArrayFrom(value, name);
+  const bool grey = array.ndim() == 2 || (array.ndim() == 3 && array.shape(2) == 1);
+  const bool color = array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4);
+  if (!py::isinstance<py::array_t<uint8_t>>(array) || !(grey || color)) {
+    ThrowInput(name + " must be (height, width) or (height, width, 3) of uint8, not " +
+               ShapeOf(array));
+  }
+  const int channels = grey ? 1 : static_cast<int>(array.shape(2));
+  return Wrap(array, CV_8UC(channels), channels);
+}
+
+WrappedImage WrapDepth(const py::handle& value, const std::string& name) {
+  if (value.is_none()) return {};
+  const py::array array = ArrayFrom(value, name);
+  const bool whole = py::isinstance<py::array_t<uint16_t>>(array);
+  if (array.ndim() != 2 || !(whole || py::isinstance<py::array_t<float>>(array))) {
+    ThrowInput(name +
+               " must be (height, width) of float32 (metres) or uint16 (depth_factor per metre), "
+               "not " +
+               ShapeOf(array));
+  }
+  return Wrap(array, whole ? CV_16U : CV_32F, whole ? 2 : 4);
+}
+
+py::object ArrayOf(const cv::Mat& image) {
+  if (image.empty()) return py::none();
+  // Without a count of holders the memory is somebody else's, and may go.
+  auto* held = new cv::Mat(image.u != nullptr ? image : image.clone());
+  const py::capsule keeper(held, [](void* mat) { delete static_cast<cv::Mat*>(mat); });
+  std::vector<py::ssize_t> shape = {held->rows, held->cols};
+  std::vector<py::ssize_t> strides = {static_cast<py::ssize_t>(held->step[0]),
+                                      static_cast<py::ssize_t>(held->elemSize())};
+  if (held->channels() > 1) {
+    shape.push_back(held->channels());
+    strides.push_back(static_cast<py::ssize_t>(held->elemSize1()));
+  }
+  const py::dtype type = held->depth() == CV_8U    ? py::dtype::of<uint8_t>()
+                         : held->depth() == CV_16U ? py::dtype::of<uint16_t>()
+                                                   : py::dtype::of<float>();
+  return py::array(type, shape, strides, held->data, keeper);
+}
+
+py::array_t<double> PoseArray(const Se3& pose) {
+  py::array_t<double> array({4, 4});
+  FillPose(pose, array.mutable_data());
+  return array;
+}
+
+py::array_t<double> PoseArray(const std::vector<Se3>& poses) {
+  py::array_t<double> array(
+      {static_cast<py::ssize_t>(poses.size()), py::ssize_t{4}, py::ssize_t{4}});
+  for (size_t i = 0; i < poses.size(); ++i) FillPose(poses[i], array.mutable_data() + 16 * i);
+  return array;
+}
+
+py::array_t<double> TrajectoryArray(const Trajectory& poses) {
+  py::array_t<double> array({static_cast<py::ssize_t>(poses.size()), py::ssize_t{8}});
+  double* out = array.mutable_data();
+  for (const StampedPose& pose : poses) {
+    const Eigen::Quaterniond q = pose.T_world_camera.Quaternion();
+    const Eigen::Vector3d& t = pose.T_world_camera.t;
+    for (double value : {pose.time, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()})
+      *out++ = value;
+  }
+  return array;
+}
+
+Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
+  if (!array) {
+    PyErr_Clear();
+    ThrowInput(name + " is no array of numbers");
+  }
+  if (array.ndim() != 2 || array.shape(1) != 8) {
+    ThrowInput(name + " must be (n, 8): timestamp tx ty tz qx qy qz qw, not " + ShapeOf(array));
+  }
+  Trajectory trajectory;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const double* row = array.data(i, 0);
+    const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
+    if (!(std::abs(q.norm() - 1) < 0.05))  // as in files
+      ThrowInput(name + ": row " + std::to_string(i) + " has no unit quaternion");
+    trajectory.push_back({row[0], Se3::FromQuaternion(q, {row[1], row[2], row[3]}), {}});
+  }
+  return trajectory;
+}
+
+}  // namespace alidade::python

@@ -1,0 +1,75 @@
+#include <optional>
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/file.h"
+#include "alidade/run/options.h"
+#include "arrays.h"
+#include "values.h"
+
+namespace alidade::python {
+namespace {
+
+// Images as taken by a camera of a file, turned into those of a pinhole or a rectified pair.
+class Rectifier {
+ public:
+  Rectifier(const std::string& path, const std::string& sensor)
+      : calibration_(ReadCameraFile(path)),
+        preparation_(calibration_, SensorNamed("sensor", sensor)) {}
+
+  py::object camera() const { return CameraObject(preparation_.camera()); }
+  py::object Left(const py::handle& image) const {
+    return Apply(WrapImage(image, "image"), &ImagePreparation::Left);
+  }
+  py::object Right(const py::handle& image) const {
+    return Apply(WrapImage(image, "right"), &ImagePreparation::Right);
+  }
+  py::object Depth(const py::handle& depth) const {
+    return Apply(WrapDepth(depth, "depth"), &ImagePreparation::Depth);
+  }
+
+ private:
+  py::object Apply(const WrappedImage& given,
+                   cv::Mat (ImagePreparation::*apply)(const cv::Mat&) const) const {
+    cv::Mat made;
+    {
+      const py::gil_scoped_release release;
+      made = (preparation_.*apply)(given.image);
+    }
+    return made.data == given.image.data ? given.memory : ArrayOf(made);
+  }
+
+  Calibration calibration_;
+  ImagePreparation preparation_;
+};
+
+py::object ReadCamera(const std::string& path, const std::string& sensor) {
+  const Calibration calibration = ReadCameraFile(path);
+  const Sensor wanted = SensorNamed("sensor", sensor);
+  if (calibration.left.lens == Lens::kFisheye || (wanted == Sensor::kStereo && calibration.right)) {
+    ThrowUsage(path + ": images of this camera must be rectified; alidade.Rectifier does it");
+  }
+  return CameraObject(ImagePreparation(calibration, wanted).camera());
+}
+
+}  // namespace
+
+void BindCamera(py::module_& core) {
+  core.def("check_camera", [](const py::object& camera) { CameraFrom(camera); });
+  core.def("read_camera", &ReadCamera, py::arg("path"), py::arg("sensor"));
+  core.def("write_camera", [](const std::string& path, const py::object& camera) {
+    AtomicWriteFile(path, FormatCameraFile(CameraFrom(camera)));
+  });
+  core.def("camera_from_fov", [](int width, int height, double degrees) {
+    return CameraObject(Camera::FromFieldOfView(width, height, degrees));
+  });
+  py::class_<Rectifier>(core, "Rectifier")
+      .def(py::init<const std::string&, const std::string&>(), py::arg("path"), py::arg("sensor"))
+      .def_property_readonly("camera", &Rectifier::camera)
+      .def("left", &Rectifier::Left)
+      .def("right", &Rectifier::Right)
+      .def("depth", &Rectifier::Depth);
+}
+
+}  // namespace alidade::python

@@ -1,0 +1,188 @@
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/parallel.h"
+#include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/loop.h"
+#include "alidade/run/run.h"
+#include "alidade/run/stream_feed.h"
+#include "alidade/serve/viewer_server.h"
+#include "alidade/version.h"
+#include "arrays.h"
+#include "errors.h"
+#include "interruptible.h"
+#include "map_value.h"
+#include "values.h"
+
+namespace alidade::python {
+namespace {
+
+using py::literals::operator""_a;
+
+// How far a run is; keeps its map.
+class Onlooker : public RunWatcher {
+ public:
+  void Calibrating(const CalibrateProgress& progress) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stage_ = "calibrating";
+    frames_ = progress.frames;
+  }
+  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    slam_ = &slam;
+    total_ = record.source.frames;
+    frames_ = 0;
+    stage_ = "running";
+    folder_ = folder;
+  }
+  void Frame(const SourceFrame& frame, const TrackResult& result) override {
+    (void)frame;
+    const MapSnapshot map = slam_->Snapshot();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++frames_;
+    state_ = result.state;
+    keyframes_ = map.keyframe_count();
+    points_ = map.landmark_count();
+  }
+  void Finishing() override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stage_ = "finishing";
+  }
+  void Finished() override {
+    auto saved = std::make_shared<MapValue>(slam_->Saved());
+    const std::lock_guard<std::mutex> lock(mutex_);
+    map_ = std::move(saved);
+  }
+  void ShownAt(const std::string& address) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    viewer_ = address;
+  }
+  void Warn(const std::string& message) override { KeepWarning(message); }
+
+  py::dict Told() const {
+    constexpr const char* kStates[] = {"initialising", "tracking", "lost"};
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return py::dict("stage"_a = stage_, "frames"_a = frames_, "total"_a = total_,
+                    "state"_a = kStates[static_cast<int>(state_)], "keyframes"_a = keyframes_,
+                    "points"_a = points_, "viewer"_a = viewer_);
+  }
+  std::string folder() const { return folder_; }
+  MapHolder map() const { return map_; }
+
+ private:
+  mutable std::mutex mutex_;
+  const Slam* slam_ = nullptr;
+  std::string stage_ = "opening", folder_, viewer_;
+  int frames_ = 0, total_ = -1, keyframes_ = 0, points_ = 0;
+  TrackState state_ = TrackState::kInitialising;
+  MapHolder map_;
+};
+
+ServeSettings ViewerSettings(const RunOptions& options) {
+  ServeSettings settings;
+  if (options.host) settings.host = *options.host;
+  if (options.viewer && !options.viewer->empty()) {
+    settings.port = std::stoi(*options.viewer);
+    settings.port_given = true;
+  }
+  settings.Check();
+  return settings;
+}
+
+// One run, which may be asked to end before its turn has come.
+class OneOfMany {
+ public:
+  void Run(const RunOptions& options, Onlooker& onlooker);
+  void Stop() {
+    asked_ = true;
+    if (running_) RequestInterrupt();
+  }
+
+ private:
+  std::atomic<bool> asked_{false}, running_{false};
+};
+
+void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
+  // Warnings, threads and the request to stop are the program's: one run at a time.
+  static auto* one_run = new std::timed_mutex;
+  std::unique_lock<std::timed_mutex> alone(*one_run, std::defer_lock);
+  while (!asked_ && !alone.try_lock_for(std::chrono::milliseconds(50))) {
+  }
+  if (asked_) return;
+  ForgetInterrupts();
+  running_ = true;
+  if (asked_) RequestInterrupt();
+  const int opencv_threads = cv::getNumThreads(), threads = ThreadCount();
+  std::vector<RunWatcher*> watchers = {&onlooker};
+  std::optional<StreamFeed> feed;
+  std::unique_ptr<ViewerServer> server;
+  const auto leave = [&] {
+    running_ = false;
+    CollectWarnings();
+    cv::setNumThreads(opencv_threads);
+    SetThreadCount(threads);
+  };
+  try {
+    if (options.record || options.viewer) {
+      CheckRunOptions(options);
+      feed.emplace("alidade " ALIDADE_VERSION, options.record, SettingsFrom(options).stream);
+      watchers.push_back(&*feed);
+    }
+    if (options.viewer) {
+      server = StartViewer(ViewerSettings(options), &*feed, "", options.source);
+      onlooker.ShownAt(server->address());
+    }
+    alidade::Run(options, watchers);
+  } catch (...) {
+    leave();
+    throw;
+  }
+  leave();
+}
+
+// Fills `outcome`, which a caller has even when this raises: `folder` once there is one, `map`.
+void RunFor(const py::dict& values, const py::object& progress, py::dict outcome) {
+  const RunOptions options = OptionsFrom(values);
+  Onlooker onlooker;
+  OneOfMany run;
+  const auto tell = [&] {
+    if (!progress.is_none()) progress(onlooker.Told());
+  };
+  const auto report = [&] {
+    if (!onlooker.folder().empty()) outcome["folder"] = onlooker.folder();
+    outcome["map"] = onlooker.map();
+  };
+  try {
+    WorkInterruptibly([&] { run.Run(options, onlooker); }, [&] { run.Stop(); }, tell);
+  } catch (...) {
+    report();
+    throw;
+  }
+  report();
+  tell();
+}
+
+}  // namespace
+
+void BindRun(py::module_& core) {
+  core.def("run", &RunFor, py::arg("options"), py::arg("progress"), py::arg("outcome"));
+  core.def("read_trajectory",
+           [](const std::string& path) { return TrajectoryArray(ReadTrajectory(path)); });
+  core.def("format_trajectory", [](const py::object& array) {
+    return FormatTumTrajectory(TrajectoryOf(array, "trajectory"));
+  });
+  core.def("setting_names", [] {
+    py::dict all;
+    for (const auto& [name, value] : RunSettings{}.All()) all[py::str(name)] = value;
+    return all;
+  });
+}
+
+}  // namespace alidade::python

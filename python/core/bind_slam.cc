@@ -1,0 +1,79 @@
+#include "slam_object.h"
+
+namespace alidade::python {
+namespace {
+
+using py::literals::operator""_a;
+
+const char* StateOf(const TrackedFrame& frame) {
+  constexpr const char* kStates[] = {"initialising", "tracking", "lost"};
+  return kStates[static_cast<int>(frame.result.state)];
+}
+
+bool IsTracked(const TrackedFrame& frame) { return frame.result.state == TrackState::kTracking; }
+
+py::object PoseOf(const TrackedFrame& frame) {
+  return IsTracked(frame) ? py::object(PoseArray(frame.result.T_world_camera))
+                          : py::object(py::none());
+}
+
+py::object PredictedOf(const TrackedFrame& frame) {
+  return frame.result.predicted ? py::object(PoseArray(frame.result.T_world_camera))
+                                : py::object(py::none());
+}
+
+py::object CovarianceOf(const TrackedFrame& frame) {
+  const Matrix6d& covariance = frame.result.quality.covariance;
+  if (!IsTracked(frame) || covariance.isZero(0)) return py::none();
+  py::array_t<double> array({6, 6});
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column)
+      *array.mutable_data(row, column) = covariance(row, column);
+  }
+  return array;
+}
+
+// As keyword arguments of alidade.TrackResult.
+py::dict FieldsOf(const TrackedFrame& frame) {
+  const TrackResult& result = frame.result;
+  return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
+                  "pose"_a = PoseOf(frame), "reason"_a = result.reason,
+                  "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
+                  "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
+                  "cut"_a = result.cut, "expected"_a = result.quality.expected,
+                  "inliers"_a = result.quality.inliers,
+                  "found_share"_a = result.quality.found_share, "warning"_a = result.warning);
+}
+
+}  // namespace
+
+void BindSlam(py::module_& core) {
+  py::class_<SlamObject>(core, "Slam")
+      .def(py::init<const py::object&, const py::dict&, const py::object&>(), "camera"_a,
+           "options"_a, "mounting"_a)
+      .def("track",
+           [](SlamObject& slam, double time, const py::object& image, const py::object& depth,
+              const py::object& right, const py::object& color, const std::string& stamp) {
+             return FieldsOf(slam.Track(time, image, depth, right, color, stamp));
+           })
+      .def("load", &SlamObject::Load)
+      .def("reset", &SlamObject::Reset)
+      .def("finish", &SlamObject::Finish)
+      .def("close", &SlamObject::Close)
+      .def_property_readonly("closed", &SlamObject::closed)
+      .def("camera", &SlamObject::camera)
+      .def("settings", &SlamObject::settings)
+      .def("frames", &SlamObject::frames)
+      .def("trajectory", &SlamObject::Trajectory)
+      .def("trajectory_text", &SlamObject::TrajectoryText)
+      .def("frame_poses", &SlamObject::Frames)
+      .def("map", &SlamObject::Map)
+      .def("health", &SlamObject::Health)
+      .def("counts", &SlamObject::Counts)
+      .def("times", &SlamObject::Times)
+      .def("features", &SlamObject::Features)
+      .def("mover_mask", &SlamObject::MoverMask)
+      .def("detections", &SlamObject::Detections);
+}
+
+}  // namespace alidade::python

@@ -1,0 +1,83 @@
+#include "detector.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/detect/class_names.h"
+#include "arrays.h"
+
+namespace alidade::python {
+namespace {
+
+class CallableDetector : public Detector {
+ public:
+  explicit CallableDetector(py::object callable) : callable_(std::move(callable)) {
+    names_ = CocoNames();
+    if (py::hasattr(callable_, "class_names"))
+      names_ = callable_.attr("class_names").cast<std::vector<std::string>>();
+  }
+  ~CallableDetector() override {
+    const py::gil_scoped_acquire acquire;
+    callable_ = py::object();
+  }
+  CallableDetector(const CallableDetector&) = delete;
+  CallableDetector& operator=(const CallableDetector&) = delete;
+
+  std::vector<Detection> Detect(const cv::Mat& image) override {
+    const py::gil_scoped_acquire acquire;
+    try {
+      std::vector<Detection> found;
+      for (const py::handle& thing : callable_(ArrayOf(image)))
+        found.push_back(DetectionFrom(thing, image.size()));
+      std::stable_sort(found.begin(), found.end(),
+                       [](const Detection& a, const Detection& b) { return a.score > b.score; });
+      return found;
+    } catch (const py::error_already_set& error) {   // must not leave without the GIL
+      if (error.matches(PyExc_KeyboardInterrupt)) {  // is not the detector's: raised again, later
+        PyErr_SetInterrupt();
+        return {};
+      }
+      ThrowInput(error.what());
+    } catch (const py::cast_error& error) {
+      ThrowInput(error.what());
+    }
+  }
+  const std::vector<std::string>& ClassNames() const override { return names_; }
+
+ private:
+  Detection DetectionFrom(const py::handle& thing, cv::Size image) const {
+    const auto values = py::reinterpret_borrow<py::object>(thing).cast<py::sequence>();
+    if (values.size() != 6)
+      ThrowInput("a detection is (class, score, x, y, width, height), not " +
+                 py::repr(thing).cast<std::string>());
+    const auto number = [&](size_t i) { return py::float_(values[i]).cast<float>(); };
+    Detection detection;
+    detection.class_id = ClassOf(values[0]);
+    detection.score = number(1);
+    detection.box =
+        cv::Rect2f(number(2), number(3), number(4), number(5)) &
+        cv::Rect2f(0, 0, static_cast<float>(image.width), static_cast<float>(image.height));
+    return detection;
+  }
+
+  // -1 for a name that is not among them: things of no class we know stay where they are.
+  int ClassOf(const py::object& value) const {
+    if (!py::isinstance<py::str>(value)) return py::int_(value).cast<int>();
+    const auto at = std::find(names_.begin(), names_.end(), value.cast<std::string>());
+    return at == names_.end() ? -1 : static_cast<int>(at - names_.begin());
+  }
+
+  py::object callable_;
+  std::vector<std::string> names_;
+};
+
+}  // namespace
+
+std::shared_ptr<Detector> DetectorOf(py::object callable) {
+  return std::make_shared<CallableDetector>(std::move(callable));
+}
+
+}  // namespace alidade::python

@@ -1,0 +1,209 @@
+#include "slam_object.h"
+
+#include <limits>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/detect/onnx/open_detector.h"
+#include "alidade/run/run_settings.h"
+#include "interruptible.h"
+#include "values.h"
+
+namespace alidade::python {
+namespace {
+
+using py::literals::operator""_a;
+
+Eigen::Matrix3d RotationFrom(const py::object& pose) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  if (pose.is_none()) return R;
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(pose);
+  if (!array || array.ndim() != 2 || array.shape(0) != 4 || array.shape(1) != 4)
+    ThrowUsage("mounting must be a pose, (4, 4)");
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) R(row, column) = *array.data(row, column);
+  }
+  return R;
+}
+
+}  // namespace
+
+SlamObject::SlamObject(const py::object& camera, const py::dict& options,
+                       const py::object& mounting) {
+  const RunOptions wanted = OptionsFrom(options);
+  const Camera given = CameraFrom(camera);
+  const Eigen::Matrix3d R = RotationFrom(mounting);
+  // The last holder may have the GIL, or not.
+  const auto without_gil = [](Held* held) {
+    if (PyGILState_Check() != 0) {
+      const py::gil_scoped_release release;
+      delete held;
+    } else {
+      delete held;
+    }
+  };
+  const py::gil_scoped_release release;
+  if (wanted.semidense && wanted.localise)
+    ThrowUsage("semidense adds depth to a map that grows: localise leaves the map as it is");
+  SlamSettings settings = SettingsFrom(wanted).slam;
+  settings.localise = wanted.localise;
+  settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
+  settings.threaded = ThreadedFrom(wanted, false);
+  std::shared_ptr<Detector> detector = wanted.own_detector;
+  if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
+  held_ = std::shared_ptr<Held>(new Held(given, settings, std::move(detector)), without_gil);
+  held_->record.settings = settings;
+  held_->record.source.camera = given;
+  held_->record.source.R_camera_rectified = R;
+}
+
+std::shared_ptr<SlamObject::Held> SlamObject::Get() const {
+  if (!held_) ThrowUsage("this Slam was closed");
+  return held_;
+}
+
+TrackedFrame SlamObject::Track(double time, const py::object& image, const py::object& depth,
+                               const py::object& right, const py::object& color,
+                               const std::string& stamp) {
+  const std::shared_ptr<Held> held = Get();
+  const WrappedImage seen = WrapImage(image, "image"), beside = WrapImage(right, "right"),
+                     far = WrapDepth(depth, "depth"), colored = WrapImage(color, "color");
+  const py::gil_scoped_release release;
+  const std::lock_guard<std::mutex> lock(held->turn);
+  const int number = held->slam.frames();
+  RunRecord& record = held->record;
+  record.stamps.push_back(stamp);
+  record.numbers.push_back(number);
+  try {
+    return {held->slam.Track({time, seen.image, beside.image, far.image, colored.image}), number,
+            time};
+  } catch (...) {
+    record.stamps.resize(static_cast<size_t>(held->slam.frames()));  // of those that count
+    record.numbers.resize(record.stamps.size());
+    throw;
+  }
+}
+
+void SlamObject::Load(const MapHolder& map) {
+  const std::shared_ptr<Held> held = Get();
+  const py::gil_scoped_release release;
+  held->slam.Load(*map);
+}
+
+void SlamObject::Reset() {
+  const std::shared_ptr<Held> held = Get();
+  const py::gil_scoped_release release;
+  held->slam.Reset();
+}
+
+void SlamObject::Finish(double limit) {
+  const std::shared_ptr<Held> held = Get();
+  WorkInterruptibly([&] { held->slam.Finish(limit); }, [&] { held->slam.CutFinishShort(); });
+}
+
+py::object SlamObject::camera() const { return CameraObject(Get()->slam.camera()); }
+
+py::dict SlamObject::settings() const {
+  py::dict all;
+  for (const auto& [name, value] : Get()->record.settings.All()) all[py::str(name)] = value;
+  return all;
+}
+
+int SlamObject::frames() const { return Get()->slam.frames(); }
+
+MapResults SlamObject::ResultsOfMap(size_t number) const {
+  const std::shared_ptr<Held> held = Get();
+  const py::gil_scoped_release release;
+  const std::lock_guard<std::mutex> lock(held->turn);
+  RunResults results = ResultsOf(held->slam, held->record);
+  if (number >= results.maps.size())
+    ThrowUsage("map " + std::to_string(number) + ": maps are numbered from 0, and here are " +
+               std::to_string(results.maps.size()));
+  return std::move(results.maps[number]);
+}
+
+py::array_t<double> SlamObject::Trajectory(size_t number, bool live) const {
+  const MapResults map = ResultsOfMap(number);
+  return TrajectoryArray(live ? map.live : map.trajectory);
+}
+
+std::string SlamObject::TrajectoryText(size_t number) const {
+  return FormatTumTrajectory(ResultsOfMap(number).trajectory);
+}
+
+// Of each frame: (time, pose or None, its map or None, late).
+py::list SlamObject::Frames(int since) const {
+  const std::shared_ptr<Held> held = Get();
+  std::vector<FramePose> frames;
+  {
+    const py::gil_scoped_release release;
+    frames = held->slam.Trajectory(since);
+  }
+  py::list all;
+  for (const FramePose& frame : frames) {
+    const bool placed = frame.tracked;
+    all.append(py::make_tuple(
+        frame.index, frame.time,
+        placed ? py::object(PoseArray(frame.T_world_camera)) : py::object(py::none()),
+        placed ? py::object(py::int_(frame.map.value)) : py::object(py::none()), frame.late));
+  }
+  return all;
+}
+
+MapHolder SlamObject::Map() const {
+  const std::shared_ptr<Held> held = Get();
+  const py::gil_scoped_release release;
+  return std::make_shared<MapValue>(held->slam.Saved());
+}
+
+py::object SlamObject::Health() const {
+  py::dict all;
+  for (const StageHealth& stage : Get()->slam.Health().stages)
+    all[py::str(stage.name)] =
+        stage.running ? py::object(py::none()) : py::object(py::str(stage.failure));
+  return all;
+}
+
+py::dict SlamObject::Counts() const {
+  const SlamCounts counts = Get()->slam.Counts();
+  return py::dict("relocalisations"_a = counts.relocalisations, "loops"_a = counts.loops,
+                  "merges"_a = counts.merges, "cuts"_a = counts.cuts,
+                  "predicted"_a = counts.predicted);
+}
+
+py::dict SlamObject::Times() const {
+  const StageTimes times = Get()->slam.Times();
+  return py::dict("frame"_a = Table(times.frame), "extract"_a = Table(times.extract),
+                  "track"_a = Table(times.track), "map"_a = Table(times.map),
+                  "loop"_a = Table(times.loop), "semidense"_a = Table(times.semidense),
+                  "detect"_a = Table(times.detect), "dynamics"_a = Table(times.dynamics));
+}
+
+py::tuple SlamObject::Features() const {
+  std::vector<float> pixels, still;
+  std::vector<uint8_t> matched;
+  for (const FeatureUse& feature : Get()->slam.Features()) {
+    pixels.push_back(feature.x);
+    pixels.push_back(feature.y);
+    still.push_back(feature.static_probability);
+    matched.push_back(feature.matched);
+  }
+  return py::make_tuple(Table(pixels, 2), Table(matched).attr("astype")("bool"), Table(still));
+}
+
+py::object SlamObject::MoverMask() const { return ArrayOf(Get()->slam.MoverMask()); }
+
+py::object SlamObject::Detections() const {
+  const std::optional<ShownDetections> shown = Get()->slam.Detections();
+  if (!shown) return py::none();
+  py::list all;
+  for (size_t i = 0; i < shown->detections.size(); ++i) {
+    const Detection& d = shown->detections[i];
+    all.append(py::make_tuple(shown->names[i].empty() ? py::object(py::int_(d.class_id))
+                                                      : py::object(py::str(shown->names[i])),
+                              d.score, d.box.x, d.box.y, d.box.width, d.box.height));
+  }
+  return all;
+}
+
+}  // namespace alidade::python

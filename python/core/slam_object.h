@@ -1,0 +1,67 @@
+// Slam as Python holds it.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "alidade/run/record.h"
+#include "alidade/run/results.h"
+#include "alidade/system/slam.h"
+#include "arrays.h"
+#include "map_value.h"
+
+namespace alidade::python {
+
+struct TrackedFrame {
+  TrackResult result;
+  int frame = 0;    // how many came before it
+  double time = 0;  // seconds
+};
+
+// Any method from any thread. Driving calls take turns; while the library works the GIL is given
+// up. Calls after Close() throw Error (usage); Close() waits for nobody: what is under way ends as
+// it would, and the last of them takes the threads down.
+class SlamObject {
+ public:
+  // `options`: those of a run. `mounting`: R_camera_rectified of the source, (4, 4) or None.
+  SlamObject(const py::object& camera, const py::dict& options, const py::object& mounting);
+
+  TrackedFrame Track(double time, const py::object& image, const py::object& depth,
+                     const py::object& right, const py::object& color, const std::string& stamp);
+  void Load(const MapHolder& map);
+  void Reset();
+  void Finish(double limit);
+  void Close() { held_.reset(); }
+  bool closed() const { return held_ == nullptr; }
+
+  py::object camera() const;
+  py::dict settings() const;
+  int frames() const;
+  py::array_t<double> Trajectory(size_t number, bool live) const;
+  std::string TrajectoryText(size_t number) const;
+  py::list Frames(int since) const;
+  MapHolder Map() const;
+  py::object Health() const;
+  py::dict Counts() const;
+  py::dict Times() const;
+  py::tuple Features() const;
+  py::object MoverMask() const;
+  py::object Detections() const;
+
+ private:
+  // Destroyed without the GIL, since a detector's thread may wait for it.
+  struct Held {
+    Held(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)
+        : slam(camera, settings, std::move(detector)) {}
+    std::mutex turn;   // of Track(), so that stamps and frames stay together
+    RunRecord record;  // stamps, numbers and mounting, for ResultsOf()
+    Slam slam;
+  };
+  std::shared_ptr<Held> Get() const;  // throws Error (usage) once closed
+  MapResults ResultsOfMap(size_t number) const;
+
+  std::shared_ptr<Held> held_;
+};
+
+}  // namespace alidade::python

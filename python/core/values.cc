@@ -1,0 +1,117 @@
+#include "values.h"
+
+#include <array>
+#include <map>
+#include <optional>
+
+#include "alidade/base/error.h"
+#include "detector.h"
+
+namespace alidade::python {
+namespace {
+
+template <typename T>
+T Value(const std::string& name, const py::handle& value) {
+  try {
+    return value.cast<T>();
+  } catch (const py::cast_error&) {
+    ThrowUsage(name + " cannot be " + py::repr(value).cast<std::string>());
+  }
+}
+
+// Of numbers and truth values, too: as typed on the command line.
+std::string Word(const py::handle& value) {
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "1" : "0";
+  return py::str(value).cast<std::string>();
+}
+
+template <typename T>
+T Member(const py::handle& object, const char* name) {
+  return Value<T>(std::string("camera.") + name, object.attr(name));
+}
+
+void SetOption(RunOptions& options, const std::string& name, const py::handle& value) {
+  const std::map<std::string, std::optional<std::string>*> words = {
+      {"sensor", &options.sensor},     {"camera_file", &options.camera_file},
+      {"config", &options.config},     {"schedule", &options.schedule},
+      {"rate", &options.rate},         {"out", &options.out},
+      {"load", &options.load},         {"fov", &options.fov},
+      {"dynamics", &options.dynamics}, {"record", &options.record},
+      {"viewer", &options.viewer},     {"host", &options.host}};
+  const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
+                                                 {"localise", &options.localise},
+                                                 {"semidense", &options.semidense},
+                                                 {"write_masks", &options.write_masks}};
+  const std::map<std::string, int*> numbers = {{"threads", &options.threads},
+                                               {"first", &options.first},
+                                               {"last", &options.last},
+                                               {"repeat", &options.repeat}};
+  if (const auto word = words.find(name); word != words.end()) {
+    *word->second = Word(value);
+  } else if (const auto flag = switches.find(name); flag != switches.end()) {
+    *flag->second = Value<bool>(name, value);
+  } else if (const auto number = numbers.find(name); number != numbers.end()) {
+    *number->second = Value<int>(name, value);
+  } else if (name == "source") {
+    options.source = Word(value);
+  } else if (name == "profile") {
+    options.profile = Word(value);
+  } else if (name == "seed") {
+    options.seed = Value<uint64_t>(name, value);
+  } else if (name == "settings") {
+    for (const auto& [setting, content] : Value<py::dict>(name, value))
+      options.settings.push_back(Word(setting) + "=" + Word(content));
+  } else if (name == "detector") {
+    if (PyCallable_Check(value.ptr()) != 0) {
+      options.own_detector = DetectorOf(py::reinterpret_borrow<py::object>(value));
+    } else {
+      options.detector = Word(value);
+    }
+  } else {
+    ThrowUsage("there is no option '" + name + "'");
+  }
+}
+
+}  // namespace
+
+Camera CameraFrom(const py::handle& value) {
+  Camera camera;
+  camera.width = Member<int>(value, "width");
+  camera.height = Member<int>(value, "height");
+  camera.fx = Member<double>(value, "fx");
+  camera.fy = Member<double>(value, "fy");
+  camera.cx = Member<double>(value, "cx");
+  camera.cy = Member<double>(value, "cy");
+  camera.distortion = Member<std::array<double, 5>>(value, "distortion");
+  camera.fps = Member<double>(value, "fps");
+  camera.depth_factor = Member<double>(value, "depth_factor");
+  camera.baseline = Member<double>(value, "baseline");
+  camera.readout_known = !value.attr("readout").is_none();
+  if (camera.readout_known) camera.readout = Member<std::array<double, 2>>(value, "readout");
+  camera.Check();
+  return camera;
+}
+
+py::object CameraObject(const Camera& camera) {
+  const py::object type = py::module_::import("alidade.camera").attr("Camera");
+  const auto& d = camera.distortion;
+  const py::object readout = camera.readout_known || camera.RollingShutter()
+                                 ? py::object(py::make_tuple(camera.readout[0], camera.readout[1]))
+                                 : py::object(py::none());
+  using py::literals::operator""_a;
+  return type("width"_a = camera.width, "height"_a = camera.height, "fx"_a = camera.fx,
+              "fy"_a = camera.fy, "cx"_a = camera.cx, "cy"_a = camera.cy,
+              "distortion"_a = py::make_tuple(d[0], d[1], d[2], d[3], d[4]), "fps"_a = camera.fps,
+              "depth_factor"_a = camera.depth_factor, "baseline"_a = camera.baseline,
+              "readout"_a = readout);
+}
+
+RunOptions OptionsFrom(const py::dict& values) {
+  RunOptions options;
+  for (const auto& [name, value] : values) {
+    if (!value.is_none()) SetOption(options, name.cast<std::string>(), value);
+  }
+  return options;
+}
+
+}  // namespace alidade::python

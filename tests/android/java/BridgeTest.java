@@ -1,0 +1,276 @@
+package org.alidade.phone;
+
+import java.nio.ByteBuffer;
+import java.nio.charset.StandardCharsets;
+import java.nio.file.Files;
+import java.nio.file.Path;
+import java.util.concurrent.atomic.AtomicInteger;
+import java.util.concurrent.atomic.AtomicReference;
+
+/** The bridge on the JVM: BridgeTest FRAMES CYCLES [DETECTOR.onnx]. */
+public final class BridgeTest {
+  private static final int STRIDE_GAP = 13; // odd, as no camera's is
+  private static final long MOST_GROWTH_KB = 8 << 10;
+
+  private final Frames frames;
+  private final int cycles;
+
+  private BridgeTest(Frames frames, int cycles) {
+    this.frames = frames;
+    this.cycles = cycles;
+  }
+
+  public static void main(String[] arguments) throws Exception {
+    BridgeTest bridge = new BridgeTest(new Frames(arguments[0]), Integer.parseInt(arguments[1]));
+    Check check = new Check();
+    check.test("pictures of one thread are mapped while another draws", bridge::mapsWhileDrawing);
+    check.test("rows may have gaps", bridge::rowsMayHaveGaps);
+    check.test("pictures that cannot be are refused", bridge::refusesPictures);
+    check.test("sessions that cannot be are refused", bridge::refusesSessions);
+    check.test("calls out of turn are refused", bridge::refusesCallsOutOfTurn);
+    check.test("the map outlives a camera that was gone", bridge::outlivesTheCamera);
+    check.test("a detector that cannot be opened is told, and done without", bridge::tellsOfDetector);
+    if (arguments.length > 2) {
+      check.test("a detector works beside", () -> bridge.worksWithDetector(arguments[2]));
+    }
+    check.test("a session may be closed while others use it", bridge::closesUnderUse);
+    check.test("sessions come and go without growth", bridge::doesNotGrow);
+    System.exit(check.status());
+  }
+
+  private SlamConnector open() {
+    return new SlamConnector(frames.width, frames.height, frames.lens, "", null);
+  }
+
+  private void offer(SlamConnector slam, int i) {
+    slam.offer(frames.plane(i, frames.width), frames.width, frames.time(i));
+  }
+
+  private void mapsWhileDrawing() throws Exception {
+    try (SlamConnector slam = open()) {
+      AtomicReference<Throwable> problem = new AtomicReference<>();
+      AtomicInteger drawn = new AtomicInteger();
+      Thread screen = new Thread(() -> drawUntilInterrupted(slam, drawn, problem));
+      screen.start();
+      Thread camera =
+          new Thread(
+              () -> {
+                for (int i = 0; i < frames.count; ++i) {
+                  offer(slam, i);
+                  slam.waitUntilIdle();
+                }
+              });
+      camera.start();
+      camera.join();
+      screen.interrupt();
+      screen.join();
+      if (problem.get() != null) throw new AssertionError(problem.get());
+      SlamConnector.Numbers now = slam.numbers();
+      System.out.println(
+          "     " + now.keyframes + " keyframes, " + now.landmarks + " landmarks, " + now.matches
+              + " matches, " + now.milliseconds + " ms");
+      Check.that(now.frames == frames.count, now.frames + " pictures were worked on");
+      Check.that(now.skipped == 0 && now.failed == 0, now.skipped + " skipped, " + now.failed + " failed");
+      Check.that(now.state == SlamConnector.TRACKING, "not tracking: " + slam.reason());
+      Check.that(now.keyframes >= 2 && now.landmarks > 100 && now.matches > 30, "hardly a map");
+      Check.that(now.fovSigma == 0, "the lens was told");
+      Check.that(slam.words().isEmpty(), slam.words());
+      if (drawn.get() == 0) System.out.println("     nothing drawn: no EGL");
+      String trajectory = new String(slam.trajectory(), StandardCharsets.US_ASCII);
+      Check.that(trajectory.lines().count() > frames.count / 3, "a short trajectory");
+      Check.that(slam.map().length > 10000, "a small map");
+    }
+  }
+
+  private static void drawUntilInterrupted(
+      SlamConnector slam, AtomicInteger drawn, AtomicReference<Throwable> problem) {
+    try (Screen screen = new Screen(300, 400)) {
+      if (!screen.there) return;
+      slam.surfaceCreated();
+      slam.surfaceChanged(screen.width, screen.height);
+      for (int turn = 0; !Thread.currentThread().isInterrupted(); turn = (turn + 90) % 360) {
+        if (slam.draw(turn)) drawn.incrementAndGet();
+        Thread.yield();
+      }
+      slam.draw(0);
+      double picture = screen.lit(0, 0.5), map = screen.lit(0.5, 1);
+      System.out.printf(
+          "     drawn %d times: %.0f %% of the picture's half are lit, %.2f %% of the map's%n",
+          drawn.get(), 100 * picture, 100 * map);
+      Check.that(drawn.get() > 0, "nothing was drawn");
+      Check.that(picture > 0.3, "no picture is seen");
+      Check.that(map > 0.002, "no map is seen");
+      Check.that(map < 0.9, "the map is all lit");
+      // The phone was put away: the context is lost, and everything is drawn again in the next one.
+      screen.close();
+      try (Screen next = new Screen(300, 400)) {
+        slam.surfaceCreated();
+        slam.draw(0);
+        Check.that(Math.abs(next.lit(0, 1) - (picture + map) / 2) < 0.02, "not drawn again");
+        slam.surfaceGone();
+      }
+    } catch (Throwable e) {
+      problem.set(e);
+    }
+  }
+
+  private void rowsMayHaveGaps() {
+    int[] found = new int[2];
+    for (int gap = 0; gap < 2; ++gap) {
+      try (SlamConnector slam = open()) {
+        int stride = frames.width + gap * STRIDE_GAP;
+        slam.offer(frames.plane(0, stride), stride, 0);
+        slam.waitUntilIdle();
+        found[gap] = slam.numbers().features;
+      }
+    }
+    Check.that(found[0] > 50, "hardly a feature: " + found[0]);
+    Check.that(found[0] == found[1], found[0] + " features, with gaps " + found[1]);
+  }
+
+  private void refusesPictures() throws Exception {
+    Class<IllegalArgumentException> bad = IllegalArgumentException.class;
+    try (SlamConnector slam = open()) {
+      ByteBuffer plane = frames.plane(0, frames.width);
+      Check.refuses(bad, "pixels", () -> slam.offer(plane, frames.width - 1, 0));
+      Check.refuses(bad, "pixels", () -> slam.offer(plane, frames.width + 1, 0));
+      Check.refuses(bad, "pixels", () -> slam.offer(plane, -1, 0));
+      Check.refuses(bad, "pixels", () -> slam.offer(ByteBuffer.allocateDirect(7), frames.width, 0));
+      Check.refuses(bad, "direct", () -> slam.offer(ByteBuffer.allocate(plane.capacity()), frames.width, 0));
+      Check.refuses(bad, "direct", () -> slam.offer(null, frames.width, 0));
+      Check.refuses(bad, "time", () -> slam.offer(plane, frames.width, Double.NaN));
+      Check.refuses(bad, "degrees", () -> slam.draw(45));
+      offer(slam, 0); // and nothing is lost by it
+      slam.waitUntilIdle();
+      Check.that(slam.numbers().frames == 1, "not worked on");
+    }
+  }
+
+  private void refusesSessions() throws Exception {
+    Class<IllegalArgumentException> bad = IllegalArgumentException.class;
+    Check.refuses(bad, "pixels", () -> new SlamConnector(0, 240, null, "", null));
+    Check.refuses(bad, "pixels", () -> new SlamConnector(320, 100000, null, "", null));
+    Check.refuses(bad, "numbers", () -> new SlamConnector(320, 240, new double[3], "", null));
+    Check.refuses(bad, "field of view", () -> new SlamConnector(320, 240, new double[] {200}, "", null));
+    Check.refuses(bad, "tracker", () -> new SlamConnector(320, 240, null, "tracker.no_such=1", null));
+  }
+
+  private void refusesCallsOutOfTurn() throws Exception {
+    Class<IllegalStateException> state = IllegalStateException.class;
+    SlamConnector slam = open();
+    Check.refuses(state, "surface", () -> slam.draw(0));
+    slam.cameraGone();
+    Check.refuses(state, "camera", () -> offer(slam, 0));
+    slam.close();
+    slam.close(); // once more does no harm
+    Check.refuses(state, "closed", () -> offer(slam, 0));
+    Check.refuses(state, "closed", slam::numbers);
+    Check.refuses(state, "closed", () -> slam.draw(0));
+    Check.refuses(state, "closed", slam::map);
+  }
+
+  private void outlivesTheCamera() {
+    try (SlamConnector slam = open()) {
+      for (int i = 0; i < frames.count; ++i) {
+        offer(slam, i);
+        slam.waitUntilIdle();
+      }
+      int before = slam.numbers().landmarks;
+      slam.cameraGone();
+      slam.cameraBack();
+      // The clock may begin anew, and the camera looks at what it saw last.
+      for (int i = 0; i < 5; ++i) {
+        slam.offer(frames.plane(frames.count - 1, frames.width), frames.width, i / 30.0);
+        slam.waitUntilIdle();
+      }
+      SlamConnector.Numbers now = slam.numbers();
+      Check.that(now.failed == 0, slam.words());
+      Check.that(now.maps == 1 && now.landmarks > before / 2, "the map is gone");
+      Check.that(now.state == SlamConnector.TRACKING, "the place was not recognised: " + slam.reason());
+    }
+  }
+
+  private void tellsOfDetector() {
+    try (SlamConnector slam =
+        new SlamConnector(frames.width, frames.height, frames.lens, "", "/no/such.onnx")) {
+      offer(slam, 0);
+      slam.waitUntilIdle();
+      Check.that(slam.words().contains("there is no such file"), slam.words());
+      Check.that(slam.numbers().frames == 1, "not worked on");
+    }
+  }
+
+  private void worksWithDetector(String file) {
+    try (SlamConnector slam =
+        new SlamConnector(frames.width, frames.height, frames.lens, "", file)) {
+      for (int i = 0; i < frames.count; ++i) {
+        offer(slam, i);
+        slam.waitUntilIdle();
+      }
+      SlamConnector.Numbers now = slam.numbers();
+      Check.that(slam.words().isEmpty(), slam.words());
+      Check.that(now.frames == frames.count && now.failed == 0, now.failed + " failed");
+      Check.that(now.state == SlamConnector.TRACKING, "not tracking: " + slam.reason());
+    }
+  }
+
+  private void closesUnderUse() throws Exception {
+    for (int round = 0; round < 20; ++round) {
+      SlamConnector slam = open();
+      AtomicReference<Throwable> problem = new AtomicReference<>();
+      Check.Body[] uses = {() -> offer(slam, 0), slam::numbers, slam::trajectory, slam::words};
+      Thread[] users = new Thread[uses.length];
+      for (int i = 0; i < uses.length; ++i) {
+        Check.Body use = uses[i];
+        users[i] =
+            new Thread(
+                () -> {
+                  try {
+                    while (true) use.run();
+                  } catch (IllegalStateException closed) {
+                    // as it should be
+                  } catch (Throwable e) {
+                    problem.set(e);
+                  }
+                });
+        users[i].start();
+      }
+      Thread.sleep(5);
+      slam.close();
+      for (Thread user : users) user.join();
+      if (problem.get() != null) throw new AssertionError(problem.get());
+    }
+  }
+
+  private void doesNotGrow() throws Exception {
+    try (Screen screen = new Screen(64, 48)) {
+      for (int i = 0; i < cycles / 4; ++i) cycle(screen); // until allocator and JVM have what they need
+      long before = residentKb();
+      for (int i = cycles / 4; i < cycles; ++i) cycle(screen);
+      long growth = residentKb() - before;
+      System.out.println("     " + cycles + " sessions: " + growth + " kB more, of " + before);
+      Check.that(growth < MOST_GROWTH_KB, "grown by " + growth + " kB");
+    }
+  }
+
+  private void cycle(Screen screen) {
+    try (SlamConnector slam = open()) {
+      offer(slam, 0);
+      if (screen.there) {
+        slam.surfaceCreated();
+        slam.surfaceChanged(screen.width, screen.height);
+        slam.draw(90);
+      }
+      offer(slam, 1);
+      slam.numbers();
+      if (screen.there) slam.surfaceGone();
+    }
+  }
+
+  private static long residentKb() throws Exception {
+    for (String line : Files.readAllLines(Path.of("/proc/self/status"))) {
+      if (line.startsWith("VmRSS:")) return Long.parseLong(line.replaceAll("[^0-9]", ""));
+    }
+    throw new AssertionError("no VmRSS");
+  }
+}

@@ -1,0 +1,147 @@
+// `alidade batch`: many recordings, of which some fail; gone on with; held against an earlier one.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "support/program.h"
+#include "support/rendered.h"
+
+namespace alidade::batch_command_test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kRoom = "synth:room?width=320&height=240&frames=";
+
+ProgramResult Batch(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "batch");
+  return RunAlidade(arguments);
+}
+
+int Lines(const std::string& text, const std::string& with) {
+  int count = 0;
+  for (size_t at = 0; (at = text.find(with, at)) != std::string::npos; at += with.size()) ++count;
+  return count;
+}
+
+TEST(BatchCommand, RunsAllCountsFailuresAndGoesOn) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out";
+  WriteLines(list, {"# a comment", kRoom + "25 --out a --sensor rgbd", folder / "nowhere --out b",
+                    kRoom + "20&seed=2 --out c --sensor rgbd"});
+  const ProgramResult first = Batch({list, "--out", out, "--jobs", "2"});
+  EXPECT_EQ(first.status, 1) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("3 recordings, 1 failed"));
+  EXPECT_THAT(first.out, HasSubstr("nowhere"));  // why
+  for (const char* file : {"/a/trajectory.txt", "/c/report.html", "/log/b.txt", "/batch.md",
+                           "/compare.html"})
+    EXPECT_TRUE(std::filesystem::exists(out + file)) << file;
+  const auto json = nlohmann::json::parse(ReadText(out + "/batch.json"));
+  ASSERT_EQ(json["recordings"].size(), 3u);
+  EXPECT_EQ(json["recordings"][0]["state"], "ok");
+  EXPECT_EQ(json["recordings"][1]["state"], "failed");
+  // The same figures as the parts have.
+  const ProgramResult ate = RunAlidade(
+      {"evaluate", "ate", out + "/a/groundtruth.txt", out + "/a", "--json"});
+  EXPECT_EQ(json["recordings"][0]["ate"], nlohmann::json::parse(ate.out)["rmse"]);
+  const auto stats = nlohmann::json::parse(ReadText(out + "/a/stats.json"));
+  EXPECT_EQ(json["recordings"][0]["cpu_s"], stats["cpu_s"]);
+  EXPECT_EQ(json["recordings"][0]["ms"], stats["ms"]["frame"]["median"]);
+
+  // Again: what is done is not done anew, what failed is tried once more.
+  const ProgramResult second = Batch({list, "--out", out});
+  EXPECT_EQ(second.status, 1);
+  EXPECT_THAT(second.out, HasSubstr("2 of 3 recordings are done already"));
+  const std::string diary = ReadText(out + "/batch.log");
+  EXPECT_EQ(Lines(diary, " begun a\n"), 1);
+  EXPECT_EQ(Lines(diary, " begun b\n"), 2);
+
+  // Other settings are another run; other threads are not.
+  WriteLines(list, {kRoom + "25 --out a --sensor rgbd --threads 1",
+                    kRoom + "20&seed=2 --out c --sensor rgbd --seed 5"});
+  EXPECT_EQ(Batch({list, "--out", out}).status, 0);
+  EXPECT_EQ(Lines(ReadText(out + "/batch.log"), " begun a\n"), 1);
+  EXPECT_EQ(Lines(ReadText(out + "/batch.log"), " begun c\n"), 2);
+}
+
+TEST(BatchCommand, SameBytesAsRun) {
+  const TempFolder folder;
+  WriteLines(folder / "list.txt", {kRoom + "20 --out a"});
+  ASSERT_EQ(Batch({folder / "list.txt", "--out", folder / "out", "--", "--sensor", "rgbd"}).status,
+            0);
+  ASSERT_EQ(
+      RunAlidade({"run", kRoom + "20", "--sensor", "rgbd", "--out", folder / "alone"}).status, 0);
+  for (const char* file : {"/trajectory.txt", "/map.alidade"})
+    EXPECT_EQ(ReadText(folder / "out/a" + file), ReadText(folder / "alone" + file)) << file;
+}
+
+TEST(BatchCommand, AgainstAnEarlierOneWhatIsWorseIsStatus1) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", before = folder / "before", now = folder / "now";
+  WriteLines(list, {kRoom + "20 --out a --sensor rgbd"});
+  ASSERT_EQ(Batch({list, "--out", before}).status, 0);
+  const ProgramResult same = Batch({list, "--out", now, "--against", before});
+  EXPECT_EQ(same.status, 0) << same.out;
+  EXPECT_THAT(same.out, HasSubstr("Nothing got worse"));
+  // Had it been better before:
+  auto json = nlohmann::json::parse(ReadText(before + "/batch.json"));
+  const double ate = json["recordings"][0]["ate"].get<double>();
+  json["recordings"][0]["ate"] = 0.5 * ate;
+  WriteLines(before + "/batch.json", {json.dump()});
+  const ProgramResult worse = Batch({list, "--out", now, "--against", before});
+  EXPECT_EQ(worse.status, 1);
+  EXPECT_THAT(worse.out, HasSubstr("worse: a: ATE"));
+  EXPECT_EQ(Batch({list, "--out", now, "--against", before, "--worse-ate", "1m"}).status, 0);
+}
+
+TEST(BatchCommand, CtrlCLeavesWhatIsDone) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out";
+  WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "3000 --out b --sensor rgbd"});
+  const ProgramResult cut =
+      RunAlidade({"batch", list, "--out", out, "--jobs", "1"}, [&](pid_t batch) {
+        for (int i = 0; i < 600; ++i) {
+          std::this_thread::sleep_for(std::chrono::milliseconds(100));
+          if (Lines(ReadText(out + "/batch.log"), " begun b\n") > 0) break;
+        }
+        kill(batch, SIGINT);
+      });
+  EXPECT_EQ(cut.status, 130);
+  const auto json = nlohmann::json::parse(ReadText(out + "/batch.json"));
+  EXPECT_EQ(json["recordings"][0]["state"], "ok");
+  EXPECT_EQ(json["recordings"][1]["state"], "interrupted");
+  WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "16 --out b --sensor rgbd"});
+  const ProgramResult rest = Batch({list, "--out", out, "--merge"});
+  EXPECT_EQ(rest.status, 0) << rest.out << rest.err;
+  EXPECT_THAT(rest.out, HasSubstr("1 of 2 recordings are done already"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/merged/map.alidade"));
+}
+
+TEST(BatchCommand, RefusesAWrongListBeforeAnythingIsRun) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out";
+  const auto complaint = [&](const std::string& line) {
+    WriteLines(list, {kRoom + "15", line});
+    const ProgramResult result = Batch({list, "--out", out});
+    EXPECT_EQ(result.status, 2) << line;
+    EXPECT_FALSE(std::filesystem::exists(out)) << line;
+    return result.err;
+  };
+  EXPECT_THAT(complaint("x --sensr mono"), HasSubstr("list.txt:2: unknown option --sensr"));
+  EXPECT_THAT(complaint("x --sensor sonar"), HasSubstr("list.txt:2: --sensor"));
+  EXPECT_THAT(complaint("x --set tracker.nothing=1"), HasSubstr("list.txt:2: "));
+  EXPECT_THAT(complaint("x --viewer"), HasSubstr("a batch is of many"));
+  const ProgramResult full = Batch({list, "--out", folder.path()});
+  EXPECT_NE(full.status, 0);  // the folder holds the list: it is no batch's
+}
+
+}  // namespace
+}  // namespace alidade::batch_command_test

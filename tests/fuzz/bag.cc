@@ -1,0 +1,23 @@
+#include "alidade/io/bags/mcap_file.h"
+#include "alidade/io/bags/ros1_bag.h"
+#include "alidade/io/bags/rosbag2_database.h"
+#include "fuzz/targets.h"
+#include "fuzz/use_bag.h"
+
+namespace alidade::fuzz {
+
+void Bag(std::string_view bytes) { UseBag(*OpenRos1Bag(SourceOfBytes(bytes)), bytes.size()); }
+
+void Mcap(std::string_view bytes) { UseBag(*OpenMcapFile(SourceOfBytes(bytes)), bytes.size()); }
+
+void Database(std::string_view bytes) {
+  UseBag(*OpenRosbag2DatabaseOf(std::string(bytes)), bytes.size());
+}
+
+// The first byte says how the rest is laid out.
+void RosMessage(std::string_view bytes) {
+  if (bytes.empty()) return UseMessage(bytes, Serialization::kOther);
+  UseMessage(bytes.substr(1), bytes[0] == 'c' ? Serialization::kCdr : Serialization::kRos1);
+}
+
+}  // namespace alidade::fuzz

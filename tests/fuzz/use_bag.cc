@@ -1,0 +1,102 @@
+#include "fuzz/use_bag.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "alidade/base/error.h"
+#include "alidade/io/files/ros/camera_of_info.h"
+#include "alidade/io/files/ros/choose_topics.h"
+#include "alidade/io/files/ros/picture_of_message.h"
+#include "alidade/io/files/ros/topic_stamps.h"
+#include "fuzz/targets.h"
+
+namespace alidade::fuzz {
+namespace {
+
+constexpr size_t kMostUsed = 20;  // messages of a topic: decoding them is what takes time
+
+void UseCameraInfo(std::string_view message, Serialization serialization) {
+  const RosCameraInfo info = ParseRosCameraInfo(message, serialization);
+  for (const bool rectified : {false, true}) {
+    const auto camera = CameraOfInfo(info, rectified);
+    if (!camera) continue;
+    Expect(camera->fx > 0 && camera->fy > 0, "a focal length that is not positive");
+    for (const double k : camera->distortion) Expect(std::isfinite(k), "a lens that is not finite");
+    Calibration calibration;
+    calibration.left = *camera;
+    if (AddRightCamera(info, info, rectified, calibration))
+      Expect(calibration.baseline > 0 || calibration.right, "a pair without a baseline");
+  }
+}
+
+void UsePicture(std::string_view message, Serialization serialization, bool compressed) {
+  const RosPicture picture = ParseRosPicture(message, serialization, compressed);
+  // What else OpenCV reads is not ours to try.
+  if (compressed && !LooksLikeJpeg(picture.data) && !LooksLikePng(picture.data) &&
+      picture.encoding.find("compressedDepth") == std::string::npos)
+    ThrowInput("neither JPEG nor PNG");
+  bool any = false;
+  std::string problem;
+  for (const ImageUse use : {ImageUse::kGray, ImageUse::kGrayAndColor, ImageUse::kDepth}) {
+    try {
+      const DecodedImage decoded = PictureOf(picture, use);
+      Expect(!decoded.image.empty(), "an empty picture");
+      Expect((decoded.image.type() == CV_8UC1) == (use != ImageUse::kDepth), "of another type");
+      any = true;
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  }
+  if (!any) ThrowInput(problem);
+}
+
+}  // namespace
+
+void UseMessage(std::string_view message, Serialization serialization) {
+  bool any = false;
+  std::string problem;
+  for (int type = 0; type < 3; ++type) {
+    try {
+      if (type == 0) {
+        UseCameraInfo(message, serialization);
+      } else {
+        UsePicture(message, serialization, type == 1);
+      }
+      any = true;
+    } catch (const Error& error) {
+      problem = error.what();
+    }
+  }
+  if (!any) ThrowInput(problem);
+}
+
+void UseBag(BagFile& bag, size_t size) {
+  std::string bytes;
+  for (size_t topic = 0; topic < bag.Topics().size(); ++topic) {
+    const std::vector<BagMessage>& messages = bag.Messages(topic);
+    Expect(messages.size() <= size, "more messages than bytes");
+    Expect(std::is_sorted(
+               messages.begin(), messages.end(),
+               [](const BagMessage& a, const BagMessage& b) { return a.log_time < b.log_time; }),
+           "messages are not in the order of time");
+    for (size_t i = 0; i < std::min(messages.size(), kMostUsed); ++i) {
+      if (!bag.Read(messages[i], bytes).empty()) continue;
+      try {
+        UseMessage(bytes, bag.Topics()[topic].serialization);
+      } catch (const Error&) {  // it is not the only message
+      }
+    }
+  }
+  const ChosenTopics chosen = ChooseTopics(bag, {"file", {}, {}, {}, {}, {}, {}}, {});
+  TopicStamps frames(bag, chosen.image.topic);
+  PartnerFinder finder(frames, frames, 0.02);
+  for (size_t i = 0; i < std::min(frames.size(), kMostUsed); ++i) {
+    StampText(frames.Stamp(i));
+    finder.PartnerOf(i);
+  }
+  const auto rate = frames.Rate();
+  Expect(!rate || (std::isfinite(*rate) && *rate > 0), "a rate that cannot be");
+}
+
+}  // namespace alidade::fuzz
