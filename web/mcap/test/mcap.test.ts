@@ -225,6 +225,17 @@ test('a real pair of cameras: poses are of the camera as mounted, pictures of th
   assertFrames(euroc, at('euroc'));
   assertEnd(euroc, at('euroc'));
   assert.ok(euroc.on('/camera/camera_info').every(({ message }) => message.header.frame_id === 'camera_rectified_optical'));
+  // Pictures are smaller than what was tracked, and so is their camera: the same share of the picture, edges on edges.
+  const { camera } = stats(at('euroc'));
+  const near = (a: number, b: number) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
+  for (const { message: { width, height, k } } of euroc.on('/camera/camera_info')) {
+    assert.equal(width, 400);
+    assert.ok(camera.width > 700);
+    near(k[0] / width, camera.fx / camera.width);
+    near(k[4] / height, camera.fy / camera.height);
+    near((k[2] + 0.5) / width, (camera.cx + 0.5) / camera.width);
+    near((k[5] + 0.5) / height, (camera.cy + 0.5) / camera.height);
+  }
   const { header, transform: { rotation } } = euroc.on('/tf')[0].message.transforms.find((each: any) => each.child_frame_id === 'camera_rectified_optical');
   assert.equal(header.frame_id, 'camera_optical');
   assert.ok(Math.hypot(rotation.x, rotation.y, rotation.z) > 1e-4 && rotation.w > 0.9);
