@@ -143,7 +143,9 @@ TEST(ContainerErrors, ADamagedChunkCostsItsFrames) {
   int good = 0, bad = 0;
   while (const auto frame = source->Next()) {
     ++(frame->problem.empty() ? good : bad);
-    if (!frame->problem.empty()) EXPECT_THAT(frame->problem, HasSubstr("damaged"));
+    if (!frame->problem.empty()) {
+      EXPECT_THAT(frame->problem, HasSubstr("damaged"));
+    }
   }
   EXPECT_EQ(good, 4);
   EXPECT_EQ(bad, 1);
