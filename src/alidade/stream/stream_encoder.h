@@ -26,8 +26,8 @@ struct StreamSource {
   int frames = -1;                      // of the recording; -1: unknown
   bool live = false;                    // a camera
   Camera camera;
-  Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
   std::vector<StreamTruth> truth;                                    // empty: unknown
+  Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
 };
 
 // A picture as its carrier coded it; empty: none.
