@@ -6,6 +6,7 @@
 #include <new>
 
 #include "alidade/run/run.h"
+#include "alidade/run/stream_file.h"
 #include "alidade/stream/stream_scene.h"
 #include "alidade/synth/recording.h"
 #include "support/program.h"
