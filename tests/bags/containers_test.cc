@@ -55,7 +55,7 @@ TEST_P(Containers, AreReadAsFarAsTheyGoWhenCutShort) {
   const std::string path = GetParam().write(folder_);
   if (path == folder_ / "walk") GTEST_SKIP() << "a folder";
   const std::string bytes = ReadBytes(path);
-  int read = 0, refused = 0;
+  int read = 0, refused = 0, told = 0;
   size_t most = 0;
   for (int tenth = 1; tenth < 10; ++tenth) {
     folder_.Write(path.substr(folder_.path().size() + 1),
@@ -64,6 +64,7 @@ TEST_P(Containers, AreReadAsFarAsTheyGoWhenCutShort) {
       const auto source = OpenSource(path);
       size_t good = 0;
       while (const auto frame = source->Next()) {
+        told += !frame->problem.empty();
         if (!frame->problem.empty()) continue;
         ++good;
         EXPECT_TRUE(Same(frame->image, TinyImage(frame->number)));
@@ -78,7 +79,10 @@ TEST_P(Containers, AreReadAsFarAsTheyGoWhenCutShort) {
   }
   EXPECT_GT(read, 0);
   EXPECT_GT(most, 2u);
-  EXPECT_THAT(warnings_.text(), HasSubstr("walk"));
+  // A database knows of a message whose bytes are gone: the frame itself says so.
+  if (told == 0) {
+    EXPECT_THAT(warnings_.text(), HasSubstr("walk"));
+  }
 }
 
 // Some bytes turned: whatever is read is no crash, and no more than there was.

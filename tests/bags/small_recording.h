@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <iterator>
+#include <ostream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -49,6 +50,9 @@ struct Container {
   std::string name;
   std::function<std::string(const TempFolder&)> write;
 };
+
+// For the names of tests, which otherwise show the addresses in it.
+inline void PrintTo(const Container& container, std::ostream* out) { *out << container.name; }
 
 inline std::vector<Container> AllContainers() {
   const auto bag = [](BagForm form) {

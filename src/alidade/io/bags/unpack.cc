@@ -92,7 +92,8 @@ std::string UnpackZstd(std::string_view packed, uint64_t most) {
   Output output(packed.size(), most);
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   while (true) {
-    ZSTD_outBuffer out{output.at(), output.room(), 0};
+    const size_t room = output.room();  // first: it may move what at() points to
+    ZSTD_outBuffer out{output.at(), room, 0};
     const size_t before = in.pos;
     const size_t hint = ZSTD_decompressStream(stream.get(), &out, &in);
     if (ZSTD_isError(hint)) ThrowDamaged("zstd");
