@@ -77,10 +77,11 @@ TEST_P(Containers, AreReadAsFarAsTheyGoWhenCutShort) {
       ++refused;
     }
   }
+  EXPECT_EQ(read + refused, 9);
+  if (path.ends_with(".db3")) return;  // SQLite takes none whose pages are missing
   EXPECT_GT(read, 0);
   EXPECT_GT(most, 2u);
-  // A database knows of a message whose bytes are gone: the frame itself says so.
-  if (told == 0) {
+  if (told == 0) {  // else the frames themselves say so
     EXPECT_THAT(warnings_.text(), HasSubstr("walk"));
   }
 }

@@ -135,7 +135,7 @@ TEST(PhoneSlam, ColoursAreTurnedToGrey) {
 
 TEST(PhoneSettings, AreSetByLines) {
   PhoneSettings settings = PhoneSettings::Default(false);
-  settings.SetLines("tracker.extractor.features=300\n\nsemidense.enabled=true");
+  settings.SetLines("tracker.extractor.features=300\n\nsemidense.enabled=1");
   EXPECT_EQ(settings.slam.tracker.extractor.features, 300);
   EXPECT_TRUE(settings.slam.semidense.enabled);
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { settings.SetLines("tracker.no_such=1"); }),

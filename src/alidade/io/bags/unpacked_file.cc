@@ -17,13 +17,14 @@
 namespace alidade {
 namespace {
 
-int NamelessFile() {
+// Made anew; `path` is its name.
+int TemporaryFile(std::string& path) {
   std::error_code error;
   const std::string folder = std::filesystem::temp_directory_path(error).string();
   std::string pattern = (error ? "/tmp" : folder) + "/alidade-unpacked-XXXXXX";
   const int fd = ::mkstemp(pattern.data());
   if (fd < 0) ThrowInput("cannot be unpacked into " + folder + ": " + std::strerror(errno));
-  ::unlink(pattern.c_str());
+  path = pattern;
   return fd;
 }
 
@@ -63,16 +64,20 @@ void UnpackInto(int fd, const ByteSource& source) {
 
 }  // namespace
 
-UnpackedFile::UnpackedFile(const std::string& packed) : fd_(NamelessFile()) {
-  path_ = "/proc/self/fd/" + std::to_string(fd_);
+// SQLite opens no file that has no name any more, so it keeps it as long as it is read.
+UnpackedFile::UnpackedFile(const std::string& packed) : fd_(TemporaryFile(path_)) {
   try {
     UnpackInto(fd_, *OpenFileSource(packed));
   } catch (...) {
     ::close(fd_);
+    ::unlink(path_.c_str());
     throw;
   }
 }
 
-UnpackedFile::~UnpackedFile() { ::close(fd_); }
+UnpackedFile::~UnpackedFile() {
+  ::close(fd_);
+  ::unlink(path_.c_str());
+}
 
 }  // namespace alidade
