@@ -17,8 +17,8 @@ class UnpackedFile {
   const std::string& path() const { return path_; }
 
  private:
-  int fd_;            // the file has no name: it is gone when this is closed, whatever happens
-  std::string path_;  // by which it can be opened all the same
+  std::string path_;  // set while fd_ is made
+  int fd_;
 };
 
 }  // namespace alidade
