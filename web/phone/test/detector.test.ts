@@ -4,7 +4,7 @@ import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'no
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
-import { USES } from '@alidade/scene';
+import { USES } from '../../scene/src/messages.ts';
 import type { Browser, Page } from 'playwright-core';
 import { launch, open, SKIP, violations } from '../../viewer/test/browser.ts';
 import { readPng } from '../../scene/test/png.ts';
