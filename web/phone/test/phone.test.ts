@@ -216,6 +216,7 @@ test('what was recorded is a folder that the program runs', options, async () =>
   await processed(page, 10);
   await page.tap('#record');
   await page.waitForTimeout(4000);
+  await processed(page, 100); // on a slow machine these take longer
   const saved = page.waitForEvent('download');
   await page.tap('#record');
   const archive = join(folder, 'recording.zip');
@@ -223,7 +224,7 @@ test('what was recorded is a folder that the program runs', options, async () =>
   execFileSync('python3', ['-m', 'zipfile', '-e', archive, join(folder, 'recording')]);
   const [name] = execFileSync('ls', [join(folder, 'recording')], { encoding: 'utf8' }).trim().split('\n');
   const result = JSON.parse(readFileSync((execFileSync(program, ['run', join(folder, 'recording', name!), '--sensor', 'mono', '--fov', '62.5', '--out', join(folder, 'result'), '--quiet']), join(folder, 'result/stats.json')), 'utf8')) as { frames: number; tracked: number };
-  assert.ok(result.frames > 40 && result.tracked > 0.5 * result.frames, JSON.stringify(result).slice(0, 200));
+  assert.ok(result.frames > 40 && result.tracked > 0.5 * result.frames, `${result.tracked} of ${result.frames} frames tracked`);
   assert.deepEqual(problems, []);
   await page.context().close();
 });
