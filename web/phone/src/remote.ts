@@ -79,7 +79,9 @@ export class RemoteEngine implements Engine {
     const [w, h] = turn % 2 ? [height, width] : [width, height];
     context.drawImage(bitmap, -w / 2, -h / 2, w, h);
     const jpeg = await (await canvas.convertToBlob({ type: 'image/jpeg', quality: QUALITY })).arrayBuffer();
-    if (!this.open || !this.socket) return bitmap.close(); // the network went meanwhile: there will be newer ones
+    // The network went while this was compressed: there will be newer ones. A socket that is closing takes nothing, and
+    // says so in the console; its `onclose`, which clears `open`, comes later.
+    if (!this.open || this.socket?.readyState !== WebSocket.OPEN) return bitmap.close();
     const number = this.number++;
     const head = new DataView(new ArrayBuffer(16));
     head.setUint32(0, number, true);
