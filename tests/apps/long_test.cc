@@ -97,7 +97,7 @@ TEST_F(LongRecording, HoursInOnePlaceCostNoMemory) {
 }
 
 class LongStart : public LongRecording,
-                  public testing::WithParamInterface<std::tuple<const char*, const char*>> {};
+                  public testing::WithParamInterface<std::tuple<std::string, std::string>> {};
 
 TEST_P(LongStart, WithOneCameraIsNeverWrong) {
   const auto [scene, seed] = GetParam();

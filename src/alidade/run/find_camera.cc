@@ -36,6 +36,7 @@ constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
   visit("calibrate.k1_corner_sigma", s.k1_corner_sigma);
   visit("calibrate.k2_corner_sigma", s.k2_corner_sigma);
   visit("calibrate.centre_sigma", s.centre_sigma);
+  visit("calibrate.readout_sigma", s.readout_sigma);
   visit("calibrate.inflation", s.adjust.inflation);
   visit("calibrate.bound", s.adjust.bound);
 };
@@ -174,7 +175,7 @@ CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open
   plain.sensor = Sensor::kMono;
   plain.threaded = false;
   plain.semidense.enabled = false;
-  plain.readout.enabled = false;  // a wrong lens bends pictures as a rolling shutter does
+  plain.readout.enabled = false;  // looked for with the lens, not on its own
   Camera camera;
   bool settled = false;  // the last pass began with what it found
   while (found.passes < calibrate.max_passes) {
@@ -253,11 +254,19 @@ std::string CameraInWords(const CameraEstimate& estimate) {
   char text[160];
   std::snprintf(text, sizeof(text),
                 " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
-                "centre %.1f, %.1f ± %.1f)",
+                "centre %.1f, %.1f ± %.1f",
                 camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0],
                 estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
                 estimate.centre_sigma.maxCoeff());
-  return FovInWords(estimate) + text;
+  std::string words = FovInWords(estimate) + text;
+  // By rows, or by columns where the picture was taken upright; negative: from the far side.
+  const double readout = camera.readout[0] + camera.readout[1];
+  if (readout != 0) {
+    std::snprintf(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
+                  1e3 * estimate.readout_sigma.maxCoeff());
+    words += text;
+  }
+  return words + ")";
 }
 
 }  // namespace alidade

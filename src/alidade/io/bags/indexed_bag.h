@@ -1,11 +1,15 @@
 // What the readers of all containers fill: topics, and where the messages of the wanted ones are.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "alidade/base/error.h"
 #include "alidade/io/bags/bags_module.h"
 
 namespace alidade {
@@ -28,9 +32,26 @@ class IndexedBag : public BagFile {
   bool IsWanted(size_t topic) const { return wanted_[topic]; }
   void Warn(const std::string& warning);
   void SortByTime();
-  void Forget();  // all of the above, for another try
+  // Fills all of the above by the file's own index, then sorts by time. Where the index cannot be
+  // used, `scan` reads the file from its start instead, after `forget` has dropped what the
+  // container itself had taken from it.
+  template <typename Index, typename Forgetting, typename Scan>
+  void FillByIndexOr(Index index, Forgetting forget, Scan scan) {
+    try {
+      index();
+    } catch (const Error& error) {
+      Forget();
+      forget();
+      Warn(std::string("has no index that can be used (it ") + error.what() +
+           "): read from its start");
+      scan();
+    }
+    SortByTime();
+  }
 
  private:
+  void Forget();
+
   std::vector<BagTopic> topics_;
   std::vector<std::vector<BagMessage>> messages_;
   std::vector<bool> wanted_;
@@ -40,6 +61,9 @@ class IndexedBag : public BagFile {
 
 // "sensor_msgs/msg/Image", as ROS 2 and its IDL have it, as ROS 1 has it: "sensor_msgs/Image".
 std::string Ros1TypeOf(std::string_view type);
+
+// As a message's offset: its record stands in the file itself at its place, not in a packed chunk.
+inline constexpr uint32_t kUnpacked = std::numeric_limits<uint32_t>::max();
 
 inline constexpr int64_t kNanoseconds = 1'000'000'000;
 

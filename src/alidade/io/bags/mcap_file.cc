@@ -3,7 +3,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -16,9 +15,6 @@
 namespace alidade {
 namespace {
 
-// As a message's offset: its record stands in the file itself at its place, not in a packed chunk.
-constexpr uint32_t kInFile = std::numeric_limits<uint32_t>::max();
-
 uint32_t CrcOf(std::string_view bytes) {
   return static_cast<uint32_t>(
       crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
@@ -27,21 +23,12 @@ uint32_t CrcOf(std::string_view bytes) {
 class McapFile : public IndexedBag {
  public:
   explicit McapFile(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {
-    try {
-      ReadSummary();
-    } catch (const Error& error) {
-      Forget();
-      schemas_.clear();
-      channels_.clear();
-      Warn(std::string("has no index that can be used (it ") + error.what() +
-           "): read from its start");
-      Scan();
-    }
-    SortByTime();
+    FillByIndexOr([this] { ReadSummary(); }, [this] { schemas_.clear(), channels_.clear(); },
+                  [this] { Scan(); });
   }
 
   std::string Read(const BagMessage& message, std::string& bytes, uint64_t most) override try {
-    if (message.offset == kInFile) {
+    if (message.offset == kUnpacked) {
       const McapRecord record = ReadMcapRecord(*source_, message.place);
       const uint64_t size = most < record.size ? kMcapMessageHead + most : record.size;
       const std::string content = source_->Read(record.content_at, std::min(size, record.size));
@@ -160,7 +147,7 @@ class McapFile : public IndexedBag {
       if (index.entries.empty()) continue;
       const size_t topic = TopicOfChannel(index.channel);
       for (const McapIndexEntry& entry : index.entries) {
-        if (entry.offset >= kInFile) ThrowInput("is damaged: its index is wrong");
+        if (entry.offset >= kUnpacked) ThrowInput("is damaged: its index is wrong");
         Add(topic, {entry.log_time, chunk.chunk_at, static_cast<uint32_t>(entry.offset), 0});
       }
     }
@@ -190,7 +177,7 @@ class McapFile : public IndexedBag {
           const std::string head =
               source_->Read(record.content_at, std::min(record.size, kMcapMessageHead));
           const McapMessage message = ParseMcapMessage(head);
-          Add(TopicOfChannel(message.channel), {message.log_time, at, kInFile, 0});
+          Add(TopicOfChannel(message.channel), {message.log_time, at, kUnpacked, 0});
         } else if (record.op == McapOp::kSchema) {
           AddSchema(source_->Read(record.content_at, record.size));
         } else if (record.op == McapOp::kChannel) {

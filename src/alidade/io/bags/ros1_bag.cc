@@ -1,7 +1,6 @@
 #include "alidade/io/bags/ros1_bag.h"
 
 #include <algorithm>
-#include <limits>
 #include <map>
 
 #include "alidade/base/error.h"
@@ -15,26 +14,15 @@ namespace alidade {
 namespace {
 
 constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-// As a message's offset: it stands in the file itself at its place, not in a packed chunk.
-constexpr uint32_t kPlain = std::numeric_limits<uint32_t>::max();
 
 class Ros1Bag : public IndexedBag {
  public:
   explicit Ros1Bag(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {
-    try {
-      ReadIndex();
-    } catch (const Error& error) {
-      Forget();
-      connections_.clear();
-      Warn(std::string("has no index that can be used (it ") + error.what() +
-           "): read from its start");
-      Scan();
-    }
-    SortByTime();
+    FillByIndexOr([this] { ReadIndex(); }, [this] { connections_.clear(); }, [this] { Scan(); });
   }
 
   std::string Read(const BagMessage& message, std::string& bytes, uint64_t most) override try {
-    if (message.offset == kPlain) {
+    if (message.offset == kUnpacked) {
       const Ros1Record record = ReadRos1Record(*source_, message.place);
       bytes = source_->Read(record.data_at, std::min<uint64_t>(record.data_size, most));
       return {};
@@ -141,7 +129,7 @@ class Ros1Bag : public IndexedBag {
         if (op == Ros1Op::kConnection) {
           AddConnection(record.fields, source_->Read(record.data_at, record.data_size));
         } else if (op == Ros1Op::kMessage) {
-          Add(TopicOfConnection(record.fields), {record.fields.Time(), at, kPlain, 0});
+          Add(TopicOfConnection(record.fields), {record.fields.Time(), at, kUnpacked, 0});
         } else if (op == Ros1Op::kChunk) {
           ScanChunk(record, at);
         }
