@@ -126,5 +126,19 @@ TEST(Calibrate, SeveralRecordingsOfOneCameraKnowMoreTogether) {
   EXPECT_THAT(mixed.err, HasSubstr("another size"));
 }
 
+TEST(Calibrate, ARollingShutterIsFoundWithTheLens) {
+  const TempFolder out;
+  const ProgramResult run = RunAlidade(
+      {"calibrate", std::string(kDesk) + "&rolling_shutter=25", "--out", out / "phone.yaml"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr(", read in "));
+  const Calibration found = ReadCameraFile(out / "phone.yaml");
+  EXPECT_NEAR(found.left.fx, kFocal, 0.015 * kFocal);
+  ASSERT_TRUE(found.readout.has_value());
+  EXPECT_NEAR((*found.readout)[1], 0.025, 0.006);
+  EXPECT_EQ((*found.readout)[0], 0);
+  EXPECT_NEAR(found.left.cy, 119.5, 3.6);  // what it is mistaken for where it is not looked for
+}
+
 }  // namespace
 }  // namespace alidade::calibrate_test

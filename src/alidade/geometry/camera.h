@@ -25,6 +25,9 @@ struct Camera {
   // upright by a phone is read along x.
   std::array<double, 2> readout{};
   bool readout_known = false;  // else readout is a guess, to be found (tracking/readout.h)
+  // Which of `readout` a sensor has, where nobody says: it is read line by line, and its lines lie
+  // along the longer side.
+  int ReadAlong() const { return width >= height ? 1 : 0; }
 
   void Check() const;  // throws Error (input) naming the field that cannot be
   bool HasDistortion() const;

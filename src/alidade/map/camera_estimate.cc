@@ -14,16 +14,6 @@ namespace {
 
 constexpr double kLeastTold = 3;  // sigmas of a readout, below which there is none
 
-// Of two directions the one that is told better stays, if it is told at all. Returns the other.
-int LeaveOneReadout(const LensAdjustment& found, Eigen::Vector2d& readout) {
-  const Eigen::Vector2d sigma = found.covariance.diagonal().tail<2>().cwiseMax(0).cwiseSqrt();
-  const Eigen::Vector2d told = readout.cwiseAbs().cwiseQuotient(sigma.cwiseMax(1e-9));
-  const int other = told.x() > told.y() ? 1 : 0;
-  readout[other] = 0;
-  if (!(told[1 - other] > kLeastTold)) readout.setZero();
-  return other;
-}
-
 LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,
                     const Camera& camera, const MeasurementNoise& noise,
                     const CameraEstimateSettings& settings) {
@@ -128,14 +118,15 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
     adjust.hold_focal = true;
     adjust.k1_sigma = adjust.k2_sigma = adjust.centre_sigma = 0;
   }
-  if (!camera.readout_known && settings.readout_sigma > 0)
-    adjust.readout_sigma.setConstant(settings.readout_sigma);
+  const bool ask_readout = !camera.readout_known && settings.readout_sigma > 0;
+  if (ask_readout) adjust.readout_sigma[camera.ReadAlong()] = settings.readout_sigma;
   LensAdjustment found = AdjustLens(windows, start, adjust);
-  if (adjust.readout_sigma.x() > 0) {
+  const double readout_sigma =
+      std::sqrt(std::max(0.0, found.covariance.diagonal().tail<2>()[camera.ReadAlong()]));
+  if (ask_readout && !(found.lens.readout.cwiseAbs().maxCoeff() > kLeastTold * readout_sigma)) {
     start = found.lens;
-    const int other = LeaveOneReadout(found, start.readout);
-    adjust.readout_sigma[other] = 0;
-    if (start.readout.isZero(0)) adjust.readout_sigma.setZero();
+    start.readout.setZero();
+    adjust.readout_sigma.setZero();
     found = AdjustLens(windows, start, adjust);
   }
   estimate.observations = found.observations;

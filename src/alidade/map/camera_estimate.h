@@ -50,9 +50,8 @@ std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Ca
                                       const MeasurementNoise& noise,
                                       const CameraEstimateSettings& settings);
 
-// `camera`: what the windows' maps were made with; where the search starts. A sensor is read by
-// rows or, upright, by columns: of the two directions of readout the one that is told better stays,
-// where it is more than 3 sigma.
+// `camera`: what the windows' maps were made with; where the search starts. Readout is looked for
+// along Camera::ReadAlong(), and is none where it is not more than 3 sigma.
 CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& camera,
                               const MeasurementNoise& noise,
                               const CameraEstimateSettings& settings = {});

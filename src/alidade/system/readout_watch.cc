@@ -21,6 +21,7 @@ void ReadoutSettings::Check() const {
   require(hint_explained >= 0 && hint_explained <= 1, "hint_explained must lie in 0..1");
   require(hint_frames >= 1, "hint_frames must be at least 1");
   require(hint_growth > 0, "hint_growth must be positive");
+  require(hints_upright >= 1, "hints_upright must be at least 1");
   require(max_sigma > 0, "max_sigma must be positive");
   require(least >= 0, "least cannot be negative");
   require(longest > least && longest <= 0.2, "longest must lie between least and 0.2");
@@ -55,7 +56,7 @@ bool ReadoutWatch::Take(const std::array<double, 2>& readout, double sigma) {
 bool ReadoutWatch::FramesAgree(const std::array<double, 2>& readout) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ReadoutSum::Told told = sum_.told();
-  const auto axis = static_cast<size_t>(told.axis);
+  const auto axis = static_cast<size_t>(camera_.ReadAlong());
   return told.frames > 0 && (readout[axis] - camera_.readout[axis]) * told.change > 0 &&
          std::abs(told.change) > 2 * told.sigma;
 }
@@ -68,13 +69,18 @@ bool ReadoutWatch::TakeHint() {
     if (told.frames < settings_.hint_frames || told.sigma > settings_.hint_sigma) return false;
     sum_.Clear();
   }
-  if (std::abs(told.change) < settings_.min_hint || told.explained < settings_.hint_explained)
-    return false;
-  std::array<double, 2> readout{};  // a sensor is read in one direction
-  readout[static_cast<size_t>(told.axis)] = std::clamp(
-      camera_.readout[static_cast<size_t>(told.axis)] + settings_.hint_growth * told.change,
-      -settings_.longest, settings_.longest);
-  if (std::abs(readout[static_cast<size_t>(told.axis)]) < settings_.least) readout = {};
+  const bool plain =
+      std::abs(told.change) >= settings_.min_hint && told.explained >= settings_.hint_explained;
+  const bool agrees = plain && last_hint_ * told.change > 0;
+  hints_ = plain ? (agrees ? hints_ + 1 : 1) : 0;
+  last_hint_ = plain ? told.change : 0;
+  if (hints_ < (camera_.ReadAlong() == 0 ? settings_.hints_upright : 1)) return false;
+  hints_ = 0;
+  const auto axis = static_cast<size_t>(camera_.ReadAlong());
+  std::array<double, 2> readout{};
+  readout[axis] = std::clamp(camera_.readout[axis] + settings_.hint_growth * told.change,
+                             -settings_.longest, settings_.longest);
+  if (std::abs(readout[axis]) < settings_.least) readout = {};
   if (readout == camera_.readout) return false;
   return Take(readout, settings_.max_sigma);
 }

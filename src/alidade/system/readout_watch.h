@@ -32,7 +32,11 @@ struct ReadoutSettings {
   double min_hint = 0.003, hint_sigma = 0.0004;
   // … and the change does away with such a share of the squares of their residuals, …
   double hint_explained = 0.01;
-  int hint_frames = 15;    // … so many of them at least, …
+  int hint_frames = 15;  // … so many of them at least, …
+  // … and of upright pictures so often on end, the same way. Those are read across: where the
+  // camera turns about the upright axis that stretches them sideways, as a map does whose scale
+  // drifts.
+  int hints_upright = 2;
   double hint_growth = 2;  // … so many times that is taken, since half of it the map hides
   void Check() const;      // throws Error (usage) naming the field that cannot be
 };
@@ -63,6 +67,8 @@ class ReadoutWatch {
   mutable std::mutex mutex_;
   std::array<double, 2> readout_;
   double sigma_ = 0;
+  int hints_ = 0;         // on end that agree
+  double last_hint_ = 0;  // the change it told of, seconds
   ReadoutSum sum_;
 };
 

@@ -196,6 +196,7 @@ void VisitReadout(Settings& r, Visit&& visit) {
   visit("readout.hint_explained", r.hint_explained);
   visit("readout.hint_frames", r.hint_frames);
   visit("readout.hint_growth", r.hint_growth);
+  visit("readout.hints_upright", r.hints_upright);
   visit("readout.max_iterations", r.max_iterations);
   visit("readout.max_sigma", r.max_sigma);
   visit("readout.least", r.least);

@@ -15,11 +15,11 @@ constexpr size_t kLeastMatches = 30;  // of a frame: six unknowns are its pose's
 
 void ReadoutSum::Add(const Vector6d& motion, std::span<const ReadoutMatch> matches) {
   if (matches.size() < kLeastMatches || motion.isZero(0)) return;
-  Eigen::Matrix2d H = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d g = Eigen::Vector2d::Zero();
+  const int along = camera_.ReadAlong();
+  double H = 0, g = 0;
   Matrix6d H_pose = Matrix6d::Zero();
   Vector6d g_pose = Vector6d::Zero();
-  Eigen::Matrix<double, 2, 6> across = Eigen::Matrix<double, 2, 6>::Zero();
+  Eigen::RowVector<double, 6> across = Eigen::RowVector<double, 6>::Zero();
   for (const ReadoutMatch& m : matches) {
     const Eigen::Vector3d& p = m.p_camera;
     if (!(p.z() > kMinDepth)) continue;
@@ -31,11 +31,10 @@ void ReadoutSum::Add(const Vector6d& motion, std::span<const ReadoutMatch> match
     Eigen::Matrix<double, 2, 6> B;
     B << by_p, -by_p * cross;
     const Eigen::Vector2d flow = B * motion;  // pixels per second
-    Eigen::Matrix2d A;
-    A << flow * ((m.raw.x() + 0.5) / camera_.width - 0.5),
-        flow * ((m.raw.y() + 0.5) / camera_.height - 0.5);
-    H += m.weight * A.transpose() * A;
-    g += m.weight * A.transpose() * m.residual;
+    const Eigen::Vector2d A = flow * (along == 0 ? (m.raw.x() + 0.5) / camera_.width - 0.5
+                                                 : (m.raw.y() + 0.5) / camera_.height - 0.5);
+    H += m.weight * A.squaredNorm();
+    g += m.weight * A.dot(m.residual);
     H_pose += m.weight * B.transpose() * B;
     g_pose += m.weight * B.transpose() * m.residual;
     across += m.weight * A.transpose() * B;
@@ -43,8 +42,8 @@ void ReadoutSum::Add(const Vector6d& motion, std::span<const ReadoutMatch> match
     measured_ += 2;
   }
   const Eigen::LDLT<Matrix6d> pose(H_pose);
-  H_ += H - across * pose.solve(across.transpose());
-  g_ += g - across * pose.solve(g_pose);
+  H_ += H - across.dot(pose.solve(across.transpose()));
+  g_ += g - across.dot(pose.solve(g_pose));
   ++frames_;
 }
 
@@ -52,12 +51,10 @@ ReadoutSum::Told ReadoutSum::told() const {
   Told told;
   told.frames = frames_;
   told.sigma = std::numeric_limits<double>::infinity();
-  told.axis = g_.x() * g_.x() * H_(1, 1) > g_.y() * g_.y() * H_(0, 0) ? 0 : 1;
-  const double H = H_(told.axis, told.axis);
-  if (!(H > 0) || !(measured_ > 0)) return told;
-  told.change = g_(told.axis) / H;
-  told.explained = g_(told.axis) * told.change / chi2_;
-  told.sigma = std::sqrt(chi2_ / measured_ / H);
+  if (!(H_ > 0) || !(measured_ > 0)) return told;
+  told.change = g_ / H_;
+  told.explained = g_ * told.change / chi2_;
+  told.sigma = std::sqrt(chi2_ / measured_ / H_);
   return told;
 }
 

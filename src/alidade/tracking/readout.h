@@ -31,8 +31,7 @@ class ReadoutSum {
   void Clear() { *this = ReadoutSum(camera_); }
 
   struct Told {
-    int axis = 1;       // 0 across, 1 down: the direction that is told better
-    double change = 0;  // seconds
+    double change = 0;  // seconds, along Camera::ReadAlong()
     double sigma = 0;  // by independent errors as large as the residuals; infinite: nothing is told
     double explained = 0;  // share of the residuals' squares that the change does away with
     int frames = 0;
@@ -41,8 +40,7 @@ class ReadoutSum {
 
  private:
   Camera camera_;
-  Eigen::Matrix2d H_ = Eigen::Matrix2d::Zero();  // px² / s², weighted
-  Eigen::Vector2d g_ = Eigen::Vector2d::Zero();
+  double H_ = 0, g_ = 0;  // px² / s² and px² / s, weighted
   double chi2_ = 0, measured_ = 0;
   int frames_ = 0;
 };
