@@ -70,6 +70,8 @@ foreach(VARIANT single threads)
           DESTINATION ${CMAKE_INSTALL_DATADIR}/alidade/core/${VARIANT} OPTIONAL
           FILES_MATCHING PATTERN alidade.wasm PATTERN alidade.mjs PATTERN alidade.worker.js)
 endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/build-wasm/detector/bin/
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/alidade/core/detector OPTIONAL)
 
 # Completions and manual pages: what the program says of itself.
 if(TARGET alidade)

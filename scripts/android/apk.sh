@@ -28,7 +28,14 @@ else
   rm -rf "$work/unpacked" && mkdir -p "$work/unpacked"
   (cd "$work/unpacked" && python3 -m zipfile -e "$apk" .)
   check "its page is web/phone/dist, to the byte" same web/phone/dist "$work/unpacked/assets/page"
-  check "its core is what scripts/wasm built, to the byte" same "${ALIDADE_CORE:-build-wasm/single/bin}" "$work/unpacked/assets/page/core/single"
+  core=${ALIDADE_CORE:-build-wasm/single/bin}
+  for file in alidade.mjs alidade.wasm; do
+    check "its $file is what scripts/wasm built, to the byte" cmp "$core/$file" "$work/unpacked/assets/page/core/single/$file"
+  done
+  detector=${ALIDADE_DETECTOR:-build-wasm/detector/bin}
+  if [ -f "$detector/alidade_detector.wasm" ]; then
+    check "what a detector needs is in it, to the byte" same "$detector" "$work/unpacked/assets/page/core/detector"
+  fi
   cp "$apk" "$work/wrong.apk"
   python3 - "$work/wrong.apk" <<'PY'
 import sys
