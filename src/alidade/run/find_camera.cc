@@ -21,6 +21,7 @@ constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
   visit("calibrate.max_off", s.max_off);
   visit("calibrate.max_restart_sigma", s.max_restart_sigma);
   visit("calibrate.max_retry_sigma", s.max_retry_sigma);
+  visit("calibrate.retry_bend", s.retry_bend);
   visit("calibrate.enough_sigma", s.enough_sigma);
   visit("calibrate.max_passes", s.max_passes);
   visit("calibrate.first_keyframes", s.first_keyframes);
@@ -139,6 +140,7 @@ void CalibrateSettings::Check() const {
   require(max_restart_sigma > 0, "max_restart_sigma must be positive");
   require(max_retry_sigma >= max_restart_sigma,
           "max_retry_sigma must not be below max_restart_sigma");
+  require(std::abs(retry_bend) < 0.3, "retry_bend must lie between -0.3 and 0.3");
   require(enough_sigma > 0, "enough_sigma must be positive");
   require(max_passes >= 1, "max_passes must be at least 1");
   require(first_keyframes >= min_keyframes, "first_keyframes must be at least min_keyframes");
@@ -166,22 +168,20 @@ Camera CameraOfSize(const Camera& camera, const Camera& of) {
   return result;
 }
 
-CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open,
-                       const SlamSettings& settings, const CalibrateSettings& calibrate,
-                       const std::function<bool(const CalibrateProgress&)>& go_on) {
-  calibrate.Check();
-  CameraFound found;
-  SlamSettings plain = settings;
-  plain.sensor = Sensor::kMono;
-  plain.threaded = false;
-  plain.semidense.enabled = false;
-  plain.readout.enabled = false;  // looked for with the lens, not on its own
-  Camera camera;
+namespace {
+
+using Opener = std::function<std::unique_ptr<FrameSource>()>;
+using Watcher = std::function<bool(const CalibrateProgress&)>;
+
+// Passes that begin with `camera`. `found`: counts on; `stopped`: go_on said so.
+void Search(const Opener& open, Camera camera, const SlamSettings& settings,
+            const CalibrateSettings& calibrate, const Watcher& go_on, CameraFound& found,
+            bool& stopped) {
   bool settled = false;  // the last pass began with what it found
-  while (found.passes < calibrate.max_passes) {
-    std::unique_ptr<FrameSource> source = open();
-    if (found.passes++ == 0) camera = source->Info().camera;
-    Pass pass(std::move(source), camera, plain, calibrate);
+  const int most = found.passes + calibrate.max_passes;
+  while (found.passes < most) {
+    ++found.passes;
+    Pass pass(open(), camera, settings, calibrate);
     CalibrateProgress progress{found.passes, 0, 0, {}};
     std::optional<CameraEstimate> before;
     bool anew = false, enough = false;
@@ -197,12 +197,15 @@ CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open
                off > calibrate.max_off && off > 2 * now->focal_sigma &&
                std::abs(std::log(now->camera.fx / before->camera.fx)) <=
                    2 * std::hypot(now->focal_sigma, before->focal_sigma) &&
-               found.passes < calibrate.max_passes;
+               found.passes < most;
         enough = now->focal_sigma <= calibrate.enough_sigma && off <= calibrate.max_off && before &&
                  Apart(now->camera, before->camera) <= 2 * calibrate.enough_sigma;
         before = now;
       }
-      if (!go_on(progress)) return found;
+      if (!go_on(progress)) {
+        stopped = true;
+        return;
+      }
     }
     if (!anew) {
       if (!enough) {
@@ -225,13 +228,46 @@ CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open
   found.usable = last.keyframes >= calibrate.first_keyframes &&
                  last.focal_sigma <= calibrate.max_restart_sigma;
   found.estimate.known = last.known && found.usable && settled;
-  if (found.estimate.known) return found;
+  if (found.estimate.known) {
+    found.why_not.clear();
+    return;
+  }
   found.why_not = last.keyframes == 0 ? "nothing was mapped"
                   : last.keyframes < calibrate.first_keyframes
                       ? "only " + std::to_string(last.keyframes) + " keyframes were mapped"
                   : found.usable
                       ? "estimates differ from pass to pass"
                       : "the camera turns and moves too little for its focal length to tell";
+}
+
+}  // namespace
+
+CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
+                       const CalibrateSettings& calibrate, const Watcher& go_on) {
+  calibrate.Check();
+  SlamSettings plain = settings;
+  plain.sensor = Sensor::kMono;
+  plain.threaded = false;
+  plain.semidense.enabled = false;
+  plain.readout.enabled = false;  // looked for with the lens, not on its own
+  Camera camera = open()->Info().camera;
+  CameraFound found;
+  bool stopped = false;
+  Search(open, camera, plain, calibrate, go_on, found, stopped);
+  if (stopped || found.usable || found.estimate.keyframes < calibrate.first_keyframes ||
+      calibrate.retry_bend == 0)
+    return found;
+  // A map made as if a bent lens were straight may itself be too bent to tell.
+  camera.distortion[0] =
+      calibrate.retry_bend * 4 /
+      (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2));
+  CameraFound bent;
+  bent.passes = found.passes;
+  bent.frames = found.frames;
+  Search(open, camera, plain, calibrate, go_on, bent, stopped);
+  if (bent.estimate.known) return bent;
+  found.passes = bent.passes;
+  found.frames = bent.frames;
   return found;
 }
 

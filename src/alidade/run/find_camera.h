@@ -31,10 +31,13 @@ struct CalibrateSettings : CameraEstimateSettings {
   // The same when the recording is at its end and nothing better was found: a map made with a
   // camera that is far off says little of any, but points the right way.
   double max_retry_sigma = 0.1;
+  // A search that ends without an answer begins once more with a lens that shifts the picture's
+  // corners by this share of their distance from the middle, as wide lenses do. 0: it does not.
+  double retry_bend = -0.13;
   // A pass that began with the right camera ends when the focal length's standard deviation is
   // below this, and two estimates on end agree as well: the rest would say little more.
   double enough_sigma = 0.004;
-  int max_passes = 6;        // over the recording, at most
+  int max_passes = 6;        // over the recording, at most, of a search
   int first_keyframes = 10;  // of a map when it is asked first, …
   double growth = 1.3;       // … and again whenever it has so many times as many
   // Standard deviation (relative) of a focal length that the recording itself tells (EXIF, what
