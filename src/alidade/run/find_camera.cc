@@ -173,15 +173,16 @@ namespace {
 using Opener = std::function<std::unique_ptr<FrameSource>()>;
 using Watcher = std::function<bool(const CalibrateProgress&)>;
 
-// Passes that begin with `camera`. `found`: counts on; `stopped`: go_on said so.
-void Search(const Opener& open, Camera camera, const SlamSettings& settings,
-            const CalibrateSettings& calibrate, const Watcher& go_on, CameraFound& found,
-            bool& stopped) {
+// Passes that begin with `camera`, the first of them over `first` where that is open already.
+// `found`: counts on; `stopped`: go_on said so, and nothing is known.
+void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camera,
+            const SlamSettings& settings, const CalibrateSettings& calibrate, const Watcher& go_on,
+            CameraFound& found, bool& stopped) {
   bool settled = false;  // the last pass began with what it found
   const int most = found.passes + calibrate.max_passes;
   while (found.passes < most) {
     ++found.passes;
-    Pass pass(open(), camera, settings, calibrate);
+    Pass pass(first ? std::move(first) : open(), camera, settings, calibrate);
     CalibrateProgress progress{found.passes, 0, 0, {}};
     std::optional<CameraEstimate> before;
     bool anew = false, enough = false;
@@ -204,6 +205,8 @@ void Search(const Opener& open, Camera camera, const SlamSettings& settings,
       }
       if (!go_on(progress)) {
         stopped = true;
+        found.estimate.known = false;
+        found.why_not = "the search was stopped";
         return;
       }
     }
@@ -250,10 +253,11 @@ CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
   plain.threaded = false;
   plain.semidense.enabled = false;
   plain.readout.enabled = false;  // looked for with the lens, not on its own
-  Camera camera = open()->Info().camera;
+  std::unique_ptr<FrameSource> first = open();
+  Camera camera = first->Info().camera;
   CameraFound found;
   bool stopped = false;
-  Search(open, camera, plain, calibrate, go_on, found, stopped);
+  Search(std::move(first), open, camera, plain, calibrate, go_on, found, stopped);
   if (stopped || found.usable || found.estimate.keyframes < calibrate.first_keyframes ||
       calibrate.retry_bend == 0)
     return found;
@@ -264,7 +268,7 @@ CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
   CameraFound bent;
   bent.passes = found.passes;
   bent.frames = found.frames;
-  Search(open, camera, plain, calibrate, go_on, bent, stopped);
+  Search(nullptr, open, camera, plain, calibrate, go_on, bent, stopped);
   if (bent.estimate.known) return bent;
   found.passes = bent.passes;
   found.frames = bent.frames;
