@@ -1,14 +1,10 @@
 // `alidade export`: a map as what other programs read.
 #include <CLI/CLI.hpp>
 #include <cstdio>
-#include <filesystem>
 #include <memory>
 #include <string>
 
-#include "alidade/base/error.h"
-#include "alidade/run/export_map.h"
-#include "alidade/run/mcap_export.h"
-#include "alidade/version.h"
+#include "alidade/run/export_path.h"
 #include "commands.h"
 
 namespace alidade {
@@ -19,41 +15,8 @@ struct ExportOptions {
   ExportSettings how;
 };
 
-// A recorded stream, results or a map.
-int ExportToMcap(const ExportOptions& options) {
-  const std::string stream = StreamIn(options.map), program = "alidade " ALIDADE_VERSION;
-  std::error_code error;
-  if (std::filesystem::equivalent(stream.empty() ? options.map : stream, options.out, error))
-    ThrowUsage("OUT is what is exported; name another");
-  const bool map = stream.empty() && !std::filesystem::is_directory(options.map, error);
-  if (!map && (options.how.part != 0 || options.how.min_observations != 1)) {
-    ThrowUsage("--part and --min-observations choose from a map: name the file map.alidade");
-  }
-  McapCounts counts;
-  if (map) {
-    const SavedMap saved = ReadSavedMap(options.map);
-    counts = ExportMapToMcap(saved, PartFor(saved, options.how), options.out, program);
-  } else if (stream.empty()) {
-    counts = ExportResults(options.map, options.out, program);
-  } else {
-    counts = ExportStream(stream, options.out, program);
-  }
-  const std::string shape =
-      counts.shape > 0 ? ", " + std::to_string(counts.shape) + " points of shape" : "";
-  std::printf("%s: %d %s, %zu landmarks%s, %.1f MB\n", options.out.c_str(), counts.frames,
-              map ? "keyframes" : "frames", counts.landmarks, shape.c_str(),
-              1e-6 * static_cast<double>(counts.bytes));
-  return 0;
-}
-
 int ExportCommand(const ExportOptions& options) {
-  options.how.Check();
-  if (options.how.to == "mcap") return ExportToMcap(options);
-  std::error_code error;
-  if (std::filesystem::equivalent(SavedMapPath(options.map), options.out, error)) {
-    ThrowUsage("OUT is the map itself; name another");
-  }
-  const std::string what = ExportMap(ReadSavedMap(options.map), options.how, options.out);
+  const std::string what = ExportPath(options.map, options.how, options.out);
   std::printf("%s: %s\n", options.out.c_str(), what.c_str());
   return 0;
 }

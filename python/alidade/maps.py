@@ -112,6 +112,15 @@ class MapPart:
         return self._core.depth(int(keyframe))
 
 
+def _by_ending(path: str) -> str:
+    """What the ending of a file's name says is to be written."""
+    to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum", ".mcap": "mcap"}.get(os.path.splitext(path)[1])
+    if to is None:
+        raise UsageError(f'{path}: its ending does not say what to write; give to="ply", "pcd", "tum", "colmap" '
+                         'or "mcap"')
+    return to
+
+
 class Map:
     """A map: a value that never changes. From Slam.map(), Result.map or Map.load().
 
@@ -150,13 +159,7 @@ class Map:
         min_observations: points that fewer keyframes see are left out.
         """
         where = os.fspath(path)
-        if to is None:
-            to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum",
-                  ".mcap": "mcap"}.get(os.path.splitext(where)[1])
-            if to is None:
-                raise UsageError(f'{where}: its ending does not say what to write; give to="ply", "pcd", "tum", '
-                                 '"colmap" or "mcap"')
-        return self._core.export(where, to, format, part, min_observations)
+        return self._core.export(where, to or _by_ending(where), format, part, min_observations)
 
     @property
     def parts(self) -> List[MapPart]:

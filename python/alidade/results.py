@@ -9,9 +9,10 @@ from typing import Any, Dict, Optional
 
 import numpy
 
+from . import _core
 from .camera import PathLike
 from .errors import InputError
-from .maps import Map
+from .maps import Map, _by_ending
 
 
 def _poses(path: str) -> numpy.ndarray:
@@ -41,6 +42,18 @@ class Result:
     def save(self, folder: PathLike) -> None:
         """Copies all files to a folder that is not there yet."""
         shutil.copytree(self.folder, os.fspath(folder))
+
+    def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
+               min_observations: int = 1) -> str:
+        """Writes what other programs read, as ``alidade export`` does of the folder; returns what it was, in words.
+
+        to: "mcap": the run frame by frame as it was (if it was recorded, ``record=True``; else its poses), with path
+            and points as they are in the end, as ROS 2 messages (docs/mcap.md). Others: its map, as Map.export().
+            None: by the ending of the path.
+        format, part, min_observations: as of Map.export(), not for "mcap".
+        """
+        where = os.fspath(path)
+        return _core.export_path(self.folder, where, to or _by_ending(where), format, part, min_observations)
 
     @property
     def trajectory(self) -> numpy.ndarray:

@@ -8,6 +8,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/map/depth_cloud.h"
 #include "alidade/run/export_map.h"
+#include "alidade/run/export_path.h"
 #include "alidade/run/saved_map.h"
 #include "arrays.h"
 #include "map_value.h"
@@ -168,16 +169,27 @@ std::string Encode(const MapHolder& saved) {
   return EncodeMap(*saved);
 }
 
-std::string Export(const MapHolder& saved, const std::string& out, const std::string& to,
-                   const std::string& format, int part, int min_observations) {
-  const py::gil_scoped_release release;
+ExportSettings HowToExport(const std::string& to, const std::string& format, int part,
+                           int min_observations) {
   ExportSettings settings;
   settings.to = to;
   settings.format = format;
   settings.part = part;
   settings.min_observations = min_observations;
   settings.Check();
-  return ExportMap(*saved, settings, out);
+  return settings;
+}
+
+std::string Export(const MapHolder& saved, const std::string& out, const std::string& to,
+                   const std::string& format, int part, int min_observations) {
+  const py::gil_scoped_release release;
+  return ExportMap(*saved, HowToExport(to, format, part, min_observations), out);
+}
+
+std::string ExportFrom(const std::string& path, const std::string& out, const std::string& to,
+                       const std::string& format, int part, int min_observations) {
+  const py::gil_scoped_release release;
+  return ExportPath(path, HowToExport(to, format, part, min_observations), out);
 }
 
 }  // namespace
@@ -217,6 +229,8 @@ void BindMap(py::module_& core) {
            py::arg("min_observations"));
   core.def("read_map", &Read, py::arg("path"));
   core.def("decode_map", &Decode, py::arg("bytes"));
+  core.def("export_path", &ExportFrom, py::arg("path"), py::arg("out"), py::arg("to"),
+           py::arg("format"), py::arg("part"), py::arg("min_observations"));
 }
 
 }  // namespace alidade::python

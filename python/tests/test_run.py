@@ -62,6 +62,26 @@ def test_a_result_has_what_the_run_left(tmp_path):
     assert not os.path.exists(folder)
 
 
+def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
+    result = alidade.run(DESK, sensor="rgbd", semidense=True, record=tmp_path / "live.mcap", out=tmp_path / "run")
+    assert read(tmp_path, "live.mcap")[:8] == b"\x89MCAP0\r\n" == read(tmp_path, "live.mcap")[-8:]
+    said = result.export(tmp_path / "result.mcap")
+    assert said.startswith("40 frames, ") and "points of shape" in said
+    program("export", result.folder, tmp_path / "program.mcap", "--to", "mcap")
+    assert read(tmp_path, "result.mcap") == read(tmp_path, "program.mcap")
+    assert result.export(tmp_path / "points.ply") == f"{len(result.map.points.ids)} points"
+
+    recorded = alidade.run(DESK, sensor="rgbd", semidense=True, record=True)
+    recorded.export(tmp_path / "stream.mcap")
+    assert len(read(tmp_path, "stream.mcap")) > 1.5 * len(read(tmp_path, "result.mcap"))  # pictures, each frame's news
+    with pytest.raises(alidade.UsageError, match="to="):
+        result.export(tmp_path / "model")
+    with pytest.raises(alidade.UsageError, match="min-observations"):
+        result.export(tmp_path / "other.mcap", min_observations=3)
+    with pytest.raises(alidade.InputError):
+        result.export(tmp_path / "nowhere" / "run.mcap")
+
+
 def test_errors_are_pythons(tmp_path):
     with pytest.raises(alidade.UsageError, match="tracker.extractor.features") as wrong:
         alidade.run(DESK, settings={"tracker.extractor.feature": 1})
