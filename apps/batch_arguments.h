@@ -32,6 +32,13 @@ struct BatchWork {
 // Runs, tells and writes all of it; the exit status.
 int Batch(const BatchArguments& arguments);
 
+// The whole list, before anything is run. Throws Error, naming the line, for what `alidade run`
+// would refuse (usage), and for what cannot be read (input).
+std::vector<BatchWork> WorksOf(const BatchArguments& arguments);
+
+// By this program, from the same files.
+bool IsDone(const BatchFolder& folder, const BatchWork& work);
+
 std::string OwnProgram();  // path of this executable
 
 // Writes the scripts of a Slurm array of what is not done, and of the job that makes the table once

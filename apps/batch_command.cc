@@ -2,12 +2,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
-#include <filesystem>
-#include <memory>
 #include <optional>
 #include <sstream>
 #include <thread>
@@ -18,67 +15,13 @@
 #include "alidade/run/batch_process.h"
 #include "alidade/run/comparison.h"
 #include "alidade/run/loop.h"
-#include "arguments.h"
 #include "batch_arguments.h"
-#include "run_flags.h"
 #include "terminal.h"
 
 namespace alidade {
 namespace {
 
 constexpr int kWorseStatus = 1;  // something failed, or got worse
-
-// A line's words as `alidade run` reads them. Throws Error (usage) for what it would refuse.
-RunOptions OptionsOf(const BatchItem& item) {
-  RunOptions options;
-  CLI::App run("", "alidade run");
-  AddRunOptions(run, options);
-  CheckNames(run, item.words);
-  std::vector<std::string> words(item.words.rbegin(), item.words.rend());
-  try {
-    run.parse(words);
-  } catch (const CLI::ParseError& error) {
-    ThrowUsage(error.what());
-  }
-  if (options.source != SourceOf(item)) ThrowUsage("a line begins with its source");
-  if (options.out) ThrowUsage("--out is for one line: all would have the same folder");
-  if (options.viewer) ThrowUsage("--viewer shows one run; a batch is of many");
-  CheckRunOptions(options);
-  SourceOptionsFrom(options);
-  RateFrom(options, ThreadedFrom(options, false));
-  SettingsFrom(options);
-  return options;
-}
-
-std::string ProgramMark() {
-  const std::string program = ReadFile(OwnProgram());
-  return std::to_string(program.size()) + ":" + std::to_string(std::hash<std::string>{}(program));
-}
-
-// Reads the whole list before anything is run.
-std::vector<BatchWork> WorksOf(const BatchArguments& arguments) {
-  const std::string mark = ProgramMark();
-  std::vector<BatchWork> works;
-  for (BatchItem& item : ParseBatchList(ReadFile(arguments.list), arguments.list, arguments.more)) {
-    try {
-      const RunOptions options = OptionsOf(item);
-      BatchWork work;
-      work.fingerprint = FingerprintOf(item, options, mark);
-      work.item = std::move(item);
-      works.push_back(std::move(work));
-    } catch (const Error& error) {
-      throw Error(error.kind(),
-                  arguments.list + ":" + std::to_string(item.line) + ": " + error.what());
-    }
-  }
-  return works;
-}
-
-bool IsDone(const BatchFolder& folder, const BatchWork& work) {
-  const std::optional<BatchDone> done = folder.DoneOf(work.item);
-  return done && done->status == 0 && done->fingerprint == work.fingerprint &&
-         IsFile(folder.ResultOf(work.item) + "/stats.json");
-}
 
 // Why it ended: its last "alidade: …" that is no warning, else the last line of all.
 std::string LastWords(const std::string& log) {
@@ -255,16 +198,6 @@ int RunOnly(const BatchArguments& arguments, BatchFolder& folder,
 }
 
 }  // namespace
-
-std::string OwnProgram() {
-  std::error_code error;
-  const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) ThrowInput("this program does not find itself: " + error.message());
-  // As the system calls one that was replaced meanwhile, by its successor's name or not.
-  const std::string name = path.string(), gone = " (deleted)";
-  const bool replaced = name.size() > gone.size() && name.ends_with(gone);
-  return replaced ? name.substr(0, name.size() - gone.size()) : name;
-}
 
 int Batch(const BatchArguments& arguments) {
   CatchInterrupts();

@@ -1,6 +1,5 @@
 // `alidade bench`: how long the parts take, in milliseconds and in U (docs/benchmarks.md).
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -8,14 +7,13 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
-#include "alidade/base/timing.h"
-#include "alidade/io/files/file.h"
 #include "arguments.h"
 #include "bench/bench.h"
 #include "bench/dynamic.h"
 #include "bench/large_map.h"
 #include "bench/lasting.h"
 #include "bench/phone.h"
+#include "bench/section_output.h"
 #include "bench/semidense.h"
 #include "bench/wild.h"
 #include "commands.h"
@@ -56,93 +54,18 @@ void FillIn(BenchArguments& arguments) {
   }
 }
 
-void Print(const bench::Section& section) {
-  const Summary u = Summarise(section.u_milliseconds);
-  if (u.count > 0) {
-    std::printf("\n%s (U = %.2f ms, median of %d)\n", section.name.c_str(), u.median, u.count);
-  } else {
-    std::printf("\n%s\n", section.name.c_str());
-  }
-  if (!section.rows.empty())
-    std::printf("  %-44s %10s %8s %10s %7s\n", "", "median ms", "U", "p95 ms", "times");
-  for (const bench::Row& row : section.rows) {
-    const Summary s = Summarise(row.milliseconds);
-    char ratio[32] = "-";  // where no frame of OpenCV's was timed in turns
-    if (u.count > 0) std::snprintf(ratio, sizeof ratio, "%.3f", s.median / u.median);
-    std::printf("  %-44s %10.3f %8s %10.3f %7d  %s\n", row.name.c_str(), s.median, ratio, s.p95,
-                s.count, row.note.c_str());
-  }
-  for (const bench::Table& table : section.tables) {
-    std::printf("\n  %s\n", table.name.c_str());
-    const bool labels = !table.labels.empty();
-    const int width = labels ? 9 : 16, digits = labels ? 2 : 3;
-    size_t longest = 24;
-    for (const std::string& label : table.labels) longest = std::max(longest, label.size());
-    const int label_width = static_cast<int>(longest);
-    if (labels) std::printf("  %-*s", label_width, "");
-    std::vector<int> widths;
-    for (const std::string& column : table.columns) {
-      widths.push_back(std::max(width, static_cast<int>(column.size())));
-      std::printf("  %*s", widths.back(), column.c_str());
-    }
-    for (size_t i = 0; i < table.rows.size(); ++i) {
-      std::printf("\n");
-      if (labels) std::printf("  %-*s", label_width, table.labels[i].c_str());
-      for (size_t column = 0; column < widths.size(); ++column) {
-        const double value = table.rows[i][column];
-        if (value == value) {
-          std::printf("  %*.*f", widths[column], digits, value);
-        } else {
-          std::printf("  %*s", widths[column], "-");
-        }
-      }
-    }
-    std::printf("\n  %s\n", table.note.c_str());
-  }
-}
-
-ordered_json ToJson(const bench::Section& section) {
-  const Summary u = Summarise(section.u_milliseconds);
-  ordered_json rows = ordered_json::array();
-  for (const bench::Row& row : section.rows) {
-    const Summary s = Summarise(row.milliseconds);
-    rows.push_back({{"name", row.name},
-                    {"median_ms", s.median},
-                    {"p95_ms", s.p95},
-                    {"median_u", u.count > 0 ? ordered_json(s.median / u.median) : ordered_json()},
-                    {"count", s.count},
-                    {"note", row.note}});
-  }
-  ordered_json made = {
-      {"name", section.name}, {"u_ms", u.median}, {"u_count", u.count}, {"rows", rows}};
-  for (const bench::Table& table : section.tables) {
-    made["tables"].push_back({{"name", table.name},
-                              {"columns", table.columns},
-                              {"rows", table.rows},
-                              {"note", table.note}});
-    if (!table.labels.empty()) made["tables"].back()["labels"] = table.labels;
-  }
-  return made;
-}
-
-// `all`: what holds for all benches.
-void Write(const std::string& path, ordered_json all, ordered_json sections) {
-  if (path.empty()) return;
-  all["benches"] = std::move(sections);
-  AtomicWriteFile(path, all.dump(2) + "\n");
-}
-
 // `words`: recordings.
 int RunSemiDense(std::vector<std::string> words, const BenchArguments& arguments) {
   if (!arguments.source.empty()) words.push_back(arguments.source);
   ordered_json sections = ordered_json::array();
   for (const std::string& source : bench::SemiDenseSources(words)) {
     const bench::Section section = bench::BenchSemiDense(source, arguments.frames);
-    Print(section);
+    bench::PrintSection(section);
     std::fflush(stdout);
-    sections.push_back(ToJson(section));
+    sections.push_back(bench::SectionJson(section));
   }
-  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  bench::WriteSections(arguments.out, {{"version", 1}, {"threads", ThreadCount()}},
+                       std::move(sections));
   return 0;
 }
 
@@ -155,8 +78,9 @@ int RunDynamic(const std::vector<std::string>& words, BenchArguments arguments) 
   options.settings = arguments.settings;
   if (arguments.seeds > 0) options.seeds = arguments.seeds;
   const bench::Section section = bench::BenchDynamic(options);
-  Print(section);
-  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, {ToJson(section)});
+  bench::PrintSection(section);
+  bench::WriteSections(arguments.out, {{"version", 1}, {"threads", ThreadCount()}},
+                       {bench::SectionJson(section)});
   return 0;
 }
 
@@ -169,10 +93,11 @@ int RunLasting(std::vector<std::string> words, const BenchArguments& arguments) 
   for (const std::string& source : words) {
     const bench::Section section =
         bench::BenchLasting(source, arguments.frames, sensors.empty() ? "" : sensors.front());
-    Print(section);
-    sections.push_back(ToJson(section));
+    bench::PrintSection(section);
+    sections.push_back(bench::SectionJson(section));
   }
-  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  bench::WriteSections(arguments.out, {{"version", 1}, {"threads", ThreadCount()}},
+                       std::move(sections));
   return 0;
 }
 
@@ -183,12 +108,13 @@ int RunPhone(std::vector<std::string> words, const BenchArguments& arguments) {
   ordered_json sections = ordered_json::array();
   for (const std::string& source : words) {
     for (const bench::Section& section : bench::BenchPhone(source, arguments.frames)) {
-      Print(section);
-      sections.push_back(ToJson(section));
+      bench::PrintSection(section);
+      sections.push_back(bench::SectionJson(section));
     }
     std::fflush(stdout);
   }
-  Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, std::move(sections));
+  bench::WriteSections(arguments.out, {{"version", 1}, {"threads", ThreadCount()}},
+                       std::move(sections));
   return 0;
 }
 
@@ -213,8 +139,9 @@ int Run(BenchArguments arguments) {
   if (names[0] == "lasting") return RunLasting({names.begin() + 1, names.end()}, arguments);
   if (names[0] == "large-map") {
     const bench::Section section = bench::BenchLargeMap(arguments.frames);
-    Print(section);
-    Write(arguments.out, {{"version", 1}, {"threads", ThreadCount()}}, {ToJson(section)});
+    bench::PrintSection(section);
+    bench::WriteSections(arguments.out, {{"version", 1}, {"threads", ThreadCount()}},
+                         {bench::SectionJson(section)});
     return 0;
   }
   FillIn(arguments);
@@ -230,18 +157,18 @@ int Run(BenchArguments arguments) {
   ordered_json sections = ordered_json::array();
   for (Bench bench : benches) {
     const bench::Section section = bench(recording);
-    Print(section);
+    bench::PrintSection(section);
     std::fflush(stdout);
-    sections.push_back(ToJson(section));
+    sections.push_back(bench::SectionJson(section));
   }
-  Write(arguments.out,
-        {{"version", 1},
-         {"source", recording.source},
-         {"frames", recording.frames.size()},
-         {"width", camera.width},
-         {"height", camera.height},
-         {"threads", ThreadCount()}},
-        std::move(sections));
+  bench::WriteSections(arguments.out,
+                       {{"version", 1},
+                        {"source", recording.source},
+                        {"frames", recording.frames.size()},
+                        {"width", camera.width},
+                        {"height", camera.height},
+                        {"threads", ThreadCount()}},
+                       std::move(sections));
   return 0;
 }
 

@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-// `path`: a map.alidade, a folder of results, or (mcap) a recorded stream. A folder's run is told as
-// it was where it was recorded; of everything but mcap it is its map that is written. What was
+// `path`: a map.alidade, a folder of results, or (mcap) a recorded stream. A folder's run is told
+// as it was where it was recorded; of everything but mcap it is its map that is written. What was
 // written, in words. Throws Error: usage for what cannot be asked of it, input for what cannot be
 // read or written.
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
