@@ -72,6 +72,19 @@ TEST_F(Topics, PairsBelongTogetherByTheirStamps) {
   }
 }
 
+// Zeros would end an error, line ends and escapes make it more than a line.
+TEST_F(Topics, NamesAreShownInOneLine) {
+  using namespace std::string_literals;
+  const std::string name = "/\0cam\n\x1b[31m"s;
+  const auto source = Open({{name, "sensor_msgs/Image", kStart,
+                             ImageMessage(kRos2, kStart, "camera", "mono\r9", Grey(1))}});
+  EXPECT_THAT(source->Info().told, HasSubstr("image /?cam??[31m (mono?9, "));
+  EXPECT_THAT(source->Next()->problem, HasSubstr("mono?9"));
+  const std::string refused =
+      MessageOf(ErrorKind::kUsage, [&] { Open({Picture(name, kStart, 10)}, "?image=/cam"); });
+  EXPECT_THAT(refused, HasSubstr("there are /?cam??[31m; depth"));
+}
+
 TEST_F(Topics, WhatIsFurtherApartThanAskedForIsNoPair) {
   const auto source = Open(Pair(), "?max_dt=0.0005");
   while (const auto frame = source->Next()) EXPECT_TRUE(frame->right.empty());

@@ -39,7 +39,8 @@ bool Accepts(const Target& target, std::string_view bytes) {
   try {
     target.run({copy.get(), bytes.size()});
   } catch (const Error& error) {
-    Expect(std::string_view(error.what()).size() >= 8, "an error that says nothing");
+    const std::string said = error.what();
+    Expect(said.size() >= 8, "an error that says nothing: '" + said + "'");
     return false;
   }
   return true;

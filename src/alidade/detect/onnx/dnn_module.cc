@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <memory>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
 
+#include "alidade/base/printable.h"
 #include "alidade/detect/onnx/network_module.h"
 
 namespace alidade {
@@ -19,11 +19,7 @@ std::string Between(const std::string& text, const std::string& before, const ch
 }
 
 // What a damaged file may have put into it stays out.
-std::string Printable(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return text.substr(0, kLongest);
-}
+std::string Shown(const std::string& text) { return Printable(text).substr(0, kLongest); }
 
 // OpenCV's reasons go over several lines and name its source files: what a user can make use of,
 // which is the operator it stumbled over, in one line.
@@ -32,8 +28,8 @@ std::string Reason(const cv::Exception& error) {
   std::string operation = Between(text, "Node [", "@]");
   if (operation.empty()) operation = Between(text, "of type \"", "\"");
   if (!operation.empty())
-    return Printable("operator " + operation) + " is not known, or not used in this way";
-  const std::string line = Printable(error.err.substr(0, error.err.find('\n')));
+    return Shown("operator " + operation) + " is not known, or not used in this way";
+  const std::string line = Shown(error.err.substr(0, error.err.find('\n')));
   return line.empty() ? "an unknown reason" : line;
 }
 
@@ -47,7 +43,7 @@ std::string ReasonOf(const Function& run) {
   } catch (const std::bad_alloc&) {
     return "not enough memory";
   } catch (const std::exception& error) {
-    return Printable(error.what());
+    return Shown(error.what());
   } catch (...) {
     return "an unknown reason";
   }

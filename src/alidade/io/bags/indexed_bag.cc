@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "alidade/base/error.h"
+#include "alidade/base/printable.h"
 
 namespace alidade {
 namespace {
@@ -19,7 +20,7 @@ size_t IndexedBag::TopicOf(std::string_view name, std::string_view type,
       known_.try_emplace({std::string(name), std::string(type)}, topics_.size());
   if (is_new) {
     if (topics_.size() == kMostTopics) ThrowInput("names more topics than any recording has");
-    topics_.push_back({std::string(name), Ros1TypeOf(type), serialization, 0});
+    topics_.push_back({Printable(name), Printable(Ros1TypeOf(type)), serialization, 0});
     messages_.emplace_back();
     wanted_.push_back(serialization != Serialization::kOther && IsWantedType(topics_.back().type));
   }

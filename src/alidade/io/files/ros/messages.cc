@@ -1,6 +1,7 @@
 #include "alidade/io/files/ros/messages.h"
 
 #include "alidade/base/error.h"
+#include "alidade/base/printable.h"
 #include "alidade/io/files/ros/message_cursor.h"
 
 namespace alidade {
@@ -41,7 +42,7 @@ RosPicture ParseRosPicture(std::string_view message, Serialization serialization
     picture.height = cursor.Uint32();
     picture.width = cursor.Uint32();
   }
-  picture.encoding = cursor.Text();
+  picture.encoding = Printable(cursor.Text());
   if (!compressed) {
     picture.big_endian = cursor.Byte() != 0;
     picture.step = cursor.Uint32();
@@ -56,7 +57,7 @@ RosCameraInfo ParseRosCameraInfo(std::string_view message, Serialization seriali
   info.header = TakeHeader(cursor);
   info.height = cursor.Uint32();
   info.width = cursor.Uint32();
-  info.distortion_model = cursor.Text();
+  info.distortion_model = Printable(cursor.Text());
   const uint32_t coefficients = cursor.Uint32();
   if (coefficients > kMostCoefficients) ThrowInput("has too many distortion coefficients");
   for (uint32_t i = 0; i < coefficients; ++i) info.D.push_back(cursor.Double());
