@@ -62,10 +62,12 @@ int64_t TopicStamps::HeaderStamp(size_t i) {
 int64_t TopicStamps::Stamp(size_t i) {
   if (stamps_[i] == kUnread) {
     const int64_t stamp = HeaderStamp(i);
-    stamps_[i] = stamp == 0 ? Difference(message(i).log_time, lag_) : stamp;
+    stamps_[i] = stamp == 0 ? Expected(i) : stamp;
   }
   return stamps_[i];
 }
+
+int64_t TopicStamps::Expected(size_t i) const { return Difference(message(i).log_time, lag_); }
 
 std::optional<double> TopicStamps::Rate() const {
   std::vector<int64_t> gaps;

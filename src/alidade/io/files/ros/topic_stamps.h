@@ -21,7 +21,7 @@ class TopicStamps {
   // down, less what lies between the two in this topic.
   int64_t Stamp(size_t i);
   // When it was written down, on the clock of the stamps: nothing is read for it.
-  int64_t Expected(size_t i) const { return message(i).log_time - lag_; }
+  int64_t Expected(size_t i) const;
   // Frames a second by when they were written down, a whole number where it is near one; nothing
   // for less than two.
   std::optional<double> Rate() const;
