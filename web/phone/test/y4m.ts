@@ -26,6 +26,12 @@ export function openRecording(folder: string): Recording {
   return { times: lines.map(([time]) => Number(time)), files, width, height };
 }
 
+// A picture of it in grey, a byte a pixel.
+export function grayOf({ files }: Recording, number: number): Uint8Array {
+  const { width, height, data } = readPicture(files[number]!);
+  return Uint8Array.from({ length: width * height }, (_, k) => (299 * data[4 * k]! + 587 * data[4 * k + 1]! + 114 * data[4 * k + 2]! + 500) / 1000);
+}
+
 export const DARK = -1; // a frame of nothing
 
 // `order`: frames of the recording, or DARK, in the order that the camera shows them.
