@@ -100,6 +100,7 @@ void PhoneSlam::Begin() {
   source_ = source;
   encoder_.reset();
   if (wanted) BeginMessages();
+  latest_ = {};
   before_.reset();
   ask_at_ = settings_.first_keyframes;
 }
@@ -126,6 +127,9 @@ PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
   told.result = frame.result;
   const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
   if (!last.empty()) told.pose = last.back();
+  const LatestTimes latest = slam_->Latest();
+  told.ms = MillisecondsSince(latest_, latest);
+  latest_ = latest;
   told.features = slam_->Features();
   told.mover_mask = slam_->MoverMask();
   if (const auto seen = slam_->Detections()) {

@@ -35,17 +35,6 @@ StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRec
   return source;
 }
 
-// What each stage took since `before`; -1 where it has not run.
-StreamMilliseconds Since(const LatestTimes& before, const LatestTimes& now) {
-  const auto of = [](const SampleLog::Reading& then, const SampleLog::Reading& last) {
-    return last.number > then.number ? static_cast<float>(last.value) : -1.f;
-  };
-  return {of(before.frame, now.frame),   of(before.extract, now.extract),
-          of(before.track, now.track),   of(before.map, now.map),
-          of(before.loop, now.loop),     of(before.semidense, now.semidense),
-          of(before.detect, now.detect), of(before.dynamics, now.dynamics)};
-}
-
 }  // namespace
 
 StreamFeed::StreamFeed(std::string program, std::optional<std::string> file,
@@ -105,7 +94,7 @@ void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
   if (!last.empty()) told.pose = last.back();
   const LatestTimes latest = slam_->Latest();
-  told.ms = Since(latest_, latest);
+  told.ms = MillisecondsSince(latest_, latest);
   latest_ = latest;
   told.features = slam_->Features();
   told.mover_mask = slam_->MoverMask();

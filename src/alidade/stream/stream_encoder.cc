@@ -82,6 +82,16 @@ std::string Words(TrackState state, const std::string& reason) {
 
 }  // namespace
 
+StreamMilliseconds MillisecondsSince(const LatestTimes& before, const LatestTimes& now) {
+  const auto of = [](const SampleLog::Reading& then, const SampleLog::Reading& last) {
+    return last.number > then.number ? static_cast<float>(last.value) : -1.f;
+  };
+  return {of(before.frame, now.frame),   of(before.extract, now.extract),
+          of(before.track, now.track),   of(before.map, now.map),
+          of(before.loop, now.loop),     of(before.semidense, now.semidense),
+          of(before.detect, now.detect), of(before.dynamics, now.dynamics)};
+}
+
 // Where frames were, by what they hang on.
 struct StreamEncoder::Path {
   struct Entry {

@@ -40,6 +40,9 @@ struct StreamPicture {
 // dynamics; below 0: not run.
 using StreamMilliseconds = std::array<float, 8>;
 
+// What each stage took since `before`; -1 where it has not run.
+StreamMilliseconds MillisecondsSince(const LatestTimes& before, const LatestTimes& now);
+
 // What a detector found, in pixels of the camera's picture, from edge to edge: the first one covers
 // 0 to 1.
 struct StreamBox {
