@@ -94,7 +94,7 @@ class PhoneSlam {
   Camera camera_;
   bool known_;
   double focal_ = 0, focal_sigma_ = 0;  // believed; relative
-  LatestTimes latest_;  // as the last frame left them
+  LatestTimes latest_;                  // as the last frame left them
   std::optional<CameraEstimate> before_;
   int ask_at_ = 0, restarts_ = 0, frames_ = 0;
   std::unique_ptr<Slam> slam_;
