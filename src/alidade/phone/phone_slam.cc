@@ -120,25 +120,9 @@ PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
   }
   PhoneFrame frame;
   frame.result = slam_->Track(input);
-  const MapSnapshot map = slam_->Snapshot();
-  StreamFrame told;
-  told.number = frame.number = frames_++;
-  told.time = time;
-  told.result = frame.result;
-  const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
-  if (!last.empty()) told.pose = last.back();
-  const LatestTimes latest = slam_->Latest();
-  told.ms = MillisecondsSince(latest_, latest);
-  latest_ = latest;
-  told.features = slam_->Features();
-  told.mover_mask = slam_->MoverMask();
-  if (const auto seen = slam_->Detections()) {
-    told.detection_age = seen->seconds_ago;
-    for (size_t i = 0; i < seen->detections.size(); ++i)
-      told.detections.push_back(
-          {seen->detections[i].box, seen->detections[i].score, seen->names[i]});
-  }
-  told.map = map;
+  frame.number = frames_++;
+  const StreamFrame told = FrameAsLeft(*slam_, frame.number, time, frame.result, latest_);
+  const MapSnapshot& map = told.map;
   frame.keyframes = map.keyframe_count();
   frame.landmarks = map.landmark_count();
   frame.maps = static_cast<int>(map.Maps().size());

@@ -87,24 +87,7 @@ void StreamFeed::Frame(const SourceFrame& frame, const TrackResult& result) {
 
 void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   Shown shown;
-  StreamFrame& told = shown.frame;
-  told.number = frame.number;
-  told.time = frame.time;
-  told.result = result;
-  const std::vector<FramePose> last = slam_->Trajectory(slam_->frames() - 1);
-  if (!last.empty()) told.pose = last.back();
-  const LatestTimes latest = slam_->Latest();
-  told.ms = MillisecondsSince(latest_, latest);
-  latest_ = latest;
-  told.features = slam_->Features();
-  told.mover_mask = slam_->MoverMask();
-  told.map = slam_->Snapshot();
-  if (const auto seen = slam_->Detections()) {
-    told.detection_age = seen->seconds_ago;
-    for (size_t i = 0; i < seen->detections.size(); ++i)
-      told.detections.push_back(
-          {seen->detections[i].box, seen->detections[i].score, seen->names[i]});
-  }
+  shown.frame = FrameAsLeft(*slam_, frame.number, frame.time, result, latest_);
   if (settings_.pictures_hz > 0 && !(frame.time - picture_time_ < 1 / settings_.pictures_hz)) {
     picture_time_ = frame.time;
     shown.image = frame.color.empty() ? frame.image : frame.color;

@@ -40,9 +40,6 @@ struct StreamPicture {
 // dynamics; below 0: not run.
 using StreamMilliseconds = std::array<float, 8>;
 
-// What each stage took since `before`; -1 where it has not run.
-StreamMilliseconds MillisecondsSince(const LatestTimes& before, const LatestTimes& now);
-
 // What a detector found, in pixels of the camera's picture, from edge to edge: the first one covers
 // 0 to 1.
 struct StreamBox {
@@ -65,6 +62,12 @@ struct StreamFrame {
   StreamPicture picture;
   MapSnapshot map;  // taken after it
 };
+
+// The frame `slam` tracked last, without a picture: `number` and `time` are the recording's,
+// `result` what Track() returned. `latest`: what Slam::Latest() said after the frame before ({} at
+// first); takes what it says now.
+StreamFrame FrameAsLeft(const Slam& slam, int number, double time, const TrackResult& result,
+                        LatestTimes& latest);
 
 struct StreamPlayback {
   bool paused = false, finished = false, may_pause = false;

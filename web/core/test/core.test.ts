@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
-import jpeg from 'jpeg-js';
+import { grayOf, openRecording } from '../../phone/test/y4m.ts';
 import { decode } from '../../scene/src/decode.ts';
 import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
 
@@ -19,23 +19,6 @@ const { Slam } = (built ? await import(pathToFileURL(join(dist, 'index.js')).hre
 
 const create = (more: Partial<SlamOptions> & { width: number; height: number }) =>
   Slam.create({ wasmBinary: readFileSync(join(dist, 'single/alidade.wasm')), ...more });
-
-interface Recording { times: string[]; gray(i: number): Uint8Array; width: number; height: number }
-
-function open(folder: string): Recording {
-  const lines = readFileSync(join(folder, 'rgb.txt'), 'utf8').split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.split(/\s+/));
-  const picture = (i: number) => jpeg.decode(readFileSync(join(folder, lines[i]![1]!)), { useTArray: true });
-  const { width, height } = picture(0);
-  return {
-    times: lines.map(([time]) => time!), width, height,
-    gray: (i) => {
-      const { data } = picture(i);
-      const gray = new Uint8Array(width * height);
-      for (let k = 0; k < gray.length; ++k) gray[k] = (299 * data[4 * k]! + 587 * data[4 * k + 1]! + 114 * data[4 * k + 2]! + 500) / 1000;
-      return gray;
-    },
-  };
-}
 
 // ATE of the program's own evaluation, metres.
 function ate(folder: string, trajectory: string): { rmse: number; coverage: number } {
@@ -50,7 +33,7 @@ const onKitchen = { ...options, skip: options.skip || (process.env.ALIDADE_DATA 
 function median(values: number[]): number { return [...values].sort((a, b) => a - b)[values.length >> 1]!; }
 
 test('a real recording: as good as the native core', onKitchen, async () => {
-  const recording = open(kitchen);
+  const recording = openRecording(kitchen);
   const camera = Object.fromEntries(readFileSync(join(kitchen, 'camera.yaml'), 'utf8').split('\n').map((line) => line.split(/:\s*/)).filter((pair) => pair.length === 2)) as Record<string, string>;
   const slam = await create({
     width: recording.width, height: recording.height,
@@ -60,7 +43,7 @@ test('a real recording: as good as the native core', onKitchen, async () => {
   let messages = slam.messages();
   assert.equal(messages.length, 1);  // hello
   for (let i = 0; i < recording.times.length; ++i) {
-    const frame = slam.track(recording.gray(i), Number(recording.times[i]));
+    const frame = slam.track(grayOf(recording, i), recording.times[i]!);
     milliseconds.push(frame.milliseconds);
     assert.equal(frame.state === 'tracking', frame.reason === '');
     messages = slam.messages();
@@ -86,11 +69,11 @@ test('a real recording: as good as the native core', onKitchen, async () => {
 });
 
 test('a camera nobody calibrated is found on the way', onKitchen, async () => {
-  const recording = open(kitchen);
+  const recording = openRecording(kitchen);
   const slam = await create({ width: recording.width, height: recording.height });
-  let frame = slam.track(recording.gray(0), Number(recording.times[0]));
+  let frame = slam.track(grayOf(recording, 0), recording.times[0]!);
   assert.ok(Math.abs(frame.fov - 66) < 0.1 && frame.fovSigma > 10);
-  for (let i = 1; i < recording.times.length; ++i) frame = slam.track(recording.gray(i), Number(recording.times[i]));
+  for (let i = 1; i < recording.times.length; ++i) frame = slam.track(grayOf(recording, i), recording.times[i]!);
   console.log(`kitchen, nothing known: ${frame.fov.toFixed(1)} ± ${frame.fovSigma.toFixed(1)} degrees (62.5), ${frame.restarts} restarts`);
   assert.ok(frame.fovSigma < 2 && Math.abs(frame.fov - 62.5) < 3 * frame.fovSigma);
   assert.equal(frame.state, 'tracking');
@@ -100,11 +83,11 @@ test('a camera nobody calibrated is found on the way', onKitchen, async () => {
 });
 
 test('a detector that answers late: what it finds is left out', onKitchen, async () => {
-  const recording = open(kitchen);
+  const recording = openRecording(kitchen);
   const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, classes: ['person', 'dog'] });
   const box = { class: 0, score: 0.9, x: 160, y: 120, width: 320, height: 300 };
   for (let i = 0; i < 60; ++i) {
-    const frame = slam.track(recording.gray(i), Number(recording.times[i]));
+    const frame = slam.track(grayOf(recording, i), recording.times[i]!);
     assert.equal(frame.number, i);
     if (i >= 10 && i % 5 === 0) slam.detected(i - 10, [box]);
   }
@@ -117,15 +100,15 @@ test('a detector that answers late: what it finds is left out', onKitchen, async
 });
 
 test('shape: what it costs a keyframe', onKitchen, async () => {
-  const recording = open(kitchen);
+  const recording = openRecording(kitchen);
   const frames = 300;
-  const pictures = Array.from({ length: frames }, (_, i) => recording.gray(i));
+  const pictures = Array.from({ length: frames }, (_, i) => grayOf(recording, i));
   const cost = async (semidense: boolean) => {
     const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, settings: { 'semidense.enabled': semidense } });
     const before = process.cpuUsage();
-    for (let i = 0; i < frames; ++i) slam.track(pictures[i]!, Number(recording.times[i]));
+    for (let i = 0; i < frames; ++i) slam.track(pictures[i]!, recording.times[i]!);
     const { user, system } = process.cpuUsage(before);
-    const { keyframes } = slam.track(pictures[frames - 1]!, Number(recording.times[frames - 1]) + 1 / 30).counts;
+    const { keyframes } = slam.track(pictures[frames - 1]!, recording.times[frames - 1]! + 1 / 30).counts;
     slam.delete();
     return { milliseconds: (user + system) / 1000, keyframes };
   };
