@@ -1,0 +1,184 @@
+// Where the tracker first takes a frame to be: by the motion so far and the last frame's landmarks,
+// else by the looks of the reference keyframe.
+#include <cmath>
+
+#include "alidade/features/guided_search.h"
+#include "alidade/features/matching.h"
+#include "alidade/geometry/pnp.h"
+#include "alidade/tracking/local_search.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kChiSquared2 = 5.991;  // 95 % with 2 degrees of freedom
+constexpr double kChiSquared3 = 7.815;
+
+}  // namespace
+
+PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  PlacedFrame guess = PredictByMotion(std::move(frame), map);
+  return has_depth_ && unproven_ > 0 ? BetterByLooks(std::move(guess), map) : guess;
+}
+
+PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
+  PlacedFrame other;
+  other.frame = guess.frame;
+  MatchKeyFrame(other, map, reference());
+  if (other.inliers < Scaled(settings_.min_after_prediction)) return guess;
+  return Agreement(other, map) > Agreement(guess, map) ? other : guess;
+}
+
+// How much of the local map is seen where a pose says, of all that looks alike near there: each
+// match counts from 1 (no error) to 0 (at the gate, 95 % of chi²), whatever the noise the pose was
+// found with.
+double Tracker::Agreement(PlacedFrame placed, const MapSnapshot& map) {
+  const LocalMap local =
+      gatherer_.Gather(map, placed.matches, placed.T_camera_world, settings_.local_keyframes);
+  placed.matches = MatchLocalMap(placed, local, camera_, settings_).matches;
+  Optimise(placed, map);
+  double sum = 0;
+  for (size_t i = 0; i < placed.matches.size(); ++i) {
+    const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
+    if (!landmark) continue;
+    const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
+    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
+    double chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
+    double gate = kChiSquared2;
+    if (has_depth_ && std::isfinite(m.pixel.z())) {
+      const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());
+      chi2 += disparity * disparity * m.inv_sigma2_right;
+      gate = kChiSquared3;
+    }
+    sum += std::max(0.0, 1 - chi2 / gate);
+  }
+  return sum;
+}
+
+PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  PlacedFrame guess;
+  guess.frame = std::move(frame);
+  const Se3 T_last_world = PoseOf(map.state(), last_anchor_);
+  last_.T_camera_world = T_last_world;
+  const Se3 motion = MotionUntil(guess.frame->time, map);
+
+  const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
+  PlacedFrame best;
+  for (float widen : {1.0f, 2.0f, 4.0f}) {
+    guess.T_camera_world = motion_.known() ? motion * T_last_world : T_last_world;
+    MatchLastFrame(guess, map, widen * radius);
+    const double share = Optimise(guess, map);
+    // A window that misses the true places still finds something in them: then few agree on one
+    // pose.
+    if (guess.inliers >= Scaled(settings_.min_predicted) && share > settings_.min_agreement)
+      return guess;
+    if (guess.inliers > best.inliers) best = guess;
+  }
+  MatchKeyFrame(guess, map, reference());
+  return guess.inliers > best.inliers ? guess : best.frame ? best : guess;
+}
+
+Se3 Tracker::MotionUntil(double time, const MapSnapshot& map) const {
+  if (!last_.frame) return {};
+  Se3 motion = motion_.After(time - last_.frame->time);
+  motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  return motion;
+}
+
+std::optional<Se3> Tracker::PredictedPose(double time, const MapSnapshot& map) const {
+  if (!last_.frame || !motion_.known() || !map.Find(reference())) return std::nullopt;
+  if (!(time - last_.frame->time <= settings_.predict_seconds)) return std::nullopt;
+  return MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
+}
+
+void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const {
+  const Frame& now = *guess.frame;
+  guess.matches.assign(now.keypoints.size(), {});
+  const Se3 T_last_now = last_.T_camera_world * guess.T_camera_world.Inverse();
+  const double forward =
+      T_last_now.t.z();  // metres; what is nearer now is found on a coarser level
+  const double baseline = camera_.StereoBaseline();
+
+  std::vector<int> matched;
+  std::vector<float> turns;
+  for (size_t i = 0; i < last_.matches.size(); ++i) {
+    const LandmarkId id = map.Current(last_.matches[i]);
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    const Eigen::Vector3d p = guess.T_camera_world * landmark->p_world;
+    if (p.z() <= 0.01) continue;
+    const Eigen::Vector2d pixel = camera_.Project(p);
+    if (!(pixel.x() >= 0 && pixel.x() < camera_.width && pixel.y() >= 0 &&
+          pixel.y() < camera_.height))
+      continue;
+
+    const Keypoint& before = last_.frame->keypoints[i];
+    Sought sought;
+    sought.descriptor = &last_.frame->descriptors[i];
+    sought.x = static_cast<float>(pixel.x());
+    sought.y = static_cast<float>(pixel.y());
+    sought.radius = radius * static_cast<float>(ScaleOfLevel(before.level));
+    sought.min_level = before.level - 1;
+    sought.max_level = before.level + 1;
+    if (baseline > 0 && forward > baseline) {
+      sought.min_level = before.level;
+      sought.max_level = kPyramidLevels - 1;
+    } else if (baseline > 0 && -forward > baseline) {
+      sought.min_level = 0;
+      sought.max_level = before.level;
+    }
+    if (baseline > 0) sought.right_x = static_cast<float>(pixel.x() - camera_.bf() / p.z());
+    const Sighting found =
+        FindNear(now, sought, [&](int k) { return !guess.matches[k].valid() && now.IsUsable(k); });
+    if (found.keypoint < 0 || found.distance > settings_.max_distance) continue;
+    guess.matches[found.keypoint] = id;
+    matched.push_back(found.keypoint);
+    turns.push_back(before.angle - now.keypoints[found.keypoint].angle);
+  }
+  const std::vector<bool> keep = ConsistentTurns(turns);
+  for (size_t i = 0; i < matched.size(); ++i) {
+    if (!keep[i]) guess.matches[matched[i]] = {};
+  }
+}
+
+void Tracker::MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const {
+  guess.matches.assign(guess.frame->keypoints.size(), {});
+  guess.inliers = 0;
+  const KeyFrame* keyframe = map.Find(id);
+  if (!keyframe) return;
+  std::vector<int> known, all;
+  for (size_t i = 0; i < keyframe->landmarks.size(); ++i) {
+    if (keyframe->landmarks[i].valid()) known.push_back(static_cast<int>(i));
+  }
+  for (int i = 0; i < static_cast<int>(guess.frame->keypoints.size()); ++i) {
+    if (guess.frame->IsUsable(i)) all.push_back(i);
+  }
+
+  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Vector2d> pixels;
+  std::vector<double> scales;
+  std::vector<std::pair<int, LandmarkId>> matches;
+  for (const IndexMatch& match : MatchSubsets(*keyframe->frame, known, *guess.frame, all)) {
+    const Landmark* landmark = map.Find(keyframe->landmarks[match.a]);
+    if (!landmark) continue;
+    const Keypoint& keypoint = guess.frame->keypoints[match.b];
+    points.push_back(landmark->p_world);
+    pixels.push_back(keypoint.pixel());
+    scales.push_back(ScaleOfLevel(keypoint.level));
+    matches.push_back({match.b, landmark->id});
+  }
+  const int enough = Scaled(settings_.min_after_prediction);
+  if (static_cast<int>(matches.size()) < enough) return;
+  PnpSettings pnp;
+  pnp.min_inliers = enough;
+  pnp.seed = settings_.seed + static_cast<uint64_t>(guess.frame->number);
+  const PnpResult pose = SolvePnpRansac(camera_, points, pixels, scales, pnp);
+  if (!pose.success) return;
+  guess.T_camera_world = pose.T_camera_world;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (pose.inlier[i]) guess.matches[matches[i].first] = matches[i].second;
+  }
+  Optimise(guess, map);
+}
+
+}  // namespace alidade
