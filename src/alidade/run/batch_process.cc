@@ -38,8 +38,19 @@ pid_t Launch(const ProcessTask& task) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
+  // From fork to exec the child has our handlers of Ctrl-C, which note it in memory that exec
+  // throws away: a SIGINT of that moment would be lost. Blocked, it waits until the child ends by
+  // it.
+  sigset_t stops, before;
+  sigemptyset(&stops);
+  sigaddset(&stops, SIGINT);
+  sigaddset(&stops, SIGTERM);
+  pthread_sigmask(SIG_BLOCK, &stops, &before);
   const pid_t child = fork();
   if (child == 0) {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
     setpgid(0, 0);                     // Ctrl-C comes to us alone, and we tell it
     prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody is left behind when we are killed
     dup2(nothing, STDIN_FILENO);
@@ -49,15 +60,18 @@ pid_t Launch(const ProcessTask& task) {
     _exit(127);
   }
   const int why = errno;
+  pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(log);
   if (nothing >= 0) close(nothing);
   if (child < 0) ThrowInput(std::string("no process can be started: ") + std::strerror(why));
   return child;
 }
 
-ProcessEnd EndOf(int state, const rusage& usage, const Stopwatch& clock) {
+// `told`: it was sent SIGINT, by which it ends at once while it starts and catches none yet.
+ProcessEnd EndOf(int state, const rusage& usage, const Stopwatch& clock, bool told) {
   ProcessEnd end;
   end.status = WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state);
+  if (told && end.status == -SIGINT) end.status = kInterruptedStatus;
   end.wall_s = 1e-3 * clock.Milliseconds();
   end.cpu_s = SecondsOf(usage.ru_utime) + SecondsOf(usage.ru_stime);
   end.peak_mb = 1024e-6 * static_cast<double>(usage.ru_maxrss);
@@ -98,7 +112,7 @@ void RunProcesses(const std::vector<ProcessTask>& tasks, int at_once, const Proc
       const Running what = it->second;
       it = running.erase(it);
       any = true;
-      if (events.ended) events.ended(what.task, EndOf(state, usage, what.clock));
+      if (events.ended) events.ended(what.task, EndOf(state, usage, what.clock, told));
     }
     if (any) continue;
     if (events.waiting) events.waiting();
