@@ -75,7 +75,7 @@ CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings
 int CalibrateCommand(const CalibrateOptions& options) {
   CatchInterrupts();
   RunSettings settings = SettingsFrom(options.run);
-  BeWaryOfTurns(settings.slam);
+  settings.slam.WaryOfTurns();
   SetThreadCount(options.run.threads);
   Terminal terminal(options.run.quiet);
   std::vector<CameraFound> found;

@@ -47,7 +47,8 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
       ->type_name("DEGREES");
   command.add_flag("--calibrate-first,!--no-calibrate-first", options.calibrate_first,
                    "Find a camera that nothing is known of by playing its recording beforehand, as "
-                   "long as it takes (on; one camera only)");
+                   "long as it takes (on; one camera only); live cameras, and with no-, while the "
+                   "map grows");
   command
       .add_option("--profile", options.profile,
                   "desktop (1000 features, full size) or phone (500, 400 pixels wide)")

@@ -144,11 +144,7 @@ void CameraSession::WorkOn(double time, bool cut) {
       const std::lock_guard lock(slam_mutex_);
       if (cut) slam_->slam().Reset();
       frame = slam_->Track(working_.data(), 1, time);
-      if (wanted) {
-        // With another camera the map was begun anew: the scene forgets the old one.
-        const bool anew = std::exchange(restarts_, frame.restarts) != frame.restarts;
-        messages = anew ? slam_->WholeState() : slam_->TakeMessages();
-      }
+      if (wanted) messages = slam_->TakeMessages();
     }
     const std::lock_guard lock(mutex_);
     ++numbers_.frames;

@@ -91,7 +91,6 @@ class CameraSession {
   std::unique_ptr<PhoneSlam> slam_;
   // The session's thread alone.
   Pixels working_;
-  int restarts_ = 0;  // PhoneFrame::restarts that the scene knows of
 
   // Held to copy a picture or to move a few pointers.
   mutable std::mutex mutex_;

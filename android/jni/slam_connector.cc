@@ -38,7 +38,7 @@ std::array<double, 14> ListOf(const SessionNumbers& now) {
           frame.milliseconds,
           frame.fov,
           frame.fov_sigma,
-          static_cast<double>(frame.restarts),
+          static_cast<double>(frame.camera_changes),
           static_cast<double>(now.frames),
           static_cast<double>(now.skipped),
           static_cast<double>(now.failed)};

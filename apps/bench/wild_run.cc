@@ -111,7 +111,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   RunRecord record;
   record.source = source.Info();
   if (record.source.camera_guessed) {  // as `alidade run` does
-    BeWaryOfTurns(settings);
+    settings.WaryOfTurns();
     const CameraFound found = FindCamera([&] { return OpenAnySource(source_name, options); },
                                          settings, {}, [](const auto&) { return true; });
     if (found.usable) {

@@ -93,6 +93,8 @@ class Slam:
     config: a YAML file of settings. settings: {"tracker.extractor.features": 1500}, by the names of the program's
     ``--set``; alidade.settings() has them all. They may be given as keywords, too: **{"semidense.voxel": 0.02}.
     mounting: Recording.mounting of recordings that are rectified: trajectory() is of the camera as mounted then.
+    calibrate: the camera is only a guess, such as Camera.from_fov(640, 480, 66). One camera alone finds its focal
+    length, distortion and rolling shutter while the map grows, which is changed to it as it stands: see ``camera``.
 
     detector: a YOLO network (.onnx), or a function of an image, (h, w, 3) blue green red or (h, w) grey of uint8,
     that gives a list of (class, score, x, y, width, height): class a name ("person"; other names in its attribute
@@ -109,7 +111,7 @@ class Slam:
                  profile: str = "desktop", config: Optional[PathLike] = None,
                  settings: Optional[Mapping[str, Any]] = None, schedule: str = "inline",
                  seed: Optional[int] = None, localise: bool = False, mounting: Optional[numpy.ndarray] = None,
-                 **more_settings: Any) -> None:
+                 calibrate: bool = False, **more_settings: Any) -> None:
         options = dict(
             sensor=sensor, semidense=semidense, dynamics=dynamics, profile=profile, schedule=schedule, seed=seed,
             localise=localise, settings={**(settings or {}), **more_settings},
@@ -117,7 +119,7 @@ class Slam:
             config=None if config is None else os.fspath(config))
         if not isinstance(camera, Camera):
             camera = Camera.from_yaml(camera, sensor)
-        self._core = _core.Slam(camera, options, mounting)
+        self._core = _core.Slam(camera, options, mounting, calibrate)
         _open.add(self)
 
     # Driving.
@@ -199,8 +201,13 @@ class Slam:
 
     @property
     def camera(self) -> Camera:
-        """As used: scaled by the profile, with what was found of its rolling shutter."""
+        """As used: scaled by the profile, with what was found of its rolling shutter; with ``calibrate`` of its lens."""
         return self._core.camera()
+
+    @property
+    def focal_sigma(self) -> Optional[float]:
+        """With ``calibrate``: standard deviation of camera.fx as a share of it; None: nothing is found so far."""
+        return self._core.focal_sigma()
 
     @property
     def settings(self) -> Dict[str, str]:

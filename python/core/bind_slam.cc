@@ -49,8 +49,8 @@ py::dict FieldsOf(const TrackedFrame& frame) {
 
 void BindSlam(py::module_& core) {
   py::class_<SlamObject>(core, "Slam")
-      .def(py::init<const py::object&, const py::dict&, const py::object&>(), "camera"_a,
-           "options"_a, "mounting"_a)
+      .def(py::init<const py::object&, const py::dict&, const py::object&, bool>(), "camera"_a,
+           "options"_a, "mounting"_a, "calibrate"_a)
       .def("track",
            [](SlamObject& slam, double time, const py::object& image, const py::object& depth,
               const py::object& right, const py::object& color, const std::string& stamp) {
@@ -62,6 +62,7 @@ void BindSlam(py::module_& core) {
       .def("close", &SlamObject::Close)
       .def_property_readonly("closed", &SlamObject::closed)
       .def("camera", &SlamObject::camera)
+      .def("focal_sigma", &SlamObject::focal_sigma)
       .def("settings", &SlamObject::settings)
       .def("frames", &SlamObject::frames)
       .def("trajectory", &SlamObject::Trajectory)

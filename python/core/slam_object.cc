@@ -29,7 +29,7 @@ Eigen::Matrix3d RotationFrom(const py::object& pose) {
 }  // namespace
 
 SlamObject::SlamObject(const py::object& camera, const py::dict& options,
-                       const py::object& mounting) {
+                       const py::object& mounting, bool calibrate) {
   const RunOptions wanted = OptionsFrom(options);
   const Camera given = CameraFrom(camera);
   const Eigen::Matrix3d R = RotationFrom(mounting);
@@ -49,6 +49,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   settings.localise = wanted.localise;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
   settings.threaded = ThreadedFrom(wanted, false);
+  if (calibrate) settings.FindCamera();
   std::shared_ptr<Detector> detector = wanted.own_detector;
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
   held_ = std::shared_ptr<Held>(new Held(given, settings, std::move(detector)), without_gil);
@@ -102,6 +103,11 @@ void SlamObject::Finish(double limit) {
 }
 
 py::object SlamObject::camera() const { return CameraObject(Get()->slam.camera()); }
+
+py::object SlamObject::focal_sigma() const {
+  const std::optional<CameraEstimate> found = Get()->slam.camera_found();
+  return found ? py::cast(found->focal_sigma) : py::none();
+}
 
 py::dict SlamObject::settings() const {
   py::dict all;

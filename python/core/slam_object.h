@@ -25,7 +25,8 @@ struct TrackedFrame {
 class SlamObject {
  public:
   // `options`: those of a run. `mounting`: R_camera_rectified of the source, (4, 4) or None.
-  SlamObject(const py::object& camera, const py::dict& options, const py::object& mounting);
+  SlamObject(const py::object& camera, const py::dict& options, const py::object& mounting,
+             bool calibrate);
 
   TrackedFrame Track(double time, const py::object& image, const py::object& depth,
                      const py::object& right, const py::object& color, const std::string& stamp);
@@ -36,6 +37,7 @@ class SlamObject {
   bool closed() const { return held_ == nullptr; }
 
   py::object camera() const;
+  py::object focal_sigma() const;
   py::dict settings() const;
   int frames() const;
   py::array_t<double> Trajectory(size_t number, bool live) const;

@@ -40,6 +40,20 @@ def test_poses_are_those_of_the_truth(desk):
     assert slam.settings["seed"] == "1"
 
 
+def test_a_guessed_camera_is_found(desk):
+    with alidade.open("synth:desk?frames=150&width=400&height=300&speed=2", sensor="mono") as recording:
+        guess = alidade.Camera.from_fov(400, 300, 85)
+        slam = alidade.Slam(guess, calibrate=True, profile="phone")
+        assert slam.focal_sigma is None and slam.camera.fx == guess.fx
+        for frame in recording:
+            slam.track(frame.time, frame.image)
+        slam.finish()
+        assert slam.focal_sigma < 0.03
+        assert abs(slam.camera.fx / recording.camera.fx - 1) < 0.03
+    with pytest.raises(alidade.UsageError, match="one camera"):
+        alidade.Slam(desk[0].camera, sensor="rgbd", calibrate=True)
+
+
 def test_no_pose_says_why(desk):
     recording, frames = desk
     slam = alidade.Slam(recording.camera, sensor="mono")

@@ -8,6 +8,7 @@
 
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/trajectory.h"
+#include "alidade/map/map_file.h"
 #include "support/program.h"
 
 namespace alidade::calibrate_test {
@@ -100,15 +101,32 @@ TEST(Calibrate, WhatIsGivenIsNotLookedFor) {
   EXPECT_NEAR(Stats(out / "a")["camera"]["fx"].get<double>(), kFocal, 1e-9);
   const ProgramResult off =
       RunAlidade({"run", few, "--sensor", "mono", "--no-calibrate-first", "--out", out / "b"});
-  ASSERT_EQ(off.status, 0) << off.err;
+  ASSERT_EQ(off.status, 0) << off.err;  // looked for on the way
   EXPECT_EQ(Stats(out / "b")["camera"]["known"], "assumed");
-  EXPECT_TRUE(Stats(out / "b")["calibration"].is_null());
+  EXPECT_THAT(Stats(out / "b")["calibration"]["why_not"], HasSubstr("too little"));
   EXPECT_THAT(off.err, HasSubstr("66.0 degrees is assumed"));
+  const ProgramResult never = RunAlidade(
+      {"run", few, "--sensor", "mono", "--set", "calibrate.enabled=0", "--out", out / "d"});
+  ASSERT_EQ(never.status, 0) << never.err;
+  EXPECT_TRUE(Stats(out / "d")["calibration"].is_null());
+  EXPECT_THAT(never.err, HasSubstr("66.0 degrees is assumed"));
   for (const char* wrong : {"~", "x", "0", "~200"}) {
     const ProgramResult bad = RunAlidade({"run", few, "--fov", wrong, "--out", out / "c"});
     EXPECT_EQ(bad.status, 2) << wrong;
     EXPECT_THAT(bad.err, HasSubstr("--fov"));
   }
+}
+
+TEST(Calibrate, OnTheWayInOnePass) {
+  const TempFolder out;
+  const ProgramResult run = RunAlidade({"run", std::string(kDesk) + "&calibrated=0", "--sensor",
+                                        "mono", "--no-calibrate-first", "--out", out / "a"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  const auto stats = Stats(out / "a");
+  EXPECT_NEAR(stats["camera"]["fx"].get<double>(), kFocal, 0.02 * kFocal);
+  EXPECT_EQ(stats["calibration"]["passes"], 1);
+  EXPECT_NEAR(ReadCameraFile(out / "a/camera.yaml").left.fx, kFocal, 0.02 * kFocal);
+  EXPECT_NEAR(DecodeMap(ReadText(out / "a/map.alidade")).camera.fx, kFocal, 0.02 * kFocal);
 }
 
 TEST(Calibrate, SeveralRecordingsOfOneCameraKnowMoreTogether) {

@@ -97,5 +97,42 @@ TEST(GradientImage, CarriesColours) {
   EXPECT_EQ(plain.colors.at(10)[0], gray.at<uint8_t>(edge.y, edge.x));
 }
 
+TEST(GradientImage, IsMadeAnewForABetterKnownLens) {
+  const cv::Mat picture = MakeTexture(160, 120, 5);
+  Camera bent = SmallCamera();
+  bent.distortion = {-0.25, 0.05, 0, 0, 0};
+  const GradientImageMaker straight(SmallCamera(), 8, 0.23), right(bent, 8, 0.23);
+  const GradientImageMaker again(SmallCamera(), bent, 8, 0.23);
+  const GradientImage once = straight.Make({picture});
+  const GradientImage made = again.Make(once.Straight()), wanted = right.Make({picture});
+  cv::Mat a, b;
+  cv::extractChannel(made.values, a, 0);
+  cv::extractChannel(wanted.values, b, 0);
+  const cv::Rect inner(10, 10, 140,
+                       100);  // resampled once more, to the grey level and half a pixel
+  EXPECT_LT(cv::norm(a(inner), b(inner), cv::NORM_L1) / inner.area(), 1);
+  cv::extractChannel(once.values, a, 0);
+  EXPECT_GT(cv::norm(a(inner), b(inner), cv::NORM_L1) / inner.area(), 3);
+  EXPECT_NEAR(static_cast<double>(made.edges.size()), static_cast<double>(wanted.edges.size()),
+              0.05 * static_cast<double>(wanted.edges.size()));
+}
+
+TEST(GradientImage, TellsThePictureItWasMadeOf) {
+  const cv::Mat picture = MakeTexture(160, 120, 6);
+  cv::Mat color, mask(120, 160, CV_8U, cv::Scalar(0));
+  cv::cvtColor(picture, color, cv::COLOR_GRAY2BGR);
+  color += cv::Scalar(9, 0, 4);
+  mask.colRange(0, 20) = 255;
+  const GradientImage image =
+      GradientImageMaker(SmallCamera(), 8, 0.23).Make({picture, color, {}, mask});
+  const Picture told = image.Straight();
+  EXPECT_EQ(cv::norm(told.gray, picture, cv::NORM_L1), 0);
+  EXPECT_EQ(told.mask.at<uint8_t>(50, 10), 255);
+  EXPECT_EQ(told.mask.at<uint8_t>(50, 80), 0);
+  ASSERT_GT(image.edges.size(), 100);
+  for (const EdgePixel& edge : image.edges)
+    ASSERT_EQ(told.color.at<cv::Vec3b>(edge.y, edge.x), color.at<cv::Vec3b>(edge.y, edge.x));
+}
+
 }  // namespace
 }  // namespace alidade::gradient_image_test

@@ -236,6 +236,32 @@ TEST(Stream, ThinnedPathsKeepTheirEnds) {
   EXPECT_EQ(late.path.back().number, 999);
 }
 
+TEST(Stream, ABetterKnownCameraIsToldOnceAndTheMapGoesOn) {
+  Streamed run(Phone(false));
+  run.Play(Steps(0, 24, 3));
+  const size_t keyframes = run.scene.keyframes.size();
+  ASSERT_GT(keyframes, 0u);
+  StreamFrame frame;
+  frame.number = run.played;
+  frame.map = run.slam.Snapshot();
+  frame.camera = run.slam.camera();
+  for (const std::string& message : run.encoder.Add(frame)) run.Read(message);
+  ++frame.number;
+  EXPECT_EQ(run.encoder.Add(frame).size(), 1u);  // the same camera and map: the frame alone
+  frame.camera.fx *= 1.1;
+  frame.camera.distortion[0] = -0.1;
+  for (int i = 0; i < 2; ++i) {
+    ++frame.number;
+    const std::vector<std::string> messages = run.encoder.Add(frame);
+    EXPECT_EQ(messages.size(), i == 0 ? 2u : 1u);
+    for (const std::string& message : messages) run.Read(message);
+  }
+  EXPECT_EQ(run.scene.camera.fx, frame.camera.fx);
+  EXPECT_EQ(run.scene.camera.distortion, frame.camera.distortion);
+  EXPECT_EQ(run.scene.keyframes.size(), keyframes);
+  EXPECT_EQ(Late(run.encoder).camera.fx, frame.camera.fx);
+}
+
 TEST(Stream, DamagedMessagesAreRefused) {
   Streamed run(Phone(false));
   run.Play(Steps(0, 24, 3));

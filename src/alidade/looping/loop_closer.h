@@ -36,6 +36,9 @@ class LoopCloser {
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop,
                  const std::function<void(const std::function<void()>&)>& while_mapper_rests);
 
+  // The map is of this camera from now on. Nothing else may be at work.
+  void SetCamera(const Camera& camera) { camera_ = camera; }
+
   int loops() const { return loops_; }
   int merges() const { return merges_; }
 

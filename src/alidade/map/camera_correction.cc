@@ -6,6 +6,7 @@
 
 #include "alidade/base/median.h"
 #include "alidade/features/rolling_shutter.h"
+#include "alidade/features/undistort.h"
 
 namespace alidade {
 namespace {
@@ -47,6 +48,17 @@ void CommitShutter(MapCommit& commit, const Camera& camera) {
     frame->motion = motion;  // in lengths of its birth
     commit.Edit(KeyFrameId{i})->frame = std::move(frame);
   }
+}
+
+void CommitCamera(MapCommit& commit, const Camera& camera) {
+  for (uint32_t i = 0; i < commit.next_keyframe(); ++i) {
+    const KeyFrame* keyframe = commit.Find(KeyFrameId{i});
+    if (!keyframe) continue;
+    auto frame = std::make_shared<Frame>(*keyframe->frame);
+    UndistortKeypoints(camera, *frame);
+    commit.Edit(KeyFrameId{i})->frame = std::move(frame);
+  }
+  if (camera.RollingShutter()) CommitShutter(commit, camera);
 }
 
 }  // namespace alidade

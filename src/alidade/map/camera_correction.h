@@ -11,6 +11,10 @@ namespace alidade {
 // depth of its landmark. Poses and landmarks stay as they are, for an adjustment to follow.
 void CommitShutter(MapCommit& commit, const Camera& camera);
 
+// Places them anew as `camera` sees them: another focal length, another distortion, and its rolling
+// shutter. Of one camera only (UndistortKeypoints()).
+void CommitCamera(MapCommit& commit, const Camera& camera);
+
 // How the camera moved when the keyframe was taken (Frame::motion), in lengths of today. Zero: not
 // known.
 Vector6d MotionOf(const KeyFrame& keyframe);

@@ -150,4 +150,26 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
   return estimate;
 }
 
+double Apart(const Camera& a, const Camera& b) {
+  const auto at_corner = [](const Camera& c) {
+    const double r2 = (std::pow(c.width / c.fx, 2) + std::pow(c.height / c.fy, 2)) / 4;
+    return r2 * (c.distortion[0] + r2 * c.distortion[1]);
+  };
+  return std::max(std::abs(std::log(a.fx / b.fx)), std::abs(at_corner(a) - at_corner(b)));
+}
+
+Camera Between(const Camera& a, const Camera& b, double share) {
+  const auto mixed = [share](double x, double y) { return x + share * (y - x); };
+  Camera camera = b;
+  camera.fx = a.fx * std::pow(b.fx / a.fx, share);
+  camera.fy = a.fy * std::pow(b.fy / a.fy, share);
+  camera.cx = mixed(a.cx, b.cx);
+  camera.cy = mixed(a.cy, b.cy);
+  for (size_t i = 0; i < a.distortion.size(); ++i)
+    camera.distortion[i] = mixed(a.distortion[i], b.distortion[i]);
+  for (size_t i = 0; i < a.readout.size(); ++i)
+    camera.readout[i] = mixed(a.readout[i], b.readout[i]);
+  return camera;
+}
+
 }  // namespace alidade

@@ -56,4 +56,11 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
                               const MeasurementNoise& noise,
                               const CameraEstimateSettings& settings = {});
 
+// How far two cameras differ, as a share of a pixel's distance from the middle: the larger of that
+// near the middle and that at the corners.
+double Apart(const Camera& a, const Camera& b);
+// The camera that lies so far (0…1) from `a` to `b`: log focal length, distortion, centre and
+// readout of each.
+Camera Between(const Camera& a, const Camera& b, double share);
+
 }  // namespace alidade

@@ -38,4 +38,16 @@ std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyfra
   return UpperMedian(depths);
 }
 
+MapId LargestMap(const MapSnapshot& map) {
+  MapId largest;
+  size_t most = 0;
+  for (MapId id : map.Maps()) {
+    const size_t count = map.KeyFramesOf(id).size();
+    if (count <= most) continue;
+    most = count;
+    largest = id;
+  }
+  return largest;
+}
+
 }  // namespace alidade

@@ -24,6 +24,9 @@ struct LandmarkView {
 std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera& camera,
                                          const Se3& T_camera_world, double margin = 0);
 
+// The map with most keyframes, of several as large the first; invalid: there is none.
+MapId LargestMap(const MapSnapshot& map);
+
 // Of the landmarks a keyframe shows, along its optical axis; nullopt when it shows none.
 std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe);
 

@@ -56,6 +56,9 @@ class Mapper {
   // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
 
+  // The map is of this camera from now on. Nothing else may be at work.
+  void SetCamera(const Camera& camera) { camera_ = camera; }
+
   // When there are more than settings.max_keyframes: removes the least useful, and returns how
   // many. `newest`: the keyframe processed last.
   int KeepWithinLimit(KeyFrameId newest);

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kAssumedFov = 66;  // degrees, along the longer side: most phones' main camera
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kWaryOfTurns = 0.6;       // relative uncertainty of an assumed focal length
 constexpr size_t kMostWaiting = 32 << 20;  // bytes of messages that nobody took
 constexpr int kMostKeyFrames = 2000;       // some 200 MB
 
@@ -27,19 +26,6 @@ Camera AssumedCamera(int width, int height, double fov) {
   camera = Camera::FromFieldOfView(width, height, kAssumedFov);
   camera.fx = camera.fy = focal;
   return camera;
-}
-
-MapId LargestMap(const MapSnapshot& map) {
-  MapId largest;
-  size_t most = 0;
-  for (MapId id : map.Maps()) {
-    const size_t count = map.KeyFramesOf(id).size();
-    if (count > most) {
-      most = count;
-      largest = id;
-    }
-  }
-  return largest;
 }
 
 }  // namespace
@@ -64,12 +50,7 @@ void PhoneSettings::SetLines(const std::string& lines) {
 
 PhoneSlam::PhoneSlam(int width, int height, double fov, PhoneSettings settings)
     : settings_(std::move(settings)), camera_(AssumedCamera(width, height, fov)), known_(fov > 0) {
-  if (!known_) {
-    focal_sigma_ = settings_.calibrate.adjust.focal_sigma;
-    settings_.slam.start.two_view.lens_uncertainty = kWaryOfTurns;
-    settings_.slam.readout.enabled =
-        false;  // a wrong lens bends pictures as a rolling shutter does
-  }
+  if (!known_) settings_.slam.FindCamera();
   Begin();
 }
 
@@ -81,28 +62,17 @@ PhoneSlam::PhoneSlam(const Camera& camera, PhoneSettings settings)
 PhoneSlam::~PhoneSlam() = default;
 
 void PhoneSlam::Begin() {
-  focal_ = camera_.fx;
   std::shared_ptr<Detector> detector = settings_.detector;
   if (!settings_.detector_classes.empty()) {
     settings_.slam.dynamics.mode = DynamicsMode::kFull;
     detector = detector_ = std::make_shared<LateDetector>(settings_.detector_classes);
   }
   slam_ = std::make_unique<Slam>(camera_, settings_.slam, detector);
-  first_ = frames_;
-  StreamSource source;
-  source.program = std::string("alidade ") + ALIDADE_VERSION;
-  source.source = "camera";
-  source.sensor = "mono";
-  source.unit = "map units";
-  source.live = true;
-  source.camera = slam_->camera();
-  const bool wanted = encoder_ != nullptr;
-  source_ = source;
-  encoder_.reset();
-  if (wanted) BeginMessages();
-  latest_ = {};
-  before_.reset();
-  ask_at_ = settings_.first_keyframes;
+  source_.program = std::string("alidade ") + ALIDADE_VERSION;
+  source_.source = "camera";
+  source_.sensor = "mono";
+  source_.unit = "map units";
+  source_.live = true;
 }
 
 PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
@@ -129,51 +99,25 @@ PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
   frame.features = static_cast<int>(told.features.size());
   frame.matches = frame.result.matches;
   if (encoder_) Tell(encoder_->Add(told));
-  if (!known_) AskForCamera();
-  frame.fov = 2 / kDegree * std::atan(camera_.width / (2 * focal_));
-  // d fov / d log f = -sin fov.
-  frame.fov_sigma = focal_sigma_ * std::sin(frame.fov * kDegree) / kDegree;
-  frame.restarts = restarts_;
+  TellLens(frame);
   frame.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   return frame;
 }
 
-void PhoneSlam::AskForCamera() {
-  const MapSnapshot map = slam_->Snapshot();
-  const MapId largest = LargestMap(map);
-  if (!largest.valid()) return;
-  const auto now = static_cast<int>(map.KeyFramesOf(largest).size());
-  if (now < ask_at_) return;
-  ask_at_ = static_cast<int>(std::ceil(now * settings_.growth));
+// Of the pictures as they come.
+void PhoneSlam::TellLens(PhoneFrame& frame) const {
   const Camera used = slam_->camera();
-  const MeasurementNoise& noise = settings_.slam.mapper.noise;
-  const CameraEstimate found =
-      EstimateCamera(LensWindowsOf(map, largest, used, noise, settings_.calibrate), used, noise,
-                     settings_.calibrate);
-  if (found.keyframes == 0 || found.focal_sigma > settings_.max_sigma) return;
-  const double off = std::abs(std::log(found.camera.fx / used.fx));
-  const bool agree = before_ && std::abs(std::log(found.camera.fx / before_->camera.fx)) <=
-                                    2 * std::hypot(found.focal_sigma, before_->focal_sigma);
-  before_ = found;
-  if (!agree) return;
-  // Of the pictures as they come, which may be larger than those that are worked on.
-  const double scale = static_cast<double>(camera_.width) / used.width;
-  focal_ = found.camera.fx * scale;
-  focal_sigma_ = std::hypot(found.focal_sigma, settings_.model_sigma);
-  if (off <= settings_.max_off || off <= 2 * found.focal_sigma ||
-      restarts_ >= settings_.max_restarts)
-    return;
-  camera_.fx = camera_.fy = focal_;
-  camera_.distortion = found.camera.distortion;
-  camera_.cx = (found.camera.cx + 0.5) * scale - 0.5;
-  camera_.cy = (found.camera.cy + 0.5) * camera_.height / used.height - 0.5;
-  settings_.slam.start.two_view.lens_uncertainty = 3 * found.focal_sigma;
-  ++restarts_;
-  Begin();
+  frame.fov = 2 / kDegree * std::atan(used.width / (2 * used.fx));
+  if (known_) return;
+  const std::optional<CameraEstimate> found = slam_->camera_found();
+  const double focal_sigma = found ? found->focal_sigma : settings_.slam.refine.focal_sigma;
+  // d fov / d log f = -sin fov.
+  frame.fov_sigma = focal_sigma * std::sin(frame.fov * kDegree) / kDegree;
+  frame.camera_changes = slam_->camera_changes();
 }
 
 void PhoneSlam::Detected(int number, std::vector<Detection> detections) {
-  if (!detector_ || number < first_) return;  // of a map that was begun anew since
+  if (!detector_) return;
   // From pixels of the picture as it came to those that are worked on.
   const Camera used = slam_->camera();
   const float x = static_cast<float>(used.width) / static_cast<float>(camera_.width);
@@ -182,15 +126,16 @@ void PhoneSlam::Detected(int number, std::vector<Detection> detections) {
     const cv::Rect2f& box = found.box;
     found.box = {box.x * x, box.y * y, box.width * x, box.height * y};
   }
-  detector_->Bring({slam_->first_number() + number - first_, std::move(detections)});
+  detector_->Bring({slam_->first_number() + number, std::move(detections)});
 }
 
 void PhoneSlam::Finish() {
   slam_->Finish();
-  if (encoder_) Tell(encoder_->End(slam_->Snapshot()));
+  if (encoder_) Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
 }
 
 void PhoneSlam::BeginMessages() {
+  source_.camera = slam_->camera();
   encoder_ = std::make_unique<StreamEncoder>(source_, settings_.stream);
   Tell({encoder_->Hello()});
 }

@@ -4,12 +4,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "alidade/detect/late_detector.h"
-#include "alidade/map/camera_estimate.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/system/slam.h"
 
@@ -18,19 +16,6 @@ namespace alidade {
 struct PhoneSettings {
   SlamSettings slam;
   StreamSettings stream;
-  // A camera of which nothing is known: the map is asked for it when it has so many keyframes, and
-  // again whenever it has grown by that factor.
-  CameraEstimateSettings calibrate;
-  int first_keyframes = 10;
-  double growth = 1.3;
-  // When two answers on end agree that the focal length differs by more than this share, known to
-  // max_sigma (relative), the map is begun anew with the camera found: it was made with a bent one.
-  double max_off = 0.06, max_sigma = 0.02;
-  int max_restarts = 3;
-  // Added (as variances) to the relative standard deviation that is told: a rolling shutter, which
-  // is not looked for while the lens is only assumed, shifted the focal lengths of real recordings
-  // by 1 to 5 %.
-  double model_sigma = 0.03;
   // Of people and other things that move; goes with slam.dynamics.mode = full. Null: none.
   std::shared_ptr<Detector> detector;
   // Of a detector elsewhere, which answers through Detected(), instead; any: what it finds is left
@@ -52,7 +37,7 @@ struct PhoneFrame {
   double milliseconds = 0;        // it took
   double fov = 0;                 // horizontal, degrees, as it is believed to be
   double fov_sigma = 0;           // degrees; 0: it was given
-  int restarts = 0;               // with another camera
+  int camera_changes = 0;         // how often the map was changed to another, found from it
 };
 
 class PhoneSlam {
@@ -88,18 +73,15 @@ class PhoneSlam {
   void Begin();
   void BeginMessages();
   void Tell(std::vector<std::string> messages);
-  void AskForCamera();
+  void TellLens(PhoneFrame& frame) const;
 
   PhoneSettings settings_;
   Camera camera_;
   bool known_;
-  double focal_ = 0, focal_sigma_ = 0;  // believed; relative
-  LatestTimes latest_;                  // as the last frame left them
-  std::optional<CameraEstimate> before_;
-  int ask_at_ = 0, restarts_ = 0, frames_ = 0;
+  LatestTimes latest_;  // as the last frame left them
+  int frames_ = 0;
   std::unique_ptr<Slam> slam_;
   std::shared_ptr<LateDetector> detector_;  // null: there is none
-  int first_ = 0;                           // number of the first frame of slam_
   StreamSource source_;
   std::unique_ptr<StreamEncoder> encoder_;  // null: nobody asked
   std::vector<std::string> messages_;

@@ -8,6 +8,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/read_ahead.h"
+#include "alidade/map/view.h"
 #include "alidade/run/loop.h"
 #include "alidade/run/setting_group.h"
 #include "alidade/system/slam.h"
@@ -42,28 +43,6 @@ constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
   visit("calibrate.bound", s.adjust.bound);
 };
 
-// How far two cameras differ, as a share of a pixel's distance from the middle: the larger of that
-// near the middle and that at the corners.
-double Apart(const Camera& a, const Camera& b) {
-  const auto at_corner = [](const Camera& c) {
-    const double r2 = (std::pow(c.width / c.fx, 2) + std::pow(c.height / c.fy, 2)) / 4;
-    return r2 * (c.distortion[0] + r2 * c.distortion[1]);
-  };
-  return std::max(std::abs(std::log(a.fx / b.fx)), std::abs(at_corner(a) - at_corner(b)));
-}
-
-MapId Largest(const MapSnapshot& map) {
-  MapId largest;
-  size_t most = 0;
-  for (MapId id : map.Maps()) {
-    const size_t count = map.KeyFramesOf(id).size();
-    if (count <= most) continue;
-    most = count;
-    largest = id;
-  }
-  return largest;
-}
-
 // One run over the recording with one camera.
 class Pass {
  public:
@@ -95,7 +74,7 @@ class Pass {
   int count() const { return count_; }
   int keyframes() const {
     const MapSnapshot map = slam_.Snapshot();
-    const MapId largest = Largest(map);
+    const MapId largest = LargestMap(map);
     return largest.valid() ? static_cast<int>(map.KeyFramesOf(largest).size()) : 0;
   }
   // What the map says by now, when it has grown since it was asked last.
@@ -107,7 +86,7 @@ class Pass {
   }
   CameraEstimate Estimate() {
     const MapSnapshot map = slam_.Snapshot();
-    const MapId largest = Largest(map);
+    const MapId largest = LargestMap(map);
     windows_.clear();
     if (largest.valid()) windows_ = LensWindowsOf(map, largest, slam_.camera(), noise_, calibrate_);
     CameraEstimate estimate = EstimateCamera(windows_, slam_.camera(), noise_, calibrate_);

@@ -121,6 +121,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
+  TakeRefinedCamera(slam, record);
   record.camera.readout = slam.camera().readout;
   record.camera.readout_sigma = slam.readout_sigma();
   record.lens = CheckLens(slam, record.settings, record.lens_check);

@@ -197,7 +197,7 @@ void StreamFeed::TellEnd() {
     if (failed_) return;
   }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
-  Tell(encoder_->End(slam_->Snapshot()));
+  Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
   if (!record_->truth.empty()) {  // of a rendered source, which tells it frame by frame
     encoder_->SetTruth(TruthOf(record_->truth));
     Tell({encoder_->Hello()});

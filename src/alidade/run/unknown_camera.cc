@@ -12,9 +12,7 @@
 namespace alidade {
 namespace {
 
-// Relative uncertainty of a focal length that was assumed (66 degrees along the longer side):
-// phones and webcams have 50 to 90. What two views are given to be wary of turns.
-constexpr double kGuessedLens = 0.6;
+constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal one, say better)";
 
 std::string AssumedInWords(const SourceInfo& source) {
   char text[80];
@@ -23,12 +21,13 @@ std::string AssumedInWords(const SourceInfo& source) {
   return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
 }
 
-}  // namespace
-
-void BeWaryOfTurns(SlamSettings& settings) {
-  double& wary = settings.start.two_view.lens_uncertainty;
-  if (wary == 0) wary = kGuessedLens;
+void WarnOfDoubt(CameraEstimate estimate, const Camera& taken) {
+  estimate.camera = taken;
+  LogWarning("the camera is not known for certain: a field of view of " + CameraInWords(estimate) +
+             " was found and is taken" + kBetter);
 }
+
+}  // namespace
 
 void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const Camera* saved,
                  const std::vector<RunWatcher*>& watchers, RunRecord& record) {
@@ -43,7 +42,7 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   camera.focal_sigma = record.calibrate.adjust.focal_sigma;
   double& wary = record.settings.start.two_view.lens_uncertainty;
   const bool told_wary = wary != 0;
-  BeWaryOfTurns(record.settings);
+  record.settings.WaryOfTurns();
   if (saved) {
     source.camera = CameraOfSize(*saved, source.camera);
     source.camera.distortion = saved->distortion;
@@ -52,11 +51,15 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
     if (!told_wary) wary = 0;
     return;
   }
-  const std::string better = " (--camera, or --fov, which is the horizontal one, say better)";
-  if (source.sensor != Sensor::kMono || source.kind == "camera" || !options.calibrate_first ||
-      !record.calibrate.enabled) {
+  const bool looked_for = source.sensor == Sensor::kMono && record.calibrate.enabled;
+  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // on the way
+    record.settings.FindCamera();
+    record.settings.refine.focal_sigma = camera.focal_sigma;
+    return;
+  }
+  if (!looked_for) {
     record.settings.readout.enabled = false;  // a wrong lens may be taken for it
-    LogWarning("nothing is known of the camera: " + AssumedInWords(source) + better);
+    LogWarning("nothing is known of the camera: " + AssumedInWords(source) + kBetter);
     return;
   }
   const double cpu = ProcessCpuSeconds();
@@ -82,12 +85,36 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   if (found.estimate.known) {
     camera.known = "estimated";
   } else if (found.usable) {
-    LogWarning("the camera is not known for certain: a field of view of " +
-               CameraInWords(found.estimate) + " was found and is taken" + better);
+    WarnOfDoubt(found.estimate, found.estimate.camera);
   } else {
     LogWarning("the camera stays unknown, as " + found.why_not + ": " + AssumedInWords(source) +
-               better);
+               kBetter);
   }
+}
+
+void TakeRefinedCamera(const Slam& slam, RunRecord& record) {
+  if (!record.settings.refine.enabled) return;
+  CameraFound found;
+  found.passes = 1;
+  found.frames = record.frames;
+  Camera& camera = record.source.camera;
+  if (const auto estimate = slam.camera_found()) {
+    found.estimate = *estimate;
+    found.usable = true;
+    camera = CameraOfSize(slam.camera(), camera);
+    record.camera.focal_sigma = estimate->focal_sigma;
+    if (estimate->known) {
+      record.camera.known = "estimated";
+    } else {
+      WarnOfDoubt(found.estimate, camera);
+    }
+  } else {
+    found.why_not = "the camera turns and moves too little for its focal length to tell";
+    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
+               AssumedInWords(record.source) + kBetter);
+  }
+  found.estimate.camera = camera;
+  record.camera.found = std::move(found);
 }
 
 std::string FoundCameraFile(const RunRecord& record) {

@@ -15,12 +15,24 @@ constexpr int kBorder =
 GradientImageMaker::GradientImageMaker(const Camera& camera, double min_gradient,
                                        double gradient_weight)
     : min_gradient_(min_gradient), gradient_scale_(1 / std::sqrt(gradient_weight)) {
-  if (!camera.HasDistortion()) return;
+  if (camera.HasDistortion())
+    MapFrom(camera, [&](const Eigen::Vector2d& pixel) { return camera.Distort(pixel); });
+}
+
+GradientImageMaker::GradientImageMaker(const Camera& from, const Camera& to, double min_gradient,
+                                       double gradient_weight)
+    : min_gradient_(min_gradient), gradient_scale_(1 / std::sqrt(gradient_weight)) {
+  if (from.HasDistortion() || to.HasDistortion())
+    MapFrom(to, [&](const Eigen::Vector2d& pixel) { return from.Undistort(to.Distort(pixel)); });
+}
+
+template <typename Where>
+void GradientImageMaker::MapFrom(const Camera& camera, Where&& there) {
   cv::Mat x(camera.height, camera.width, CV_32F), y(camera.height, camera.width, CV_32F);
   cv::Mat seen(camera.height, camera.width, CV_8U);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d raw = camera.Distort({u, v});
+      const Eigen::Vector2d raw = there(Eigen::Vector2d(u, v));
       x.at<float>(v, u) = static_cast<float>(raw.x());
       y.at<float>(v, u) = static_cast<float>(raw.y());
       seen.at<uint8_t>(v, u) = raw.x() >= 0 && raw.y() >= 0 && raw.x() <= camera.width - 1 &&
@@ -79,6 +91,17 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
   image.edges.shrink_to_fit();
   image.colors.shrink_to_fit();
   return image;
+}
+
+Picture GradientImage::Straight() const {
+  Picture picture;
+  cv::extractChannel(values, picture.gray, 0);
+  cv::cvtColor(picture.gray, picture.color, cv::COLOR_GRAY2BGR);
+  for (size_t i = 0; i < edges.size(); ++i)
+    picture.color.at<cv::Vec3b>(edges[i].y, edges[i].x) = {colors[i][2], colors[i][1],
+                                                           colors[i][0]};
+  picture.mask = direction == kUnusable;
+  return picture;
 }
 
 size_t GradientImage::bytes() const {

@@ -23,8 +23,9 @@ struct SemiDenseMapper::Entry {
   GradientImage image;
   std::vector<Hypothesis> sensor;  // depth as measured, one for each edge; empty: none wanted
   bool estimated = false;
-  PackedDepth depth;  // before the check between keyframes; one for each edge
-  double scale = 1;   // KeyFrame::scale then
+  bool of_other_camera = false;  // when it was: its depth is to be found anew
+  PackedDepth depth;             // before the check between keyframes; one for each edge
+  double scale = 1;              // KeyFrame::scale then
   struct Partner {
     KeyFrameId id;
     Se3 T_partner_keyframe;  // then
@@ -42,6 +43,19 @@ SemiDenseMapper::SemiDenseMapper(MapStore& map, const Camera& camera,
 }
 
 SemiDenseMapper::~SemiDenseMapper() = default;
+
+void SemiDenseMapper::SetCamera(const Camera& camera) {
+  const GradientImageMaker again(camera_, camera, settings_.min_gradient,
+                                 settings_.gradient_weight);
+  maker_ = GradientImageMaker(camera, settings_.min_gradient, settings_.gradient_weight);
+  for (const auto& entry : entries_) {
+    if (camera_.HasDistortion() || camera.HasDistortion())
+      entry->image = again.Make(entry->image.Straight());
+    entry->of_other_camera = entry->estimated;
+    entry->depth = PackedDepth(std::vector<Hypothesis>(entry->image.edges.size()));
+  }
+  camera_ = camera;
+}
 
 void SemiDenseMapper::Keep(KeyFrameId id, std::shared_ptr<const Picture> picture) {
   const MapSnapshot map = map_.Snapshot();
@@ -128,6 +142,7 @@ SemiDenseMapper::Entry* SemiDenseMapper::NextDue(const MapSnapshot& map) {
 // parallax.
 bool SemiDenseMapper::Moved(const MapSnapshot& map, const Entry& entry) const {
   if (!entry.estimated) return false;
+  if (entry.of_other_camera) return true;
   const KeyFrame* keyframe = map.Find(entry.id);
   const std::optional<double> depth = MedianDepth(map, *keyframe);
   if (!depth) return false;
@@ -152,6 +167,7 @@ SemiDenseMapper::Entry* SemiDenseMapper::NewestMoved(const MapSnapshot& map) {
 void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
   const KeyFrame& keyframe = *map.Find(entry.id);
   entry.estimated = true;
+  entry.of_other_camera = false;
   entry.scale = keyframe.scale;
   entry.depth = PackedDepth(std::vector<Hypothesis>(entry.image.edges.size()));
   entry.partners.clear();

@@ -36,6 +36,10 @@ class SemiDenseMapper {
   // stay without depth, or unchecked.
   void Finish(const std::atomic<bool>* stop = nullptr);
 
+  // The map is of this camera from now on: all depth is found anew, a keyframe at a time. Nothing
+  // else may be at work.
+  void SetCamera(const Camera& camera);
+
   SemiDenseReport report() const;  // of all that is done; any thread may ask
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <opencv2/imgproc.hpp>
+#include <tuple>
 #include <utility>
 
 #include "alidade/map/anchor.h"
@@ -106,6 +107,7 @@ StreamFrame FrameAsLeft(const Slam& slam, int number, double time, const TrackRe
   told.features = slam.Features();
   told.mover_mask = slam.MoverMask();
   told.map = slam.Snapshot();
+  told.camera = slam.camera();
   if (const auto seen = slam.Detections()) {
     told.detection_age = seen->seconds_ago;
     for (size_t i = 0; i < seen->detections.size(); ++i)
@@ -352,18 +354,27 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   return Finish(builder, made.Finish(), stream::Body::Frame);
 }
 
+void StreamEncoder::TellCamera(const Camera& camera, std::vector<std::string>& messages) {
+  const auto lens = [](const Camera& c) { return std::tie(c.fx, c.fy, c.cx, c.cy, c.distortion); };
+  if (camera.width == 0 || lens(camera) == lens(source_.camera)) return;
+  source_.camera = camera;
+  messages.push_back(Hello());
+}
+
 std::vector<std::string> StreamEncoder::Add(const StreamFrame& frame) {
   std::vector<std::string> messages;
   last_number_ = frame.number;
   last_time_ = frame.time;
+  TellCamera(frame.camera, messages);
   TellMap(frame.map, frame.number, frame.time, messages);
   TellState(frame, messages);
   messages.push_back(EncodeFrame(frame));
   return messages;
 }
 
-std::vector<std::string> StreamEncoder::End(const MapSnapshot& map) {
+std::vector<std::string> StreamEncoder::End(const MapSnapshot& map, const Camera& camera) {
   std::vector<std::string> messages;
+  TellCamera(camera, messages);
   TellMap(map, last_number_, last_time_, messages);
   messages.push_back(
       EncodeEvent(stream::EventKind::finished, last_number_, last_time_, "finished"));

@@ -61,6 +61,7 @@ struct StreamFrame {
   double detection_age = -1;  // seconds since the frame they are of; below 0: no answer so far
   StreamPicture picture;
   MapSnapshot map;  // taken after it
+  Camera camera;    // as it is known by then; of no size: as before
 };
 
 // The frame `slam` tracked last, without a picture: `number` and `time` are the recording's,
@@ -88,11 +89,12 @@ class StreamEncoder {
   std::string Hello() const;
   std::string Playback(const StreamPlayback& playback) const;
 
-  // The messages of one more frame, in order: what the map has other than before, events, the
-  // frame. Frames may be left out, the next one's messages make up for them.
+  // The messages of one more frame, in order: another Hello() when its camera is another, what the
+  // map has other than before, events, the frame. Frames may be left out, the next one's messages
+  // make up for them.
   std::vector<std::string> Add(const StreamFrame& frame);
-  // When nothing will follow: the map as it was finished.
-  std::vector<std::string> End(const MapSnapshot& map);
+  // When nothing will follow: the map as it was finished, and the camera (as StreamFrame's).
+  std::vector<std::string> End(const MapSnapshot& map, const Camera& camera = {});
 
   // For those who join now: hello and all that was told, as one map change that begins anew. What
   // Add() gives next goes on from it.
@@ -103,6 +105,7 @@ class StreamEncoder {
   struct Build;
   std::string EncodeFrame(const StreamFrame& frame);
   std::string EncodeNews(const MapNews& news) const;
+  void TellCamera(const Camera& camera, std::vector<std::string>& messages);
   void TellMap(const MapSnapshot& map, int number, double time, std::vector<std::string>& messages);
   void TellState(const StreamFrame& frame, std::vector<std::string>& messages);
 

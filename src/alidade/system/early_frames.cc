@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <utility>
 
+#include "alidade/features/undistort.h"
+
 namespace alidade {
 namespace {
 
@@ -54,6 +56,14 @@ void EarlyFrames::GiveUp() {
 
 void EarlyFrames::ForgetWaiting() {
   std::erase_if(frames_, [](const Early& early) { return !early.map.valid(); });
+}
+
+void EarlyFrames::SetCamera(const Camera& camera) {
+  for (Early& early : frames_) {
+    auto frame = std::make_shared<Frame>(*early.frame);
+    UndistortKeypoints(camera, *frame);
+    early.frame = std::move(frame);
+  }
 }
 
 void EarlyFrames::Place(int count, int number, Tracker& tracker, const MapSnapshot& map,

@@ -29,6 +29,9 @@ class EarlyFrames {
   // What waits is of no use any more: the next frame need not go on where it was.
   void ForgetWaiting();
 
+  // All frames that wait are of this camera.
+  void SetCamera(const Camera& camera);
+
   // Places `count` frames at most whose map has settled by frame `number`. Those before the start
   // come last first, and no further than they are recognised.
   void Place(int count, int number, Tracker& tracker, const MapSnapshot& map, FrameLog& log);

@@ -101,6 +101,11 @@ void MoverWatch::End(const Frame& frame, const TrackResult& result) {
   milliseconds_.Add(present_ms_ + watch.Milliseconds());
 }
 
+void MoverWatch::SetCamera(const Camera& camera) {
+  camera_ = camera;
+  if (filter_) filter_.emplace(camera_, settings_, class_names_);
+}
+
 void MoverWatch::Recover() noexcept {
   doubtful_ = 0;
   if (!filter_) return;

@@ -53,6 +53,8 @@ class MoverWatch {
   LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
   void Place(const WorldId& world) { world_ = world; }  // whose world the frame's pose is in
   void End(const Frame& frame, const TrackResult& result);
+  // Of all frames from now on: what was believed of the picture is forgotten.
+  void SetCamera(const Camera& camera);
   // A frame ended in the middle, by what it threw: forgets all there was. What cannot be begun anew
   // is off from now on, see health().
   void Recover() noexcept;

@@ -114,6 +114,13 @@ bool ReadoutWatch::Mapped(KeyFrameId id, const MapSnapshot& map) {
   return Take(readout, sigma);
 }
 
+void ReadoutWatch::SetCamera(const Camera& camera) {
+  camera_ = camera;
+  const std::lock_guard<std::mutex> lock(mutex_);
+  readout_ = camera.readout;
+  sum_ = ReadoutSum(camera);
+}
+
 std::array<double, 2> ReadoutWatch::readout() const {
   const std::lock_guard<std::mutex> lock(mutex_);
   return readout_;

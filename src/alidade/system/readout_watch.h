@@ -51,6 +51,8 @@ class ReadoutWatch {
   // A keyframe was mapped: asks the map it is in when that has grown. Returns whether readout() has
   // changed. One thread's.
   bool Mapped(KeyFrameId id, const MapSnapshot& map);
+  // The map is of this camera now, its readout included. Nothing else may be at work.
+  void SetCamera(const Camera& camera);
   std::array<double, 2> readout() const;  // see Camera; any thread's
   double sigma() const;  // seconds; 0: told by the camera, or not found. Any thread's
   const Camera& camera() const { return camera_; }  // with the readout; the thread's of Mapped()

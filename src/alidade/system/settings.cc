@@ -66,6 +66,19 @@ void SlamSettings::ApplyProfile(const std::string& profile) {
   tracker.match_scale = mapper.match_scale = start.match_scale = loop.match_scale = 0.8;
 }
 
+void SlamSettings::WaryOfTurns() {
+  // Relative uncertainty of an assumed focal length: phones and webcams have 50 to 90 degrees.
+  constexpr double kAssumedLens = 0.6;
+  double& wary = start.two_view.lens_uncertainty;
+  if (wary == 0) wary = kAssumedLens;
+}
+
+void SlamSettings::FindCamera() {
+  WaryOfTurns();
+  readout.enabled = false;
+  refine.enabled = true;
+}
+
 void TrajectorySettings::Check() const {
   if (!(keep_seconds >= 0)) ThrowUsage("trajectory.keep_seconds must not be negative");
 }
@@ -94,6 +107,9 @@ void SlamSettings::Check() const {
   start.Check();
   early.Check();
   readout.Check();
+  refine.Check();
+  if (refine.enabled && sensor != Sensor::kMono)
+    ThrowUsage("refine.enabled is for one camera (mono)");
 }
 
 }  // namespace alidade

@@ -14,6 +14,7 @@
 #include "alidade/place/settings.h"
 #include "alidade/semidense/settings.h"
 #include "alidade/system/camera_clock.h"
+#include "alidade/system/lens_watch.h"
 #include "alidade/system/readout_watch.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
@@ -52,6 +53,7 @@ struct SlamSettings {
   PlaceSettings places;
   LoopSettings loop;
   ReadoutSettings readout;
+  LensWatchSettings refine;  // of the camera, while the map grows; one camera only
   SemiDenseSettings semidense;
   DynamicsSettings dynamics;
   TrajectorySettings trajectory;
@@ -66,6 +68,12 @@ struct SlamSettings {
   // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts ×
   // 0.8, semi-dense depth from 5 keyframes. Throws Error (usage) for another name.
   void ApplyProfile(const std::string& profile);
+  // The camera is only assumed (66 degrees along the longer side): no map is begun on what a turn
+  // with another lens explains, unless the settings say how much to allow for.
+  void WaryOfTurns();
+  // That, and one camera's lens is found while the map grows. A rolling shutter is looked for with
+  // the lens, not on its own: a wrong lens may be taken for it.
+  void FindCamera();
   void Check() const;  // throws Error (usage) naming the field that cannot be
   // Whether the colours of images are of use.
   bool WantsColor() const {

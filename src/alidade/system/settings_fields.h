@@ -205,6 +205,21 @@ void VisitReadout(Settings& r, Visit&& visit) {
 }
 
 template <typename Settings, typename Visit>
+void VisitRefine(Settings& r, Visit&& visit) {
+  visit("refine.enabled", r.enabled);
+  visit("refine.first_keyframes", r.first_keyframes);
+  visit("refine.growth", r.growth);
+  visit("refine.max_windows", r.max_windows);
+  visit("refine.focal_sigma", r.focal_sigma);
+  visit("refine.readout_sigma", r.readout_sigma);
+  visit("refine.max_sigma", r.max_sigma);
+  visit("refine.far_off", r.far_off);
+  visit("refine.again", r.again);
+  visit("refine.min_change", r.min_change);
+  visit("refine.step", r.step);
+}
+
+template <typename Settings, typename Visit>
 void VisitFields(Settings& s, Visit&& visit) {
   visit("image_width", s.image_width);
   visit("max_image_side", s.max_image_side);
@@ -226,6 +241,7 @@ void VisitFields(Settings& s, Visit&& visit) {
   VisitStart(s.start, visit);
   VisitEarly(s.early, visit);
   VisitReadout(s.readout, visit);
+  VisitRefine(s.refine, visit);
 }
 
 }  // namespace alidade

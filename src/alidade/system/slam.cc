@@ -2,6 +2,7 @@
 #include "alidade/system/slam.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 #include <utility>
@@ -17,6 +18,7 @@
 namespace alidade {
 namespace {
 
+constexpr int kLastQuestions = 3;  // of the camera at the end: each change makes the next smaller
 constexpr int kReanchorFrames = 300;  // how often frames are tied to living keyframes: each 10 s
 
 // Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
@@ -91,6 +93,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
 
 // `time`: as it was given; that of `prepared` never jumps.
 TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
+  RefineCamera();
   const int number = first_number_ + log_.size() - 1;
   movers_.Begin(prepared, number);
   tracker_.SetReadout(workers_.readout());
@@ -119,6 +122,25 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   }
   if (log_.size() % kReanchorFrames == 0) Reanchor();
   return result;
+}
+
+// The map has told of another camera than it is made with: all is changed to that between two
+// frames. Whether it was.
+bool Slam::Impl::RefineCamera() {
+  if (!settings_.refine.enabled || young_.on_trial()) return false;
+  const std::optional<Camera> found = workers_.lens_watch().Take();
+  if (!found) return false;
+  workers_.ChangeCamera(camera_, *found);
+  {
+    const std::lock_guard<std::mutex> lock(camera_mutex_);
+    camera_ = *found;
+  }
+  tracker_.SetCamera(camera_);
+  movers_.SetCamera(camera_);
+  young_.SetCamera(camera_, workers_.lens_watch().found()->focal_sigma);
+  early_.SetCamera(camera_);
+  ++camera_changes_;
+  return true;
 }
 
 // `map`: the one the pose is in.
@@ -223,6 +245,11 @@ void Slam::Impl::Finish(double limit) {
   const std::lock_guard<std::mutex> driving(driving_);
   EndFrame();
   workers_.Drain(limit);
+  // All that was seen has a say now. Not where time is short.
+  for (int i = 0; i < kLastQuestions && settings_.refine.enabled && !std::isfinite(limit); ++i) {
+    workers_.AskForCamera();
+    if (!RefineCamera()) break;
+  }
   PlaceEarly(settings_.early.most, std::numeric_limits<int>::max());
 }
 

@@ -188,6 +188,10 @@ class Slam {
   LatestTimes Latest() const;
   // As used: scaled by the profile, with what was found of its rolling shutter by now.
   Camera camera() const;
+  // With settings.refine: what the map says of a camera nobody calibrated, of the size it is used
+  // in; none: nothing it can vouch for so far. camera() follows it, in steps.
+  std::optional<CameraEstimate> camera_found() const;
+  int camera_changes() const;  // how often camera() changed in the middle of a map
   // Standard deviation of that, seconds; 0: the camera told it, or none was found.
   double readout_sigma() const;
   SlamCounts Counts() const;

@@ -50,6 +50,7 @@ class Slam::Impl {
   }
 
   Camera CameraNow() const {
+    const std::lock_guard<std::mutex> lock(camera_mutex_);
     Camera camera = camera_;
     camera.readout = workers_.readout();
     return camera;
@@ -57,7 +58,9 @@ class Slam::Impl {
 
   Camera given_;
   SlamSettings settings_;
-  Camera camera_;
+  Camera camera_;  // changed by the driving call alone, with camera_mutex_ held
+  mutable std::mutex camera_mutex_;
+  std::atomic<int> camera_changes_{0};
   bool dense_;  // semi-dense mapping is asked for
   Workers workers_;
   Tracker tracker_;
@@ -82,6 +85,7 @@ class Slam::Impl {
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void Reanchor();
+  bool RefineCamera();
   void PlaceEarly(int count, int number);
 
   // slam_lost.cc: frames without a pose.

@@ -23,6 +23,10 @@ SlamHealth Slam::Health() const { return impl_->Health(); }
 MapSnapshot Slam::Snapshot() const { return impl_->workers_.map().Snapshot(); }
 double Slam::readout_sigma() const { return impl_->workers_.readout_sigma(); }
 Camera Slam::camera() const { return impl_->CameraNow(); }
+std::optional<CameraEstimate> Slam::camera_found() const {
+  return impl_->workers_.lens_watch().found();
+}
+int Slam::camera_changes() const { return impl_->camera_changes_; }
 int Slam::frames() const { return impl_->frames_; }
 int Slam::first_number() const { return impl_->first_number_; }
 

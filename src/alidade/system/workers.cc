@@ -50,6 +50,7 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
     : places_(settings.places, settings.seed),
       mapper_(map_, camera, settings.mapper),
       readout_watch_(camera, settings.mapper.noise, settings.readout),
+      lens_watch_(camera, settings.mapper.noise, settings.refine),
       loop_closer_(map_, places_, camera, settings.loop),
       semidense_mapper_(map_, camera, settings.semidense),
       dense_(settings.semidense.enabled && !settings.localise),
@@ -74,6 +75,7 @@ void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
     map_.Commit([&](MapCommit& commit) { CommitShutter(commit, readout_watch_.camera()); });
     adjusting_.Add(id);
   }
+  lens_watch_.Mapped(map_.Snapshot());
   if (mapper_.KeepWithinLimit(id) > 0 && !std::exchange(limit_told_, true))
     LogWarning(
         "the map has as many keyframes as it may have (mapper.max_keyframes): the least useful go");
@@ -104,6 +106,44 @@ void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
   loop_closer_.AdjustAll(
       id, stop ? stop : &cut_short_,
       [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
+}
+
+// Who hands on rests before who is handed to: what is in work may need the mapper to rest.
+void Workers::WhileAllRest(const std::function<void()>& action) {
+  adjusting_.WhileResting([&] {
+    looping_.WhileResting(
+        [&] { semidense_.WhileResting([&] { mapping_.WhileResting([&] { action(); }); }); });
+  });
+}
+
+void Workers::AskForCamera() {
+  mapping_.WhileResting([&] { lens_watch_.Ask(map_.Snapshot()); });
+}
+
+void Workers::ChangeCamera(const Camera& from, const Camera& to) {
+  const auto steps = static_cast<int>(std::ceil(Apart(from, to) / lens_watch_.step()));
+  const auto at_once = [](const std::function<void()>& commit) { commit(); };
+  WhileAllRest([&] {
+    for (int i = 1; i <= steps; ++i) {
+      const Camera camera = Between(from, to, static_cast<double>(i) / steps);
+      map_.Commit([&](MapCommit& commit) { CommitCamera(commit, camera); });
+      loop_closer_.SetCamera(camera);
+      const MapSnapshot map = map_.Snapshot();
+      for (MapId id : map.Maps()) {
+        const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
+        if (keyframes.size() > 2) loop_closer_.AdjustAll(keyframes.back(), nullptr, at_once);
+      }
+    }
+    mapper_.SetCamera(to);
+    map_.Commit([&](MapCommit& commit) {
+      for (uint32_t i = 0; i < commit.next_landmark(); ++i) {
+        if (commit.Find(LandmarkId{i})) commit.RefreshLandmark(LandmarkId{i});
+      }
+    });
+    semidense_mapper_.SetCamera(to);
+    readout_watch_.SetCamera(to);
+    lens_watch_.SetCamera(to);
+  });
 }
 
 void Workers::CutShort() {

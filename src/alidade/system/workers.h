@@ -16,6 +16,7 @@
 #include "alidade/place/place_index.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/system/health.h"
+#include "alidade/system/lens_watch.h"
 #include "alidade/system/readout_watch.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/stage.h"
@@ -41,6 +42,12 @@ class Workers {
   std::array<double, 2> readout() const { return readout_watch_.readout(); }
   ReadoutWatch& readout_watch() { return readout_watch_; }
   double readout_sigma() const { return readout_watch_.sigma(); }
+  void AskForCamera();  // what the map says of its lens, now: see LensWatch
+  LensWatch& lens_watch() { return lens_watch_; }
+  const LensWatch& lens_watch() const { return lens_watch_; }
+  // All maps are of another camera from now on: each is bent to it and adjusted, while nothing else
+  // is at work. The tracker's thread; not while keyframes of it wait.
+  void ChangeCamera(const Camera& from, const Camera& to);
   int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
   // Until nothing is left to do; what grew is adjusted as a whole once more. After `limit` seconds,
   // or CutShort(), what is left is given up, as soon as what is in work can be brought to an end.
@@ -68,11 +75,13 @@ class Workers {
   void Loop(KeyFrameId id);
   void DrainStages();
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop);
+  void WhileAllRest(const std::function<void()>& action);
 
   MapStore map_;
   PlaceIndex places_;
   Mapper mapper_;
   ReadoutWatch readout_watch_;  // mapping_'s
+  LensWatch lens_watch_;        // likewise
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
   bool dense_;  // semi-dense mapping is asked for

@@ -83,6 +83,12 @@ bool YoungMap::StandsStill(const PlacedFrame& placed) {
   return still_ >= settings.min_still_frames && still_ > moved_;
 }
 
+void YoungMap::SetCamera(const Camera& camera, double focal_sigma) {
+  settings_.start.two_view.lens_uncertainty = 3 * focal_sigma;
+  start_ = MonoStart(camera, settings_.start);
+  first_pixels_.clear();  // of another camera
+}
+
 void YoungMap::GiveUp() {
   workers_.Drop(map_);
   start_.Reset();

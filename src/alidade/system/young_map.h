@@ -42,6 +42,8 @@ class YoungMap {
   // A frame that was placed in the young map. True when frames have shown that the camera stands
   // still: it is said to have moved, and yet the picture behind stays where it was.
   bool StandsStill(const PlacedFrame& placed);
+  // Of all frames from now on: views kept so far are of no use any more. `focal_sigma`: relative.
+  void SetCamera(const Camera& camera, double focal_sigma);
   void GiveUp();  // out of the map, frames placed in it included; begins anew
 
  private:

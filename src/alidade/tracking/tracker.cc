@@ -6,6 +6,7 @@
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
 #include "alidade/features/rolling_shutter.h"
+#include "alidade/features/undistort.h"
 #include "alidade/tracking/local_search.h"
 
 namespace alidade {
@@ -37,6 +38,15 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
   frame->pyramid.clear();  // only extraction and stereo matching need it
   frame->image.release();
   return frame;
+}
+
+void Tracker::SetCamera(const Camera& camera) {
+  camera_ = camera;
+  passing_ = PassingPoints(camera);
+  if (!last_.frame) return;
+  auto last = std::make_shared<Frame>(*last_.frame);
+  UndistortKeypoints(camera, *last);
+  last_.frame = std::move(last);
 }
 
 void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {

@@ -44,6 +44,8 @@ class Tracker {
                                  double time, int number, const cv::Mat& avoid = {});
   // Of the camera, from the next frame on; see Camera.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
+  // All frames from now on, and what is kept of the last one.
+  void SetCamera(const Camera& camera);
   // Rolling shutters only: keypoints as if read all at once, by how the camera is taken to move.
   void UndoShutter(Frame& frame, const MapSnapshot& map) const;
   // The same of a frame that was placed, by how it did move, and its pose with that. `frame` is the

@@ -67,7 +67,7 @@ export interface Frame {
   milliseconds: number;     // it took
   fov: number;              // horizontal field of view as it is believed to be, degrees
   fovSigma: number;         // its standard deviation, degrees; 0: it was given
-  restarts: number;         // maps begun anew because the camera turned out to be another
+  cameraChanges: number;    // how often the map was changed to another camera, found from it
 }
 
 export interface Feature { x: number; y: number; matched: boolean }  // pixels of the picture as it is worked on
@@ -151,7 +151,7 @@ export class Slam {
     const at = core._alidade_track(this.#session, channels, time);
     if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
     const n = Array.from(new Float64Array(core.HEAPU8.buffer, at, NUMBERS)) as [number, ...number[]];
-    const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, restarts] = n as number[] & { length: 19 };
+    const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, cameraChanges] = n as number[] & { length: 19 };
     return {
       number: n[19]!,
       state: STATES[state!] ?? 'lost',
@@ -159,7 +159,7 @@ export class Slam {
       predicted: predicted === 1,
       reason: state === 1 ? '' : core.UTF8ToString(core._alidade_reason(this.#session)),
       counts: { keyframes: keyframes!, landmarks: landmarks!, matches: matches!, features: features!, maps: maps! },
-      milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, restarts: restarts!,
+      milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, cameraChanges: cameraChanges!,
     };
   }
 

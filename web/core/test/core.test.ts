@@ -74,7 +74,7 @@ test('a camera nobody calibrated is found on the way', onKitchen, async () => {
   let frame = slam.track(grayOf(recording, 0), recording.times[0]!);
   assert.ok(Math.abs(frame.fov - 66) < 0.1 && frame.fovSigma > 10);
   for (let i = 1; i < recording.times.length; ++i) frame = slam.track(grayOf(recording, i), recording.times[i]!);
-  console.log(`kitchen, nothing known: ${frame.fov.toFixed(1)} ± ${frame.fovSigma.toFixed(1)} degrees (62.5), ${frame.restarts} restarts`);
+  console.log(`kitchen, nothing known: ${frame.fov.toFixed(1)} ± ${frame.fovSigma.toFixed(1)} degrees (62.5), ${frame.cameraChanges} changes`);
   assert.ok(frame.fovSigma < 2 && Math.abs(frame.fov - 62.5) < 3 * frame.fovSigma);
   assert.equal(frame.state, 'tracking');
   slam.finish();

@@ -85,7 +85,7 @@ function take(messages: readonly Uint8Array[]): void {
   for (const bytes of messages) {
     try {
       const message = decode(bytes);
-      if (message.kind === 'hello' && state.hello && !(engine instanceof RemoteEngine && engine.goesOn())) { // the map is begun anew
+      if (message.kind === 'hello' && engine instanceof RemoteEngine && engine.beginsAnew() && state.hello) {
         state = new State();
         map.forget();
         setCube(null);

@@ -28,7 +28,7 @@ export class RemoteEngine implements Engine {
   private start: Omit<Start, 'kind' | 'base' | 'threads'> | null = null;
   private readonly sent = new Map<number, { time: number; bitmap: ImageBitmap; turn: number }>();
   private pending: Uint8Array[] = []; // messages since the last frame's text
-  private resumed = false; // the next hello is of the map that is known
+  private other = false; // the next hello is of another map than the one that is known
   private begun: { resolve(): void; reject(error: Error): void } | null = null;
 
   constructor(private readonly hooks: Hooks) {}
@@ -55,11 +55,11 @@ export class RemoteEngine implements Engine {
     return Promise.reject(new Error('it is on the computer that does the work'));
   }
 
-  // A hello has come: whether the map goes on that was there before the connection was lost.
-  goesOn(): boolean {
-    const { resumed } = this;
-    this.resumed = false;
-    return resumed;
+  // A hello has come: whether the map that was there before the connection was lost is gone.
+  beginsAnew(): boolean {
+    const { other } = this;
+    this.other = false;
+    return other;
   }
 
   close(): void {
@@ -150,7 +150,7 @@ export class RemoteEngine implements Engine {
     if (told.welcome) {
       this.open = true;
       this.tries = 0;
-      this.resumed = told.resumed === true;
+      this.other = told.resumed !== true;
       this.number = Math.max(this.number, (told.last ?? -1) + 1);
       this.hooks.lost('');
       this.begun?.resolve();
@@ -170,7 +170,7 @@ export class RemoteEngine implements Engine {
         number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', predicted: false,
         pose: pose && { position: [pose[4]!, pose[5]!, pose[6]!], orientation: [pose[0]!, pose[1]!, pose[2]!, pose[3]!] },
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
-        milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, restarts: 0,
+        milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0,
       },
     });
   }

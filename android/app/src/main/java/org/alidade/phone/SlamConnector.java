@@ -25,7 +25,7 @@ public final class SlamConnector implements AutoCloseable {
     public final double milliseconds; // the last picture took
     public final double fov; // horizontal field of view, degrees
     public final double fovSigma; // its standard deviation, degrees; 0: it was given
-    public final int restarts; // with another lens than was assumed
+    public final int cameraChanges; // how often the map was changed to a lens that was found from it
     public final int frames; // worked on
     public final int skipped; // pictures that a newer one replaced before their turn came
     public final int failed; // pictures that the core refused: words() says why
@@ -41,7 +41,7 @@ public final class SlamConnector implements AutoCloseable {
       milliseconds = list[7];
       fov = list[8];
       fovSigma = list[9];
-      restarts = (int) list[10];
+      cameraChanges = (int) list[10];
       frames = (int) list[11];
       skipped = (int) list[12];
       failed = (int) list[13];

@@ -1,0 +1,65 @@
+// Finds the lens of a camera nobody calibrated, while its map grows.
+#pragma once
+
+#include <mutex>
+#include <optional>
+
+#include "alidade/base/api.h"
+#include "alidade/map/camera_estimate.h"
+#include "alidade/map/map_store.h"
+#include "alidade/map/measurement.h"
+
+namespace ALIDADE_API alidade {
+
+// For one camera of which nothing is known and whose pictures come once: live cameras, phones, a
+// program's own pictures. Recordings are better played beforehand (run/find_camera.h).
+struct LensWatchSettings {
+  bool enabled = false;         // false: the camera is taken as it is given
+  int first_keyframes = 10;     // of a map, when it is asked first …
+  double growth = 1.3;          // … and again when it has so many times as many
+  int max_windows = 12;         // stretches of 12 keyframes that are asked, spread over the map
+  double focal_sigma = 0.35;    // believed of log focal beforehand: 66 degrees may be 49 to 85
+  double readout_sigma = 0.02;  // seconds: believed of a rolling shutter beforehand, about none
+  // Relative standard deviation of the focal length, above which it is not taken, unless the camera
+  // is off by so many of them; two answers on end must agree on it to two of theirs.
+  double max_sigma = 0.03, far_off = 6;
+  // Share of a pixel's distance from the middle, below which all stays as it is; so it does where
+  // less than one standard deviation would change.
+  double min_change = 0.005;
+  // A map agrees in part with the camera it was made with: after a change it is asked again when it
+  // has so many keyframes more.
+  int again = 2;
+  // The map is bent to another camera in steps of so large a share, with an adjustment after each:
+  // at the picture's rim 3 % are 10 pixels.
+  double step = 0.03;
+  void Check() const;  // throws Error (usage) naming the field that cannot be
+};
+
+class LensWatch {
+ public:
+  LensWatch(const Camera& camera, const MeasurementNoise& noise, const LensWatchSettings& settings);
+
+  // A keyframe was mapped: asks the largest map when that has grown. One thread's.
+  void Mapped(const MapSnapshot& map);
+  // However much it has grown. The same.
+  void Ask(const MapSnapshot& map);
+  // A camera that the map should be changed to: told once. Any thread's.
+  std::optional<Camera> Take();
+  // The map is of this camera now. Nothing may be in Mapped() meanwhile.
+  void SetCamera(const Camera& camera) { camera_ = camera; }
+  // What is believed by now; none: nothing was found. Any thread's.
+  std::optional<CameraEstimate> found() const;
+  double step() const { return settings_.step; }
+
+ private:
+  Camera camera_;
+  MeasurementNoise noise_;
+  LensWatchSettings settings_;
+  int ask_at_;
+  std::optional<CameraEstimate> before_;  // the last answer
+  mutable std::mutex mutex_;
+  std::optional<CameraEstimate> found_;
+  std::optional<Camera> wanted_;
+};
+
+}  // namespace alidade

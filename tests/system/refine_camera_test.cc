@@ -1,0 +1,140 @@
+// A camera nobody calibrated, found while its map grows: the map is changed to it as it stands.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "alidade/evaluation/ate.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+#include "support/expect_error.h"
+
+namespace alidade::refine_camera_test {
+namespace {
+
+constexpr int kFrames = 180;
+
+SlamSettings Unknown() {
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  settings.readout.enabled = false;  // as whoever knows no lens has it
+  settings.refine.enabled = true;
+  return settings;
+}
+
+const SynthRecording& Desk() {
+  static const SynthRecording desk = [] {
+    SynthSettings synth;
+    synth.scene = "desk";
+    synth.width = 400;
+    synth.height = 300;
+    synth.speed = 2;
+    return SynthRecording(synth);
+  }();
+  return desk;
+}
+
+const std::vector<RenderedFrame>& Frames() {
+  static const std::vector<RenderedFrame> frames = [] {
+    std::vector<RenderedFrame> rendered;
+    for (int i = 0; i < kFrames; ++i) rendered.push_back(Desk().Render(i));
+    return rendered;
+  }();
+  return frames;
+}
+
+Camera Assumed(double fov) { return Camera::FromFieldOfView(400, 300, fov); }
+
+struct Ran {
+  int tracked = 0, changes = 0;
+  double ate = 0;  // metres
+  Camera camera;
+  std::optional<CameraEstimate> found;
+  std::string map;
+};
+
+Ran Play(const Camera& camera, const SlamSettings& settings) {
+  Slam slam(camera, settings);
+  Ran ran;
+  Trajectory truth, estimate;
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    slam.Track({frame.time, frame.image, {}, {}});
+    truth.push_back({frame.time, Desk().Pose(i), {}});
+  }
+  slam.Finish();
+  for (const FramePose& pose : slam.Trajectory()) {
+    if (!pose.tracked) continue;
+    estimate.push_back({pose.time, pose.T_world_camera, {}});
+  }
+  ran.tracked = static_cast<int>(estimate.size());
+  if (ran.tracked > 10)
+    ran.ate = EvaluateAte(truth, estimate, {.align = Alignment::kSim3}).error.rmse;
+  ran.changes = slam.camera_changes();
+  ran.camera = slam.camera();
+  ran.found = slam.camera_found();
+  ran.map = slam.SaveMap();
+  return ran;
+}
+
+TEST(RefineCamera, IsFoundFromFarOffAndNoFrameIsLostOverIt) {
+  const double truth = Desk().camera().fx;
+  SlamSettings given = Unknown();
+  given.refine.enabled = false;
+  const Ran known = Play(Desk().camera(), given);
+  EXPECT_EQ(known.changes, 0);
+  EXPECT_FALSE(known.found);
+  for (double fov : {50.0, 85.0}) {
+    const Ran assumed = Play(Assumed(fov), given), refined = Play(Assumed(fov), Unknown());
+    ASSERT_TRUE(refined.found) << fov;
+    EXPECT_GT(refined.changes, 0);
+    EXPECT_NEAR(refined.camera.fx / truth, 1, 0.02) << fov;
+    EXPECT_LT(std::abs(std::log(refined.camera.fx / truth)),
+              4 * refined.found->focal_sigma + 0.005);
+    EXPECT_GE(refined.tracked, known.tracked - 2) << fov;
+    EXPECT_LT(refined.ate, 2 * known.ate + 0.005) << fov;
+    EXPECT_LT(refined.ate, 0.5 * assumed.ate) << fov;
+  }
+}
+
+TEST(RefineCamera, InlineRunsAreTheSameBytes) {
+  const Ran once = Play(Assumed(80), Unknown()), again = Play(Assumed(80), Unknown());
+  EXPECT_GT(once.changes, 0);
+  EXPECT_EQ(once.map, again.map);
+}
+
+// All that holds the camera follows: dense depth is worked on anew, the dynamic filter too.
+TEST(RefineCamera, WithThreadsDenseDepthAndDynamics) {
+  SlamSettings settings = Unknown();
+  settings.threaded = true;
+  settings.semidense.enabled = true;
+  settings.dynamics.mode = DynamicsMode::kGeometry;
+  Slam slam(Assumed(80), settings);
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    slam.Track({frame.time, frame.image, {}, {}});
+  }
+  slam.Finish();
+  EXPECT_GT(slam.camera_changes(), 0);
+  EXPECT_NEAR(slam.camera().fx / Desk().camera().fx, 1, 0.05);
+  const SlamHealth health = slam.Health();
+  for (const StageHealth& stage : health.stages) EXPECT_TRUE(stage.running) << stage.failure;
+  int with_depth = 0;
+  const MapSnapshot map = slam.Snapshot();
+  for (KeyFrameId id : map.KeyFrames()) {
+    const KeyFrame& keyframe = *map.Find(id);
+    with_depth += keyframe.depth && !keyframe.depth->pixels.empty();
+  }
+  EXPECT_GT(with_depth, map.keyframe_count() / 2);
+}
+
+TEST(RefineCamera, IsForOneCamera) {
+  SlamSettings settings;
+  settings.sensor = Sensor::kRgbd;
+  settings.refine.enabled = true;
+  EXPECT_THAT(ComplaintAbout(settings), testing::HasSubstr("refine.enabled is for one camera"));
+}
+
+}  // namespace
+}  // namespace alidade::refine_camera_test
