@@ -22,10 +22,15 @@ void LensWatchSettings::Check() const {
   require(far_off > 1, "far_off must be above 1");
   require(again >= 1, "again must be at least 1");
   require(min_change > 0, "min_change must be positive");
+  require(bend_windows >= 1, "bend_windows must be positive");
+  require(rework > 0, "rework must be positive");
   require(step > 0 && step <= 1, "step must lie in 0..1");
 }
 
 namespace {
+
+constexpr double kNoBend =
+    1e-4;  // sigma of the corners' shift: all but none (0 would keep what is)
 
 int SizeOf(const MapSnapshot& map) {
   const MapId largest = LargestMap(map);
@@ -43,32 +48,48 @@ void LensWatch::Mapped(const MapSnapshot& map) {
   if (now >= ask_at_) Ask(map);
 }
 
-void LensWatch::Ask(const MapSnapshot& map) {
+void LensWatch::Ask(const MapSnapshot& map, bool last) {
   const int now = SizeOf(map);
   if (now < settings_.first_keyframes) return;
   ask_at_ = static_cast<int>(std::ceil(now * settings_.growth));
-  const MapId where = LargestMap(map);
   CameraEstimateSettings ask;
   ask.max_windows = settings_.max_windows;
   ask.readout_sigma = settings_.readout_sigma;
   ask.adjust.focal_sigma = settings_.focal_sigma;
-  const CameraEstimate estimate =
-      EstimateCamera(LensWindowsOf(map, where, camera_, noise_, ask), camera_, noise_, ask);
-  const double off = Apart(estimate.camera, camera_);
-  if (estimate.observations == 0) return;
-  if (!(estimate.focal_sigma <= settings_.max_sigma) &&
-      !(off >= settings_.far_off * estimate.focal_sigma))
+  std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
+  if (static_cast<int>(windows.size()) < settings_.bend_windows)
+    ask.k1_corner_sigma = ask.k2_corner_sigma = kNoBend;
+  const CameraEstimate estimate = EstimateCamera(std::move(windows), camera_, noise_, ask);
+  const double sigma = estimate.focal_sigma;
+  if (estimate.observations == 0 || !std::isfinite(sigma)) return;
+  if (sigma > settings_.max_sigma && Apart(estimate.camera, camera_) < settings_.far_off * sigma)
     return;
-  const bool agree = before_ && std::abs(std::log(estimate.camera.fx / before_->camera.fx)) <=
-                                    2 * std::hypot(estimate.focal_sigma, before_->focal_sigma);
-  before_ = estimate;
-  if (!agree) return;
+  const std::optional<CameraEstimate> before = std::exchange(before_, estimate);
+  if (const auto taken = Agreed(before, estimate, last)) Believe(*taken, now);
+}
+
+// What two answers on end are good for: the later one when they agree; when both are off the same
+// way, the nearer one.
+std::optional<CameraEstimate> LensWatch::Agreed(const std::optional<CameraEstimate>& before,
+                                                const CameraEstimate& now, bool last) const {
+  if (last && now.known) return now;  // nothing will follow
+  if (!before) return {};
+  const double off = std::log(now.camera.fx / camera_.fx);
+  const double was_off = std::log(before->camera.fx / camera_.fx);
+  if (std::abs(off - was_off) <= 2 * std::hypot(now.focal_sigma, before->focal_sigma)) return now;
+  const bool same_way = off * was_off > 0 && std::abs(off) > 2 * now.focal_sigma &&
+                        std::abs(was_off) > 2 * before->focal_sigma;
+  if (!same_way) return {};
+  return std::abs(was_off) < std::abs(off) ? *before : now;
+}
+
+void LensWatch::Believe(const CameraEstimate& estimate, int keyframes) {
+  const double off = Apart(estimate.camera, camera_);
   const std::lock_guard<std::mutex> lock(mutex_);
   found_ = estimate;
-  if (off >= settings_.min_change && off > estimate.focal_sigma) {
-    wanted_ = estimate.camera;
-    ask_at_ = now + settings_.again;
-  }
+  if (off < settings_.min_change || off <= estimate.focal_sigma) return;
+  wanted_ = estimate.camera;
+  ask_at_ = keyframes + settings_.again;
 }
 
 std::optional<Camera> LensWatch::Take() {

@@ -14,14 +14,18 @@ namespace ALIDADE_API alidade {
 // For one camera of which nothing is known and whose pictures come once: live cameras, phones, a
 // program's own pictures. Recordings are better played beforehand (run/find_camera.h).
 struct LensWatchSettings {
-  bool enabled = false;         // false: the camera is taken as it is given
-  int first_keyframes = 10;     // of a map, when it is asked first …
-  double growth = 1.3;          // … and again when it has so many times as many
-  int max_windows = 12;         // stretches of 12 keyframes that are asked, spread over the map
+  bool enabled = false;      // false: the camera is taken as it is given
+  int first_keyframes = 10;  // of a map, when it is asked first …
+  double growth = 1.3;       // … and again when it has so many times as many
+  int max_windows = 12;      // stretches of 12 keyframes that are asked, spread over the map
+  // Stretches there must be for distortion to be asked for (else it is none): in one or two, which
+  // a wrong lens has bent, it is taken for focal length and runs away with it.
+  int bend_windows = 3;
   double focal_sigma = 0.35;    // believed of log focal beforehand: 66 degrees may be 49 to 85
   double readout_sigma = 0.02;  // seconds: believed of a rolling shutter beforehand, about none
   // Relative standard deviation of the focal length, above which it is not taken, unless the camera
-  // is off by so many of them; two answers on end must agree on it to two of theirs.
+  // is off by so many of them; two answers on end must agree on it to two of theirs, or lie on the
+  // same side: then the nearer one is taken.
   double max_sigma = 0.03, far_off = 6;
   // Share of a pixel's distance from the middle, below which all stays as it is; so it does where
   // less than one standard deviation would change.
@@ -32,6 +36,9 @@ struct LensWatchSettings {
   // The map is bent to another camera in steps of so large a share, with an adjustment after each:
   // at the picture's rim 3 % are 10 pixels.
   double step = 0.03;
+  // After a change by more than this share all keyframes are mapped again, for what a wrong lens
+  // did not match.
+  double rework = 0.03;
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
@@ -42,16 +49,21 @@ class LensWatch {
   // A keyframe was mapped: asks the largest map when that has grown. One thread's.
   void Mapped(const MapSnapshot& map);
   // However much it has grown. The same.
-  void Ask(const MapSnapshot& map);
+  // `last`: nothing will follow, so an answer needs no second one when it is known well.
+  void Ask(const MapSnapshot& map, bool last = false);
   // A camera that the map should be changed to: told once. Any thread's.
   std::optional<Camera> Take();
   // The map is of this camera now. Nothing may be in Mapped() meanwhile.
   void SetCamera(const Camera& camera) { camera_ = camera; }
   // What is believed by now; none: nothing was found. Any thread's.
   std::optional<CameraEstimate> found() const;
-  double step() const { return settings_.step; }
+  const LensWatchSettings& settings() const { return settings_; }
 
  private:
+  std::optional<CameraEstimate> Agreed(const std::optional<CameraEstimate>& before,
+                                       const CameraEstimate& now, bool last) const;
+  void Believe(const CameraEstimate& estimate, int keyframes);
+
   Camera camera_;
   MeasurementNoise noise_;
   LensWatchSettings settings_;

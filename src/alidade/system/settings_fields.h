@@ -217,6 +217,8 @@ void VisitRefine(Settings& r, Visit&& visit) {
   visit("refine.again", r.again);
   visit("refine.min_change", r.min_change);
   visit("refine.step", r.step);
+  visit("refine.rework", r.rework);
+  visit("refine.bend_windows", r.bend_windows);
 }
 
 template <typename Settings, typename Visit>

@@ -117,11 +117,11 @@ void Workers::WhileAllRest(const std::function<void()>& action) {
 }
 
 void Workers::AskForCamera() {
-  mapping_.WhileResting([&] { lens_watch_.Ask(map_.Snapshot()); });
+  mapping_.WhileResting([&] { lens_watch_.Ask(map_.Snapshot(), true); });
 }
 
 void Workers::ChangeCamera(const Camera& from, const Camera& to) {
-  const auto steps = static_cast<int>(std::ceil(Apart(from, to) / lens_watch_.step()));
+  const auto steps = static_cast<int>(std::ceil(Apart(from, to) / lens_watch_.settings().step));
   const auto at_once = [](const std::function<void()>& commit) { commit(); };
   WhileAllRest([&] {
     for (int i = 1; i <= steps; ++i) {
@@ -140,6 +140,9 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
         if (commit.Find(LandmarkId{i})) commit.RefreshLandmark(LandmarkId{i});
       }
     });
+    if (Apart(from, to) > lens_watch_.settings().rework) {
+      for (KeyFrameId id : map_.Snapshot().KeyFrames()) mapper_.Process(id);
+    }
     semidense_mapper_.SetCamera(to);
     readout_watch_.SetCamera(to);
     lens_watch_.SetCamera(to);
