@@ -141,6 +141,7 @@ void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
 std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<BatchWork>& works,
                                 const EarlierBatch* earlier) {
   std::vector<BatchRow> rows;
+  rows.reserve(works.size());
   for (const BatchWork& work : works) rows.push_back(RowOf(folder, work.item));
   AtomicWriteFile(folder.path() + "/batch.json", BatchJson(rows));
   AtomicWriteFile(folder.path() + "/batch.md", BatchMarkdown(rows));

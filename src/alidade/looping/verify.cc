@@ -60,6 +60,7 @@ Alignment AlignmentOf(const Sim3& T_a_b, const KeyFrame& b) {
 
 int DifferentKeypoints(const std::vector<FusedSighting>& found) {
   std::vector<int> keypoints;
+  keypoints.reserve(found.size());
   for (const FusedSighting& s : found) keypoints.push_back(s.keypoint);
   std::sort(keypoints.begin(), keypoints.end());
   return static_cast<int>(std::unique(keypoints.begin(), keypoints.end()) - keypoints.begin());
@@ -100,7 +101,9 @@ class Verifier {
   }
 
  private:
-  int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
+  int Scaled(int count) const {
+    return static_cast<int>(std::lround(count * settings_.match_scale));
+  }
 
   bool Align() {
     MatchSettings matching;

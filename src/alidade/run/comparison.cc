@@ -142,6 +142,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
 std::string CompareResults(const std::vector<ComparedFolder>& folders) {
   if (folders.size() < 2) ThrowUsage("there is nothing to compare: give two results or more");
   std::vector<ResultFolder> results;
+  results.reserve(folders.size());
   for (const ComparedFolder& folder : folders) results.push_back(ReadResultFolder(folder.path));
   const std::vector<std::string> names = NamesOf(folders);
   const std::vector<double> starts = StartsOf(results);
