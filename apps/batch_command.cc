@@ -12,8 +12,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/file.h"
+#include "alidade/run/batch_compare.h"
 #include "alidade/run/batch_process.h"
-#include "alidade/run/comparison.h"
 #include "alidade/run/loop.h"
 #include "batch_arguments.h"
 #include "terminal.h"
@@ -137,19 +137,20 @@ void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
   RunProcesses(tasks, jobs, events);
 }
 
-// Rows of all, written as tables and as a page.
-std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<BatchWork>& works) {
+// Rows of all, written as tables and as a page; on it the earlier batch (may be null) beside them.
+std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<BatchWork>& works,
+                                const EarlierBatch* earlier) {
   std::vector<BatchRow> rows;
-  std::vector<std::string> results;
-  for (const BatchWork& work : works) {
-    rows.push_back(RowOf(folder, work.item));
-    if (rows.back().ok()) results.push_back(folder.ResultOf(work.item));
-  }
+  rows.reserve(works.size());
+  for (const BatchWork& work : works) rows.push_back(RowOf(folder, work.item));
   AtomicWriteFile(folder.path() + "/batch.json", BatchJson(rows));
   AtomicWriteFile(folder.path() + "/batch.md", BatchMarkdown(rows));
   try {
-    if (results.size() >= 2)
-      AtomicWriteFile(folder.path() + "/compare.html", CompareResults(results));
+    const BatchComparison page = RunsToCompare(folder.path(), rows, earlier);
+    for (const std::string& line : page.missing)
+      std::printf("Not beside the new one in compare.html: %s\n", line.c_str());
+    if (page.runs.size() >= 2)
+      AtomicWriteFile(folder.path() + "/compare.html", CompareResults(page.runs));
   } catch (const Error& error) {  // the tables are there
     std::printf("No compare.html: %s\n", error.what());
   }
@@ -176,11 +177,6 @@ bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
   return status == 0;
 }
 
-std::vector<BatchRow> ReadEarlier(const std::string& path) {
-  const std::string file = IsFolder(path) ? path + "/batch.json" : path;
-  return ParseBatchJson(ReadFile(file), file);
-}
-
 int RunOnly(const BatchArguments& arguments, BatchFolder& folder,
             const std::vector<BatchWork>& works) {
   if (arguments.only > static_cast<int>(works.size()))
@@ -201,8 +197,8 @@ int RunOnly(const BatchArguments& arguments, BatchFolder& folder,
 
 int Batch(const BatchArguments& arguments) {
   CatchInterrupts();
-  const std::optional<std::vector<BatchRow>> earlier =
-      arguments.against.empty() ? std::nullopt : std::optional(ReadEarlier(arguments.against));
+  const std::optional<EarlierBatch> earlier =
+      arguments.against.empty() ? std::nullopt : std::optional(ReadEarlierBatch(arguments.against));
   std::vector<BatchWork> works = WorksOf(arguments);
   BatchFolder folder(arguments.out);
   std::vector<BatchWork> todo;
@@ -219,7 +215,7 @@ int Batch(const BatchArguments& arguments) {
                   works.size());
     RunWorks(arguments, folder, todo, works.size());
   }
-  const std::vector<BatchRow> rows = Summarise(folder, works);
+  const std::vector<BatchRow> rows = Summarise(folder, works, earlier ? &*earlier : nullptr);
   std::printf("\n%s\n", BatchText(rows).c_str());
   const auto failed = std::count_if(rows.begin(), rows.end(),
                                     [](const BatchRow& row) { return row.state == "failed"; });
@@ -233,7 +229,7 @@ int Batch(const BatchArguments& arguments) {
   bool good = failed == 0 && waiting == 0;
   if (arguments.merge) good = MergeAll(folder, rows) && good;
   if (earlier) {
-    const std::vector<std::string> worse = WorseThan(*earlier, rows, arguments.worse);
+    const std::vector<std::string> worse = WorseThan(earlier->rows, rows, arguments.worse);
     for (const std::string& line : worse) std::printf("worse: %s\n", line.c_str());
     if (worse.empty()) std::printf("Nothing got worse than in %s\n", arguments.against.c_str());
     good = good && worse.empty();

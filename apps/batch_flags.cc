@@ -79,7 +79,8 @@ void AddBatchCommand(CLI::App& app, Action& action) {
       ->type_name("N");
   command
       ->add_option("--against", arguments->against,
-                   "Folder of an earlier batch: what got worse is told, and is status 1")
+                   "Folder of an earlier batch: what got worse is told, and is status 1; "
+                   "compare.html shows both")
       ->type_name("DIR");
   command->add_flag("--merge", arguments->merge,
                     "Then make one map of all, as `alidade merge` does, in merged/");

@@ -18,7 +18,9 @@ struct CompareArguments {
 };
 
 int Compare(const CompareArguments& arguments) {
-  AtomicWriteFile(arguments.out, CompareResults(arguments.results));
+  std::vector<ComparedFolder> folders;
+  for (const std::string& result : arguments.results) folders.push_back({result, ""});
+  AtomicWriteFile(arguments.out, CompareResults(folders));
   std::printf("%zu runs compared in %s\n", arguments.results.size(), arguments.out.c_str());
   return 0;
 }

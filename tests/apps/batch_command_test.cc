@@ -101,6 +101,50 @@ TEST(BatchCommand, AgainstAnEarlierOneWhatIsWorseIsStatus1) {
   EXPECT_EQ(Batch({list, "--out", now, "--against", before, "--worse-ate", "1m"}).status, 0);
 }
 
+// The names in the table of compare.html, in their order.
+std::vector<std::string> NamesOnPage(const std::string& out) {
+  const std::string page = ReadText(out + "/compare.html"), before = "</span>", after = "</th>";
+  std::vector<std::string> names;
+  for (size_t at = 0; (at = page.find(before, at)) != std::string::npos;) {
+    at += before.size();
+    const size_t end = page.find('<', at);
+    if (page.compare(end, after.size(), after) == 0) names.push_back(page.substr(at, end - at));
+  }
+  return names;
+}
+
+TEST(BatchCommand, TheEarlierOneIsShownBesideTheNew) {
+  using testing::ElementsAre;
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", before = folder / "monday",
+                    now = folder / "tuesday";
+  const std::string a = kRoom + "20 --out a --sensor rgbd", b = kRoom + "15 --out b --sensor rgbd";
+  WriteLines(list, {a, b});
+  ASSERT_EQ(Batch({list, "--out", before}).status, 0);
+  EXPECT_THAT(NamesOnPage(before), ElementsAre("a", "b"));
+  // Each before the new one of its name; what is new stands alone.
+  WriteLines(list, {a, b, kRoom + "16 --out c --sensor rgbd"});
+  ASSERT_EQ(Batch({list, "--out", now, "--against", before + "/"}).status, 0);
+  EXPECT_THAT(NamesOnPage(now),
+              ElementsAre("monday/a", "tuesday/a", "monday/b", "tuesday/b", "tuesday/c"));
+  ASSERT_EQ(Batch({list, "--out", now, "--against", now}).status, 0);
+  EXPECT_THAT(NamesOnPage(now), ElementsAre("a", "b", "c"));
+  // One whose folder is gone is told, and judged all the same.
+  std::filesystem::remove_all(before + "/b");
+  const ProgramResult gone = Batch({list, "--out", now, "--against", before + "/batch.json"});
+  EXPECT_EQ(gone.status, 0) << gone.err;
+  EXPECT_THAT(gone.out, HasSubstr("compare.html: b: "));
+  EXPECT_THAT(gone.out, HasSubstr("Nothing got worse"));
+  EXPECT_THAT(NamesOnPage(now), ElementsAre("monday/a", "tuesday/a", "tuesday/b", "tuesday/c"));
+  // A single recording has its earlier self to be compared with; folders of one name are told
+  // apart.
+  WriteLines(list, {a});
+  const std::string same = folder / "again/monday";
+  std::filesystem::create_directory(folder / "again");
+  ASSERT_EQ(Batch({list, "--out", same, "--against", before}).status, 0);
+  EXPECT_THAT(NamesOnPage(same), ElementsAre(before + "/a", same + "/a"));
+}
+
 TEST(BatchCommand, CtrlCLeavesWhatIsDone) {
   const TempFolder folder;
   const std::string list = folder / "list.txt", out = folder / "out";

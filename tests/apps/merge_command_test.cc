@@ -101,6 +101,25 @@ TEST_F(MergeCommand, AnotherPlaceStaysAMapOfItsOwn) {
             1e-6);
 }
 
+// The same walls and furniture in the same places; other pictures, books, floor and cloths.
+TEST_F(MergeCommand, ARoomOfTheSameMakeStaysAMapOfItsOwn) {
+  for (const char* sensor : {"rgbd", "mono"}) {
+    SCOPED_TRACE(sensor);
+    std::vector<std::string> rooms;
+    for (const char* seed : {"1", "2"}) {
+      const std::string name = std::string("room") + seed + sensor;
+      Run(std::string("synth:room?frames=150&width=320&height=240&seed=") + seed, name,
+          {"--sensor", sensor});
+      rooms.push_back(*folder_ / name);
+    }
+    const std::string out = *folder_ / (std::string("rooms_") + sensor);
+    const ProgramResult result = Merge({rooms[0], rooms[1], "--out", out});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, HasSubstr("shows no place of the others, and stays a map apart"));
+    EXPECT_EQ(nlohmann::json::parse(ReadText(out + "/merge.json"))["worlds"].size(), 2u);
+  }
+}
+
 TEST_F(MergeCommand, GivesTheSameBytesInAnyOrder) {
   ASSERT_EQ(Merge({noon_, evening_, desk_, "--out", *folder_ / "x.alidade"}).status, 0);
   ASSERT_EQ(Merge({desk_, evening_, noon_, "--out", *folder_ / "y.alidade"}).status, 0);

@@ -172,6 +172,28 @@ TEST(Architecture, InstalledHeadersIncludeInstalledHeadersOnly) {
   EXPECT_GT(installed, 30);
 }
 
+// Two types of one name in one namespace are one to the linker, which takes the functions of either
+// for both.
+TEST(Architecture, TypesOfHeadersHaveNamesOfTheirOwn) {
+  const std::regex space(R"(^namespace (?:ALIDADE_API )?(alidade\S*) \{.*)"),
+      type(R"(^(?:struct|class|enum class) (?:ALIDADE_API )?(\w+(?:::\w+)*)\b[^;]*\{$)");
+  const fs::path sources = fs::path(ALIDADE_SOURCE_DIR) / "src/alidade";
+  std::map<std::string, std::string> headers;  // by the type's full name
+  for (const std::string& path : SourcesUnder(sources, sources)) {
+    if (fs::path(path).extension() != ".h") continue;
+    std::ifstream stream(sources / path);
+    std::string within;
+    std::smatch match;
+    for (std::string line; std::getline(stream, line);) {
+      if (std::regex_match(line, match, space)) within = match[1];
+      if (!std::regex_match(line, match, type)) continue;
+      const auto [other, fresh] = headers.emplace(within + "::" + match[1].str(), path);
+      EXPECT_TRUE(fresh) << other->first << " is in " << other->second << " and in " << path;
+    }
+  }
+  EXPECT_GT(headers.size(), 300u) << "the types were not found";
+}
+
 TEST(ArchitectureRules, SeeIncludesThatGoUpOrSideways) {
   EXPECT_FALSE(Violation("map/keyframe.h", "alidade/features/frame.h"));
   EXPECT_FALSE(Violation("map/keyframe.h", "alidade/map/landmark.h"));

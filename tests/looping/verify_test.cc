@@ -151,6 +151,29 @@ TEST(VerifyLoop, ThoseAroundMustAgree) {
   EXPECT_TRUE(place->Verify(kView, kPlace));
 }
 
+// Two maps: of the ring as it was, and as it is the second time, in a world of its own.
+TEST(VerifyLoop, AnotherMapOfTheSameShapesThatLooksOtherwiseIsAnotherPlace) {
+  for (bool depth : {true, false}) {
+    for (int changed : {0, 30, 70}) {  // of 100 points
+      SCOPED_TRACE(changed);
+      OldPlace place;
+      place.world = MakeRing({.depth = depth, .points = 8000, .changed = changed});
+      place.made = FillDriftedMap(place.world, {.count = kLap / 2}, place.store);
+      const Sim3 T_map_world{1, ExpSo3({0.4, -1.1, 0.2}), {4, -2, 3}};
+      const DriftedMap second =
+          FillDriftedMap(place.world, {.first = kLap, .T_map_world = T_map_world}, place.store);
+      const auto verify = [&] {
+        return VerifyLoop(place.map(), second.keyframes[kView - kLap], place.KeyFrameOf(kPlace),
+                          place.world.camera, place.settings);
+      };
+      EXPECT_EQ(verify().has_value(), changed < 50);
+      // Where nothing else is against it: the shapes, and more landmarks found than are asked for.
+      place.settings.min_merge_alike = 0;
+      EXPECT_TRUE(verify());
+    }
+  }
+}
+
 TEST(VerifyLoop, WhatIsGoneIsNone) {
   auto place = ComeBack({.depth = true});
   place->store.Commit([&](MapCommit& commit) { commit.Remove(place->KeyFrameOf(kPlace)); });

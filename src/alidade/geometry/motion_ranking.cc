@@ -18,17 +18,17 @@ bool SameMotion(const Se3& x, const Se3& y) {
   return RotationAngle(x, y) < 1.5 * kDegree && x.t.dot(y.t) > std::cos(6 * kDegree);
 }
 
-void SortByScore(std::vector<Hypothesis>& hypotheses) {
+void SortByScore(std::vector<RankedMotion>& hypotheses) {
   std::stable_sort(
       hypotheses.begin(), hypotheses.end(),
-      [](const Hypothesis& x, const Hypothesis& y) { return x.score.score > y.score.score; });
+      [](const RankedMotion& x, const RankedMotion& y) { return x.score.score > y.score.score; });
 }
 
 // Adds the motion refined from `start`. One that went far on the way adds its start too: in a flat
 // valley between two answers the lowest point says little, and the start may then be as good.
-void Add(const Se3& start, const RayPairs& rays, std::vector<Hypothesis>& hypotheses) {
+void Add(const Se3& start, const RayPairs& rays, std::vector<RankedMotion>& hypotheses) {
   const auto known = [&](const Se3& T_b_a, bool refined_only) {
-    return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const Hypothesis& other) {
+    return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const RankedMotion& other) {
       return !(refined_only && other.unrefined) && SameMotion(other.T_b_a, T_b_a);
     });
   };
@@ -46,7 +46,7 @@ void Add(const Se3& start, const RayPairs& rays, std::vector<Hypothesis>& hypoth
 // A plane seen by two cameras always allows two motions. These are the motions of the plane that
 // lies nearest to the points as this motion places them; how well they explain the matches shows
 // whether the scene was too flat to tell.
-std::vector<Se3> PlanarTwins(const Hypothesis& hypothesis, const RayPairs& rays) {
+std::vector<Se3> PlanarTwins(const RankedMotion& hypothesis, const RayPairs& rays) {
   // A plane n' p = 1 has inverse depth n' a along the ray a: linear in n, with errors of equal
   // size.
   const Se3& T = hypothesis.T_b_a;
@@ -67,8 +67,8 @@ std::vector<Se3> PlanarTwins(const Hypothesis& hypothesis, const RayPairs& rays)
 
 }  // namespace
 
-std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
-  std::vector<Hypothesis> rough;
+std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
+  std::vector<RankedMotion> rough;
   double most = 0;
   // Bounds of three times the size: these motions carry the noise of the models they were taken
   // from.
@@ -77,8 +77,8 @@ std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPa
     most = std::max(most, rough.back().score.score);
   }
   SortByScore(rough);
-  std::vector<Hypothesis> ranked;
-  for (const Hypothesis& start : rough) {
+  std::vector<RankedMotion> ranked;
+  for (const RankedMotion& start : rough) {
     if (start.score.score < 0.6 * most || most == 0) break;
     Add(start.T_b_a, rays, ranked);
   }
@@ -94,7 +94,7 @@ std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPa
   return ranked;
 }
 
-bool IsRival(const Hypothesis& best, const Hypothesis& other, double max_share) {
+bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_share) {
   if (other.score.good <= max_share * best.score.good) return false;
   double lost = 0, squares = 0;
   for (size_t i = 0; i < best.score.gain.size(); ++i) {

@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-struct Hypothesis {
+struct RankedMotion {
   Se3 T_b_a;  // |t| = 1
   MotionScore score;
   double direction_sigma = 0;  // of t, radians
@@ -19,10 +19,10 @@ struct Hypothesis {
 // The distinct motions among `motions` that come near explaining the most, each refined, best
 // first. The one a plane could be mistaken for (a plane seen by two cameras always allows two)
 // competes with the best, whether or not it was among them.
-std::vector<Hypothesis> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays);
+std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays);
 
 // Whether the matches leave open which of the two it is: `other` explains more than `max_share` of
 // what the best explains, and not clearly worse.
-bool IsRival(const Hypothesis& best, const Hypothesis& other, double max_share);
+bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_share);
 
 }  // namespace alidade

@@ -152,10 +152,10 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   std::vector<Se3> motions = MotionsFromHomography(H);
   const std::vector<Se3> more = MotionsFromEssential(K * models.fundamental.matrix * K);
   motions.insert(motions.end(), more.begin(), more.end());
-  const std::vector<Hypothesis> ranked = RankMotions(motions, rays);
+  const std::vector<RankedMotion> ranked = RankMotions(motions, rays);
   if (ranked.empty()) return Refuse(std::move(result), TwoViewFailure::kNoModel);
 
-  const Hypothesis& best = ranked.front();
+  const RankedMotion& best = ranked.front();
   if (best.score.consistent < settings.min_inlier_share * static_cast<double>(rays.size())) {
     return Refuse(std::move(result), TwoViewFailure::kNoModel);
   }

@@ -17,6 +17,8 @@ void LoopSettings::Check() const {
   require(min_found >= 10, "min_found must be at least 10");
   require(min_merge_found >= min_found, "min_merge_found must be at least loop.min_found");
   require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must be between 0 and 1");
+  require(min_merge_alike >= 0 && min_merge_alike <= 1, "min_merge_alike must be between 0 and 1");
+  require(alike_radius > 0, "alike_radius must be positive");
   require(search_radius > 0, "search_radius must be positive");
   require(max_distance > 0 && max_distance <= 256, "max_distance must be between 1 and 256");
   require(confirm_keyframes >= confirm_needed && confirm_needed >= 0,

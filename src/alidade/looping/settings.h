@@ -24,6 +24,12 @@ struct LoopSettings {
   int min_found = 45;         // landmarks of the old place found where the alignment puts them
   int min_merge_found = 120;  // the same between two maps, where no way since speaks for or against
                               // it, and their whole relation hangs on it
+  // Of the landmarks that have a keypoint at their very place, so many must look alike to it: where
+  // only the shapes are the same (rooms of one make with other pictures), corners are where they
+  // should be, but show something else. Measured: at most 0.38 there, 0.59 and more at the best
+  // keyframe of one room (docs/merge.md). Between two maps.
+  double min_merge_alike = 0.45;
+  double alike_radius = 2;       // pixels on level 0: 2.5 standard deviations of a keypoint's place
   double min_found_share = 0.1;  // of those that should be in sight: places only alike show less
   double search_radius = 8;      // pixels on level 0; the second time half of it
   int max_distance = 60;         // bits of 256

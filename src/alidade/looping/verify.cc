@@ -60,6 +60,7 @@ Alignment AlignmentOf(const Sim3& T_a_b, const KeyFrame& b) {
 
 int DifferentKeypoints(const std::vector<FusedSighting>& found) {
   std::vector<int> keypoints;
+  keypoints.reserve(found.size());
   for (const FusedSighting& s : found) keypoints.push_back(s.keypoint);
   std::sort(keypoints.begin(), keypoints.end());
   return static_cast<int>(std::unique(keypoints.begin(), keypoints.end()) - keypoints.begin());
@@ -89,7 +90,7 @@ class Verifier {
     if (found < Scaled(merges ? settings_.min_merge_found : settings_.min_found) ||
         found < settings_.min_found_share * match_.visible)
       return {};
-    if (!merges && !CanHaveDrifted()) return {};
+    if (merges ? AlikeShare() < settings_.min_merge_alike : !CanHaveDrifted()) return {};
     if (!Confirmed()) return {};
     match_.keyframe = a_.id;
     match_.place = b_.id;
@@ -100,7 +101,9 @@ class Verifier {
   }
 
  private:
-  int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
+  int Scaled(int count) const {
+    return static_cast<int>(std::lround(count * settings_.match_scale));
+  }
 
   bool Align() {
     MatchSettings matching;
@@ -187,6 +190,20 @@ class Verifier {
     const LandmarkSearch search{radius, settings_.max_distance, {}};
     match_.found = FindLandmarks(map_, around_, a_, alignment_.T_camera_world, camera_, search,
                                  &match_.visible);
+  }
+
+  // Of the place's landmarks where the keyframe has a keypoint, whatever it looks like: how many
+  // look like it. Something else in a landmark's place speaks against the two being one; a landmark
+  // without a keypoint may be hidden, and says nothing.
+  double AlikeShare() const {
+    const LandmarkSearch any{settings_.alike_radius, 256, {}};  // bits: all of them
+    const std::vector<FusedSighting> there =
+        FindLandmarks(map_, around_, a_, alignment_.T_camera_world, camera_, any);
+    const auto alike = std::count_if(there.begin(), there.end(), [&](const FusedSighting& s) {
+      return HammingDistance(map_.Find(s.landmark)->descriptor,
+                             a_.frame->descriptors[s.keypoint]) <= settings_.max_distance;
+    });
+    return there.empty() ? 0 : static_cast<double>(alike) / static_cast<double>(there.size());
   }
 
   // Landmarks found that both cameras see, in both maps.

@@ -36,6 +36,7 @@ pid_t Launch(const ProcessTask& task) {
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   std::vector<std::string> words = task.words;
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   // From fork to exec the child has our handlers of Ctrl-C, which note it in memory that exec

@@ -23,16 +23,17 @@ std::string Figure(const char* format, const std::optional<double>& value) {
 }
 
 // The folders' own names, or whole paths where two have the same.
-std::vector<std::string> NamesOf(const std::vector<std::string>& folders) {
+std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
   std::vector<std::string> names;
-  for (const std::string& folder : folders) {
-    const std::filesystem::path path = std::filesystem::path(folder + "/").lexically_normal();
+  for (const ComparedFolder& folder : folders) {
+    const std::filesystem::path path = std::filesystem::path(folder.path + "/").lexically_normal();
     names.push_back(path.parent_path().filename().string());
   }
   const std::vector<std::string> own = names;
   for (size_t i = 0; i < own.size(); ++i) {
     if (own[i].empty() || own[i] == ".." || std::count(own.begin(), own.end(), own[i]) > 1)
-      names[i] = folders[i];
+      names[i] = folders[i].path;
+    if (!folders[i].name.empty()) names[i] = folders[i].name;
   }
   return names;
 }
@@ -138,10 +139,11 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
 
 }  // namespace
 
-std::string CompareResults(const std::vector<std::string>& folders) {
+std::string CompareResults(const std::vector<ComparedFolder>& folders) {
   if (folders.size() < 2) ThrowUsage("there is nothing to compare: give two results or more");
   std::vector<ResultFolder> results;
-  for (const std::string& folder : folders) results.push_back(ReadResultFolder(folder));
+  results.reserve(folders.size());
+  for (const ComparedFolder& folder : folders) results.push_back(ReadResultFolder(folder.path));
   const std::vector<std::string> names = NamesOf(folders);
   const std::vector<double> starts = StartsOf(results);
 

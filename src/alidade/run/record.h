@@ -42,15 +42,10 @@ struct RunRecord {
   LensSettings lens_check;      // of what the lens is asked
   CalibrateSettings calibrate;  // of how an unknown camera is found
   std::string profile;
-  int threads = 0;
 
   std::vector<std::string> stamps;              // one per frame that Track() took
   std::vector<int> numbers;                     // their numbers in the recording
-  int frames = 0;                               // all that came, bad ones included
-  std::optional<double> first_time, last_time;  // of those, seconds
-  int late = 0;     // that gave way to newer ones: not counted in `frames`
-  int dropped = 0;  // bad ones
-  int dark = 0;     // black ones among those that were not tracked
+  std::optional<double> first_time, last_time;  // of all that came, seconds
   std::map<std::string, int> untracked_reasons;
   UntrackedLog untracked;
   KeyframeAlbum album;
@@ -61,10 +56,17 @@ struct RunRecord {
   double cpu_s = 0;   // CPU time of all threads, reading images left out, seconds
   double wall_s = 0;  // seconds
   std::vector<std::string> warnings;
-  bool interrupted = false;
   std::exception_ptr failure;  // the source's, that ended the run early
-  SlamHealth health;           // at the end
   std::exception_ptr bug;      // what the first frame that failed by no fault of its own threw
+  SlamHealth health;           // at the end
+
+  // Small ones side by side, which saves the gaps between larger ones.
+  int threads = 0;
+  int frames = 0;   // all that came, bad ones included
+  int late = 0;     // that gave way to newer ones: not counted in `frames`
+  int dropped = 0;  // bad ones
+  int dark = 0;     // black ones among those that were not tracked
+  bool interrupted = false;
 };
 
 // Why nothing could be mapped, to be said to the user.

@@ -90,6 +90,8 @@ void VisitLooping(Settings& l, Visit&& visit) {
   visit("loop.min_aligned", l.min_aligned);
   visit("loop.min_found", l.min_found);
   visit("loop.min_merge_found", l.min_merge_found);
+  visit("loop.min_merge_alike", l.min_merge_alike);
+  visit("loop.alike_radius", l.alike_radius);
   visit("loop.min_found_share", l.min_found_share);
   visit("loop.search_radius", l.search_radius);
   visit("loop.max_distance", l.max_distance);

@@ -9,9 +9,9 @@ namespace {
 
 constexpr uint32_t kMostCoefficients = 64;  // of a lens; the longest model has 14
 
-RosHeader TakeHeader(MessageCursor& cursor) {
+MessageHeader TakeHeader(MessageCursor& cursor) {
   if (!cursor.cdr()) cursor.Uint32();  // a number that ROS 2 has no more
-  RosHeader header;
+  MessageHeader header;
   // ROS 2's seconds have a sign; times before 1970 are no stamps.
   const uint32_t seconds = cursor.Uint32(), nanoseconds = cursor.Uint32();
   header.stamp = int64_t{seconds} * 1'000'000'000 + nanoseconds;
@@ -28,7 +28,7 @@ std::array<double, N> TakeDoubles(MessageCursor& cursor) {
 
 }  // namespace
 
-RosHeader ParseRosHeader(std::string_view message, Serialization serialization) {
+MessageHeader ParseRosHeader(std::string_view message, Serialization serialization) {
   MessageCursor cursor(message, serialization);
   return TakeHeader(cursor);
 }

@@ -11,14 +11,14 @@
 
 namespace alidade {
 
-struct RosHeader {
+struct MessageHeader {
   int64_t stamp = 0;  // nanoseconds; 0: not told
   std::string frame_id;
 };
 
 // Of sensor_msgs/Image or sensor_msgs/CompressedImage. `data` is the message's own.
 struct RosPicture {
-  RosHeader header;
+  MessageHeader header;
   bool compressed = false;
   std::string encoding;  // "bgr8"; of compressed ones "rgb8; jpeg compressed bgr8" and the like
   uint32_t width = 0, height = 0,
@@ -29,7 +29,7 @@ struct RosPicture {
 
 // sensor_msgs/CameraInfo, names as there.
 struct RosCameraInfo {
-  RosHeader header;
+  MessageHeader header;
   uint32_t width = 0, height = 0;
   std::string distortion_model;
   std::vector<double> D;
@@ -40,7 +40,7 @@ struct RosCameraInfo {
 };
 
 // They throw Error (input) saying what is wrong with the message.
-RosHeader ParseRosHeader(std::string_view message, Serialization serialization);
+MessageHeader ParseRosHeader(std::string_view message, Serialization serialization);
 RosPicture ParseRosPicture(std::string_view message, Serialization serialization, bool compressed);
 RosCameraInfo ParseRosCameraInfo(std::string_view message, Serialization serialization);
 
