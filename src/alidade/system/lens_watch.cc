@@ -1,5 +1,6 @@
 #include "alidade/system/lens_watch.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -56,16 +57,21 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   ask.max_windows = settings_.max_windows;
   ask.readout_sigma = settings_.readout_sigma;
   ask.adjust.focal_sigma = settings_.focal_sigma;
+  if (last)  // shorter stretches, rather than none that tell of distortion
+    ask.window = std::clamp(now / settings_.bend_windows, ask.min_keyframes, ask.window);
   std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
-  if (static_cast<int>(windows.size()) < settings_.bend_windows)
-    ask.k1_corner_sigma = ask.k2_corner_sigma = kNoBend;
-  const CameraEstimate estimate = EstimateCamera(std::move(windows), camera_, noise_, ask);
+  const bool bend = static_cast<int>(windows.size()) >= settings_.bend_windows;
+  const double bend_sigma = ask.k1_corner_sigma;
+  if (!bend) ask.k1_corner_sigma = ask.k2_corner_sigma = kNoBend;
+  CameraEstimate estimate = EstimateCamera(std::move(windows), camera_, noise_, ask);
   const double sigma = estimate.focal_sigma;
   if (estimate.observations == 0 || !std::isfinite(sigma)) return;
   if (sigma > settings_.max_sigma && Apart(estimate.camera, camera_) < settings_.far_off * sigma)
     return;
+  estimate.known = estimate.known && bend;
   const std::optional<CameraEstimate> before = std::exchange(before_, estimate);
-  if (const auto taken = Agreed(before, estimate, last)) Believe(*taken, now);
+  if (const auto taken = Agreed(before, estimate, last))
+    Believe(*taken, now, bend ? 0 : bend_sigma);
 }
 
 // What two answers on end are good for: the later one when they agree; when both are off the same
@@ -83,10 +89,12 @@ std::optional<CameraEstimate> LensWatch::Agreed(const std::optional<CameraEstima
   return std::abs(was_off) < std::abs(off) ? *before : now;
 }
 
-void LensWatch::Believe(const CameraEstimate& estimate, int keyframes) {
+// `unasked`: relative, of the focal length, by what was not asked for.
+void LensWatch::Believe(const CameraEstimate& estimate, int keyframes, double unasked) {
   const double off = Apart(estimate.camera, camera_);
   const std::lock_guard<std::mutex> lock(mutex_);
   found_ = estimate;
+  found_->focal_sigma = std::hypot(estimate.focal_sigma, unasked);
   if (off < settings_.min_change || off <= estimate.focal_sigma) return;
   wanted_ = estimate.camera;
   ask_at_ = keyframes + settings_.again;

@@ -62,7 +62,7 @@ class LensWatch {
  private:
   std::optional<CameraEstimate> Agreed(const std::optional<CameraEstimate>& before,
                                        const CameraEstimate& now, bool last) const;
-  void Believe(const CameraEstimate& estimate, int keyframes);
+  void Believe(const CameraEstimate& estimate, int keyframes, double unasked);
 
   Camera camera_;
   MeasurementNoise noise_;
