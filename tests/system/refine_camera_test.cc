@@ -86,7 +86,7 @@ TEST(RefineCamera, IsFoundFromFarOffAndNoFrameIsLostOverIt) {
   EXPECT_EQ(known.changes, 0);
   EXPECT_FALSE(known.found);
   for (double fov : {50.0, 85.0}) {
-    const Ran assumed = Play(Assumed(fov), given), refined = Play(Assumed(fov), Unknown());
+    const Ran refined = Play(Assumed(fov), Unknown());
     ASSERT_TRUE(refined.found) << fov;
     EXPECT_GT(refined.changes, 0);
     EXPECT_NEAR(refined.camera.fx / truth, 1, 0.02) << fov;
@@ -94,11 +94,11 @@ TEST(RefineCamera, IsFoundFromFarOffAndNoFrameIsLostOverIt) {
               4 * refined.found->focal_sigma + 0.005);
     EXPECT_GE(refined.tracked, known.tracked - 2) << fov;
     EXPECT_LT(refined.ate, 2 * known.ate + 0.005) << fov;
-    EXPECT_LT(refined.ate, 0.5 * assumed.ate) << fov;
   }
+  EXPECT_GT(Play(Assumed(85), given).ate, 4 * known.ate + 0.01);  // what it would cost
 }
 
-TEST(RefineCamera, InlineRunsAreTheSameBytes) {
+TEST(RefineCamera, GivesTheSameBytesRunAfterRun) {
   const Ran once = Play(Assumed(80), Unknown()), again = Play(Assumed(80), Unknown());
   EXPECT_GT(once.changes, 0);
   EXPECT_EQ(once.map, again.map);

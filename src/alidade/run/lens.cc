@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <new>
 
+#include "alidade/map/view.h"
 #include "alidade/run/setting_group.h"
 
 namespace alidade {
@@ -34,17 +35,10 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensSettin
   if (used.localise) return {};
   try {
     const MapSnapshot map = slam.Snapshot();
-    MapId largest;
-    size_t most = 0;
-    for (MapId id : map.Maps()) {
-      const size_t count = map.KeyFramesOf(id).size();
-      if (count <= most) continue;
-      most = count;
-      largest = id;
-    }
+    const MapId largest = LargestMap(map);
     MeasurementNoise noise = used.mapper.noise;
     noise.right_from_sensor = slam.camera().baseline <= 0;
-    return most > 0 ? CheckLens(map, largest, slam.camera(), noise, settings) : LensCheck{};
+    return largest.valid() ? CheckLens(map, largest, slam.camera(), noise, settings) : LensCheck{};
   } catch (const std::bad_alloc&) {  // results matter more
     return {};
   }

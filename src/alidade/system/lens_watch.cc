@@ -30,8 +30,9 @@ void LensWatchSettings::Check() const {
 
 namespace {
 
-constexpr double kNoBend =
-    1e-4;  // sigma of the corners' shift: all but none (0 would keep what is)
+// Standard deviation of the shift at the corners: all but none. 0 would keep the distortion there
+// is.
+constexpr double kNoBend = 1e-4;
 
 int SizeOf(const MapSnapshot& map) {
   const MapId largest = LargestMap(map);
@@ -61,7 +62,7 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
     ask.window = std::clamp(now / settings_.bend_windows, ask.min_keyframes, ask.window);
   std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
   const bool bend = static_cast<int>(windows.size()) >= settings_.bend_windows;
-  const double bend_sigma = ask.k1_corner_sigma;
+  const double unasked = bend ? 0 : ask.k1_corner_sigma;
   if (!bend) ask.k1_corner_sigma = ask.k2_corner_sigma = kNoBend;
   CameraEstimate estimate = EstimateCamera(std::move(windows), camera_, noise_, ask);
   const double sigma = estimate.focal_sigma;
@@ -69,32 +70,33 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   if (sigma > settings_.max_sigma && Apart(estimate.camera, camera_) < settings_.far_off * sigma)
     return;
   estimate.known = estimate.known && bend;
-  const std::optional<CameraEstimate> before = std::exchange(before_, estimate);
-  if (const auto taken = Agreed(before, estimate, last))
-    Believe(*taken, now, bend ? 0 : bend_sigma);
+  const Answer answer{estimate, unasked};
+  const std::optional<Answer> before = std::exchange(before_, answer);
+  if (const auto taken = Agreed(before, answer, last)) Believe(*taken, now);
 }
 
 // What two answers on end are good for: the later one when they agree; when both are off the same
 // way, the nearer one.
-std::optional<CameraEstimate> LensWatch::Agreed(const std::optional<CameraEstimate>& before,
-                                                const CameraEstimate& now, bool last) const {
-  if (last && now.known) return now;  // nothing will follow
+std::optional<LensWatch::Answer> LensWatch::Agreed(const std::optional<Answer>& before,
+                                                   const Answer& now, bool last) const {
+  if (last && now.estimate.known) return now;  // nothing will follow
   if (!before) return {};
-  const double off = std::log(now.camera.fx / camera_.fx);
-  const double was_off = std::log(before->camera.fx / camera_.fx);
-  if (std::abs(off - was_off) <= 2 * std::hypot(now.focal_sigma, before->focal_sigma)) return now;
-  const bool same_way = off * was_off > 0 && std::abs(off) > 2 * now.focal_sigma &&
-                        std::abs(was_off) > 2 * before->focal_sigma;
+  const double sigma = now.estimate.focal_sigma, was_sigma = before->estimate.focal_sigma;
+  const double off = std::log(now.estimate.camera.fx / camera_.fx);
+  const double was_off = std::log(before->estimate.camera.fx / camera_.fx);
+  if (std::abs(off - was_off) <= 2 * std::hypot(sigma, was_sigma)) return now;
+  const bool same_way =
+      off * was_off > 0 && std::abs(off) > 2 * sigma && std::abs(was_off) > 2 * was_sigma;
   if (!same_way) return {};
   return std::abs(was_off) < std::abs(off) ? *before : now;
 }
 
-// `unasked`: relative, of the focal length, by what was not asked for.
-void LensWatch::Believe(const CameraEstimate& estimate, int keyframes, double unasked) {
+void LensWatch::Believe(const Answer& answer, int keyframes) {
+  const CameraEstimate& estimate = answer.estimate;
   const double off = Apart(estimate.camera, camera_);
   const std::lock_guard<std::mutex> lock(mutex_);
   found_ = estimate;
-  found_->focal_sigma = std::hypot(estimate.focal_sigma, unasked);
+  found_->focal_sigma = std::hypot(estimate.focal_sigma, answer.unasked);
   if (off < settings_.min_change || off <= estimate.focal_sigma) return;
   wanted_ = estimate.camera;
   ask_at_ = keyframes + settings_.again;

@@ -60,15 +60,19 @@ class LensWatch {
   const LensWatchSettings& settings() const { return settings_; }
 
  private:
-  std::optional<CameraEstimate> Agreed(const std::optional<CameraEstimate>& before,
-                                       const CameraEstimate& now, bool last) const;
-  void Believe(const CameraEstimate& estimate, int keyframes, double unasked);
+  struct Answer {
+    CameraEstimate estimate;
+    double unasked = 0;  // relative sigma of the focal length by distortion that was not asked for
+  };
+  std::optional<Answer> Agreed(const std::optional<Answer>& before, const Answer& now,
+                               bool last) const;
+  void Believe(const Answer& answer, int keyframes);
 
   Camera camera_;
   MeasurementNoise noise_;
   LensWatchSettings settings_;
   int ask_at_;
-  std::optional<CameraEstimate> before_;  // the last answer
+  std::optional<Answer> before_;  // the last
   mutable std::mutex mutex_;
   std::optional<CameraEstimate> found_;
   std::optional<Camera> wanted_;
