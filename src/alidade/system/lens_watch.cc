@@ -22,6 +22,7 @@ void LensWatchSettings::Check() const {
   require(max_sigma > 0, "max_sigma must be positive");
   require(far_off > 1, "far_off must be above 1");
   require(again >= 1, "again must be at least 1");
+  require(settled >= 0 && settled_cost >= 0, "settled and settled_cost cannot be negative");
   require(min_change > 0, "min_change must be positive");
   require(bend_windows >= 1, "bend_windows must be positive");
   require(rework > 0, "rework must be positive");
@@ -58,6 +59,8 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   ask.max_windows = settings_.max_windows;
   ask.readout_sigma = settings_.readout_sigma;
   ask.adjust.focal_sigma = settings_.focal_sigma;
+  ask.adjust.min_lens_step = settings_.settled;
+  ask.adjust.min_relative_decrease = settings_.settled_cost;
   if (last)  // shorter stretches, rather than none that tell of distortion
     ask.window = std::clamp(now / settings_.bend_windows, ask.min_keyframes, ask.window);
   std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
@@ -99,7 +102,7 @@ void LensWatch::Believe(const Answer& answer, int keyframes) {
   found_->focal_sigma = std::hypot(estimate.focal_sigma, answer.unasked);
   if (off < settings_.min_change || off <= estimate.focal_sigma) return;
   wanted_ = estimate.camera;
-  ask_at_ = keyframes + settings_.again;
+  if (off > 2 * settings_.min_change) ask_at_ = keyframes + settings_.again;
 }
 
 std::optional<Camera> LensWatch::Take() {

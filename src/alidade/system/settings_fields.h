@@ -217,6 +217,8 @@ void VisitRefine(Settings& r, Visit&& visit) {
   visit("refine.max_sigma", r.max_sigma);
   visit("refine.far_off", r.far_off);
   visit("refine.again", r.again);
+  visit("refine.settled", r.settled);
+  visit("refine.settled_cost", r.settled_cost);
   visit("refine.min_change", r.min_change);
   visit("refine.step", r.step);
   visit("refine.rework", r.rework);
