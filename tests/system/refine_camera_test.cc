@@ -107,6 +107,20 @@ TEST(RefineCamera, GivesTheSameBytesRunAfterRun) {
   EXPECT_EQ(once.map, again.map);
 }
 
+// What was mapped with a lens far off is made again, from the first frame on: it is as good as if
+// the camera had been known. Without, the first seconds stay bent.
+TEST(RefineCamera, BeginsAnewWhereTheLensWasFarOff) {
+  SlamSettings kept = Unknown(), given = Unknown();
+  kept.refine.keep_frames = 0;
+  given.refine.enabled = false;
+  const Ran known = Play(Desk().camera(), given), anew = Play(Assumed(100), Unknown());
+  const Ran bent = Play(Assumed(100), kept);
+  EXPECT_NEAR(anew.camera.fx / Desk().camera().fx, 1, 0.02);
+  EXPECT_GE(anew.tracked, known.tracked - 2);
+  EXPECT_LT(anew.ate, 1.5 * known.ate + 0.002);
+  EXPECT_LT(anew.ate, bent.ate);
+}
+
 // Until no keyframe waits for the mapper: recordings are handed over faster than cameras give them,
 // and a mapper that lags behind asks a map of few keyframes, made by a tracker that had nothing
 // newer.

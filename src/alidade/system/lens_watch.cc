@@ -26,6 +26,8 @@ void LensWatchSettings::Check() const {
   require(min_change > 0, "min_change must be positive");
   require(bend_windows >= 1, "bend_windows must be positive");
   require(rework > 0, "rework must be positive");
+  require(begin_anew > 0, "begin_anew must be positive");
+  require(keep_frames >= 0, "keep_frames cannot be negative");
   require(step > 0 && step <= 1, "step must lie in 0..1");
 }
 
@@ -64,7 +66,7 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   if (last)  // shorter stretches, rather than none that tell of distortion
     ask.window = std::clamp(now / settings_.bend_windows, ask.min_keyframes, ask.window);
   std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
-  const bool bend = static_cast<int>(windows.size()) >= settings_.bend_windows;
+  const bool bend = static_cast<int>(windows.size()) >= settings_.bend_windows - anew_;
   const double unasked = bend ? 0 : ask.k1_corner_sigma;
   if (!bend) ask.k1_corner_sigma = ask.k2_corner_sigma = kNoBend;
   CameraEstimate estimate = EstimateCamera(std::move(windows), camera_, noise_, ask);
@@ -103,6 +105,12 @@ void LensWatch::Believe(const Answer& answer, int keyframes) {
   if (off < settings_.min_change || off <= estimate.focal_sigma) return;
   wanted_ = estimate.camera;
   if (off > 2 * settings_.min_change) ask_at_ = keyframes + settings_.again;
+}
+
+void LensWatch::BeginAnew() {
+  ask_at_ = settings_.first_keyframes;
+  before_.reset();
+  anew_ = true;
 }
 
 std::optional<Camera> LensWatch::Take() {

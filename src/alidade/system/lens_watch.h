@@ -20,6 +20,7 @@ struct LensWatchSettings {
   int max_windows = 12;      // stretches of 12 keyframes that are asked, spread over the map
   // Stretches there must be for distortion to be asked for (else it is none): in one or two, which
   // a wrong lens has bent, it is taken for focal length and runs away with it.
+  // One less when the map was begun anew with a better camera.
   int bend_windows = 3;
   double focal_sigma = 0.35;    // believed of log focal beforehand: 66 degrees may be 49 to 85
   double readout_sigma = 0.02;  // seconds: believed of a rolling shutter beforehand, about none
@@ -43,6 +44,12 @@ struct LensWatchSettings {
   // After a change by more than this share all keyframes are mapped again, for what a wrong lens
   // did not match.
   double rework = 0.03;
+  // A camera that is off by more than this share from what the map was begun with has bent its
+  // first seconds beyond mending: what belongs together was not matched. The map is then begun anew
+  // from the frames' features, which are kept for it: `keep_frames` since its first, at 30 a second
+  // six seconds, some 200 kB each at 400x300. 0: never.
+  double begin_anew = 0.05;
+  int keep_frames = 180;
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
@@ -59,6 +66,8 @@ class LensWatch {
   std::optional<Camera> Take();
   // The map is of this camera now. Nothing may be in Mapped() meanwhile.
   void SetCamera(const Camera& camera) { camera_ = camera; }
+  // The map is gone, another is made. The same.
+  void BeginAnew();
   // What is believed by now; none: nothing was found. Any thread's.
   std::optional<CameraEstimate> found() const;
   const LensWatchSettings& settings() const { return settings_; }
@@ -77,6 +86,7 @@ class LensWatch {
   LensWatchSettings settings_;
   int ask_at_;
   std::optional<Answer> before_;  // the last
+  bool anew_ = false;             // the map was begun anew with a better camera
   mutable std::mutex mutex_;
   std::optional<CameraEstimate> found_;
   std::optional<Camera> wanted_;

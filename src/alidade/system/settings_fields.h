@@ -222,6 +222,8 @@ void VisitRefine(Settings& r, Visit&& visit) {
   visit("refine.min_change", r.min_change);
   visit("refine.step", r.step);
   visit("refine.rework", r.rework);
+  visit("refine.begin_anew", r.begin_anew);
+  visit("refine.keep_frames", r.keep_frames);
   visit("refine.bend_windows", r.bend_windows);
 }
 

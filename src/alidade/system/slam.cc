@@ -103,7 +103,7 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
   if (settings_.sensor == Sensor::kMono &&
-      (state_ != TrackState::kTracking || young_.WantsGlance(number)))
+      (state_ != TrackState::kTracking || young_.WantsGlance(number) || KeepsFrames()))
     frame->glance = Glance(prepared.image);
   last_ = {};
   last_keyframe_ = {};
@@ -111,6 +111,7 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
+  KeepFrame(*frame);
   if (state_ != TrackState::kInitialising) frame->glance.release();
   frame->picture = may_start ? Copied(*frame->picture) : nullptr;
   movers_.End(*last_.frame, result);
@@ -124,32 +125,17 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   return result;
 }
 
-// The map has told of another camera than it is made with: all is changed to that between two
-// frames. Whether it was.
-bool Slam::Impl::RefineCamera() {
-  if (!settings_.refine.enabled || young_.on_trial()) return false;
-  const std::optional<Camera> found = workers_.lens_watch().Take();
-  if (!found) return false;
-  workers_.ChangeCamera(camera_, *found);
-  {
-    const std::lock_guard<std::mutex> lock(camera_mutex_);
-    camera_ = *found;
-  }
-  tracker_.SetCamera(camera_);
-  movers_.SetCamera(camera_);
-  young_.SetCamera(camera_, workers_.lens_watch().found()->focal_sigma);
-  early_.SetCamera(camera_);
-  ++camera_changes_;
-  return true;
-}
-
 // `map`: the one the pose is in.
 void Slam::Impl::Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
   const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   movers_.Place(WorldOf(reference, map));
   tracker_.Remember(placed, reference, map);
   workers_.map().ReleaseLandmarkIds(map.version());  // what was remembered before is forgotten
-  log_.Place(anchor, placed.T_camera_world.Inverse());
+  if (again_ >= 0) {
+    log_.PlaceLate(again_, anchor);
+  } else {
+    log_.Place(anchor, placed.T_camera_world.Inverse());
+  }
 }
 
 void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {

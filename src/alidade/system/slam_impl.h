@@ -3,12 +3,14 @@
 //   slam.cc            one frame, from image to pose and keyframe
 //   slam_start.cc      a map is begun, loaded or given up
 //   slam_lost.cc       a frame without a pose: gone on, found back, another map
+//   slam_lens.cc       the camera that was given turns out to be another
 //   slam_time.cc       time that jumps, new recordings, cuts
 //   slam_failure.cc    a frame that ended in the middle, and what has stopped
 //   slam_questions.cc  what any thread may ask
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -85,7 +87,6 @@ class Slam::Impl {
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);
   void Reanchor();
-  bool RefineCamera();
   void PlaceEarly(int count, int number);
 
   // slam_lost.cc: frames without a pose.
@@ -102,6 +103,14 @@ class Slam::Impl {
   bool StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result);
   TrackResult GiveUpStart(const char* reason);
 
+  // slam_lens.cc: another camera than was given.
+  bool RefineCamera();
+  void ChangeCamera(const Camera& camera);
+  void BeginAnew(const Camera& camera);
+  bool KeepsFrames() const;
+  void KeepFrame(const Frame& frame);
+  int Index() const { return again_ >= 0 ? again_ : log_.size() - 1; }
+
   // slam_time.cc: time that jumps.
   const char* Tick(double time);
   void Cut();
@@ -112,6 +121,18 @@ class Slam::Impl {
 
   // slam_questions.cc: what is published.
   void Show();
+
+  // Frames since the first that the map was begun with, while its camera is looked for: oldest
+  // first. Their indices in the log follow each other.
+  struct KeptFrame {
+    std::shared_ptr<const Frame> frame;
+    int index = 0;
+  };
+  std::deque<KeptFrame> kept_;
+  bool keeps_ = true;  // false: the map has more of them than are kept
+  Camera begun_with_;  // the camera the map was begun with
+  int again_ = -1;     // index of a kept frame that is tracked again; -1: none is
+  int begun_anew_ = 0;
 
   double lost_since_ = 0;  // when the first frame without a pose came, by the steady clock, seconds
   int lost_sighted_ = 0;   // frames since that showed something

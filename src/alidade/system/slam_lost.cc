@@ -97,6 +97,7 @@ void Slam::Impl::Lose() {
 // A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
 void Slam::Impl::LeaveMap() {
   state_ = TrackState::kInitialising;
+  kept_.clear();
   young_.Reset();
   tracker_.Forget();
   const MapSnapshot map = workers_.map().Snapshot();

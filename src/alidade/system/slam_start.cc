@@ -59,7 +59,7 @@ bool Slam::Impl::StartWithDepth(const std::shared_ptr<Frame>& frame, TrackResult
 bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResult& result) {
   const auto begun = young_.Begin(frame);
   if (!begun) {
-    early_.Wait(*frame, log_.size() - 1);
+    early_.Wait(*frame, Index());
     result.reason = young_.reason();
     return false;
   }
@@ -69,6 +69,7 @@ bool Slam::Impl::StartWithMotion(const std::shared_ptr<Frame>& frame, TrackResul
   }
   tracker_.KeyFrameInserted(frame->number);
   early_.Begin(begun->map.MapOf(begun->id), frame->number);
+  begun_with_ = camera_;
   Place(begun->placed, begun->id, begun->map);
   last_keyframe_ = begun->id;
   result.matches = begun->placed.inliers;

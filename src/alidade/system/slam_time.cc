@@ -46,6 +46,7 @@ const char* Slam::Impl::Tick(double time) {
 // The next frame may show anything: nothing is taken from the last one.
 void Slam::Impl::Cut() {
   ++cuts_;
+  kept_.clear();
   early_.ForgetWaiting();
   if (young_.on_trial()) {
     GiveUpStart("");

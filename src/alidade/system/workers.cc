@@ -120,6 +120,10 @@ void Workers::AskForCamera() {
   mapping_.WhileResting([&] { lens_watch_.Ask(map_.Snapshot(), true); });
 }
 
+void Workers::AskAnew() {
+  mapping_.WhileResting([&] { lens_watch_.BeginAnew(); });
+}
+
 void Workers::ChangeCamera(const Camera& from, const Camera& to) {
   const auto steps = static_cast<int>(std::ceil(Apart(from, to) / lens_watch_.settings().step));
   const auto at_once = [](const std::function<void()>& commit) { commit(); };

@@ -42,7 +42,9 @@ class Workers {
   std::array<double, 2> readout() const { return readout_watch_.readout(); }
   ReadoutWatch& readout_watch() { return readout_watch_; }
   double readout_sigma() const { return readout_watch_.sigma(); }
-  void AskForCamera();  // what the map says of its lens, now: see LensWatch
+  void AskForCamera();                       // what the map says of its lens, now: see LensWatch
+  void AskAnew();                            // the map that was asked is gone
+  void AwaitMapping() { mapping_.Drain(); }  // of the keyframes handed over so far
   LensWatch& lens_watch() { return lens_watch_; }
   const LensWatch& lens_watch() const { return lens_watch_; }
   // All maps are of another camera from now on: each is bent to it and adjusted, while nothing else
