@@ -1,4 +1,5 @@
-// A camera nobody calibrated, found while its map grows: the map is changed to it as it stands.
+// A camera nobody calibrated, found while its map grows: the map is changed to it as it stands,
+// or begun anew.
 #include <gtest/gtest.h>
 
 #include <algorithm>

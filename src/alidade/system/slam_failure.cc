@@ -9,7 +9,6 @@ namespace alidade {
 // from the last one; what else is carried from frame to frame is begun anew.
 void Slam::Impl::Recover(TrackState before) noexcept {
   state_ = before;
-  again_ = -1;
   movers_.Recover();
   young_.Reset();
   EndFrame();

@@ -107,6 +107,11 @@ class Slam::Impl {
   bool RefineCamera();
   void ChangeCamera(const Camera& camera);
   void BeginAnew(const Camera& camera);
+  struct KeptFrame {
+    std::shared_ptr<const Frame> frame;
+    int index = 0;  // in the log
+  };
+  void TrackAgain(const KeptFrame& kept);
   bool KeepsFrames() const;
   void KeepFrame(const Frame& frame);
   int Index() const { return again_ >= 0 ? again_ : log_.size() - 1; }
@@ -124,10 +129,6 @@ class Slam::Impl {
 
   // Frames since the first that the map was begun with, while its camera is looked for: oldest
   // first. Their indices in the log follow each other.
-  struct KeptFrame {
-    std::shared_ptr<const Frame> frame;
-    int index = 0;
-  };
   std::deque<KeptFrame> kept_;
   bool keeps_ = true;  // false: the map has more of them than are kept
   Camera begun_with_;  // the camera the map was begun with

@@ -1,6 +1,6 @@
 // The camera that was given turns out to be another. slam_impl.h says what else is where.
-#include <algorithm>
 #include <memory>
+#include <new>
 #include <utility>
 
 #include "alidade/features/undistort.h"
@@ -44,24 +44,35 @@ void Slam::Impl::ChangeCamera(const Camera& camera) {
 
 // The map is dropped, and made again from the features of the frames it was made of: as a second
 // pass over them would make it. Their pictures are gone: keyframes among them have no dense depth.
+// Where memory runs out the map is of the frames until then, and goes on.
 void Slam::Impl::BeginAnew(const Camera& camera) {
   ++begun_anew_;
   GiveUpStart("");
   early_.ForgetWaiting();
+  workers_.AwaitDrop();  // or it would be changed and adjusted as well
   ChangeCamera(camera);
   workers_.AskAnew();
   tracker_.SetReadout(workers_.readout());
-  for (const KeptFrame& kept : kept_) {
-    const auto frame = std::make_shared<Frame>(*kept.frame);
-    UndistortKeypoints(camera_, *frame);
-    frame->motion.setZero();
-    again_ = kept.index;
-    const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
-    if (state_ != TrackState::kInitialising) frame->glance.release();
-    if (result.state == TrackState::kTracking) early_.Tracked(*frame, again_);
-    workers_.AwaitMapping();
+  try {
+    for (const KeptFrame& kept : kept_) TrackAgain(kept);
+  } catch (const std::bad_alloc&) {
+    young_.Reset();
   }
-  again_ = -1;
+}
+
+void Slam::Impl::TrackAgain(const KeptFrame& kept) {
+  const auto frame = std::make_shared<Frame>(*kept.frame);
+  UndistortKeypoints(camera_, *frame);
+  frame->motion.setZero();
+  again_ = kept.index;
+  const struct Reset {
+    int& index;
+    ~Reset() { index = -1; }
+  } reset{again_};
+  const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  if (state_ != TrackState::kInitialising) frame->glance.release();
+  if (result.state == TrackState::kTracking) early_.Tracked(*frame, again_);
+  workers_.AwaitMapping();
 }
 
 // Dynamics judge by pictures, which are not kept.

@@ -45,6 +45,7 @@ class Workers {
   void AskForCamera();                       // what the map says of its lens, now: see LensWatch
   void AskAnew();                            // the map that was asked is gone
   void AwaitMapping() { mapping_.Drain(); }  // of the keyframes handed over so far
+  void AwaitDrop() { looping_.Drain(); }     // until maps that were to be dropped are out
   LensWatch& lens_watch() { return lens_watch_; }
   const LensWatch& lens_watch() const { return lens_watch_; }
   // All maps are of another camera from now on: each is bent to it and adjusted, while nothing else
