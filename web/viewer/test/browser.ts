@@ -18,6 +18,10 @@ export function launch(flags: string[] = []): Promise<Browser> {
 
 export interface Opened { page: Page; problems: string[]; requests: string[] }
 
+// Complaints that say nothing of the page: the renderer's of its own speed; and that a camera's next picture came a second
+// late, which it does where the machine held everything up.
+const OF_THE_MACHINE = /GL Driver Message|the time jumps ahead/;
+
 // `problems`: what the console and the page complain of.
 export async function open(browser: Browser, address: string, options: BrowserContextOptions = {}, before?: (page: Page) => Promise<void>): Promise<Opened> {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
@@ -25,7 +29,7 @@ export async function open(browser: Browser, address: string, options: BrowserCo
   const problems: string[] = [];
   const requests: string[] = [];
   page.on('console', (message) => {
-    if (['error', 'warning'].includes(message.type()) && !/GL Driver Message/.test(message.text())) problems.push(message.text());
+    if (['error', 'warning'].includes(message.type()) && !OF_THE_MACHINE.test(message.text())) problems.push(message.text());
   });
   page.on('pageerror', (error) => problems.push(String(error)));
   page.on('request', (request) => requests.push(request.url()));
