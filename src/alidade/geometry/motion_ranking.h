@@ -21,6 +21,13 @@ struct RankedMotion {
 // competes with the best, whether or not it was among them.
 std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays);
 
+// The ranked motions and those that are found when the camera is believed to have gone elsewhere:
+// refinement started from 26 directions about it, with the best one's rotation. Where parallax is
+// small, what explains matches has valleys of its own about several directions, and models fitted
+// to eight matches each end in one of them by chance. Costs 13 refinements.
+std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked,
+                                             const RayPairs& rays);
+
 // Whether the matches leave open which of the two it is: `other` explains more than `max_share` of
 // what the best explains, and not clearly worse.
 bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_share);

@@ -101,12 +101,12 @@ MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays, double widening)
   return result;
 }
 
-RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays) {
+RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays, double widest) {
   RefinedMotion refined;
   refined.T_b_a = start;
   NormalEquations n;
-  // Wide bounds first, so that the start need not be good enough to tell all the inliers.
-  for (const double widening : {9.0, 4.0, 1.0}) {
+  for (const double widening : {100.0, 25.0, 9.0, 4.0, 1.0}) {
+    if (widening > widest) continue;
     const double bound = widening * kChi2Fundamental;
     Eigen::Matrix<double, 3, 2> basis = TangentPlane(refined.T_b_a.t);
     n = Linearise(refined.T_b_a, basis, rays, bound);

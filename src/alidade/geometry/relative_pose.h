@@ -39,8 +39,9 @@ struct RefinedMotion {
 
 // Least squares on Sampson's distances (Hartley & Zisserman 11.4.3) of the matches within the
 // bound, over the five degrees of freedom. Gauss-Newton from `T_b_a`; returns the start where it
-// does not get better.
-RefinedMotion RefineMotion(const Se3& T_b_a, const RayPairs& rays);
+// does not get better. The bound is wide first, chi² by at most `widest` (9, or 100 from afar), and
+// narrows, so that the start need not be good enough to tell all the inliers.
+RefinedMotion RefineMotion(const Se3& T_b_a, const RayPairs& rays, double widest = 9);
 
 // The rotation nearest to a matrix (in the Frobenius norm); identity when that is not finite.
 Eigen::Matrix3d NearestRotation(const Eigen::Matrix3d& m);

@@ -20,6 +20,9 @@ namespace alidade {
 namespace {
 
 constexpr double kOneDegree = std::numbers::pi / 180;
+const Eigen::Vector3d kNowhere =
+    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
+
 // The 50th largest, or the smallest when there are fewer.
 double FiftiethLargest(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -71,12 +74,63 @@ RayPairs WithSigma(RayPairs rays, const Eigen::Vector2d& focal, double sigma) {
   return rays;
 }
 
+// Whether the best of the ranked motions, with the points it places (in the result), is to be
+// believed.
+TwoViewFailure Judge(const Camera& camera, std::span<const Eigen::Vector2d> a,
+                     std::span<const Eigen::Vector2d> b, const TwoViewSettings& settings,
+                     const RayPairs& rays, const std::vector<RankedMotion>& ranked,
+                     TwoViewResult& result) {
+  const RankedMotion& best = ranked.front();
+  if (best.score.consistent < settings.min_inlier_share * static_cast<double>(rays.size())) {
+    return TwoViewFailure::kNoModel;
+  }
+  result.T_b_a = best.T_b_a;
+  result.inlier.assign(a.size(), false);
+  result.p_a.assign(a.size(), kNowhere);
+  Place(camera, a, b, settings.sigma, result);
+  const Eigen::Vector2d focal(camera.fx, camera.fy);
+  const auto explained = [&](size_t i) { return best.score.gain[i] > 0; };
+  const auto placed = std::count(result.inlier.begin(), result.inlier.end(), true);
+  const RayPairs noisy =
+      WithSigma(rays, focal, std::max(settings.turn_sigma, best.noise * settings.sigma));
+  if (OnlyTurned(ExplainedByRotation(best.T_b_a.R, noisy), explained, settings.min_beyond_turn) ||
+      result.parallax_degrees < settings.min_parallax_degrees ||
+      static_cast<double>(placed) < settings.min_placed_share * best.score.good ||
+      best.direction_sigma > settings.max_direction_sigma_degrees * kOneDegree) {
+    return TwoViewFailure::kLowParallax;
+  }
+  if (settings.lens_uncertainty > 0) {
+    RayPairs good = noisy;
+    good.a.clear();
+    good.b.clear();
+    for (size_t i = 0; i < noisy.size(); ++i) {
+      if (!explained(i)) continue;
+      good.a.push_back(noisy.a[i]);
+      good.b.push_back(noisy.b[i]);
+    }
+    const std::vector<bool> turned =
+        ExplainedByTurnedLens(best.T_b_a.R, good, settings.lens_uncertainty);
+    if (OnlyTurned(
+            turned, [](size_t) { return true; }, settings.min_beyond_lens))
+      return TwoViewFailure::kUnknownLens;
+  }
+  for (size_t i = 1; i < ranked.size(); ++i) {
+    if (IsRival(best, ranked[i], settings.max_rival_share)) {
+      return TwoViewFailure::kAmbiguous;
+    }
+  }
+  if (placed < settings.min_triangulated ||
+      best.score.good < settings.min_good_share * best.score.consistent) {
+    return TwoViewFailure::kTooFewPoints;
+  }
+  return TwoViewFailure::kNone;
+}
+
 TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
   result.failure = why;
   result.T_b_a = Se3();
   result.inlier.assign(result.inlier.size(), false);
-  result.p_a.assign(result.p_a.size(),
-                    Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  result.p_a.assign(result.p_a.size(), kNowhere);
   return result;
 }
 
@@ -98,6 +152,7 @@ void TwoViewSettings::Check() const {
   require(lens_uncertainty >= 0 && lens_uncertainty <= 2, "lens_uncertainty must lie in 0 to 2");
   require(min_triangulated > 0, "min_triangulated must be positive");
   require(min_good_share >= 0 && min_good_share <= 1, "min_good_share must lie in 0 to 1");
+  require(min_placed_share >= 0 && min_placed_share <= 1, "min_placed_share must lie in 0 to 1");
   require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share must lie in 0 to 1");
   require(max_rival_share >= 0 && max_rival_share <= 1, "max_rival_share must lie in 0 to 1");
 }
@@ -110,7 +165,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
     ThrowUsage("two views: as many points are needed in one as in the other");
   TwoViewResult result;
   result.inlier.assign(a.size(), false);
-  result.p_a.assign(a.size(), Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  result.p_a.assign(a.size(), kNowhere);
 
   // Pixels in units of sigma from the principal point, for the models; rays, for the motions.
   const Eigen::Vector2d centre(camera.cx, camera.cy), focal(camera.fx, camera.fy);
@@ -152,47 +207,17 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   std::vector<Se3> motions = MotionsFromHomography(H);
   const std::vector<Se3> more = MotionsFromEssential(K * models.fundamental.matrix * K);
   motions.insert(motions.end(), more.begin(), more.end());
-  const std::vector<RankedMotion> ranked = RankMotions(motions, rays);
+  std::vector<RankedMotion> ranked = RankMotions(motions, rays);
   if (ranked.empty()) return Refuse(std::move(result), TwoViewFailure::kNoModel);
 
-  const RankedMotion& best = ranked.front();
-  if (best.score.consistent < settings.min_inlier_share * static_cast<double>(rays.size())) {
-    return Refuse(std::move(result), TwoViewFailure::kNoModel);
+  // What is believed must be believed beside other directions, too; they are looked for last, since
+  // most frames before a start fail before that.
+  TwoViewFailure failure = Judge(camera, a, b, settings, rays, ranked, result);
+  if (failure == TwoViewFailure::kNone) {
+    ranked = AddOtherDirections(std::move(ranked), rays);
+    failure = Judge(camera, a, b, settings, rays, ranked, result);
   }
-  result.T_b_a = best.T_b_a;
-  Place(camera, a, b, settings.sigma, result);
-  const auto explained = [&](size_t i) { return best.score.gain[i] > 0; };
-  const RayPairs noisy =
-      WithSigma(rays, focal, std::max(settings.turn_sigma, best.noise * settings.sigma));
-  if (OnlyTurned(ExplainedByRotation(best.T_b_a.R, noisy), explained, settings.min_beyond_turn) ||
-      result.parallax_degrees < settings.min_parallax_degrees ||
-      best.direction_sigma > settings.max_direction_sigma_degrees * kOneDegree) {
-    return Refuse(std::move(result), TwoViewFailure::kLowParallax);
-  }
-  if (settings.lens_uncertainty > 0) {
-    RayPairs good = noisy;
-    good.a.clear();
-    good.b.clear();
-    for (size_t i = 0; i < noisy.size(); ++i) {
-      if (!explained(i)) continue;
-      good.a.push_back(noisy.a[i]);
-      good.b.push_back(noisy.b[i]);
-    }
-    const std::vector<bool> turned =
-        ExplainedByTurnedLens(best.T_b_a.R, good, settings.lens_uncertainty);
-    if (OnlyTurned(
-            turned, [](size_t) { return true; }, settings.min_beyond_lens))
-      return Refuse(std::move(result), TwoViewFailure::kUnknownLens);
-  }
-  for (size_t i = 1; i < ranked.size(); ++i) {
-    if (IsRival(best, ranked[i], settings.max_rival_share)) {
-      return Refuse(std::move(result), TwoViewFailure::kAmbiguous);
-    }
-  }
-  if (std::count(result.inlier.begin(), result.inlier.end(), true) < settings.min_triangulated ||
-      best.score.good < settings.min_good_share * best.score.consistent) {
-    return Refuse(std::move(result), TwoViewFailure::kTooFewPoints);
-  }
+  if (failure != TwoViewFailure::kNone) return Refuse(std::move(result), failure);
   result.failure = TwoViewFailure::kNone;
   return result;
 }

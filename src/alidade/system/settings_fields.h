@@ -170,6 +170,7 @@ void VisitStart(Settings& i, Visit&& visit) {
   visit("start.min_parallax_degrees", i.two_view.min_parallax_degrees);
   visit("start.min_triangulated", i.two_view.min_triangulated);
   visit("start.max_direction_sigma_degrees", i.two_view.max_direction_sigma_degrees);
+  visit("start.min_placed_share", i.two_view.min_placed_share);
   visit("start.turn_sigma", i.two_view.turn_sigma);
   visit("start.min_beyond_turn", i.two_view.min_beyond_turn);
   visit("start.min_beyond_lens", i.two_view.min_beyond_lens);
