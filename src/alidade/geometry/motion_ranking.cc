@@ -131,10 +131,10 @@ bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_sha
   // In the same valley: inside the region of 99.99 % confidence (chi² with 5 degrees of freedom).
   if (other.unrefined) return lost < 26;
   // An answer of its own. The sum of the matches' differences has the standard deviation
-  // sqrt(squares) where neither explains more. With 3.5 of them and 5 % of the score none of 8,000
+  // sqrt(squares) where neither explains more. With 3.5 of them and 4 % of the score none of 8,000
   // pairs of rendered views began a map more than 30 degrees from its direction. With 5 of them
   // views of bare walls and tables wait for so long that what is taken in the end is worse.
-  return lost < 3.5 * std::sqrt(squares) || lost < 0.05 * best.score.score;
+  return lost < 3.5 * std::sqrt(squares) || lost < 0.04 * best.score.score;
 }
 
 }  // namespace alidade

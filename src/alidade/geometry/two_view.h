@@ -42,7 +42,7 @@ struct TwoViewSettings {
       0.9;  // of the inliers that must triangulate in front of both, with small error
   // Of what the motion explains, so much must be placed: have parallax beyond the noise. Motions
   // made up from the noise (mostly straight ahead) place a few matches and leave the rest far away.
-  double min_placed_share = 0.5;
+  double min_placed_share = 0.35;
   double max_rival_share =
       0.75;  // second-best motion hypothesis may explain at most this share of the best's points
   double min_inlier_share =
