@@ -24,9 +24,11 @@ std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const Ray
 // The ranked motions and those that are found when the camera is believed to have gone elsewhere:
 // refinement started from 26 directions about it, with the best one's rotation. Where parallax is
 // small, what explains matches has valleys of its own about several directions, and models fitted
-// to eight matches each end in one of them by chance. Costs 13 refinements.
-std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked,
-                                             const RayPairs& rays);
+// to eight matches each end in one of them by chance. What places less than `min_placed_share` of
+// what it explains is left out: a plane's second motion that puts nearly all of it far away is no
+// answer. Costs 13 refinements.
+std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked, const RayPairs& rays,
+                                             double min_placed_share);
 
 // Whether the matches leave open which of the two it is: `other` explains more than `max_share` of
 // what the best explains, and not clearly worse.

@@ -93,8 +93,10 @@ MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays, double widening)
     const double at = turned.dot(T_b_a.t), bt = b.dot(T_b_a.t);
     const double squared_sine = 1 - ab * ab / (aa * bb);
     const bool in_front = ab * bt > bb * at && aa * bt > ab * at;
-    if (!in_front && !(ab > 0 && squared_sine < sine_far * sine_far)) continue;
+    const bool far = ab > 0 && squared_sine < sine_far * sine_far;
+    if (!in_front && !far) continue;
     ++result.good;
+    result.placed += !far;
     result.gain[i] = static_cast<float>(gain);
     result.score += gain;
   }

@@ -23,6 +23,7 @@ struct MotionScore {
   double score = 0;    // their sum
   int consistent = 0;  // matches within the bound (Sampson's distance, 1 degree of freedom)
   int good = 0;        // of these, in front of both cameras or too far to tell
+  int placed = 0;      // of the good, those near enough to tell: parallax beyond the noise
 };
 
 // Matches against the motion T_b_a, |t| = 1. `widening` multiplies the chi² bound, for motions that

@@ -214,7 +214,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   // most frames before a start fail before that.
   TwoViewFailure failure = Judge(camera, a, b, settings, rays, ranked, result);
   if (failure == TwoViewFailure::kNone) {
-    ranked = AddOtherDirections(std::move(ranked), rays);
+    ranked = AddOtherDirections(std::move(ranked), rays, settings.min_placed_share);
     failure = Judge(camera, a, b, settings, rays, ranked, result);
   }
   if (failure != TwoViewFailure::kNone) return Refuse(std::move(result), failure);
