@@ -64,6 +64,23 @@ TEST(BenchWild, ABareTableIsNotMistakenForAWayStraightBack) {
   }
 }
 
+// Between two frames the camera turns by up to 25 degrees: where motion alone was believed, .3 to
+// .8 of a path were bent (2.2 % of its length, one seed of three).
+TEST(BenchWild, ThreeFramesASecondBendNothing) {
+  const TempFolder folder;
+  const std::string out = folder / "wild.json";
+  const ProgramResult result =
+      RunAlidade({"bench", "wild", "--cases", "room-3hz", "--seeds", "3", "--out", out});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const json all = json::parse(ReadText(out), nullptr, false);
+  ASSERT_EQ(all["cases"][0]["runs"].size(), 3u);
+  for (const json& run : all["cases"][0]["runs"]) {
+    EXPECT_EQ(run["false_poses"], 0) << run;
+    EXPECT_GT(run["tracked"], 40) << run;
+    EXPECT_LT(run["ate_percent"].get<double>(), 1) << run;
+  }
+}
+
 TEST(BenchWild, KnowsItsCasesAndSettings) {
   const ProgramResult result = RunAlidade({"bench", "wild", "--cases", "desk,still-cap"});
   EXPECT_EQ(result.status, 2);

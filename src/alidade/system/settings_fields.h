@@ -21,6 +21,8 @@ void VisitTracking(Settings& t, Visit&& visit) {
   visit("tracker.min_found_share", t.min_found_share);
   visit("tracker.torn_share", t.torn_share);
   visit("tracker.unproven_frames", t.unproven_frames);
+  visit("tracker.unproven_seconds", t.unproven_seconds);
+  visit("tracker.min_late_agreement", t.min_late_agreement);
   visit("tracker.predict_seconds", t.predict_seconds);
   visit("tracker.min_agreement", t.min_agreement);
   visit("tracker.good_agreement", t.good_agreement);

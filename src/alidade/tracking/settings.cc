@@ -21,6 +21,9 @@ void TrackerSettings::Check() const {
           "min_relocalised_spread must lie in [0, 0.5)");
   require(torn_share >= 0 && torn_share < 1, "torn_share must lie in [0, 1)");
   require(unproven_frames >= 0, "unproven_frames cannot be negative");
+  require(unproven_seconds >= 0, "unproven_seconds cannot be negative");
+  require(min_late_agreement >= 0 && min_late_agreement < 1,
+          "min_late_agreement must lie in [0, 1)");
   require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
   require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");
   require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");

@@ -110,8 +110,6 @@ Tracker::InverseDepthsSeen Tracker::InverseDepths(const PlacedFrame& placed,
 
 TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                                   std::span<const KeyFrameId> candidates) {
-  TrackerSettings wide = settings_;
-  wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
   TrackEstimate lost;
   lost.placed.frame = frame;
   for (KeyFrameId id : candidates) {
@@ -119,10 +117,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     guess.frame = frame;
     MatchKeyFrame(guess, map, id);
     if (guess.inliers < Scaled(settings_.min_after_prediction)) continue;
-    const LocalMap local =
-        gatherer_.Gather(map, guess.matches, guess.T_camera_world, kRelocaliseKeyFrames);
-    guess.matches = MatchLocalMap(guess, local, camera_, wide).matches;
-    Optimise(guess, map);
+    FindAround(guess, map, kRelocaliseKeyFrames);
     TrackEstimate estimate = Estimate(std::move(guess), map);
     estimate.tracked = estimate.tracked && IsCertain(estimate);
     if (estimate.tracked) return estimate;
@@ -254,6 +249,11 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   const bool torn = motion_.known() && guess.inliers < settings_.torn_share * last_.inliers;
   estimate.placed = std::move(guess);
   if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
+  // Wide windows find something like most landmarks near any pose; at a wrong one it fits badly.
+  if (estimate.tracked && IsLate(*estimate.placed.frame)) {
+    estimate.tracked =
+        Agreement(estimate.placed, map) >= settings_.min_late_agreement * estimate.placed.inliers;
+  }
   if (estimate.tracked) {
     most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
     estimate.wants_keyframe = WantsKeyFrame(estimate.placed, share);

@@ -101,10 +101,15 @@ class Tracker {
   };
   static InverseDepthsSeen InverseDepths(const PlacedFrame& placed, const MapSnapshot& map);
   PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
+  // No frame was placed shortly before: how the camera moved says little of where it is.
+  bool IsLate(const Frame& frame) const {
+    return !last_.frame || frame.time - last_.frame->time > settings_.unproven_seconds;
+  }
   // By descriptors alone, wherever in the picture; what of the two more of the map agrees with.
   PlacedFrame BetterByLooks(PlacedFrame guess, const MapSnapshot& map);
+  void FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyframes);
   Se3 MotionUntil(double time, const MapSnapshot& map) const;  // T_now_last, in lengths of today
-  double Agreement(PlacedFrame placed, const MapSnapshot& map);
+  double Agreement(const PlacedFrame& placed, const MapSnapshot& map) const;
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
   // Returns the share of the matches that agree with the pose found; the others are dropped.

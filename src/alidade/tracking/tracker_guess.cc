@@ -17,26 +17,38 @@ constexpr double kChiSquared3 = 7.815;
 }  // namespace
 
 PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  const bool late = IsLate(*frame);
   PlacedFrame guess = PredictByMotion(std::move(frame), map);
-  return has_depth_ && unproven_ > 0 ? BetterByLooks(std::move(guess), map) : guess;
+  return late || (has_depth_ && unproven_ > 0) ? BetterByLooks(std::move(guess), map) : guess;
 }
 
 PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
   PlacedFrame other;
   other.frame = guess.frame;
   MatchKeyFrame(other, map, reference());
-  if (other.inliers < Scaled(settings_.min_after_prediction)) return guess;
-  return Agreement(other, map) > Agreement(guess, map) ? other : guess;
+  const int enough = Scaled(settings_.min_after_prediction);
+  PlacedFrame guess_around = guess, other_around = other;
+  if (guess.inliers >= enough) FindAround(guess_around, map, settings_.local_keyframes);
+  if (other.inliers >= enough) FindAround(other_around, map, settings_.local_keyframes);
+  const bool better =
+      other.inliers >= enough && Agreement(other_around, map) > Agreement(guess_around, map);
+  // A late frame's guess is rough: what narrow windows find around it would be chance.
+  if (IsLate(*guess.frame)) return better ? other_around : guess_around;
+  return better ? other : guess;
 }
 
-// How much of the local map is seen where a pose says, of all that looks alike near there: each
-// match counts from 1 (no error) to 0 (at the gate, 95 % of chi²), whatever the noise the pose was
-// found with.
-double Tracker::Agreement(PlacedFrame placed, const MapSnapshot& map) {
-  const LocalMap local =
-      gatherer_.Gather(map, placed.matches, placed.T_camera_world, settings_.local_keyframes);
-  placed.matches = MatchLocalMap(placed, local, camera_, settings_).matches;
+// The landmarks around, in windows as wide as where a pose was found by descriptors alone.
+void Tracker::FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyframes) {
+  TrackerSettings wide = settings_;
+  wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
+  const LocalMap local = gatherer_.Gather(map, placed.matches, placed.T_camera_world, keyframes);
+  placed.matches = MatchLocalMap(placed, local, camera_, wide).matches;
   Optimise(placed, map);
+}
+
+// How well the matches fit the pose: each counts from 1 (no error) to 0 (at the gate, 95 % of
+// chi²), whatever the noise the pose was found with.
+double Tracker::Agreement(const PlacedFrame& placed, const MapSnapshot& map) const {
   double sum = 0;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
