@@ -39,7 +39,8 @@ ordered_json Describe(const SynthSettings& s) {
           {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
           {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
           {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
-          {"height", s.height}, {"fov", s.fov},           {"fps", s.fps}};
+          {"height", s.height}, {"fov", s.fov},           {"fps", s.fps},
+          {"held", s.held}};
 }
 
 ordered_json Describe(const SynthStatistics& s) {
@@ -173,6 +174,8 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   command->add_option("--height", settings.height, "Pixels (480)");
   command->add_option("--fov", settings.fov, "Horizontal field of view, degrees (62.7)");
   command->add_option("--fps", settings.fps, "Frames per second (30)");
+  command->add_option("--held", settings.held,
+                      "Share of frames that come .2 to 1 s late, as a busy phone's do (0)");
   command->add_option("--threads", arguments->threads, "Threads for rendering; 0 = all cores");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->footer(

@@ -51,6 +51,9 @@ std::vector<WildCase> AllCases() {
       Map("room-10hz", "room?frames=190&fps=10"),
       Map("room-3hz", "room?frames=66&fps=3.5"),
       Map("desk-10hz", "desk?frames=150&fps=10"),
+      // Busy phones.
+      Map("room-held", "room?frames=200&fps=15&held=0.04"),
+      Map("rooms-held", "loop?frames=320&fps=10&held=0.04"),
       // What sensors do.
       Map("room-dark", "room?frames=200&light=0.06&exposure"),
       Map("desk-blur", "desk?frames=200&blur=33&speed=1.5"),

@@ -171,6 +171,30 @@ TEST(DepthSensor, ErrsBySteepeningStepsAndIsBlindAtEdgesAndFarAway) {
   EXPECT_EQ(cv::countNonZero(SenseDepth(far, 525, 5000, {})), 0);
 }
 
+TEST(SynthRecording, HeldFramesShowWhereTheCameraIsByThen) {
+  SynthSettings settings;
+  settings.frames = 400;
+  const SynthRecording even(settings);
+  settings.held = 0.05;
+  const SynthRecording busy(settings);
+  int late = 0;
+  for (int i = 1; i < settings.frames; ++i) {
+    const double gap = busy.Time(i) - busy.Time(i - 1) - 1.0 / settings.fps;
+    if (gap < 1e-9) continue;
+    ++late;
+    EXPECT_GE(gap, 0.2);
+    EXPECT_LE(gap, 1.0);
+  }
+  EXPECT_GE(late, 8);
+  EXPECT_LE(late, 35);
+  // 3 s on, by both clocks.
+  int i = 0;
+  while (busy.Time(i) < 3) ++i;
+  const int same = static_cast<int>(std::lround(busy.Time(i) * settings.fps));
+  EXPECT_LT(i, same);
+  EXPECT_LT((busy.Pose(i).t - even.Pose(same).t).norm(), 0.05);
+}
+
 TEST(SynthSettings, SayWhatCannotBe) {
   SynthSettings settings;
   settings.scene = "rom";

@@ -107,6 +107,7 @@ void Set(SynthSettings& settings, const std::string& name, const std::string& va
       {"height", Into(&S::height)},
       {"fov", Into(&S::fov)},
       {"fps", Into(&S::fps)},
+      {"held", Into(&S::held)},
       {"calibrated", Into(&S::calibrated)}};
   std::vector<std::string> names;
   for (const auto& [known, set] : kOptions) {

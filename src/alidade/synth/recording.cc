@@ -82,6 +82,18 @@ Layout LayOutFor(const SynthSettings& settings, SceneBuilder& builder) {
   return layout;
 }
 
+// Seconds by which each frame comes late, with all those before.
+std::vector<double> DelaysOf(const SynthSettings& settings) {
+  Random random(settings.seed, 61);
+  std::vector<double> delays;
+  double delay = 0;
+  for (int i = 0; i < settings.frames; ++i) {
+    if (i > 0 && random.Uniform() < settings.held) delay += random.Uniform(0.2, 1);
+    delays.push_back(delay);
+  }
+  return delays;
+}
+
 PathTiming TimingOf(const SynthSettings& settings) {
   PathTiming timing;
   timing.speed = settings.speed;
@@ -95,10 +107,12 @@ struct SynthRecording::Parts {
   Parts(const SynthSettings& given, const Layout& layout, Scene built,
         const std::vector<ActorLooks>& looks, std::vector<Thing> moved)
       : settings(given),
+        delays(DelaysOf(given)),
         camera(MakeCamera(given)),
         scene(std::move(built)),
         path(layout.knots, layout.period, layout.turns, layout.shake, given.seed, TimingOf(given)),
-        actors(CastActors(looks, layout.walks, path, given.frames / given.fps, given.seed)),
+        actors(CastActors(looks, layout.walks, path, given.frames / given.fps + delays.back(),
+                          given.seed)),
         things(std::move(moved)),
         renderer(scene, camera, given.fisheye) {}
 
@@ -142,6 +156,7 @@ struct SynthRecording::Parts {
   }
 
   SynthSettings settings;
+  std::vector<double> delays;
   Camera camera;
   Scene scene;
   CameraPath path;
@@ -172,7 +187,10 @@ const SynthSettings& SynthRecording::settings() const { return parts_->settings;
 const Camera& SynthRecording::camera() const { return parts_->camera; }
 RawCamera SynthRecording::lens() const { return LensOf(parts_->settings, parts_->camera); }
 int SynthRecording::frames() const { return parts_->settings.frames; }
-double SynthRecording::Time(int number) const { return number / parts_->settings.fps; }
+double SynthRecording::Time(int number) const {
+  const int last = parts_->settings.frames - 1;
+  return number / parts_->settings.fps + parts_->delays[std::clamp(number, 0, last)];
+}
 Se3 SynthRecording::Pose(int number) const { return parts_->path.At(Time(number)); }
 
 RenderedFrame SynthRecording::Render(int number) const {

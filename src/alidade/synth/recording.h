@@ -12,7 +12,7 @@
 namespace alidade {
 
 struct RenderedFrame {
-  double time = 0;  // seconds, number / fps
+  double time = 0;  // seconds
   cv::Mat
       image;  // CV_8U grey, as the camera's sensor has it: with noise, and blur etc. where asked
   cv::Mat right;  // CV_8U, the second camera's; empty without one

@@ -72,6 +72,7 @@ void SynthSettings::Check() const {
           "noise must be between 0 and 100 grey levels");
   require(width >= 64 && width <= 4096, "width must be between 64 and 4096 pixels");
   require(height >= 48 && height <= 4096, "height must be between 48 and 4096 pixels");
+  require(held >= 0 && held <= 0.5, "held must be between 0 and 0.5");
   require(std::isfinite(fps) && fps >= 1 && fps <= 1000, "fps must be between 1 and 1000");
   // r (1 + k1 r²) grows up to r² = -1 / (3 k1) only, where it is 2/3 r: no ray comes further out.
   const double corner = std::hypot(width, height) / 2 / Focal();

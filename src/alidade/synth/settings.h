@@ -36,6 +36,7 @@ struct SynthSettings {
   int width = 640, height = 480;  // pixels
   double fov = 0;                 // horizontal field of view, degrees; 0: 62.7, as of a Kinect
   double fps = 30;                // frames per second
+  double held = 0;                // share of frames that come .2 to 1 s late: a busy phone
   bool calibrated = true;         // false: sources assume a camera, as if nothing were known of it
 
   // What --blur, --rolling and switches of those names stand for: ms of a shutter indoors, of a
