@@ -92,7 +92,7 @@ TEST_P(LostAndFound, MapsBeforeAndAfterAGapBecomeOne) {
 }
 
 // A phone that is busy: 15 frames a second, and now and then none for .3 to 1 s, beside a carpet
-// that is the same everywhere. What cannot be placed is left out: a fifth may be.
+// that is the same everywhere. What cannot be placed is left out: a quarter may be.
 TEST_P(LostAndFound, FramesThatComeLateBendNothing) {
   const int held[] = {9, 29, 17, 23};
   int frames = 0;
