@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "alidade/geometry/two_view_ransac.h"
 
@@ -94,22 +95,17 @@ Turn TurnWith(double g, const RayPairs& rays) {
   return {NearestRotation(sum), {g, 0}};
 }
 
-// Where to begin: `R` with the lens as assumed, or the turn with one of a few other focal lengths.
-// With a turn of 25 degrees a lens 1.4 times off is not found from the one assumed: a radial term
-// that is too large leads elsewhere.
-Turn BestStart(const Eigen::Matrix3d& R, const RayPairs& rays, double uncertainty, double bound) {
+// Where to begin: `R` with the lens as assumed, and the turns with a few other focal lengths. One
+// alone may lead elsewhere: with turns of 25 degrees and more and a lens 1.4 times off, to a radial
+// term that is too large.
+std::vector<Turn> Starts(const Eigen::Matrix3d& R, const RayPairs& rays, double uncertainty) {
   constexpr int kLenses = 7;
-  Turn best{R, {}};
-  double least = CostOf(best, rays, uncertainty, bound);
+  std::vector<Turn> starts{{R, {}}};
   for (int i = 0; i < kLenses; ++i) {
     const double exponent = 2.0 * i / (kLenses - 1) - 1;  // -1 … 1
-    const Turn turn = TurnWith(std::pow(1 + uncertainty, exponent), rays);
-    const double cost = CostOf(turn, rays, uncertainty, bound);
-    if (cost >= least) continue;
-    least = cost;
-    best = turn;
+    starts.push_back(TurnWith(std::pow(1 + uncertainty, exponent), rays));
   }
-  return best;
+  return starts;
 }
 
 }  // namespace
@@ -117,19 +113,38 @@ Turn BestStart(const Eigen::Matrix3d& R, const RayPairs& rays, double uncertaint
 std::vector<bool> ExplainedByTurnedLens(const Eigen::Matrix3d& R, const RayPairs& rays,
                                         double uncertainty, LensChange* found) {
   constexpr int kIterations = 5;  // for each gate
-  constexpr double kStartGate = 64 * 2 * kChi2Homography;
-  Turn turn = BestStart(R, rays, uncertainty, kStartGate);
-  for (const double widening : {1e4, 64.0, 16.0, 4.0, 1.0}) {
-    const double bound = widening * 2 * kChi2Homography;
-    for (int i = 0; i < kIterations && Improve(turn, rays, uncertainty, bound); ++i) continue;
+  constexpr double kGate = 2 * kChi2Homography;
+  constexpr double kEnough = 0.9;  // of the matches explained: no other start is tried
+  std::vector<bool> most;
+  ptrdiff_t count = -1;
+  std::vector<Turn> starts = Starts(R, rays, uncertainty);
+  while (!starts.empty()) {
+    // What costs least first.
+    size_t next = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < starts.size(); ++i) {
+      const double cost = CostOf(starts[i], rays, uncertainty, 64 * kGate);
+      if (cost >= least) continue;
+      least = cost;
+      next = i;
+    }
+    Turn turn = starts[next];
+    starts.erase(starts.begin() + static_cast<ptrdiff_t>(next));
+    for (const double widening : {1e4, 64.0, 16.0, 4.0, 1.0}) {
+      const double bound = widening * kGate;
+      for (int i = 0; i < kIterations && Improve(turn, rays, uncertainty, bound); ++i) continue;
+    }
+    std::vector<bool> explained;
+    for (size_t i = 0; i < rays.size(); ++i)
+      explained.push_back(ErrorOf(turn, rays.a[i], rays.b[i], rays.sigma).squaredNorm() < kGate);
+    const ptrdiff_t these = std::count(explained.begin(), explained.end(), true);
+    if (these <= count) continue;
+    count = these;
+    most = std::move(explained);
+    if (found) *found = turn.lens;
+    if (static_cast<double>(count) >= kEnough * static_cast<double>(rays.size())) break;
   }
-  std::vector<bool> explained;
-  for (size_t i = 0; i < rays.size(); ++i) {
-    explained.push_back(ErrorOf(turn, rays.a[i], rays.b[i], rays.sigma).squaredNorm() <
-                        2 * kChi2Homography);
-  }
-  if (found) *found = turn.lens;
-  return explained;
+  return most;
 }
 
 }  // namespace alidade
