@@ -41,11 +41,18 @@ double ParallaxDegrees(const Eigen::Vector3d& p, const Se3& T_a_world, const Se3
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
+// As the mapper does it.
+std::vector<NewLandmark> Triangulated(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
+                                      const MapperSettings& settings = {}) {
+  return TriangulateNew(map, id, AtKnownDistance(map, *map.Find(id), camera, settings), camera,
+                        settings);
+}
+
 TEST(TriangulateNew, FindsTheTruePointsOfAnExactWorld) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 600, .cameras = 6, .clutter = 100});
   MapStore store;
   const SyntheticMap made = FillMap(world, {.known = 0.4}, store);
-  const auto landmarks = TriangulateNew(store.Snapshot(), made.keyframes.back(), world.camera, {});
+  const auto landmarks = Triangulated(store.Snapshot(), made.keyframes.back(), world.camera);
   const Judgement judgement =
       Judge(world, landmarks, 1e-3);  // keypoints are floats: 3e-5 px on 20 px of parallax
   EXPECT_EQ(judgement.wrong, 0);
@@ -85,7 +92,7 @@ TEST(TriangulateNew, MakesNoWrongPointsOfOutlierDescriptors) {
   world.views.back().frame = frame;
   MapStore store;
   const SyntheticMap made = FillMap(world, {.known = 0.4}, store);
-  const auto landmarks = TriangulateNew(store.Snapshot(), made.keyframes.back(), world.camera, {});
+  const auto landmarks = Triangulated(store.Snapshot(), made.keyframes.back(), world.camera);
   // Half a pixel (more on coarse levels) at a parallax of a degree and up: up to a fifth of the
   // distance.
   const Judgement judgement = Judge(world, landmarks, 0.35);
@@ -99,7 +106,7 @@ TEST(TriangulateNew, UsesNoKeypointTwiceAndNoneThatIsKnown) {
   const SyntheticMap made = FillMap(world, {.known = 0.5}, store);
   const MapSnapshot map = store.Snapshot();
   std::set<std::pair<KeyFrameId, int>> used;
-  for (const NewLandmark& landmark : TriangulateNew(map, made.keyframes.back(), world.camera, {})) {
+  for (const NewLandmark& landmark : Triangulated(map, made.keyframes.back(), world.camera)) {
     EXPECT_EQ(landmark.second.keyframe, made.keyframes.back());
     EXPECT_TRUE(used.insert({landmark.second.keyframe, landmark.second.keypoint}).second);
     for (const Observation& o : {landmark.first, landmark.second}) {
@@ -119,7 +126,7 @@ TEST(TriangulateNew, RefusesWhatHasTooLittleParallax) {
   settings.min_parallax_degrees_mono = 1;  // 24 mm at 2.5 m and more: half of that
   settings.min_baseline_ratio = 1e-6;      // so that it is the angle that decides
   EXPECT_TRUE(
-      TriangulateNew(store.Snapshot(), made.keyframes.back(), world.camera, settings).empty());
+      Triangulated(store.Snapshot(), made.keyframes.back(), world.camera, settings).empty());
 }
 
 }  // namespace

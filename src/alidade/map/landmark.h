@@ -30,6 +30,9 @@ struct Landmark {
 
   // How likely it stands still, 0…1: weighs what is seen of it in poses and adjustments.
   float static_probability = 1;
+  // One camera: whether it was ever measured from keyframes whose distance from each other is known
+  // (mapping/scale_hold.h). Not saved: those of a loaded map count as known.
+  bool scale_known = true;
   KeyFrameId born;  // newest keyframe when it was made: young ones are on trial
 };
 

@@ -110,6 +110,7 @@ void MapCommit::Remove(LandmarkId id) {
 
 void MapCommit::Replace(LandmarkId old, LandmarkId by) {
   if (old == by || !Find(old) || !Find(by)) return;
+  if (Find(old)->scale_known && !Find(by)->scale_known) Edit(by)->scale_known = true;
   const std::vector<Observation> observations = Find(old)->observations;
   for (const Observation& seen : observations) {
     RemoveObservation(old, seen.keyframe);
@@ -172,6 +173,45 @@ void MapCommit::Remove(MapId id) {
   });
   for (KeyFrameId keyframe : keyframes) state_.keyframes.Erase(keyframe.value, state_.version);
   for (KeyFrameId keyframe : culled) state_.culled.Erase(keyframe.value, state_.version);
+}
+
+MapId MapCommit::Split(KeyFrameId first) {
+  const KeyFrame* root = Find(first);
+  if (!root || !root->parent.valid()) return root ? root->map : MapId{};
+  const MapId older = root->map, younger = Issue<MapId>(state_.next_map);
+  std::vector<KeyFrameId> leaving;
+  state_.keyframes.ForEachFromLast([&](const KeyFrame& keyframe) {
+    if (keyframe.map == older) leaving.push_back(keyframe.id);
+    return keyframe.id > first;
+  });
+  for (KeyFrameId id : leaving) {
+    KeyFrame* keyframe = Edit(id);
+    keyframe->map = younger;
+    if (keyframe->parent < first) keyframe->parent = id == first ? KeyFrameId{} : first;
+  }
+  const auto left = [&](KeyFrameId id) { return Find(id)->map == younger; };
+  for (KeyFrameId id : leaving) {
+    for (LandmarkId seen : std::vector<LandmarkId>(Find(id)->landmarks)) {
+      const Landmark* landmark = seen.valid() ? Find(seen) : nullptr;
+      if (!landmark) continue;
+      const bool stays = !left(landmark->reference);
+      bool divided = false;
+      for (const Observation& at : std::vector<Observation>(landmark->observations)) {
+        if (left(at.keyframe) != stays) continue;
+        RemoveObservation(seen, at.keyframe);
+        divided = true;
+      }
+      if (divided) RefreshLandmark(seen);
+    }
+    for (KeyFrameId other : std::vector<KeyFrameId>(Find(id)->loops)) {
+      if (left(other)) continue;
+      std::erase(Edit(id)->loops, other);
+      std::erase(Edit(other)->loops, id);
+    }
+    RefreshCovisibility(id);
+  }
+  CountCorrection();
+  return younger;
 }
 
 void MapCommit::AddLoop(KeyFrameId a, KeyFrameId b) {

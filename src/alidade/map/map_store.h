@@ -118,6 +118,11 @@ class MapCommit {
   void Replace(LandmarkId old, LandmarkId by);  // moves the observations that fit, forwards the id
   void Remove(KeyFrameId id);  // hands its children to its parent; its observations go
   void Remove(MapId id);       // all that is in that map, without a trace
+  // Makes a map of its own of a keyframe and all younger ones of its map; returns it. Nothing
+  // moves. Landmarks stay with the side their reference is on: the other side's observations of
+  // them go, and with them the covisibility and the loops between the two. Nothing is done, and the
+  // map as it is returned, when `first` is a map's first keyframe or isn't there.
+  MapId Split(KeyFrameId first);
   void AddLoop(KeyFrameId a, KeyFrameId b);
   void CountCorrection() { ++state_.corrections; }
 

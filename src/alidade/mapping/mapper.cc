@@ -41,7 +41,10 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     keyframe.parent = anchor.keyframe;
     id = commit.Add(std::move(keyframe));
     for (size_t i = 0; i < matches.size(); ++i) {
-      if (matches[i].valid()) commit.AddObservation(matches[i], id, static_cast<int>(i));
+      // Its map may have been split since it was matched.
+      const Landmark* landmark = matches[i].valid() ? commit.Find(matches[i]) : nullptr;
+      if (landmark && commit.Find(landmark->reference)->map == commit.Find(id)->map)
+        commit.AddObservation(matches[i], id, static_cast<int>(i));
     }
     const Se3 T_world_camera = T_camera_world.Inverse();
     for (size_t i = 0; i < frame->keypoints.size(); ++i) {
@@ -204,15 +207,24 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     }
   });
 
-  const std::vector<NewLandmark> made = TriangulateNew(map, id, camera_, settings_);
+  std::vector<KeyFrameId> at_known_distance;
+  std::vector<LandmarkId> scale_found;
+  if (!has_depth_) {
+    at_known_distance = AtKnownDistance(map, *map.Find(id), camera_, settings_);
+    scale_found = ScaleFoundFrom(map, *map.Find(id), at_known_distance);
+  }
+  const std::vector<NewLandmark> made =
+      TriangulateNew(map, id, at_known_distance, camera_, settings_);
   report.triangulated = static_cast<int>(made.size());
   map = map_.Commit([&](MapCommit& commit) {
+    for (LandmarkId found : scale_found) commit.Edit(found)->scale_known = true;
     for (const NewLandmark& entry : made) {
       Landmark landmark;
       landmark.p_world = entry.p_world;
       landmark.static_probability = settings_.young_static;
       landmark.reference = landmark.born = id;
       landmark.observations = {entry.first, entry.second};
+      landmark.scale_known = entry.scale_known;
       const LandmarkId added = commit.Add(std::move(landmark));
       if (commit.Find(added)->observations.size() < 2) {
         commit.Remove(added);
@@ -248,7 +260,28 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   const std::vector<KeyFrameId> redundant = FindRedundantKeyFrames(map, id, has_depth_, settings_);
   report.keyframes_culled = static_cast<int>(redundant.size());
   Remove(redundant);
+  report.split = SplitWhereScaleIsUnknown(id);
   return report;
+}
+
+MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
+  const MapSnapshot map = map_.Snapshot();
+  const KeyFrame* keyframe = map.Find(id);
+  if (has_depth_ || !keyframe) return {};
+  const double now = keyframe->frame->time;
+  if (CountOfKnownScale(map, *keyframe) >= settings_.min_known_scale) {
+    scale_unknown_from_ = {};
+    return {};
+  }
+  if (!map.Find(scale_unknown_from_) || map.MapOf(scale_unknown_from_) != keyframe->map) {
+    scale_unknown_from_ = id;
+    scale_unknown_since_ = now;
+  }
+  if (now - scale_unknown_since_ < settings_.max_unknown_scale_seconds) return {};
+  MapId split;
+  map_.Commit([&](MapCommit& commit) { split = commit.Split(scale_unknown_from_); });
+  scale_unknown_from_ = {};
+  return split == keyframe->map ? MapId{} : split;
 }
 
 void Mapper::Remove(std::span<const KeyFrameId> keyframes) {

@@ -15,6 +15,7 @@ namespace alidade {
 
 struct MapperReport {
   int triangulated = 0, fused = 0, landmarks_culled = 0, keyframes_culled = 0;
+  MapId split;  // where the keyframe and some before it became a map of their own
   BundleReport bundle;
 };
 
@@ -65,6 +66,8 @@ class Mapper {
 
  private:
   void Remove(std::span<const KeyFrameId> keyframes);  // what they alone show goes with them
+  // The map of their own that keyframes became, if so: MapperSettings::min_known_scale.
+  MapId SplitWhereScaleIsUnknown(KeyFrameId id);
   std::vector<std::pair<LandmarkId, float>> TakeBelief();
   void ForgetTalliesOfTheGone(const MapSnapshot& map);
 
@@ -73,6 +76,8 @@ class Mapper {
   MapperSettings settings_;
   bool has_depth_;
   std::vector<LandmarkId> young_;  // on trial
+  KeyFrameId scale_unknown_from_;  // all keyframes since know too little of their scale
+  double scale_unknown_since_ = 0;
   std::mutex tallies_mutex_;
   IdMap<LandmarkId, SightingTally> tallies_;
   std::vector<LandmarkId> doubted_;  // since the last Process()

@@ -24,6 +24,9 @@ void MapperSettings::Check() const {
   require(redundant_share > 0, "redundant_share must be positive");
   require(min_parallax_degrees_mono > 0 && min_parallax_degrees_mono < 90,
           "min_parallax_degrees_mono must lie in (0, 90)");
+  require(max_baseline_error > 0, "max_baseline_error must be positive");
+  require(enough_known_scale >= 0 && min_known_scale >= 0, "*_known_scale cannot be negative");
+  require(max_unknown_scale_seconds >= 0, "max_unknown_scale_seconds cannot be negative");
   require(window_shared >= 1, "window_shared must be positive");
   require(window_iterations_mono >= 1, "window_iterations_mono must be positive");
   require(least_noise > 0 && least_noise <= 1, "least_noise must be above 0 and at most 1");

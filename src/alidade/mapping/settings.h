@@ -28,6 +28,18 @@ struct MapperSettings {
   double min_parallax_degrees = 0.4;
   double min_parallax_degrees_mono = 0.2;
   double min_baseline_ratio = 0.01;  // baseline to median depth, monocular
+  // One camera: standard deviation of the distance of two keyframes by that distance, above which
+  // it is not known, nor the scale of what is mapped from them. 0.02 to 0.05 are as good where a
+  // camera turns before a wall; at 0.06 scale begins to break.
+  double max_baseline_error = 0.04;
+  // Landmarks of known scale a keyframe must see for nothing else to be mapped beside them.
+  int enough_known_scale = 300;
+  // Fewer do not hold a keyframe's scale. After so many seconds of such keyframes they are split
+  // off (MapCommit::Split()) and given up: the camera is found again at a known place, or begins
+  // another map. A short while is bridged: a head that shakes comes back to what it knows. Counted
+  // from the oldest of them that was not culled as redundant: where the camera stays little is new.
+  int min_known_scale = 20;
+  double max_unknown_scale_seconds = 1.5;
 
   // Fusion of duplicates.
   int fuse_keyframes = 15;   // covisible keyframes landmarks are projected into

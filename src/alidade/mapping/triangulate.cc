@@ -110,8 +110,9 @@ bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoi
 
 }  // namespace
 
-std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
-                                        const MapperSettings& settings) {
+std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
+                                        const std::vector<KeyFrameId>& at_known_distance,
+                                        const Camera& camera, const MapperSettings& settings) {
   const KeyFrame& a = *map.Find(id);
   const bool has_depth = camera.StereoBaseline() > 0;
   const auto count = static_cast<size_t>(has_depth ? settings.triangulate_keyframes_depth
@@ -130,6 +131,19 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
       continue;
     others.push_back(b);
   }
+  const auto known = [&](const KeyFrame* b) {
+    return has_depth || std::find(at_known_distance.begin(), at_known_distance.end(), b->id) !=
+                            at_known_distance.end();
+  };
+  // Known distances first, each in order of what is shared.
+  std::vector<const KeyFrame*> unknown;
+  std::erase_if(others, [&](const KeyFrame* b) {
+    if (known(b)) return false;
+    unknown.push_back(b);
+    return true;
+  });
+  if (CountOfKnownScale(map, a) < settings.enough_known_scale)
+    others.insert(others.end(), unknown.begin(), unknown.end());
   std::vector<std::vector<Partner>> partners(others.size());
   ParallelFor(static_cast<int>(others.size()), [&](int i) {
     partners[i] =
@@ -160,7 +174,7 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, c
       constexpr double kTolerance = 1.5 * kPyramidScale;
       if (change > kTolerance || change < 1 / kTolerance) continue;
       used[partner.a] = 1;
-      made.push_back({*p, {b.id, partner.b}, {a.id, partner.a}});
+      made.push_back({*p, {b.id, partner.b}, {a.id, partner.a}, known(&b)});
     }
   }
   return made;

@@ -5,6 +5,7 @@
 
 #include "alidade/geometry/camera.h"
 #include "alidade/map/map_store.h"
+#include "alidade/mapping/scale_hold.h"
 #include "alidade/mapping/settings.h"
 
 namespace alidade {
@@ -12,12 +13,15 @@ namespace alidade {
 struct NewLandmark {
   Eigen::Vector3d p_world;
   Observation first, second;
+  bool scale_known = true;
 };
 
 // Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible
 // keyframes and triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A
-// keypoint is used at most once.
-std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
-                                        const MapperSettings& settings);
+// keypoint is used at most once. One camera: keyframes at a known distance come first, the
+// others only where they must (MapperSettings::max_baseline_error, enough_known_scale).
+std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
+                                        const std::vector<KeyFrameId>& at_known_distance,
+                                        const Camera& camera, const MapperSettings& settings);
 
 }  // namespace alidade

@@ -63,6 +63,10 @@ void VisitMapping(Settings& m, Visit&& visit) {
   visit("mapper.min_parallax_degrees", m.min_parallax_degrees);
   visit("mapper.min_parallax_degrees_mono", m.min_parallax_degrees_mono);
   visit("mapper.min_baseline_ratio", m.min_baseline_ratio);
+  visit("mapper.max_baseline_error", m.max_baseline_error);
+  visit("mapper.enough_known_scale", m.enough_known_scale);
+  visit("mapper.min_known_scale", m.min_known_scale);
+  visit("mapper.max_unknown_scale_seconds", m.max_unknown_scale_seconds);
   visit("mapper.fuse_keyframes", m.fuse_keyframes);
   visit("mapper.fuse_radius", m.fuse_radius);
   visit("mapper.fuse_distance", m.fuse_distance);

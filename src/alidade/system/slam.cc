@@ -155,6 +155,7 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
 
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
+  if (LeavesUnknownScale()) return FindBack(frame);
   const MapSnapshot map = workers_.map().Snapshot();
   tracker_.UndoShutter(*frame, map);
   PlacedFrame guess = tracker_.Predict(frame, map);

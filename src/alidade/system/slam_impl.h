@@ -96,6 +96,7 @@ class Slam::Impl {
   TrackResult WithoutPose(const char* reason, double time, const MapSnapshot& map);
   void Lose();
   void LeaveMap();
+  bool LeavesUnknownScale();
 
   // slam_start.cc: the begin and the end of a map.
   TrackResult Start(const std::shared_ptr<Frame>& frame);

@@ -2,6 +2,7 @@
 // slam_impl.h says what else is where.
 #include <algorithm>
 
+#include "alidade/base/log.h"
 #include "alidade/features/subset.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/slam_impl.h"
@@ -107,6 +108,27 @@ void Slam::Impl::LeaveMap() {
   const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
   if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
     workers_.Drop(left);
+}
+
+// What one camera mapped while its scale was not known goes, and the poses told by it
+// (MapperSettings::min_known_scale): another map must be proved by parallax, as each is.
+bool Slam::Impl::LeavesUnknownScale() {
+  const MapId unknown = workers_.TakeUnknownScale();
+  if (!unknown.valid()) return false;
+  const MapSnapshot map = workers_.map().Snapshot();  // with the split, which came first
+  const bool there = map.MapOf(tracker_.reference()) == unknown;
+  if (there) {
+    LogWarning(
+        "the camera turned away from what it knew without moving past it: the scale of what it saw "
+        "since is not known, and is given up (move sideways while turning)");
+    state_ = TrackState::kInitialising;
+    kept_.clear();
+    young_.Reset();
+    early_.ForgetWaiting();
+    tracker_.Forget();
+  }
+  workers_.Drop(unknown);
+  return there;
 }
 
 }  // namespace alidade

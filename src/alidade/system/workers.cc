@@ -70,7 +70,8 @@ Workers::~Workers() {  // who hands on stops before who is handed to
 }
 
 void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
-  mapper_.Process(id, stop);
+  const MapperReport report = mapper_.Process(id, stop);
+  if (report.split.valid()) unknown_scale_ = report.split.value;
   if (readout_watch_.Mapped(id, map_.Snapshot())) {
     map_.Commit([&](MapCommit& commit) { CommitShutter(commit, readout_watch_.camera()); });
     adjusting_.Add(id);

@@ -61,6 +61,9 @@ class Workers {
   // A map and its places, without a trace. Not awaited when threaded.
   void Drop(MapId id);
   std::vector<MapId> dropped() const;  // and not out of the map yet
+  // The map that was split off last because its scale is not known (MapperReport::split), told
+  // once.
+  MapId TakeUnknownScale() { return {unknown_scale_.exchange(MapId{}.value)}; }
 
   // Any thread may ask.
   std::vector<StageHealth> health() const;
@@ -89,6 +92,7 @@ class Workers {
   SemiDenseMapper semidense_mapper_;
   bool dense_;  // semi-dense mapping is asked for
   std::atomic<bool> cut_short_{false};
+  std::atomic<decltype(MapId::value)> unknown_scale_{MapId{}.value};
   bool limit_told_ = false;      // that keyframes go because there are too many; mapping_'s
   uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
   mutable std::mutex dropped_mutex_;
