@@ -27,8 +27,8 @@ struct TrackerSettings {
   int unproven_frames = 5;
   // Seconds without a placed frame after which motion is not believed either, with or without
   // depth: hands may have turned by 20 degrees meanwhile, and so far off some of the last frame's
-  // matches still agree on a pose (kitchen with 3 % of its frames .1 to 1 s late, 28 runs: ATE 3.6
-  // to 24 cm without, 3.5 to 4.4 with) …
+  // matches still agree on a pose (kitchen with 3 % of its frames .1 to 1 s late: ATE 3.6 to 24 cm
+  // without in 28 runs, 3.6 to 4.2 with in 16) …
   double unproven_seconds = 0.2;
   // … and how well, on average, matches then must fit for the pose to be believed: 1 without error,
   // 0 at the gate of 95 %. Right poses have .4 to .8, wrong ones .15 to .3.
