@@ -155,7 +155,12 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
 
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
-  if (LeavesUnknownScale()) return FindBack(frame);
+  if (LeavesUnknownScale()) {
+    TrackResult result = FindBack(frame);
+    if (result.state != TrackState::kTracking)
+      result.reason = "a turn left no scale: move sideways while turning";
+    return result;
+  }
   const MapSnapshot map = workers_.map().Snapshot();
   tracker_.UndoShutter(*frame, map);
   PlacedFrame guess = tracker_.Predict(frame, map);

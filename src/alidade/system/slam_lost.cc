@@ -2,7 +2,6 @@
 // slam_impl.h says what else is where.
 #include <algorithm>
 
-#include "alidade/base/log.h"
 #include "alidade/features/subset.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/slam_impl.h"
@@ -118,9 +117,6 @@ bool Slam::Impl::LeavesUnknownScale() {
   const MapSnapshot map = workers_.map().Snapshot();  // with the split, which came first
   const bool there = map.MapOf(tracker_.reference()) == unknown;
   if (there) {
-    LogWarning(
-        "the camera turned away from what it knew without moving past it: the scale of what it saw "
-        "since is not known, and is given up (move sideways while turning)");
     state_ = TrackState::kInitialising;
     kept_.clear();
     young_.Reset();
