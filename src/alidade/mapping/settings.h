@@ -37,7 +37,7 @@ struct MapperSettings {
   // Fewer do not hold a keyframe's scale. After so many seconds of such keyframes they are split
   // off (MapCommit::Split()) and given up: the camera is found again at a known place, or begins
   // another map. A short while is bridged: a head that shakes comes back to what it knows. Counted
-  // from the oldest of them that was not culled as redundant: where the camera stays little is new.
+  // anew when the oldest of them is culled as redundant: where the camera stays, little is new.
   int min_known_scale = 20;
   double max_unknown_scale_seconds = 1.5;
 

@@ -94,6 +94,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
 // `time`: as it was given; that of `prepared` never jumps.
 TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   RefineCamera();
+  const bool left = LeavesUnknownScale();
   const int number = first_number_ + log_.size() - 1;
   movers_.Begin(prepared, number);
   tracker_.SetReadout(workers_.readout());
@@ -108,7 +109,9 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   last_ = {};
   last_keyframe_ = {};
   last_.frame = frame;
-  const TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  TrackResult result = state_ == TrackState::kTracking ? Continue(frame) : FindBack(frame);
+  if (left && result.state != TrackState::kTracking)
+    result.reason = "a turn left no scale: move sideways while turning";
   // Only while a map is to be started may a frame yet become a keyframe.
   const bool may_start = dense_ && state_ == TrackState::kInitialising;
   KeepFrame(*frame);
@@ -155,12 +158,6 @@ void Slam::Impl::AddKeyFrame(PlacedFrame& placed, const Anchor& anchor) {
 
 TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   const Stopwatch watch;
-  if (LeavesUnknownScale()) {
-    TrackResult result = FindBack(frame);
-    if (result.state != TrackState::kTracking)
-      result.reason = "a turn left no scale: move sideways while turning";
-    return result;
-  }
   const MapSnapshot map = workers_.map().Snapshot();
   tracker_.UndoShutter(*frame, map);
   PlacedFrame guess = tracker_.Predict(frame, map);
@@ -237,6 +234,7 @@ void Slam::Impl::Finish(double limit) {
   const std::lock_guard<std::mutex> driving(driving_);
   EndFrame();
   workers_.Drain(limit);
+  if (LeavesUnknownScale()) workers_.Drain(limit);
   // All that was seen has a say now. Not where time is short.
   for (int i = 0; i < kLastQuestions && settings_.refine.enabled && !std::isfinite(limit); ++i) {
     workers_.AskForCamera();

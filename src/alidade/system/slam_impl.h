@@ -97,6 +97,7 @@ class Slam::Impl {
   void Lose();
   void LeaveMap();
   bool LeavesUnknownScale();
+  void ForgetWhere();
 
   // slam_start.cc: the begin and the end of a map.
   TrackResult Start(const std::shared_ptr<Frame>& frame);

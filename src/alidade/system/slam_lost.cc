@@ -94,12 +94,17 @@ void Slam::Impl::Lose() {
   lost_sighted_ = 0;
 }
 
-// A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
-void Slam::Impl::LeaveMap() {
+// A known place is looked for from now on, or another map begins.
+void Slam::Impl::ForgetWhere() {
   state_ = TrackState::kInitialising;
   kept_.clear();
   young_.Reset();
   tracker_.Forget();
+}
+
+// A map of a few keyframes is worth less than the confusion it makes; one that was loaded is kept.
+void Slam::Impl::LeaveMap() {
+  ForgetWhere();
   const MapSnapshot map = workers_.map().Snapshot();
   const MapId left = map.MapOf(tracker_.reference());
   if (!left.valid()) return;
@@ -117,11 +122,8 @@ bool Slam::Impl::LeavesUnknownScale() {
   const MapSnapshot map = workers_.map().Snapshot();  // with the split, which came first
   const bool there = map.MapOf(tracker_.reference()) == unknown;
   if (there) {
-    state_ = TrackState::kInitialising;
-    kept_.clear();
-    young_.Reset();
     early_.ForgetWaiting();
-    tracker_.Forget();
+    ForgetWhere();
   }
   workers_.Drop(unknown);
   return there;
