@@ -168,6 +168,32 @@ TEST(SolvePnpRansac, IsAsCloseAsOpenCvsRansacBeforeRefinement) {
   EXPECT_GT(ours, 0.95 * theirs);
 }
 
+// As where the camera has turned on during a gap: most matches lie in a corner of the picture, and
+// a few beside it say where the camera is. A sample of the corner alone has nearly all as inliers.
+TEST(SolvePnpRansac, IsNotContentWithTheFirstSampleThatNearlyAllAgreeWith) {
+  double worst = 0;  // metres, 1 to 8 m from what is seen
+  for (uint64_t seed = 1; seed <= 100; ++seed) {
+    PnpProblem problem =
+        MakePnpProblem({.matches = 2000, .noise_px = 0.7, .planar = true, .seed = seed});
+    std::vector<Eigen::Vector3d> p_world;
+    std::vector<Eigen::Vector2d> pixels;
+    int beside = 0;
+    for (size_t i = 0; i < problem.pixels.size(); ++i) {
+      const Eigen::Vector2d& pixel = problem.pixels[i];
+      const bool corner = pixel.x() < 160 && pixel.y() < 160;
+      if (!corner && (pixel.x() > 350 || beside++ >= 8)) continue;
+      p_world.push_back(problem.p_world[i]);
+      pixels.push_back(pixel);
+    }
+    const PnpResult result = SolvePnpRansac(problem.camera, p_world, pixels, {}, {.seed = seed});
+    ASSERT_TRUE(result.success) << seed;
+    const Eigen::Vector3d off =
+        result.T_camera_world.Inverse().t - problem.T_camera_world.Inverse().t;
+    worst = std::max(worst, off.norm());
+  }
+  EXPECT_LT(worst, 0.1);
+}
+
 TEST(SolvePnpRansac, AllowsCoarseKeypointsTheirError) {
   PnpProblem problem = MakePnpProblem({.matches = 100, .seed = 3});
   std::vector<double> scale(100, 1.0);

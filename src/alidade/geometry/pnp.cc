@@ -1,6 +1,8 @@
 #include "alidade/geometry/pnp.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -26,6 +28,53 @@ double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& m
   return squared < 1 ? 1 - squared : 0;
 }
 
+struct Scored {
+  Se3 T_camera_world;
+  double score = 0;  // MSAC's (Torr & Zisserman 2000): of poses with the same inliers, the closer
+  int inliers = 0;
+};
+
+Scored Score(const Camera& camera, const Se3& T_camera_world, std::span<const PointMatch> matches) {
+  Scored scored{T_camera_world};
+  for (const PointMatch& match : matches) {
+    const double gain = Gain(camera, T_camera_world, match);
+    scored.score += gain;
+    scored.inliers += gain > 0;
+  }
+  return scored;
+}
+
+// One Gauss-Newton step over the inliers.
+Se3 Step(const Camera& camera, const Se3& T, std::span<const PointMatch> matches) {
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
+  for (const PointMatch& match : matches) {
+    const Eigen::Vector3d p = T * match.p_world;
+    if (!(p.z() > 0)) continue;
+    const Eigen::Vector2d error = camera.Project(p) - match.pixel;
+    if (!(error.squaredNorm() * match.inverse_squared < 1)) continue;
+    Eigen::Matrix<double, 2, 6> J;  // of the left increment: A [I, -[p]x]
+    J.leftCols<3>() << camera.fx / p.z(), 0, -camera.fx * p.x() / (p.z() * p.z()), 0,
+        camera.fy / p.z(), -camera.fy * p.y() / (p.z() * p.z());
+    J.rightCols<3>() = -J.leftCols<3>() * Skew(p);
+    H += match.inverse_squared * J.transpose() * J;
+    g += match.inverse_squared * J.transpose() * error;
+  }
+  return Se3::Exp(-H.llt().solve(g)) * T;
+}
+
+// The best sample's answer is that of three points; all its inliers together know better, and then
+// have more of them (LO-RANSAC, Chum, Matas & Kittler 2003).
+Scored Polish(const Camera& camera, Scored best, std::span<const PointMatch> matches) {
+  constexpr int kSteps = 5;
+  for (int k = 0; k < kSteps; ++k) {
+    const Scored scored = Score(camera, Step(camera, best.T_camera_world, matches), matches);
+    if (!(scored.score > best.score)) break;
+    best = scored;
+  }
+  return best;
+}
+
 }  // namespace
 
 void PnpSettings::Check() const {
@@ -33,6 +82,7 @@ void PnpSettings::Check() const {
     if (!holds) ThrowUsage(std::string("pnp settings: ") + what);
   };
   require(max_iterations > 0, "max_iterations must be positive");
+  require(min_iterations >= 0, "min_iterations must not be negative");
   require(max_error > 0 && std::isfinite(max_error), "max_error must be positive");
   require(confidence > 0 && confidence < 1, "confidence must lie between 0 and 1");
   require(min_inliers >= 3, "min_inliers must be at least 3");
@@ -57,10 +107,8 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
   const int count = static_cast<int>(matches.size());
   if (count < settings.min_inliers) return result;
 
-  // The score is MSAC's (Torr & Zisserman 2000): of two poses with the same inliers, the closer one
-  // wins.
   Random random(settings.seed);
-  double best_score = 0;
+  Scored best;
   double needed = settings.max_iterations;
   for (int iteration = 0; iteration < settings.max_iterations && iteration < needed; ++iteration) {
     const std::vector<int> sample = random.Sample(3, count);
@@ -70,22 +118,18 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
       rays[k] = camera.Unproject(matches[sample[k]].pixel).normalized();
     }
     for (const Se3& pose : SolveP3p(points, rays)) {
-      double score = 0;
-      int inliers = 0;
-      for (const PointMatch& match : matches) {
-        const double gain = Gain(camera, pose, match);
-        score += gain;
-        inliers += gain > 0;
-      }
-      if (score <= best_score) continue;
-      best_score = score;
-      result.T_camera_world = pose;
-      result.inliers = inliers;
-      needed = SamplesNeeded(static_cast<double>(inliers) / count, settings.confidence);
+      const Scored scored = Score(camera, pose, matches);
+      if (scored.score <= best.score) continue;
+      best = Polish(camera, scored, matches);
+      needed = std::max<double>(
+          settings.min_iterations,
+          SamplesNeeded(static_cast<double>(best.inliers) / count, settings.confidence));
     }
   }
+  result.T_camera_world = best.T_camera_world;
+  result.inliers = best.inliers;
   for (const PointMatch& match : matches) {
-    result.inlier[match.index] = best_score > 0 && Gain(camera, result.T_camera_world, match) > 0;
+    result.inlier[match.index] = best.score > 0 && Gain(camera, result.T_camera_world, match) > 0;
   }
   result.success = result.inliers >= settings.min_inliers;
   return result;

@@ -17,7 +17,11 @@ namespace alidade {
 std::vector<Se3> SolveP3p(const Eigen::Vector3d p_world[3], const Eigen::Vector3d rays[3]);
 
 struct PnpSettings {
-  int max_iterations = 300;   // samples
+  int max_iterations = 300;  // samples
+  // Drawn whatever was found. A sample free of outliers is not yet a good one: three points in a
+  // corner of the picture leave the pose open by as much as the camera has moved, and nearly all
+  // others in that corner agree.
+  int min_iterations = 20;
   double max_error = 3.0;     // pixels, an inlier's reprojection error
   double confidence = 0.999;  // stops once this sure to have had a good sample
   int min_inliers = 10;
