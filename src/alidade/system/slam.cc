@@ -235,6 +235,10 @@ void Slam::Impl::Finish(double limit) {
   EndFrame();
   workers_.Drain(limit);
   if (LeavesUnknownScale()) workers_.Drain(limit);
+  if (state_ == TrackState::kTracking && young_.WantsGlance(Index()) && young_.StoodStill()) {
+    GiveUpStart("something moves, the camera seems to stand still");
+    workers_.Drain(limit);
+  }
   // All that was seen has a say now. Not where time is short.
   for (int i = 0; i < kLastQuestions && settings_.refine.enabled && !std::isfinite(limit); ++i) {
     workers_.AskForCamera();

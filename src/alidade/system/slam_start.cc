@@ -20,7 +20,9 @@ TrackResult Slam::Impl::Start(const std::shared_ptr<Frame>& frame) {
   }
   if (movers_.on()) {
     last_.frame = std::make_shared<Frame>(*frame);
+    const cv::Mat glance = frame->glance;
     *frame = KeypointSubset(*frame, MappableKeypoints(*frame), camera_);
+    frame->glance = glance;
   }
   const bool started = settings_.sensor == Sensor::kMono ? StartWithMotion(frame, result)
                                                          : StartWithDepth(frame, result);

@@ -10,7 +10,10 @@
 namespace alidade {
 
 YoungMap::YoungMap(const Camera& camera, const SlamSettings& settings, Workers& workers)
-    : settings_(settings), workers_(workers), start_(camera, settings.start) {}
+    : settings_(settings),
+      workers_(workers),
+      start_(camera, settings.start),
+      least_motion_(settings.start.min_still_motion * camera.width) {}
 
 std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame>& frame) {
   const auto views = start_.Add(frame);
@@ -36,13 +39,12 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
                                      [](LandmarkId landmark) { return landmark.valid(); }));
   trial_left_ = settings_.start.trial_frames;
   started_ = frame->number;
-  first_glance_ = views->a->glance;
   still_ = moved_ = 0;
-  first_pixels_.clear();
+  views_ = {{views->a->number, views->a->glance, {}}};
   const KeyFrame& parent = *map.Find(keyframe.parent);
   for (size_t i = 0; i < parent.landmarks.size(); ++i) {
     if (parent.landmarks[i].valid())
-      first_pixels_[parent.landmarks[i]] = views->a->keypoints[i].pixel();
+      views_[0].pixels[parent.landmarks[i]] = views->a->keypoints[i].pixel();
   }
   return Begun{{frame, keyframe.T_camera_world, keyframe.landmarks, begun_points_, {}},
                id,
@@ -66,27 +68,42 @@ bool YoungMap::IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapsh
 }
 
 bool YoungMap::StandsStill(const PlacedFrame& placed) {
-  constexpr int kFewest = 20;  // landmarks of the first view that must be in sight
   const MonoStartSettings& settings = settings_.start;
-  std::vector<double> motion;
+  View view{placed.frame->number, placed.frame->glance, {}};
   for (size_t i = 0; i < placed.matches.size(); ++i) {
-    const auto first = first_pixels_.find(placed.matches[i]);
-    if (first != first_pixels_.end())
-      motion.push_back((placed.frame->keypoints[i].pixel() - first->second).norm());
+    if (placed.matches[i].valid())
+      view.pixels[placed.matches[i]] = placed.frame->keypoints[i].pixel();
   }
-  // A camera that came back to where it was shows the same picture, too.
-  if (static_cast<int>(motion.size()) < kFewest ||
-      UpperMedian(motion) < settings.min_still_motion * placed.frame->image.cols)
-    return false;
-  const bool stays = StillShare(first_glance_, placed.frame->glance) >= settings.max_still_picture;
-  ++(stays ? still_ : moved_);
+  const View* before = LastBeforeMotion(view.pixels, view.number);
+  if (before) {
+    const bool stays = StillShare(before->glance, view.glance) >= settings.max_still_picture;
+    ++(stays ? still_ : moved_);
+  }
+  views_.push_back(std::move(view));
+  if (views_.size() > size_t{kStillFrames}) views_.erase(views_.begin());
   return still_ >= settings.min_still_frames && still_ > moved_;
+}
+
+// Not an older one: what comes back looks the same, too, and arms before a camera that stands still
+// hide more and more of what was seen first.
+const YoungMap::View* YoungMap::LastBeforeMotion(const Pixels& now, int number) const {
+  constexpr size_t kFewest = 20;  // landmarks that both must show
+  for (auto view = views_.rbegin(); view != views_.rend(); ++view) {
+    if (number - view->number > kStillFrames) break;
+    std::vector<double> motion;
+    for (const auto& [landmark, pixel] : now) {
+      const auto then = view->pixels.find(landmark);
+      if (then != view->pixels.end()) motion.push_back((pixel - then->second).norm());
+    }
+    if (motion.size() >= kFewest && UpperMedian(motion) >= least_motion_) return &*view;
+  }
+  return nullptr;
 }
 
 void YoungMap::SetCamera(const Camera& camera, double focal_sigma) {
   settings_.start.two_view.lens_uncertainty = 3 * focal_sigma;
   start_ = MonoStart(camera, settings_.start);
-  first_pixels_.clear();  // of another camera
+  views_.clear();  // of another camera
 }
 
 void YoungMap::GiveUp() {
@@ -94,6 +111,7 @@ void YoungMap::GiveUp() {
   start_.Reset();
   trial_left_ = 0;
   started_ = -1;
+  views_.clear();
 }
 
 }  // namespace alidade

@@ -6,6 +6,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <vector>
 
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
@@ -42,12 +43,25 @@ class YoungMap {
   // A frame that was placed in the young map. True when frames have shown that the camera stands
   // still: it is said to have moved, and yet the picture behind stays where it was.
   bool StandsStill(const PlacedFrame& placed);
+  // The recording ends while the map is young: whether most frames so far have shown that.
+  bool StoodStill() const { return still_ > moved_; }
   // Of all frames from now on: views kept so far are of no use any more. `focal_sigma`: relative.
   void SetCamera(const Camera& camera, double focal_sigma);
   void GiveUp();  // out of the map, frames placed in it included; begins anew
 
  private:
-  static constexpr int kYoung = 40;  // frames
+  static constexpr int kYoung = 40;       // frames
+  static constexpr int kStillFrames = 8;  // frames at most between two whose pictures are compared
+
+  using Pixels = std::map<LandmarkId, Eigen::Vector2d>;
+  struct View {
+    int number;  // of the frame
+    cv::Mat glance;
+    Pixels pixels;  // where landmarks of the map are seen
+  };
+  // The newest view since which the landmarks now at `now` have moved by least_motion_ (median);
+  // null where there is none.
+  const View* LastBeforeMotion(const Pixels& now, int number) const;
 
   SlamSettings settings_;
   Workers& workers_;
@@ -57,9 +71,10 @@ class YoungMap {
   int begun_points_ = 0;  // landmarks it began with
   MapId map_;
   KeyFrameId keyframes_[2];  // it began with
-  cv::Mat first_glance_;     // of the first of them, and where its landmarks are seen there
-  std::map<LandmarkId, Eigen::Vector2d> first_pixels_;
-  int still_ = 0, moved_ = 0;  // frames since that show the first picture again, and that do not
+  // The first of its keyframes and the frames since, the newest last; a glance is 170 kB.
+  std::vector<View> views_;
+  double least_motion_;        // pixels (start.min_still_motion)
+  int still_ = 0, moved_ = 0;  // frames since that show an earlier picture again, and that do not
 };
 
 }  // namespace alidade

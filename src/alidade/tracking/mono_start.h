@@ -46,11 +46,11 @@ struct MonoStartSettings {
   // What moves hides the rest now and then: after a pair was refused for that, none of the next so
   // many frames begins a map.
   int still_memory = 10;
-  // The same is asked of each frame of a young map in which its first landmarks have moved by so
-  // much of the image's width (median): it is given up when so many of these frames, and more than
-  // half of them, show the picture of the first again.
-  double min_still_motion = 0.02;
-  int min_still_frames = 8;
+  // The same is asked of each frame of a young map and the last one before it since which landmarks
+  // have moved by so much of the image's width (median): it is given up when so many of these
+  // frames, and more than half of them, show the picture of that one again.
+  double min_still_motion = 0.0075;
+  int min_still_frames = 12;
   int trial_frames = 5;      // frames that must confirm the map before it is believed
   double trial_share = 0.3;  // of its points that should be in sight, tracked in each of them
   void Check() const;        // throws Error (usage) naming the field that cannot be
