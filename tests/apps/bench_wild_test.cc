@@ -81,7 +81,8 @@ TEST(BenchWild, TurnsBreakNoScaleAndBeginNoMap) {
     for (const json& run : all["cases"][0]["runs"]) {
       EXPECT_EQ(run["false_poses"], 0) << run;
       if (std::string(name) == "hall") {
-        EXPECT_GT(run["tracked"], 340) << run;  // of 420
+        // Of 420; 382 when frames that were lost before the second map were not placed in it.
+        EXPECT_GT(run["tracked"], 388) << run;
       }
     }
   }

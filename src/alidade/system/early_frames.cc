@@ -40,7 +40,6 @@ void EarlyFrames::Begin(MapId map, int number) {
   }
   map_ = map;
   begun_ = number;
-  missed_ = 0;
 }
 
 void EarlyFrames::Tracked(const Frame& frame, int index) {
@@ -85,6 +84,10 @@ void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapsh
   if (map.Find(near)->frame->number == early.frame->number) {
     log.PlaceLate(early.index, {near, Se3(), map.ScaleOf(near)});
     return;
+  }
+  if (early.before && missed_in_ != early.map) {
+    missed_in_ = early.map;
+    missed_ = 0;
   }
   if (early.before && missed_ >= settings_.most_missed) return;
   const TrackEstimate estimate = tracker.PlaceAgain(early.frame, map, near);

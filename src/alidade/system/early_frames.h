@@ -1,7 +1,7 @@
-// Frames that came before the map knew better: those before one camera's start, which had no pose,
-// and those placed in the first seconds of its map, when two views were all it had. Once the map
-// has settled each is placed in it anew. Holds a bounded number of frames; used by the tracker's
-// thread.
+// Frames that came before the map knew better: those before one camera's start (lost ones included,
+// where another map begins), which had no pose, and those placed in the first seconds of its map,
+// when two views were all it had. Once the map has settled each is placed in it anew. Holds a
+// bounded number of frames; used by the tracker's thread.
 #pragma once
 
 #include <deque>
@@ -18,7 +18,7 @@ class EarlyFrames {
  public:
   explicit EarlyFrames(const EarlyFrameSettings& settings) : settings_(settings) {}
 
-  // `index`: of the frame in the log. A frame without a pose, while a map is to be begun …
+  // `index`: of the frame in the log. A frame without a pose, while a map is or may be begun …
   void Wait(const Frame& frame, int index);
   // … which `map` then is, by frame `number`: the frames that wait are its own from now on.
   void Begin(MapId map, int number);
@@ -50,7 +50,8 @@ class EarlyFrames {
   std::deque<Early> frames_;  // oldest first
   MapId map_;                 // begun last
   int begun_ = 0;             // number of the frame it was begun with
-  int missed_ = 0;            // frames before the start that were not recognised, on end
+  int missed_ = 0;            // frames before the start that were not recognised, on end …
+  MapId missed_in_;           // … in that map
 };
 
 }  // namespace alidade

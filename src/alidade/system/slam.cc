@@ -120,8 +120,8 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   movers_.End(*last_.frame, result);
   Show();
   log_.End();
-  if (settings_.sensor == Sensor::kMono && result.state == TrackState::kTracking) {
-    early_.Tracked(*frame, log_.size() - 1);
+  if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitialising) {
+    if (result.state == TrackState::kTracking) early_.Tracked(*frame, log_.size() - 1);
     PlaceEarly(1, number);
   }
   if (log_.size() % kReanchorFrames == 0) Reanchor();
