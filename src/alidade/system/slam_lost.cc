@@ -40,9 +40,10 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     lost_sighted_ += static_cast<double>(frame->keypoints.size()) >= sighted;
     const bool long_lost = clock_.steady() - lost_since_ >= settings_.new_map_seconds &&
                            lost_sighted_ >= settings_.new_map_frames;
-    if (!long_lost || settings_.localise || workers_.mapping_stopped()) {
+    const bool may_begin = !settings_.localise && !workers_.mapping_stopped();
+    if (!long_lost || !may_begin) {
       // Should another map begin, it may show this place, too.
-      if (settings_.sensor == Sensor::kMono) early_.Wait(*frame, Index());
+      if (settings_.sensor == Sensor::kMono && may_begin) early_.Wait(*frame, Index());
       return WithoutPose("the place was not recognised", frame->time, map);
     }
     LeaveMap();
