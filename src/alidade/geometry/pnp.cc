@@ -30,7 +30,7 @@ double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& m
 
 struct Scored {
   Se3 T_camera_world;
-  double score = 0;  // MSAC's (Torr & Zisserman 2000): of poses with the same inliers, the closer
+  double score = 0;  // MSAC's (Torr & Zisserman 2000)
   int inliers = 0;
 };
 

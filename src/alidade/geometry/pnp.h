@@ -31,7 +31,7 @@ struct PnpSettings {
 
 struct PnpResult {
   bool success = false;
-  Se3 T_camera_world;        // of the best sample, not refined (see optimize/pose_only.h)
+  Se3 T_camera_world;  // of the best sample, refined over its inliers; see optimize/pose_only.h
   std::vector<bool> inlier;  // one for each match
   int inliers = 0;
 };

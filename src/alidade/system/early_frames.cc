@@ -28,6 +28,7 @@ void EarlyFrames::Keep(const Frame& frame, int index, MapId map) {
   if (settings_.most == 0) return;
   auto kept = std::make_shared<Frame>(frame);
   kept->picture = nullptr;
+  kept->glance.release();
   if (static_cast<int>(frames_.size()) >= settings_.most) frames_.pop_front();
   frames_.push_back({std::move(kept), index, map, !map.valid()});
 }

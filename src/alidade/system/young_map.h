@@ -43,8 +43,11 @@ class YoungMap {
   // A frame that was placed in the young map. True when frames have shown that the camera stands
   // still: it is said to have moved, and yet the picture behind stays where it was.
   bool StandsStill(const PlacedFrame& placed);
-  // The recording ends while the map is young: whether most frames so far have shown that.
-  bool StoodStill() const { return still_ > moved_; }
+  // The recording ends while the map is young: whether most frames so far have shown that, and a
+  // third of those that would be asked for.
+  bool StoodStill() const {
+    return still_ > moved_ && 3 * still_ >= settings_.start.min_still_frames;
+  }
   // Of all frames from now on: views kept so far are of no use any more. `focal_sigma`: relative.
   void SetCamera(const Camera& camera, double focal_sigma);
   void GiveUp();  // out of the map, frames placed in it included; begins anew

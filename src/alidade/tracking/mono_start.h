@@ -48,7 +48,8 @@ struct MonoStartSettings {
   int still_memory = 10;
   // The same is asked of each frame of a young map and the last one before it since which landmarks
   // have moved by so much of the image's width (median): it is given up when so many of these
-  // frames, and more than half of them, show the picture of that one again.
+  // frames, and more than half of them, show the picture of that one again; at a recording's end
+  // a third of so many do.
   double min_still_motion = 0.0075;
   int min_still_frames = 12;
   int trial_frames = 5;      // frames that must confirm the map before it is believed
