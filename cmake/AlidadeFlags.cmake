@@ -62,8 +62,9 @@ if(ALIDADE_SANITIZE)
 endif()
 
 # Most of the time a compiler takes here goes into the headers of Eigen and OpenCV and into what is instantiated from
-# them: eight files in one go take little longer than one. Who changes the same file over and over may switch it off.
+# them: sixteen files in one go take little longer than one. Who changes the same file over and over may switch it off.
 option(CMAKE_UNITY_BUILD "Compile several files in one go" ON)
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 16 CACHE STRING "Files compiled in one go, at most")
 
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

@@ -28,14 +28,14 @@ double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& m
   return squared < 1 ? 1 - squared : 0;
 }
 
-struct Scored {
+struct ScoredPose {
   Se3 T_camera_world;
   double score = 0;  // MSAC's (Torr & Zisserman 2000)
   int inliers = 0;
 };
 
-Scored Score(const Camera& camera, const Se3& T_camera_world, std::span<const PointMatch> matches) {
-  Scored scored{T_camera_world};
+ScoredPose Score(const Camera& camera, const Se3& T_camera_world, std::span<const PointMatch> matches) {
+  ScoredPose scored{T_camera_world};
   for (const PointMatch& match : matches) {
     const double gain = Gain(camera, T_camera_world, match);
     scored.score += gain;
@@ -65,10 +65,10 @@ Se3 Step(const Camera& camera, const Se3& T, std::span<const PointMatch> matches
 
 // The best sample's answer is that of three points; all its inliers together know better, and then
 // have more of them (LO-RANSAC, Chum, Matas & Kittler 2003).
-Scored Polish(const Camera& camera, Scored best, std::span<const PointMatch> matches) {
+ScoredPose Polish(const Camera& camera, ScoredPose best, std::span<const PointMatch> matches) {
   constexpr int kSteps = 5;
   for (int k = 0; k < kSteps; ++k) {
-    const Scored scored = Score(camera, Step(camera, best.T_camera_world, matches), matches);
+    const ScoredPose scored = Score(camera, Step(camera, best.T_camera_world, matches), matches);
     if (!(scored.score > best.score)) break;
     best = scored;
   }
@@ -108,7 +108,7 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
   if (count < settings.min_inliers) return result;
 
   Random random(settings.seed);
-  Scored best;
+  ScoredPose best;
   double needed = settings.max_iterations;
   for (int iteration = 0; iteration < settings.max_iterations && iteration < needed; ++iteration) {
     const std::vector<int> sample = random.Sample(3, count);
@@ -118,7 +118,7 @@ PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> 
       rays[k] = camera.Unproject(matches[sample[k]].pixel).normalized();
     }
     for (const Se3& pose : SolveP3p(points, rays)) {
-      const Scored scored = Score(camera, pose, matches);
+      const ScoredPose scored = Score(camera, pose, matches);
       if (scored.score <= best.score) continue;
       best = Polish(camera, scored, matches);
       needed = std::max<double>(

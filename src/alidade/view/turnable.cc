@@ -24,7 +24,7 @@ struct Box {
 // path.
 Box BoxOf(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::Vector3f>& path) {
   constexpr double kLeftOut = 0.02;
-  constexpr float kMargin = 0.25f;  // of the extent, to either side
+  constexpr float kRoomAround = 0.25f;  // of the extent, to either side
   Box box{Eigen::Vector3f::Constant(INFINITY), Eigen::Vector3f::Constant(-INFINITY)};
   std::vector<float> along(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
@@ -33,8 +33,8 @@ Box BoxOf(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::V
     const auto last = static_cast<double>(along.size() - 1);
     const float low = along[static_cast<size_t>(kLeftOut * last)];
     const float high = along[static_cast<size_t>((1 - kLeftOut) * last)];
-    box.low[axis] = low - kMargin * (high - low);
-    box.high[axis] = high + kMargin * (high - low);
+    box.low[axis] = low - kRoomAround * (high - low);
+    box.high[axis] = high + kRoomAround * (high - low);
   }
   for (const Eigen::Vector3f& p : path) {
     box.low = box.low.cwiseMin(p);
