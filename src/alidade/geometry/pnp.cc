@@ -34,7 +34,8 @@ struct ScoredPose {
   int inliers = 0;
 };
 
-ScoredPose Score(const Camera& camera, const Se3& T_camera_world, std::span<const PointMatch> matches) {
+ScoredPose Score(const Camera& camera, const Se3& T_camera_world,
+                 std::span<const PointMatch> matches) {
   ScoredPose scored{T_camera_world};
   for (const PointMatch& match : matches) {
     const double gain = Gain(camera, T_camera_world, match);

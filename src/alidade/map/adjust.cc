@@ -2,22 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
+#include "alidade/map/view.h"
 
 namespace alidade {
 namespace {
 
 // Noise of what one camera saw, as a share of what is assumed: the median of chi² with 2 degrees of
 // freedom is 2 ln 2. 1 where it is larger (or nothing was seen): then the state is not near enough.
-double NoiseShare(const BundleProblem& problem, double least) {
+double NoiseShare(const BundleProblem& problem, int cameras, double least) {
   const double median_of_chi2 = 2 * std::numbers::ln2;
   std::vector<double> chi2;
   chi2.reserve(problem.observations.size());
   for (const BundleObservation& o : problem.observations) {
+    if (o.camera >= cameras) continue;  // assumed
     chi2.push_back(
         ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o));
   }
@@ -26,6 +29,47 @@ double NoiseShare(const BundleProblem& problem, double least) {
 }
 
 double Gate(const BundleObservation& o) { return std::isnan(o.pixel.z()) ? 5.991 : 7.815; }
+
+// Whether its depth can hardly be told: no ray to it is farther than `degrees` off the reference's.
+bool HasNoParallax(const MapSnapshot& map, const Landmark& landmark, const KeyFrame& reference,
+                   double degrees) {
+  const double least_cosine = std::cos(degrees * std::numbers::pi / 180);
+  const Eigen::Vector3d ray = (landmark.p_world - reference.Centre()).normalized();
+  return std::all_of(
+      landmark.observations.begin(), landmark.observations.end(), [&](const Observation& o) {
+        const KeyFrame* other = map.Find(o.keyframe);
+        return !other || (landmark.p_world - other->Centre()).normalized().dot(ray) > least_cosine;
+      });
+}
+
+// Cameras that are not there, each beside a keyframe, to its right by its median depth.
+struct BesideCameras {
+  IdMap<KeyFrameId, int> index;
+  int Of(const MapSnapshot& map, const KeyFrame& keyframe, BundleProblem& problem) {
+    if (const int* known = index.Find(keyframe.id)) return *known;
+    Se3 T = keyframe.T_camera_world;
+    T.t.x() -= MedianDepth(map, keyframe).value_or(1);
+    problem.T_camera_world.push_back(T);
+    problem.fixed.push_back(1);
+    return index[keyframe.id] = static_cast<int>(problem.T_camera_world.size()) - 1;
+  }
+};
+
+// The depth z of the problem's last point in its reference keyframe, with a standard deviation of
+// z `error`, as what a camera beside it would see: a disparity of d = f b / z, so that with a
+// baseline b near z the disparity's is σ_d = d σ_z / z = f error.
+void AssumeDepth(const MapSnapshot& map, const KeyFrame& reference, double error,
+                 BesideCameras& beside, BundleProblem& problem) {
+  const int camera = beside.Of(map, reference, problem);
+  const Eigen::Vector3d p = problem.T_camera_world[camera] * problem.points.back();
+  if (!(p.z() > 0)) return;
+  const Eigen::Vector2d pixel = problem.camera.Project(p);
+  const double sigma = error * problem.camera.fx;
+  problem.observations.push_back({camera,
+                                  static_cast<int>(problem.points.size()) - 1,
+                                  {pixel.x(), pixel.y(), std::numeric_limits<double>::quiet_NaN()},
+                                  1 / (sigma * sigma)});
+}
 
 }  // namespace
 
@@ -53,6 +97,8 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   std::sort(landmarks.begin(), landmarks.end());
   landmarks.erase(std::unique(landmarks.begin(), landmarks.end()), landmarks.end());
 
+  const bool one_camera = camera.StereoBaseline() <= 0;
+  BesideCameras beside;
   std::vector<LandmarkId> points;
   for (LandmarkId id : landmarks) {
     const Landmark* landmark = map.Find(id);
@@ -68,12 +114,17 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     }
     points.push_back(id);
     problem.points.push_back(landmark->p_world);
+    if (!one_camera || landmark->scale_known || settings.assumed_depth_error == 0) continue;
+    const KeyFrame* reference = map.Find(landmark->reference);
+    if (reference && HasNoParallax(map, *landmark, *reference, settings.assumed_depth_degrees))
+      AssumeDepth(map, *reference, settings.assumed_depth_error, beside, problem);
   }
 
   Adjustment result;
   BundleSettings bundle = settings.bundle;
-  if (camera.StereoBaseline() <= 0) {
-    const double share = NoiseShare(problem, settings.least_noise);
+  if (one_camera) {
+    const double share =
+        NoiseShare(problem, static_cast<int>(cameras.size()), settings.least_noise);
     bundle.huber_mono *= share;
     bundle.redescending = bundle.redescending || share < 1;
   }
@@ -83,6 +134,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   for (size_t i = 0; i < points.size(); ++i)
     result.points.push_back({points[i], problem.points[i]});
   for (const BundleObservation& o : problem.observations) {
+    if (o.camera >= static_cast<int>(cameras.size())) continue;  // assumed
     const double chi2 =
         ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
     if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});

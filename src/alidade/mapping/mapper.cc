@@ -4,10 +4,12 @@
 
 #include "alidade/base/log_odds.h"
 #include "alidade/base/median.h"
+#include "alidade/map/view.h"
 #include "alidade/mapping/fuse.h"
 #include "alidade/mapping/limit.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/mapping/triangulate.h"
+#include "alidade/mapping/turn.h"
 
 namespace alidade {
 namespace {
@@ -213,8 +215,11 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     at_known_distance = AtKnownDistance(map, *map.Find(id), camera_, settings_);
     scale_found = ScaleFoundFrom(map, *map.Find(id), at_known_distance);
   }
-  const std::vector<NewLandmark> made =
-      TriangulateNew(map, id, at_known_distance, camera_, settings_);
+  std::vector<NewLandmark> made = TriangulateNew(map, id, at_known_distance, camera_, settings_);
+  if (!has_depth_) {
+    const std::vector<NewLandmark> turned = MapTurn(map, id, made, camera_, settings_);
+    made.insert(made.end(), turned.begin(), turned.end());
+  }
   report.triangulated = static_cast<int>(made.size());
   map = map_.Commit([&](MapCommit& commit) {
     for (LandmarkId found : scale_found) commit.Edit(found)->scale_known = true;
@@ -266,22 +271,26 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
 
 MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
   const MapSnapshot map = map_.Snapshot();
-  const KeyFrame* keyframe = map.Find(id);
-  if (has_depth_ || !keyframe) return {};
-  const double now = keyframe->frame->time;
-  if (CountOfKnownScale(map, *keyframe) >= settings_.min_known_scale) {
-    scale_unknown_from_ = {};
-    return {};
+  const KeyFrame* newest = map.Find(id);
+  if (has_depth_ || !newest) return {};
+  // Up the spanning tree to what is known.
+  std::vector<const KeyFrame*> unknown;
+  const KeyFrame* known = newest;
+  while (known && CountOfKnownScale(map, *known) < settings_.min_known_scale) {
+    unknown.push_back(known);
+    known = map.Find(known->parent);
   }
-  if (!map.Find(scale_unknown_from_) || map.MapOf(scale_unknown_from_) != keyframe->map) {
-    scale_unknown_from_ = id;
-    scale_unknown_since_ = now;
-  }
-  if (now - scale_unknown_since_ < settings_.max_unknown_scale_seconds) return {};
+  if (unknown.empty() || !known) return {};
+  const double seconds = newest->frame->time - unknown.back()->frame->time;
+  if (seconds < settings_.max_unknown_scale_seconds) return {};
+  const auto elsewhere = std::find_if(unknown.rbegin(), unknown.rend(), [&](const KeyFrame* at) {
+    const double moved = (at->Centre() - known->Centre()).norm();
+    return moved > settings_.max_unknown_scale_motion * MedianDepth(map, *at).value_or(1);
+  });
+  if (elsewhere == unknown.rend()) return {};
   MapId split;
-  map_.Commit([&](MapCommit& commit) { split = commit.Split(scale_unknown_from_); });
-  scale_unknown_from_ = {};
-  return split == keyframe->map ? MapId{} : split;
+  map_.Commit([&](MapCommit& commit) { split = commit.Split((*elsewhere)->id); });
+  return split == newest->map ? MapId{} : split;
 }
 
 void Mapper::Remove(std::span<const KeyFrameId> keyframes) {

@@ -76,8 +76,6 @@ class Mapper {
   MapperSettings settings_;
   bool has_depth_;
   std::vector<LandmarkId> young_;  // on trial
-  KeyFrameId scale_unknown_from_;  // all keyframes since know too little of their scale
-  double scale_unknown_since_ = 0;
   std::mutex tallies_mutex_;
   IdMap<LandmarkId, SightingTally> tallies_;
   std::vector<LandmarkId> doubted_;  // since the last Process()

@@ -34,12 +34,23 @@ struct MapperSettings {
   double max_baseline_error = 0.04;
   // Landmarks of known scale a keyframe must see for nothing else to be mapped beside them.
   int enough_known_scale = 300;
-  // Fewer do not hold a keyframe's scale. After so many seconds of such keyframes they are split
-  // off (MapCommit::Split()) and given up: the camera is found again at a known place, or begins
-  // another map. A short while is bridged: a head that shakes comes back to what it knows. Counted
-  // anew when the oldest of them is culled as redundant: where the camera stays, little is new.
+  // Fewer do not hold a keyframe's scale. Where the camera has moved since by more than so much of
+  // the median depth, and so many seconds have gone by, what was mapped from there on is split off
+  // (MapCommit::Split()) and given up: the camera is found again at a known place, or begins
+  // another map. What was mapped before stays: on the spot a camera's place is known though its
+  // scale is not. A short while is bridged: a head that shakes comes back to what it knows.
   int min_known_scale = 20;
   double max_unknown_scale_seconds = 1.5;
+  double max_unknown_scale_motion = 0.07;
+
+  // A camera that turns on the spot past little that is known (MapTurn()).
+  int turn_landmarks = 150;  // with fewer in a keyframe, others without a depth are made; 0: never
+  double turn_radius = 5;    // pixels on level 0 between where such a one is expected and is seen
+  // Those of unknown scale whose rays to the keyframes that see them are all within so many degrees
+  // of each other are adjusted with their depth as it is, give or take a share of it: by their
+  // noise alone it would wander, and all that hangs on them would shrink or blow up with it.
+  double assumed_depth_error = 0.5;
+  double assumed_depth_degrees = 0.5;
 
   // Fusion of duplicates.
   int fuse_keyframes = 15;   // covisible keyframes landmarks are projected into

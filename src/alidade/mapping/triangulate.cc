@@ -100,6 +100,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
   return kept;
 }
 
+}  // namespace
+
 bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
           const Eigen::Vector3d& p_world, const MapperSettings& settings) {
   const Eigen::Vector3d p = keyframe.T_camera_world * p_world;
@@ -107,8 +109,6 @@ bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoi
   const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
   return (camera.Project(p) - keypoint.pixel()).squaredNorm() <= kChiSquared2 * sigma * sigma;
 }
-
-}  // namespace
 
 std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
                                         const std::vector<KeyFrameId>& at_known_distance,

@@ -16,6 +16,11 @@ struct NewLandmark {
   bool scale_known = true;
 };
 
+// Whether a point projects to where a keyframe has the keypoint: chi² with 2 degrees of freedom, 95
+// %.
+bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
+          const Eigen::Vector3d& p_world, const MapperSettings& settings);
+
 // Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible
 // keyframes and triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A
 // keypoint is used at most once. One camera: keyframes at a known distance come first, the

@@ -67,6 +67,11 @@ void VisitMapping(Settings& m, Visit&& visit) {
   visit("mapper.enough_known_scale", m.enough_known_scale);
   visit("mapper.min_known_scale", m.min_known_scale);
   visit("mapper.max_unknown_scale_seconds", m.max_unknown_scale_seconds);
+  visit("mapper.max_unknown_scale_motion", m.max_unknown_scale_motion);
+  visit("mapper.turn_landmarks", m.turn_landmarks);
+  visit("mapper.turn_radius", m.turn_radius);
+  visit("mapper.assumed_depth_error", m.assumed_depth_error);
+  visit("mapper.assumed_depth_degrees", m.assumed_depth_degrees);
   visit("mapper.fuse_keyframes", m.fuse_keyframes);
   visit("mapper.fuse_radius", m.fuse_radius);
   visit("mapper.fuse_distance", m.fuse_distance);

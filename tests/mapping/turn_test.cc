@@ -1,0 +1,147 @@
+// One camera that turns past what it does not know: landmarks without a depth, and when they go.
+#include "alidade/mapping/turn.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "alidade/geometry/se3.h"
+#include "alidade/map/view.h"
+#include "alidade/mapping/local_window.h"
+#include "alidade/mapping/mapper.h"
+#include "support/synthetic_map.h"
+
+namespace alidade::turn_test {
+namespace {
+
+// Views from one place, each turned 1.5° further, or `step` metres to the right as well.
+SyntheticWorld Turning(int views, double noise_px, double step = 0) {
+  SyntheticWorldMaker maker({.points = 600, .noise_px = noise_px});
+  for (int i = 0; i < views; ++i)
+    maker.Look(Se3{ExpSo3({0, 0.026 * i, 0}), {step * i, 0, 0}}.Inverse());
+  return maker.Take();
+}
+
+TEST(MapTurn, MapsWhatTwoViewsFromOnePlaceShare) {
+  const SyntheticWorld world = Turning(5, 0.5);
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {.known = 0.2}, store);
+  const MapSnapshot map = store.Snapshot();
+  const KeyFrame& last = *map.Find(made.keyframes.back());
+  const double depth = *MedianDepth(map, last);
+  const std::vector<NewLandmark> turned = MapTurn(map, last.id, {}, world.camera, {});
+  EXPECT_GT(turned.size(), 150u);
+  std::set<int> used;
+  for (const NewLandmark& landmark : turned) {
+    EXPECT_FALSE(landmark.scale_known);
+    EXPECT_EQ(landmark.second.keyframe, last.id);
+    EXPECT_TRUE(used.insert(landmark.second.keypoint).second);
+    EXPECT_EQ(world.views[landmark.first.keyframe.value].points[landmark.first.keypoint],
+              world.views.back().points[landmark.second.keypoint]);
+    EXPECT_NEAR((last.T_camera_world * landmark.p_world).z(), depth, 1e-9);
+    for (const Observation& o : {landmark.first, landmark.second})
+      EXPECT_FALSE(map.Find(o.keyframe)->landmarks[o.keypoint].valid());
+  }
+  // What was triangulated is left alone.
+  const std::vector<NewLandmark> half(turned.begin(), turned.begin() + 50);
+  for (const NewLandmark& landmark : MapTurn(map, last.id, half, world.camera, {})) {
+    for (const NewLandmark& taken : half)
+      EXPECT_NE(landmark.second.keypoint, taken.second.keypoint);
+  }
+}
+
+TEST(MapTurn, LeavesAloneWhatIsWellKnownAndWhatCanBeTriangulated) {
+  MapperSettings settings;
+  {
+    const SyntheticWorld world = Turning(5, 0.5);
+    MapStore store;
+    const SyntheticMap made = FillMap(world, {.known = 0.8}, store);
+    EXPECT_TRUE(
+        MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
+    settings.turn_landmarks = 1000;
+    EXPECT_FALSE(
+        MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
+  }
+  const SyntheticWorld world = Turning(5, 0.5, 0.1);  // 2 % of the depth
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {.known = 0.2}, store);
+  EXPECT_TRUE(
+      MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
+}
+
+// Standard deviation of log depth by true log depth, in the first view, after an adjustment.
+double WanderOf(double assumed_depth_error) {
+  const SyntheticWorld world = Turning(6, 0.5);
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {}, store);
+  MapSnapshot map = store.Commit([&](MapCommit& commit) {
+    for (LandmarkId id : made.landmarks) {
+      if (id.valid()) commit.Edit(id)->scale_known = false;
+    }
+  });
+  MapperSettings settings;
+  settings.assumed_depth_error = assumed_depth_error;
+  const Adjustment adjusted =
+      AdjustWindow(map, made.keyframes.back(), world.camera, settings, nullptr);
+  std::vector<double> off;
+  for (const auto& [id, p_world] : adjusted.points)
+    off.push_back(std::log(p_world.norm() / map.Find(id)->p_world.norm()));
+  double mean = 0, square = 0;
+  for (double x : off) mean += x / static_cast<double>(off.size());
+  for (double x : off) square += (x - mean) * (x - mean) / static_cast<double>(off.size());
+  return std::sqrt(square);
+}
+
+TEST(AdjustWindow, LetsNoDepthWanderThatNothingTells) {
+  EXPECT_LT(WanderOf(0.5), 0.05);
+  EXPECT_GT(WanderOf(0), 0.3);
+}
+
+// A camera that looks out of a ring, 12° further each time, and knows the scale of what the first
+// four views see alone. Which keyframes are in a map of their own after the last was mapped?
+std::vector<bool> SplitOff(double radius) {
+  const SyntheticWorld world =
+      MakeSyntheticWorld({.points = 2500, .cameras = 14, .ring = radius, .lap = 30});
+  MapStore store;
+  const SyntheticMap made = FillMap(world, {}, store);
+  store.Commit([&](MapCommit& commit) {
+    for (LandmarkId id : made.landmarks) {
+      if (!id.valid()) continue;
+      const auto& seen = commit.Find(id)->observations;
+      const bool late = std::any_of(seen.begin(), seen.end(), [&](const Observation& o) {
+        return o.keyframe.value > made.keyframes[3].value;
+      });
+      if (late) commit.Edit(id)->scale_known = false;
+    }
+  });
+  MapperSettings settings;
+  settings.max_unknown_scale_seconds = 0.2;  // 6 frames
+  Mapper mapper(store, world.camera, settings);
+  const MapperReport report = mapper.Process(made.keyframes.back());
+  const MapSnapshot map = store.Snapshot();
+  std::vector<bool> split;
+  for (KeyFrameId id : made.keyframes) {
+    if (map.Find(id)) split.push_back(report.split.valid() && map.MapOf(id) == report.split);
+  }
+  return split;
+}
+
+TEST(Mapper, GivesUpWhatWasMappedAwayFromTheKnownWithoutAScale) {
+  const std::vector<bool> split = SplitOff(0.4);
+  ASSERT_GT(split.size(), 8u);
+  EXPECT_TRUE(split.back());
+  // On: what was mapped before the camera had moved on stays.
+  for (size_t i = 0; i < 5; ++i) EXPECT_FALSE(split[i]) << i;
+  EXPECT_TRUE(std::is_sorted(split.begin(), split.end()));
+}
+
+TEST(Mapper, KeepsWhatWasMappedOnTheSpotWithoutAScale) {
+  const std::vector<bool> split = SplitOff(0.05);
+  EXPECT_EQ(std::count(split.begin(), split.end(), true), 0);
+}
+
+}  // namespace
+}  // namespace alidade::turn_test
