@@ -28,7 +28,7 @@ SyntheticWorld Turning(int views, double noise_px, double step = 0) {
 TEST(MapTurn, MapsWhatTwoViewsFromOnePlaceShare) {
   const SyntheticWorld world = Turning(5, 0.5);
   MapStore store;
-  const SyntheticMap made = FillMap(world, {.known = 0.2}, store);
+  const SyntheticMap made = FillMap(world, {.known = 0.08}, store);
   const MapSnapshot map = store.Snapshot();
   const KeyFrame& last = *map.Find(made.keyframes.back());
   const double depth = *MedianDepth(map, last);
@@ -36,7 +36,7 @@ TEST(MapTurn, MapsWhatTwoViewsFromOnePlaceShare) {
   EXPECT_GT(turned.size(), 150u);
   std::set<int> used;
   for (const NewLandmark& landmark : turned) {
-    EXPECT_FALSE(landmark.scale_known);
+    EXPECT_TRUE(landmark.depth_assumed && !landmark.scale_known);
     EXPECT_EQ(landmark.second.keyframe, last.id);
     EXPECT_TRUE(used.insert(landmark.second.keypoint).second);
     EXPECT_EQ(world.views[landmark.first.keyframe.value].points[landmark.first.keypoint],
@@ -67,9 +67,8 @@ TEST(MapTurn, LeavesAloneWhatIsWellKnownAndWhatCanBeTriangulated) {
   }
   const SyntheticWorld world = Turning(5, 0.5, 0.1);  // 2 % of the depth
   MapStore store;
-  const SyntheticMap made = FillMap(world, {.known = 0.2}, store);
-  EXPECT_TRUE(
-      MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
+  const SyntheticMap made = FillMap(world, {.known = 0.08}, store);
+  EXPECT_TRUE(MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
 }
 
 // Standard deviation of log depth by true log depth, in the first view, after an adjustment.
@@ -79,7 +78,7 @@ double WanderOf(double assumed_depth_error) {
   const SyntheticMap made = FillMap(world, {}, store);
   MapSnapshot map = store.Commit([&](MapCommit& commit) {
     for (LandmarkId id : made.landmarks) {
-      if (id.valid()) commit.Edit(id)->scale_known = false;
+      if (id.valid()) commit.Edit(id)->depth_assumed = true;
     }
   });
   MapperSettings settings;

@@ -114,7 +114,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     }
     points.push_back(id);
     problem.points.push_back(landmark->p_world);
-    if (!one_camera || landmark->scale_known || settings.assumed_depth_error == 0) continue;
+    if (!one_camera || !landmark->depth_assumed || settings.assumed_depth_error == 0) continue;
     const KeyFrame* reference = map.Find(landmark->reference);
     if (reference && HasNoParallax(map, *landmark, *reference, settings.assumed_depth_degrees))
       AssumeDepth(map, *reference, settings.assumed_depth_error, beside, problem);

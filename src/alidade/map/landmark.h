@@ -33,7 +33,8 @@ struct Landmark {
   // One camera: whether it was ever measured from keyframes whose distance from each other is known
   // (mapping/scale_hold.h). Not saved: those of a loaded map count as known.
   bool scale_known = true;
-  KeyFrameId born;  // newest keyframe when it was made: young ones are on trial
+  bool depth_assumed = false;  // MapTurn() made it, that knows no depth. Not saved either
+  KeyFrameId born;             // newest keyframe when it was made: young ones are on trial
 };
 
 }  // namespace alidade

@@ -230,6 +230,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
       landmark.reference = landmark.born = id;
       landmark.observations = {entry.first, entry.second};
       landmark.scale_known = entry.scale_known;
+      landmark.depth_assumed = entry.depth_assumed;
       const LandmarkId added = commit.Add(std::move(landmark));
       if (commit.Find(added)->observations.size() < 2) {
         commit.Remove(added);

@@ -44,13 +44,13 @@ struct MapperSettings {
   double max_unknown_scale_motion = 0.07;
 
   // A camera that turns on the spot past little that is known (MapTurn()).
-  int turn_landmarks = 150;  // with fewer in a keyframe, others without a depth are made; 0: never
-  double turn_radius = 5;    // pixels on level 0 between where such a one is expected and is seen
-  // Those of unknown scale whose rays to the keyframes that see them are all within so many degrees
-  // of each other are adjusted with their depth as it is, give or take a share of it: by their
-  // noise alone it would wander, and all that hangs on them would shrink or blow up with it.
+  int turn_landmarks = 60;  // with fewer in a keyframe, others without a depth are made; 0: never
+  double turn_radius = 5;   // pixels on level 0 between where such a one is expected and is seen
+  // While the rays from the keyframes that see one are within so many degrees of each other, it is
+  // adjusted with its depth as it is, give or take a share of it: by the noise alone it would
+  // wander, and all that hangs on it would shrink or blow up with it.
   double assumed_depth_error = 0.5;
-  double assumed_depth_degrees = 0.5;
+  double assumed_depth_degrees = 1;
 
   // Fusion of duplicates.
   int fuse_keyframes = 15;   // covisible keyframes landmarks are projected into

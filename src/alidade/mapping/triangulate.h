@@ -14,6 +14,7 @@ struct NewLandmark {
   Eigen::Vector3d p_world;
   Observation first, second;
   bool scale_known = true;
+  bool depth_assumed = false;  // by MapTurn()
 };
 
 // Whether a point projects to where a keyframe has the keypoint: chi² with 2 degrees of freedom, 95

@@ -84,7 +84,7 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
       if (i < 0 || used[i]) continue;
       if (!Fits(camera, *b, b->frame->keypoints[j], assumed(i), settings)) continue;
       used[i] = 1;
-      turned.push_back({assumed(i), {b->id, j}, {a.id, i}, false});
+      turned.push_back({assumed(i), {b->id, j}, {a.id, i}, false, true});
     }
   }
   return turned;
