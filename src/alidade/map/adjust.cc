@@ -55,9 +55,9 @@ struct BesideCameras {
   }
 };
 
-// The depth z of the problem's last point in its reference keyframe, with a standard deviation of
-// z `error`, as what a camera beside it would see: a disparity of d = f b / z, so that with a
-// baseline b near z the disparity's is σ_d = d σ_z / z = f error.
+// The depth z of the problem's last point in its reference keyframe as that is to start with, with
+// a standard deviation of z `error`, as what a camera beside it would see: a disparity of d = f b /
+// z, so that with a baseline b near z the disparity's is σ_d = d σ_z / z = f error.
 void AssumeDepth(const MapSnapshot& map, const KeyFrame& reference, double error,
                  BesideCameras& beside, BundleProblem& problem) {
   const int camera = beside.Of(map, reference, problem);

@@ -23,10 +23,11 @@ struct AdjustSettings {
   // the loss is Geman & McClure's (BundleSettings::redescending). 1: Huber's loss, as assumed; so
   // after a loop, where the whole map is to move: from afar the other one lets the loop itself go.
   double least_noise = 1;
-  // Landmarks of assumed depth (Landmark::depth_assumed) that all keyframes see within so many
-  // degrees of the first are adjusted with their depth as it is to start with, a standard deviation
-  // of this share of it. 0: as all others.
-  double assumed_depth_error = 0;
+  // Landmarks of assumed depth (Landmark::depth_assumed) are held where they are to start with, by
+  // a standard deviation of this share of their depth, as long as the rays from all keyframes that
+  // see them are within so many degrees of the one from their reference. It is subject to the loss
+  // as all else is. 0: adjusted as all others; so they would wander, by the noise alone.
+  double assumed_depth_error = 0.5;
   double assumed_depth_degrees = 1;
 };
 

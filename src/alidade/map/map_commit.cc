@@ -110,7 +110,8 @@ void MapCommit::Remove(LandmarkId id) {
 
 void MapCommit::Replace(LandmarkId old, LandmarkId by) {
   if (old == by || !Find(old) || !Find(by)) return;
-  if (Find(old)->scale_known && !Find(by)->scale_known) Edit(by)->scale_known = true;
+  if (Find(old)->scale_known && !Find(by)->scale_known && !Find(by)->depth_assumed)
+    Edit(by)->scale_known = true;
   const std::vector<Observation> observations = Find(old)->observations;
   for (const Observation& seen : observations) {
     RemoveObservation(old, seen.keyframe);

@@ -274,16 +274,26 @@ MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
   const MapSnapshot map = map_.Snapshot();
   const KeyFrame* newest = map.Find(id);
   if (has_depth_ || !newest) return {};
-  // Up the spanning tree to what is known.
+  const auto knows = [&](const KeyFrame& keyframe) {
+    return CountOfKnownScale(map, keyframe) >= settings_.min_known_scale;
+  };
+  // What was mapped one after the other without a scale, newest first: a split takes all from one
+  // keyframe on. Anew when the oldest is culled: where the camera stays, little is new.
   std::vector<const KeyFrame*> unknown;
-  const KeyFrame* known = newest;
-  while (known && CountOfKnownScale(map, *known) < settings_.min_known_scale) {
-    unknown.push_back(known);
-    known = map.Find(known->parent);
+  for (uint32_t i = id.value + 1; i-- > 0;) {
+    const KeyFrame* keyframe = map.Find(KeyFrameId{i});
+    if (!keyframe || keyframe->map != newest->map) continue;
+    if (knows(*keyframe)) break;
+    unknown.push_back(keyframe);
   }
-  if (unknown.empty() || !known) return {};
-  const double seconds = newest->frame->time - unknown.back()->frame->time;
-  if (seconds < settings_.max_unknown_scale_seconds) return {};
+  if (unknown.empty() ||
+      newest->frame->time - unknown.back()->frame->time < settings_.max_unknown_scale_seconds)
+    return {};
+  // Where the camera left what it knows: up the spanning tree, as it may have been found again
+  // among what was mapped without a scale before.
+  const KeyFrame* known = newest;
+  while (known && !knows(*known)) known = map.Find(known->parent);
+  if (!known) return {};
   const auto elsewhere = std::find_if(unknown.rbegin(), unknown.rend(), [&](const KeyFrame* at) {
     const double moved = (at->Centre() - known->Centre()).norm();
     return moved > settings_.max_unknown_scale_motion * MedianDepth(map, *at).value_or(1);

@@ -70,7 +70,7 @@ std::vector<LandmarkId> ScaleFoundFrom(const MapSnapshot& map, const KeyFrame& k
   std::vector<LandmarkId> found;
   for (LandmarkId id : keyframe.landmarks) {
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (!landmark || landmark->scale_known) continue;
+    if (!landmark || landmark->scale_known || landmark->depth_assumed) continue;
     const bool seen = std::any_of(
         landmark->observations.begin(), landmark->observations.end(), [&](const Observation& at) {
           return std::find(others.begin(), others.end(), at.keyframe) != others.end();

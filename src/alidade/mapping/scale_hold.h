@@ -29,7 +29,8 @@ std::vector<KeyFrameId> AtKnownDistance(const MapSnapshot& map, const KeyFrame& 
 // Landmarks of the keyframe whose scale is known.
 int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe);
 
-// Landmarks of the keyframe whose scale was not known and is now: also seen from `others`.
+// Landmarks of the keyframe whose scale was not known and is now: also seen from `others`, and not
+// made with an assumed depth.
 std::vector<LandmarkId> ScaleFoundFrom(const MapSnapshot& map, const KeyFrame& keyframe,
                                        const std::vector<KeyFrameId>& others);
 

@@ -28,9 +28,11 @@ void MapperSettings::Check() const {
   require(enough_known_scale >= 0 && min_known_scale >= 0, "*_known_scale cannot be negative");
   require(max_unknown_scale_seconds >= 0, "max_unknown_scale_seconds cannot be negative");
   require(max_unknown_scale_motion >= 0, "max_unknown_scale_motion cannot be negative");
-  require(turn_landmarks >= 0 && turn_radius > 0, "turn_* cannot be negative");
-  require(assumed_depth_error >= 0 && assumed_depth_degrees >= 0,
-          "assumed_depth_* cannot be negative");
+  require(turn_landmarks >= 0, "turn_landmarks cannot be negative");
+  require(turn_radius > 0, "turn_radius must be positive");
+  require(assumed_depth_error >= 0, "assumed_depth_error cannot be negative");
+  require(assumed_depth_degrees >= 0 && assumed_depth_degrees < 90,
+          "assumed_depth_degrees must lie in [0, 90)");
   require(window_shared >= 1, "window_shared must be positive");
   require(window_iterations_mono >= 1, "window_iterations_mono must be positive");
   require(least_noise > 0 && least_noise <= 1, "least_noise must be above 0 and at most 1");

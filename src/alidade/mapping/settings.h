@@ -41,13 +41,13 @@ struct MapperSettings {
   // scale is not. A short while is bridged: a head that shakes comes back to what it knows.
   int min_known_scale = 20;
   double max_unknown_scale_seconds = 1.5;
-  double max_unknown_scale_motion = 0.07;
+  double max_unknown_scale_motion = 0.07;  // at 0.1 wrong poses stay, at 0.05 turns go
 
-  // A camera that turns on the spot past little that is known (MapTurn()).
+  // A camera that turns on the spot past little that is known (MapTurn()). By match_scale, too.
   int turn_landmarks = 60;  // with fewer in a keyframe, others without a depth are made; 0: never
-  double turn_radius = 5;   // pixels on level 0 between where such a one is expected and is seen
-  // While the rays from the keyframes that see one are within so many degrees of each other, it is
-  // adjusted with its depth as it is, give or take a share of it: by the noise alone it would
+  double turn_radius = 5;   // pixels on level 0 within which nothing else may look like it
+  // While the rays from all that see one are within so many degrees of its reference keyframe's, it
+  // is adjusted with its depth as it is, give or take a share of it: by the noise alone it would
   // wander, and all that hangs on it would shrink or blow up with it.
   double assumed_depth_error = 0.5;
   double assumed_depth_degrees = 1;

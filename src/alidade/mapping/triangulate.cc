@@ -102,8 +102,8 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
 
 }  // namespace
 
-bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
-          const Eigen::Vector3d& p_world, const MapperSettings& settings) {
+bool FitsKeypoint(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
+                  const Eigen::Vector3d& p_world, const MapperSettings& settings) {
   const Eigen::Vector3d p = keyframe.T_camera_world * p_world;
   if (p.z() <= 0) return false;
   const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
@@ -163,7 +163,8 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
       const Keypoint &key_a = a.frame->keypoints[partner.a], &key_b = b.frame->keypoints[partner.b];
       const auto p =
           Triangulate(camera, a.T_camera_world, key_a.pixel(), b.T_camera_world, key_b.pixel());
-      if (!p || !Fits(camera, a, key_a, *p, settings) || !Fits(camera, b, key_b, *p, settings))
+      if (!p || !FitsKeypoint(camera, a, key_a, *p, settings) ||
+          !FitsKeypoint(camera, b, key_b, *p, settings))
         continue;
       const Eigen::Vector3d ray_a = *p - centre_a, ray_b = *p - centre_b;
       const double distance_a = ray_a.norm(), distance_b = ray_b.norm();

@@ -17,10 +17,10 @@ struct NewLandmark {
   bool depth_assumed = false;  // by MapTurn()
 };
 
-// Whether a point projects to where a keyframe has the keypoint: chi² with 2 degrees of freedom, 95
-// %.
-bool Fits(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
-          const Eigen::Vector3d& p_world, const MapperSettings& settings);
+// Whether a point projects to where a keyframe has the keypoint: 95 % of chi² with 2 degrees of
+// freedom.
+bool FitsKeypoint(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
+                  const Eigen::Vector3d& p_world, const MapperSettings& settings);
 
 // Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible
 // keyframes and triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A

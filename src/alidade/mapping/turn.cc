@@ -58,18 +58,18 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
 
   const double depth = MedianDepth(map, a).value_or(1);
   const Se3 T_world_a = a.T_camera_world.Inverse();
+  const auto assumed = [&](int i) -> Eigen::Vector3d {
+    return T_world_a * camera.Unproject(a.frame->keypoints[i].pixel(), depth);
+  };
   std::vector<NewLandmark> turned;
   int searched = 0;
   for (const Neighbour& neighbour : a.covisible) {
     const KeyFrame* b = map.Find(neighbour.id);
     if (!b) continue;
-    if (++searched > settings.triangulate_keyframes_mono) break;
     if ((b->Centre() - a.Centre()).norm() >= settings.min_baseline_ratio * depth) continue;
+    if (++searched > settings.triangulate_keyframes_mono) break;
     // Of several that look like one keypoint of b, the one most like it.
     std::vector<Turned> of_b(b->landmarks.size());
-    const auto assumed = [&](int i) -> Eigen::Vector3d {
-      return T_world_a * camera.Unproject(a.frame->keypoints[i].pixel(), depth);
-    };
     for (int i = 0; i < static_cast<int>(used.size()); ++i) {
       if (used[i]) continue;
       const Eigen::Vector3d p = b->T_camera_world * assumed(i);
@@ -82,7 +82,7 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
     for (int j = 0; j < static_cast<int>(of_b.size()); ++j) {
       const int i = of_b[j].at;
       if (i < 0 || used[i]) continue;
-      if (!Fits(camera, *b, b->frame->keypoints[j], assumed(i), settings)) continue;
+      if (!FitsKeypoint(camera, *b, b->frame->keypoints[j], assumed(i), settings)) continue;
       used[i] = 1;
       turned.push_back({assumed(i), {b->id, j}, {a.id, i}, false, true});
     }

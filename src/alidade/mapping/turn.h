@@ -9,10 +9,10 @@
 
 namespace alidade {
 
-// For a keyframe with fewer than settings.turn_landmarks of them, those in `made` counted: what it
-// shares with covisible keyframes too near to triangulate from (min_baseline_ratio), assumed as
-// deep as the median of what it sees. Such landmarks hold the rotation; they say next to nothing of
-// the position, and their scale is not known. Keypoints that `made` uses are left alone.
+// For a keyframe with fewer than settings.turn_landmarks (by match_scale), those in `made` counted:
+// what it shares with covisible keyframes too near to triangulate from (min_baseline_ratio),
+// assumed as deep as the median of what it sees. Such landmarks hold the rotation; they say next to
+// nothing of the position, and their scale is not known. Keypoints that `made` uses are left alone.
 std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
                                  const std::vector<NewLandmark>& made, const Camera& camera,
                                  const MapperSettings& settings);
