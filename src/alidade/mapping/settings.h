@@ -41,7 +41,7 @@ struct MapperSettings {
   // scale is not. A short while is bridged: a head that shakes comes back to what it knows.
   int min_known_scale = 20;
   double max_unknown_scale_seconds = 1.5;
-  double max_unknown_scale_motion = 0.07;  // at 0.1 wrong poses stay, at 0.05 turns go
+  double max_unknown_scale_motion = 0.07;  // at 0.1 wrong poses stay, 0.05 loses frames
 
   // A camera that turns on the spot past little that is known (MapTurn()). By match_scale, too.
   int turn_landmarks = 60;  // with fewer in a keyframe, others without a depth are made; 0: never

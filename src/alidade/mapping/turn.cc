@@ -8,16 +8,16 @@
 namespace alidade {
 namespace {
 
-struct Turned {
-  int at = -1;  // keypoint of the keyframe
-  int distance = 256;
+struct Lookalike {
+  int keypoint = -1;   // none
+  int distance = 256;  // bits that differ
 };
 
-// The keypoint without a landmark that looks like `descriptor`, clearly more than any other within
-// `radius` (on its level) of `pixel`; -1: none does.
-Turned LookFor(const Keypoint& key, const Descriptor& descriptor, const Eigen::Vector2d& pixel,
-               const KeyFrame& in, const MapperSettings& settings) {
-  Turned best;
+// The keypoint without a landmark in keyframe `in` that looks like `descriptor`, clearly more than
+// any other within settings.turn_radius of `pixel`.
+Lookalike LookFor(const Keypoint& key, const Descriptor& descriptor, const Eigen::Vector2d& pixel,
+                  const KeyFrame& in, const MapperSettings& settings) {
+  Lookalike best;
   int second = 256;
   const double most = settings.turn_radius * ScaleOfLevel(key.level + 1);
   const auto visit = [&](int j) {
@@ -38,7 +38,7 @@ Turned LookFor(const Keypoint& key, const Descriptor& descriptor, const Eigen::V
                            static_cast<float>(most), visit);
   const bool clear = best.distance <= settings.triangulate_distance &&
                      best.distance <= settings.triangulate_ratio * second;
-  return clear ? best : Turned{};
+  return clear ? best : Lookalike{};
 }
 
 }  // namespace
@@ -68,19 +68,19 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
     if (!b) continue;
     if ((b->Centre() - a.Centre()).norm() >= settings.min_baseline_ratio * depth) continue;
     if (++searched > settings.triangulate_keyframes_mono) break;
-    // Of several that look like one keypoint of b, the one most like it.
-    std::vector<Turned> of_b(b->landmarks.size());
+    // For each keypoint of b the one of a that is most like it.
+    std::vector<Lookalike> in_a(b->landmarks.size());
     for (int i = 0; i < static_cast<int>(used.size()); ++i) {
       if (used[i]) continue;
       const Eigen::Vector3d p = b->T_camera_world * assumed(i);
       if (p.z() <= 0) continue;
-      const Turned found =
+      const Lookalike found =
           LookFor(a.frame->keypoints[i], a.frame->descriptors[i], camera.Project(p), *b, settings);
-      if (found.at >= 0 && found.distance < of_b[found.at].distance)
-        of_b[found.at] = {i, found.distance};
+      if (found.keypoint >= 0 && found.distance < in_a[found.keypoint].distance)
+        in_a[found.keypoint] = {i, found.distance};
     }
-    for (int j = 0; j < static_cast<int>(of_b.size()); ++j) {
-      const int i = of_b[j].at;
+    for (int j = 0; j < static_cast<int>(in_a.size()); ++j) {
+      const int i = in_a[j].keypoint;
       if (i < 0 || used[i]) continue;
       if (!FitsKeypoint(camera, *b, b->frame->keypoints[j], assumed(i), settings)) continue;
       used[i] = 1;
