@@ -174,6 +174,34 @@ TEST(VerifyLoop, AnotherMapOfTheSameShapesThatLooksOtherwiseIsAnotherPlace) {
   }
 }
 
+// The camera goes half around the ring at 0.63 m a second, is lost there, and another map of the
+// beginning follows `seconds` later. 30 of 100 points look different by then.
+bool Merges(double seconds, bool one_recording, int changed = 30) {
+  OldPlace place;
+  place.world = MakeRing({.points = 8000, .changed = changed});
+  for (int v = 0; v < kViews; ++v) {
+    auto frame = std::make_shared<Frame>(*place.world.views[v].frame);
+    frame->time = v < kLap ? v : kLap / 2 - 1 + seconds + v - kLap;
+    place.world.views[v].frame = std::move(frame);
+  }
+  place.made = FillDriftedMap(place.world, {.count = kLap / 2}, place.store);
+  const Sim3 T_map_world{1.4, ExpSo3({0.4, -1.1, 0.2}), {4, -2, 3}};
+  const DriftedMap second =
+      FillDriftedMap(place.world, {.first = kLap, .T_map_world = T_map_world}, place.store);
+  const KeyFrameId recording = one_recording ? place.KeyFrameOf(0) : KeyFrameId{};
+  return VerifyLoop(place.map(), second.keyframes[kView - kLap], place.KeyFrameOf(kPlace),
+                    place.world.camera, place.settings, recording)
+      .has_value();
+}
+
+TEST(VerifyLoop, BetweenTwoMapsOfARecordingACameraDoesNotLeap) {
+  EXPECT_FALSE(Merges(1, true));  // six metres in a second
+  EXPECT_TRUE(Merges(16, true));  // half around takes 15 s
+  EXPECT_TRUE(Merges(1, false));  // when the other was recorded is not known
+  EXPECT_TRUE(
+      Merges(1, true, 0));  // a film may be cut: all that should be seen is, and looks alike
+}
+
 TEST(VerifyLoop, WhatIsGoneIsNone) {
   auto place = ComeBack({.depth = true});
   place->store.Commit([&](MapCommit& commit) { commit.Remove(place->KeyFrameOf(kPlace)); });

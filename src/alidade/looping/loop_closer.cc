@@ -29,6 +29,7 @@ LoopCloser::LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera,
     : map_(map), places_(places), camera_(camera), settings_(settings) {
   settings_.Check();
   settings_.noise.right_from_sensor = camera.baseline <= 0;
+  if (camera.StereoBaseline() > 0) settings_.tied_share = 0;
 }
 
 // In its own map a place is held against the way since; in another map only against other places:
@@ -40,7 +41,7 @@ std::optional<LoopMatch> LoopCloser::Recognise(
   for (KeyFrameId place : FindLoopCandidates(map, places_, id, settings_, may_be)) {
     const bool here = map.MapOf(place) == map.MapOf(id);
     if (!here && ambiguous) continue;
-    std::optional<LoopMatch> match = VerifyLoop(map, id, place, camera_, settings_);
+    std::optional<LoopMatch> match = VerifyLoop(map, id, place, camera_, settings_, recording_);
     if (!match) continue;
     if (here) return match;
     const bool same_map = elsewhere && map.MapOf(place) == map.MapOf(elsewhere->place);

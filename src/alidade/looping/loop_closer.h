@@ -24,6 +24,9 @@ class LoopCloser {
   // pass; nothing when it is not certain.
   std::optional<LoopMatch> Recognise(const MapSnapshot& map, KeyFrameId id,
                                      const std::function<bool(KeyFrameId)>& may_be = {}) const;
+  // Keyframes from `first` on are of one clock: the camera cannot have leapt between them. Any
+  // thread's. Before the first call nothing is known of when keyframes were.
+  void BeginRecording(KeyFrameId first) { recording_ = first; }
   // Enters a mapped keyframe into the index; a match when it sees an old place again.
   std::optional<LoopMatch> Add(KeyFrameId id);
   void SetEntered(std::vector<KeyFrameId> ids) { entered_ = std::move(ids); }  // of a loaded map
@@ -48,6 +51,7 @@ class LoopCloser {
   Camera camera_;
   LoopSettings settings_;
   std::vector<KeyFrameId> entered_;  // into the index, and not seen to be culled yet; by id
+  std::atomic<KeyFrameId> recording_{KeyFrameId{}};
   std::atomic<int> loops_{0}, merges_{0};
 };
 

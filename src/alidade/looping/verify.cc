@@ -69,8 +69,13 @@ int DifferentKeypoints(const std::vector<FusedSighting>& found) {
 class Verifier {
  public:
   Verifier(const MapSnapshot& map, const KeyFrame& keyframe, const KeyFrame& place,
-           const Camera& camera, const LoopSettings& settings)
-      : map_(map), a_(keyframe), b_(place), camera_(camera), settings_(settings) {
+           const Camera& camera, const LoopSettings& settings, KeyFrameId recording)
+      : map_(map),
+        a_(keyframe),
+        b_(place),
+        camera_(camera),
+        settings_(settings),
+        recording_(recording) {
     with_scale_ = camera.StereoBaseline() <= 0;
   }
 
@@ -90,7 +95,7 @@ class Verifier {
     if (found < Scaled(merges ? settings_.min_merge_found : settings_.min_found) ||
         found < settings_.min_found_share * match_.visible)
       return {};
-    if (merges ? AlikeShare() < settings_.min_merge_alike : !CanHaveDrifted()) return {};
+    if (merges ? !CanMerge() : !CanHaveDrifted()) return {};
     if (!Confirmed()) return {};
     match_.keyframe = a_.id;
     match_.place = b_.id;
@@ -238,19 +243,59 @@ class Verifier {
     if (broken && (growth > settings_.max_plain_scale || !IsPlain())) return false;
     if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
       return false;
-    double way = 0;
-    const KeyFrame* after = nullptr;
-    const KeyFrameId first = std::min(a_.id, b_.id), last = std::max(a_.id, b_.id);
-    map_.keyframes().ForEachFromLast([&](const KeyFrame& here) {
-      if (here.id > last || here.map != a_.map) return true;
-      if (here.id < first) return false;
-      if (after) way += (after->Centre() - here.Centre()).norm();
-      after = &here;
-      return true;
-    });
+    const double way = WayBetween(map_, a_.id, b_.id);
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();
     return shift < (broken ? kBrokenDrift : settings_.max_drift) * way +
                        settings_.max_drift_floor * MedianDepth(map_, a_).value_or(0);
+  }
+
+  // Where another keyframe of `a_`'s map is in the place's world.
+  Se3 InWorldOfPlace(const KeyFrame& other) const {
+    Se3 T_other_a = other.T_camera_world * a_.T_camera_world.Inverse();
+    T_other_a.t *= alignment_.growth;
+    return T_other_a * alignment_.T_camera_world;
+  }
+
+  // One camera must know the scale by which its map is laid on the other. And the farther it must
+  // have leapt from one to the other, the more must be found of the place, and look like it.
+  bool CanMerge() const {
+    if (with_scale_ && CountOfKnownScale(a_) < settings_.min_known_scale) return false;
+    const double doubt = Doubt();
+    const double alike = std::max(settings_.min_merge_alike, settings_.reach.plain_alike);
+    return DifferentKeypoints(match_.found) >=
+               doubt * settings_.reach.plain_share * match_.visible &&
+           AlikeShare() >= settings_.min_merge_alike + doubt * (alike - settings_.min_merge_alike);
+  }
+
+  int CountOfKnownScale(const KeyFrame& keyframe) const {
+    return static_cast<int>(
+        std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                      [&](LandmarkId id) { return id.valid() && map_.Find(id)->scale_known; }));
+  }
+
+  // Of two maps of one recording: DoubtOf() the camera having gone from the last keyframe of the
+  // place's map to the next one of the other map.
+  double Doubt() const {
+    if (!recording_.valid()) return 0;
+    const KeyFrame* next = &a_;
+    std::vector<TimedPlace> way;  // newest first
+    KeyFrameId last;
+    map_.keyframes().ForEachFromLast([&](const KeyFrame& here) {
+      if (here.id > a_.id) return true;
+      if (here.id < recording_) return false;
+      if (here.map == a_.map && !last.valid()) next = &here;
+      if (here.map != b_.map) return true;
+      if (!last.valid()) last = here.id;
+      way.push_back({here.frame->time, here.Centre()});
+      return way.front().time - way.back().time < settings_.reach.span;
+    });
+    if (!last.valid()) return 0;
+    std::reverse(way.begin(), way.end());
+    const double gone =
+        WayBetween(map_, last, b_.id) + alignment_.growth * WayBetween(map_, next->id, a_.id);
+    const double depth = alignment_.growth * MedianDepth(map_, a_).value_or(0);
+    const TimedPlace there{next->frame->time, InWorldOfPlace(*next).Inverse().t};
+    return DoubtOf(way, there, depth, gone, settings_.reach);
   }
 
   // Whether the keyframes around see the place, too. All of them where there are fewer than asked.
@@ -260,11 +305,9 @@ class Verifier {
     for (const Neighbour& n : a_.covisible) {
       if (asked >= settings_.confirm_keyframes) break;
       const KeyFrame& other = *map_.Find(n.id);
-      Se3 T_other_a = other.T_camera_world * a_.T_camera_world.Inverse();
-      T_other_a.t *= alignment_.growth;
       int visible = 0;
-      const auto found = FindLandmarks(map_, around_, other, T_other_a * alignment_.T_camera_world,
-                                       camera_, search, &visible);
+      const auto found =
+          FindLandmarks(map_, around_, other, InWorldOfPlace(other), camera_, search, &visible);
       const int keypoints = DifferentKeypoints(found);
       ++asked;
       agreed += keypoints >= Scaled(settings_.confirm_found) &&
@@ -278,6 +321,7 @@ class Verifier {
   const KeyFrame& b_;
   const Camera& camera_;
   const LoopSettings& settings_;
+  const KeyFrameId recording_;
   bool with_scale_ = true;
   std::vector<Sim3Match> matches_;  // by descriptors alone
   std::vector<LandmarkId> around_;  // landmarks of the place
@@ -289,10 +333,11 @@ class Verifier {
 }  // namespace
 
 std::optional<LoopMatch> VerifyLoop(const MapSnapshot& map, KeyFrameId keyframe, KeyFrameId place,
-                                    const Camera& camera, const LoopSettings& settings) {
+                                    const Camera& camera, const LoopSettings& settings,
+                                    KeyFrameId recording) {
   const KeyFrame *a = map.Find(keyframe), *b = map.Find(place);
   if (!a || !b) return {};
-  return Verifier(map, *a, *b, camera, settings).Run();
+  return Verifier(map, *a, *b, camera, settings, recording).Run();
 }
 
 }  // namespace alidade

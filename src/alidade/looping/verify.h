@@ -23,8 +23,11 @@ struct LoopMatch {
 
 // nullopt: not the same place, or not certain enough. Alignment of matched landmarks by RANSAC, all
 // landmarks of the place looked for from there, covisible keyframes asked whether they see it, too;
-// at last, whether tracking can have drifted so far (ORB-SLAM §VII-B; Campos et al. 2021, §VI-A).
+// at last, whether tracking can have drifted so far (ORB-SLAM §VII-B; Campos et al. 2021, §VI-A),
+// or the camera have gone from one map to the other (DoubtOf(), for keyframes from
+// `recording` on, whose times are of one clock; invalid: not asked).
 std::optional<LoopMatch> VerifyLoop(const MapSnapshot& map, KeyFrameId keyframe, KeyFrameId place,
-                                    const Camera& camera, const LoopSettings& settings);
+                                    const Camera& camera, const LoopSettings& settings,
+                                    KeyFrameId recording = {});
 
 }  // namespace alidade

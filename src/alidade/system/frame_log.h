@@ -32,6 +32,7 @@ class FrameLog {
   void PlaceLate(int index, Anchor anchor);
   void End();  // where it throws, for want of memory, the next Begin ends the frame
   bool empty() const { return size() == 0; }
+  int recording() const { return static_cast<int>(recordings_.size()); }  // the writer's, of now
   int size() const { return first_of_open_ + open_count_ + (begun_ ? 1 : 0); }  // frames begun
   double time() const { return time_; }                     // of the frame begun last
   const Se3& T_world_camera_live() const { return live_; }  // of the frame placed last

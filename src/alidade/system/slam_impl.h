@@ -91,6 +91,7 @@ class Slam::Impl {
 
   // slam_lost.cc: frames without a pose.
   TrackResult FindBack(const std::shared_ptr<Frame>& frame);
+  bool CanBeThere(const TrackEstimate& found, const MapSnapshot& map) const;
   std::vector<KeyFrameId> PlacesLike(const Frame& frame, const MapSnapshot& map);
   TrackResult FoundBack(TrackEstimate estimate, const MapSnapshot& map);
   TrackResult WithoutPose(const char* reason, double time, const MapSnapshot& map);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "alidade/features/subset.h"
+#include "alidade/map/view.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/slam_impl.h"
 
@@ -10,6 +11,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
+constexpr int kReachFrames = 600;            // before a frame, that tell where the camera was last
 
 }  // namespace
 
@@ -28,7 +30,8 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
         return FoundBack(std::move(estimate), map);
       }
     }
-    TrackEstimate estimate = tracker_.Relocalise(frame, map, PlacesLike(*frame, map));
+    const auto may_be = [&](const TrackEstimate& found) { return CanBeThere(found, map); };
+    TrackEstimate estimate = tracker_.Relocalise(frame, map, PlacesLike(*frame, map), may_be);
     track_ms_.Add(watch.Milliseconds());
     if (estimate.tracked) {
       tracker_.Forget();  // the motion that was, led elsewhere
@@ -49,6 +52,30 @@ TrackResult Slam::Impl::FindBack(const std::shared_ptr<Frame>& frame) {
     LeaveMap();
   }
   return Start(frame);
+}
+
+// Against taking a place for another that looks like it: whether the camera can have come there
+// since it was last seen in the same map (DoubtOf()).
+bool Slam::Impl::CanBeThere(const TrackEstimate& found, const MapSnapshot& map) const {
+  const ReachSettings& settings = settings_.loop.reach;
+  const double share =
+      found.placed.inliers / std::max<double>(1, static_cast<double>(found.sightings.size()));
+  if (share >= settings.plain_share) return true;
+  const MapId in = map.MapOf(found.reference);
+  std::vector<TimedPlace> way;
+  MapId last;
+  for (const FramePose& frame :
+       log_.Trajectory(workers_.map(), std::max(0, log_.size() - kReachFrames))) {
+    if (!frame.tracked || frame.recording != log_.recording()) continue;
+    last = frame.map;
+    if (last == in) way.push_back({frame.time, frame.T_world_camera.t});
+  }
+  if (last.valid() && last != in) return share >= settings.elsewhere_share;
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(in);
+  const double gone = settings_.localise ? 0 : WayBetween(map, keyframes.back(), found.reference);
+  const TimedPlace here{found.placed.frame->time, found.placed.T_camera_world.Inverse().t};
+  const double depth = MedianDepth(map, *map.Find(found.reference)).value_or(0);
+  return share >= settings.plain_share * DoubtOf(way, here, depth, gone, settings);
 }
 
 // Keyframes that may show what a frame shows: the last one first, then by descriptors.

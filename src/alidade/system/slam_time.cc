@@ -37,6 +37,7 @@ const char* Slam::Impl::Tick(double time) {
     case ClockStep::kBack:
       Cut();
       log_.BeginRecording();
+      workers_.BeginRecording();
       if (!std::exchange(jump_told_, true)) WarnOfJump(time - before);
       return "the clock was set back";
   }
@@ -64,6 +65,7 @@ void Slam::Impl::Reset() {
   Cut();
   clock_.Restart();
   log_.BeginRecording();
+  workers_.BeginRecording();
   restarted_ = true;
 }
 

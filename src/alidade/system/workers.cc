@@ -60,7 +60,9 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
       semidense_([this](KeyFrameId, const std::atomic<bool>*) { semidense_mapper_.Process(); },
                  Behind(settings)),
       mapping_([this](KeyFrameId id, const std::atomic<bool>* stop) { Map(id, stop); },
-               settings.threaded ? Schedule::kThread : Schedule::kInline) {}
+               settings.threaded ? Schedule::kThread : Schedule::kInline) {
+  BeginRecording();
+}
 
 Workers::~Workers() {  // who hands on stops before who is handed to
   mapping_.Stop();
@@ -198,6 +200,11 @@ void Workers::Restore(const SavedMap& saved) {
   mapper_.Restore(saved.map);
   map_.Restore(saved.map);  // last: nobody sees a map that could be restored in part only
   adjusted_up_to_ = saved.map.next_keyframe();
+  BeginRecording();
+}
+
+void Workers::BeginRecording() {
+  loop_closer_.BeginRecording(KeyFrameId{map_.Snapshot().next_keyframe()});
 }
 
 // On the loop closer's thread, while the mapper rests: what either of them has in work was begun

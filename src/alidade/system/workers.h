@@ -58,6 +58,7 @@ class Workers {
   void Drain(double limit = std::numeric_limits<double>::infinity());
   void CutShort();                      // any thread's: a Drain() that runs, or else the next
   void Restore(const SavedMap& saved);  // before the first keyframe
+  void BeginRecording();  // keyframes from now on are of another clock. The tracker's thread
   // A map and its places, without a trace. Not awaited when threaded.
   void Drop(MapId id);
   std::vector<MapId> dropped() const;  // and not out of the map yet

@@ -109,7 +109,8 @@ Tracker::InverseDepthsSeen Tracker::InverseDepths(const PlacedFrame& placed,
 }
 
 TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
-                                  std::span<const KeyFrameId> candidates) {
+                                  std::span<const KeyFrameId> candidates,
+                                  const std::function<bool(const TrackEstimate&)>& may_be) {
   TrackEstimate lost;
   lost.placed.frame = frame;
   for (KeyFrameId id : candidates) {
@@ -119,7 +120,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     if (guess.inliers < Scaled(settings_.min_after_prediction)) continue;
     FindAround(guess, map, kRelocaliseKeyFrames);
     TrackEstimate estimate = Estimate(std::move(guess), map);
-    estimate.tracked = estimate.tracked && IsCertain(estimate);
+    estimate.tracked = estimate.tracked && IsCertain(estimate) && (!may_be || may_be(estimate));
     if (estimate.tracked) return estimate;
     passing_.Clear();  // of a pose that is not believed
   }

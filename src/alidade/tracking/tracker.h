@@ -59,9 +59,11 @@ class Tracker {
   // Pose from the local map, starting at the guess.
   TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
   // Pose with no last frame to lean on (ORB-SLAM §V-C): descriptors against each of the keyframes
-  // that may show the place, RANSAC, then the landmarks around. Tracked only when certain.
+  // that may show the place, RANSAC, then the landmarks around. Tracked only when certain, and
+  // where the camera `may_be` (empty: anywhere).
   TrackEstimate Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
-                           std::span<const KeyFrameId> candidates);
+                           std::span<const KeyFrameId> candidates,
+                           const std::function<bool(const TrackEstimate&)>& may_be = {});
 
   // The same for a frame of earlier, near a keyframe in time. What is known of the last frame
   // stays.

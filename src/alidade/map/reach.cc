@@ -1,0 +1,67 @@
+#include "alidade/map/reach.h"
+
+#include <algorithm>
+
+#include "alidade/base/error.h"
+
+namespace alidade {
+namespace {
+
+// Fastest in the last `span` seconds of a way, between places far enough apart in time for their
+// noise not to count.
+double FastestOf(std::span<const TimedPlace> way, double span) {
+  constexpr double kApart = 0.2;  // seconds
+  double fastest = 0;
+  const TimedPlace* later = &way.back();
+  for (size_t i = way.size() - 1; i-- > 0;) {
+    const double seconds = later->time - way[i].time;
+    if (seconds < kApart) continue;
+    fastest = std::max(fastest, (later->centre - way[i].centre).norm() / seconds);
+    later = &way[i];
+    if (way.back().time - later->time >= span) break;
+  }
+  return fastest;
+}
+
+}  // namespace
+
+void ReachSettings::Check() const {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) ThrowUsage(std::string("setting loop.reach.") + what);
+  };
+  require(speed >= 0, "speed must not be negative");
+  require(span > 0, "span must be positive");
+  require(depth_speed >= 0, "depth_speed must not be negative");
+  require(floor >= 0, "floor must not be negative");
+  require(drift >= 0, "drift must not be negative");
+  require(plain_share >= 0 && plain_share <= 1, "plain_share must be between 0 and 1");
+  require(elsewhere_share >= 0 && elsewhere_share <= 1, "elsewhere_share must be between 0 and 1");
+  require(plain_alike >= 0 && plain_alike <= 1, "plain_alike must be between 0 and 1");
+}
+
+double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
+               const ReachSettings& settings) {
+  if (way.size() < 2 || !(way.back().time <= to.time)) return 0;
+  const double seconds = to.time - way.back().time;
+  const double speed =
+      settings.speed * FastestOf(way, settings.span) + settings.depth_speed * depth;
+  const double reach = settings.floor * depth + speed * seconds + settings.drift * gone;
+  const double moved = (to.centre - way.back().centre).norm();
+  return moved < reach ? moved * moved / (reach * reach) : 1;
+}
+
+double WayBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b) {
+  double way = 0;
+  const KeyFrame* after = nullptr;
+  const MapId in = map.MapOf(a);
+  map.keyframes().ForEachFromLast([&](const KeyFrame& here) {
+    if (here.id > std::max(a, b) || here.map != in) return true;
+    if (here.id < std::min(a, b)) return false;
+    if (after) way += (after->Centre() - here.Centre()).norm();
+    after = &here;
+    return true;
+  });
+  return way;
+}
+
+}  // namespace alidade
