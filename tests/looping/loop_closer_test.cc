@@ -42,6 +42,61 @@ TEST(LoopCandidates, AreOldPlacesAndNothingNear) {
   }
 }
 
+bool IsAmong(const std::vector<KeyFrameId>& found, int view) {
+  return std::any_of(found.begin(), found.end(), [&](KeyFrameId candidate) {
+    return std::abs(static_cast<int>(candidate.value) - view) <= 1;
+  });
+}
+
+// The camera sees a tenth of its landmarks again that the old place saw: far ones, in a corridor,
+// that hold neither its place nor its scale.
+TEST(LoopCandidates, AFewSharedLandmarksDoNotTieAPlace) {
+  const auto place = ComeBack({.drifted = DriftInTheMiddle(0.4, 0.1)});
+  constexpr int kView = 32, kOld = kView - kLap;
+  const KeyFrameId id = place->KeyFrameOf(kView), old = place->KeyFrameOf(kOld);
+  place->store.Commit([&](MapCommit& commit) {
+    const auto& now = place->world.views[kView].points;
+    const auto& then = place->world.views[kOld].points;
+    const auto& landmarks = commit.Find(id)->landmarks;
+    auto tenth = std::count_if(landmarks.begin(), landmarks.end(),
+                               [](LandmarkId landmark) { return landmark.valid(); }) /
+                 10;
+    for (size_t k = 0; k < now.size() && tenth > 0; ++k) {
+      const auto at = std::find(then.begin(), then.end(), now[k]);
+      if (now[k] < 0 || at == then.end()) continue;
+      const LandmarkId own = commit.Find(id)->landmarks[k];
+      const LandmarkId known = commit.Find(old)->landmarks[at - then.begin()];
+      if (!own.valid() || !known.valid()) continue;
+      commit.RemoveObservation(own, id);
+      commit.AddObservation(known, id, static_cast<int>(k));
+      --tenth;
+    }
+    ASSERT_EQ(tenth, 0);
+    commit.RefreshCovisibility(id);
+  });
+  PlaceIndex places;
+  for (int v = 0; v < kView; ++v) places.Add(place->KeyFrameOf(v), place->world.views[v].frame);
+  const auto found = [&] {
+    return IsAmong(FindLoopCandidates(place->map(), places, id, place->settings), kOld);
+  };
+  EXPECT_TRUE(found());
+  place->settings.tied_share = 0;
+  EXPECT_FALSE(found());
+}
+
+TEST(LoopCandidates, FaceTheSameWay) {
+  const auto place = ComeBack({.drifted = DriftInTheMiddle(0, 2.5)});  // radians
+  PlaceIndex places;
+  for (int v = 0; v < 32; ++v) places.Add(place->KeyFrameOf(v), place->world.views[v].frame);
+  const auto found = [&] {
+    return IsAmong(FindLoopCandidates(place->map(), places, place->KeyFrameOf(32), place->settings),
+                   2);
+  };
+  EXPECT_FALSE(found());
+  place->settings.max_view_turn = 3.2;
+  EXPECT_TRUE(found());
+}
+
 TEST(LoopCandidates, GroupsAreStoodForByTheirBest) {
   const auto place = ComeBack({.depth = true});
   const MapSnapshot map = place->map();

@@ -1,6 +1,7 @@
 #include "alidade/looping/candidates.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "alidade/base/id_map.h"
 
@@ -12,15 +13,34 @@ bool AreCovisible(const KeyFrame& keyframe, KeyFrameId other) {
                      [&](const Neighbour& n) { return n.id == other; });
 }
 
-// What mapping ties together anyway.
-IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe) {
+int LandmarkCount(const KeyFrame& keyframe) {
+  return static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                        [](LandmarkId id) { return id.valid(); }));
+}
+
+// What mapping ties together anyway: neighbours that share enough of what a keyframe sees, and
+// theirs. Less may be far things alone: in a corridor the far end, where neither way nor scale
+// show.
+IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe,
+                               double tied_share) {
   IdSet<KeyFrameId> near;
   near.Enter(keyframe.id);
-  for (const Neighbour& n : keyframe.covisible) {
-    near.Enter(n.id);
-    for (const Neighbour& second : map.Find(n.id)->covisible) near.Enter(second.id);
-  }
+  const auto enter = [&](const KeyFrame& from, const auto& visit) {
+    const double least = tied_share * LandmarkCount(from);
+    for (const Neighbour& n : from.covisible) {
+      if (n.shared < least) break;  // most first
+      near.Enter(n.id);
+      visit(n.id);
+    }
+  };
+  enter(keyframe, [&](KeyFrameId id) { enter(*map.Find(id), [](KeyFrameId) {}); });
   return near;
+}
+
+// Radians between the optical axes.
+double AngleOfViews(const KeyFrame& a, const KeyFrame& b) {
+  const Eigen::Vector3d of_a = a.T_camera_world.R.row(2), of_b = b.T_camera_world.R.row(2);
+  return std::atan2(of_a.cross(of_b).norm(), of_a.dot(of_b));
 }
 
 }  // namespace
@@ -29,15 +49,17 @@ std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIn
                                            KeyFrameId id, const LoopSettings& settings,
                                            const std::function<bool(KeyFrameId)>& may_be) {
   const KeyFrame& keyframe = *map.Find(id);
-  const IdSet<KeyFrameId> near = Surroundings(map, keyframe);
+  const IdSet<KeyFrameId> near = Surroundings(map, keyframe, settings.tied_share);
   std::vector<KeyFrameId> neighbours;
   for (const Neighbour& n : keyframe.covisible) neighbours.push_back(n.id);
   double likest = 0;
   for (double score : places.Scores(*keyframe.frame, neighbours)) likest = std::max(likest, score);
   std::vector<KeyFrameId> chosen;
   int in_this_map = 0, in_others = 0;
-  const auto lives_afar = [&](KeyFrameId other) {
-    return !near.Contains(other) && map.Find(other) && (!may_be || may_be(other));
+  const auto lives_afar = [&](KeyFrameId id_of_other) {
+    const KeyFrame* other = map.Find(id_of_other);
+    return other && !near.Contains(id_of_other) && (!may_be || may_be(id_of_other)) &&
+           (other->map != keyframe.map || AngleOfViews(keyframe, *other) < settings.max_view_turn);
   };
   for (const PlaceMatch& match :
        places.Query(*keyframe.frame, lives_afar, static_cast<size_t>(settings.group))) {
