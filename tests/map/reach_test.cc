@@ -59,7 +59,8 @@ TEST(Reach, AsksForTheSpeedJustBefore) {
 TEST(Reach, SaysNothingOfWhatItDoesNotKnow) {
   EXPECT_EQ(Doubt({}, 1, 100), 0);
   EXPECT_EQ(Doubt({{0, {0, 0, 0}}}, 1, 100), 0);
-  EXPECT_EQ(Doubt(Walk(1), -0.5, 100), 0);  // a clock that was set back
+  EXPECT_EQ(Doubt(Walk(1, 0.1), 1, 100), 0);  // too short to tell how fast
+  EXPECT_EQ(Doubt(Walk(1), -0.5, 100), 0);    // a clock that was set back
 }
 
 TEST(Reach, RefusesWhatCannotBe) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "alidade/base/id_map.h"
+#include "alidade/looping/surroundings.h"
 
 namespace alidade {
 namespace {
@@ -13,11 +14,6 @@ bool AreCovisible(const KeyFrame& keyframe, KeyFrameId other) {
                      [&](const Neighbour& n) { return n.id == other; });
 }
 
-int LandmarkCount(const KeyFrame& keyframe) {
-  return static_cast<int>(std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                                        [](LandmarkId id) { return id.valid(); }));
-}
-
 // What mapping ties together anyway: neighbours that share enough of what a keyframe sees, and
 // theirs. Less may be far things alone: in a corridor the far end, where neither way nor scale
 // show.
@@ -25,15 +21,10 @@ IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe,
                                double tied_share) {
   IdSet<KeyFrameId> near;
   near.Enter(keyframe.id);
-  const auto enter = [&](const KeyFrame& from, const auto& visit) {
-    const double least = tied_share * LandmarkCount(from);
-    for (const Neighbour& n : from.covisible) {
-      if (n.shared < least) break;  // most first
-      near.Enter(n.id);
-      visit(n.id);
-    }
-  };
-  enter(keyframe, [&](KeyFrameId id) { enter(*map.Find(id), [](KeyFrameId) {}); });
+  for (KeyFrameId id : TiedTo(keyframe, tied_share)) {
+    near.Enter(id);
+    for (KeyFrameId second : TiedTo(*map.Find(id), tied_share)) near.Enter(second);
+  }
   return near;
 }
 

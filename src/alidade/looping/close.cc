@@ -16,14 +16,18 @@ struct Placed {
   Se3 T_camera_world;
 };
 
-std::vector<Placed> PlaceWindow(const MapSnapshot& map, const LoopMatch& match) {
+// In a loop, keyframes that share but few landmarks (far ones) may be the place's own: they stay.
+std::vector<Placed> PlaceWindow(const MapSnapshot& map, const LoopMatch& match,
+                                const LoopSettings& settings) {
   const KeyFrame& keyframe = *map.Find(match.keyframe);
+  const bool loop = keyframe.map == map.MapOf(match.place);
   std::vector<Placed> window{{keyframe.id, match.T_camera_world}};
-  for (const Neighbour& n : keyframe.covisible) {
-    const KeyFrame& other = *map.Find(n.id);
+  for (KeyFrameId id : TiedTo(keyframe, loop ? settings.tied_share : 0)) {
+    if (id == match.place) continue;
+    const KeyFrame& other = *map.Find(id);
     Se3 T_other_keyframe = other.T_camera_world * keyframe.T_camera_world.Inverse();
     T_other_keyframe.t *= match.growth;
-    window.push_back({n.id, T_other_keyframe * match.T_camera_world});
+    window.push_back({id, T_other_keyframe * match.T_camera_world});
   }
   std::sort(window.begin(), window.end(),
             [](const Placed& a, const Placed& b) { return a.id < b.id; });
@@ -128,7 +132,7 @@ LoopCorrection CorrectLoop(const MapSnapshot& map, const LoopMatch& match, const
   LoopCorrection loop;
   loop.match = match;
   const KeyFrame &keyframe = *map.Find(match.keyframe), &place = *map.Find(match.place);
-  const std::vector<Placed> window = PlaceWindow(map, match);
+  const std::vector<Placed> window = PlaceWindow(map, match, settings);
   const std::vector<LandmarkId> around = LandmarksAround(map, place);
   const LandmarkSearch search{settings.search_radius / 2, settings.max_distance, {}};
   for (const Placed& placed : window) {

@@ -39,9 +39,9 @@ struct LoopSettings {
   // should be, but show something else. Measured: at most 0.38 there, 0.59 and more at the best
   // keyframe of one room (docs/merge.md). Between two maps.
   double min_merge_alike = 0.45;
-  int min_known_scale = 20;  // landmarks of known scale (Landmark::scale_known) the newer keyframe
-                             // must see for two maps of one camera to be merged
-  double alike_radius = 2;   // pixels on level 0: 2.5 standard deviations of a keypoint's place
+  int min_known_scale = 20;      // landmarks of known scale (Landmark::scale_known) both keyframes
+                                 // must see for two maps of one camera to be merged
+  double alike_radius = 2;       // pixels on level 0: 2.5 standard deviations of a keypoint's place
   double min_found_share = 0.1;  // of those that should be in sight: places only alike show less
   double search_radius = 8;      // pixels on level 0; the second time half of it
   int max_distance = 60;         // bits of 256

@@ -26,4 +26,17 @@ inline std::vector<LandmarkId> LandmarksAround(const MapSnapshot& map, const Key
   return landmarks;
 }
 
+// The neighbours that share at least `tied_share` of the landmarks a keyframe sees, most first
+// (LoopSettings::tied_share).
+inline std::vector<KeyFrameId> TiedTo(const KeyFrame& keyframe, double tied_share) {
+  const auto seen = std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
+                                  [](LandmarkId id) { return id.valid(); });
+  std::vector<KeyFrameId> tied;
+  for (const Neighbour& n : keyframe.covisible) {
+    if (n.shared < tied_share * static_cast<double>(seen)) break;
+    tied.push_back(n.id);
+  }
+  return tied;
+}
+
 }  // namespace alidade

@@ -115,6 +115,7 @@ class Verifier {
     matching.ratio = 0.8;
     const std::vector<int> of_a = Known(a_), of_b = Known(b_);
     for (const IndexMatch& m : MatchSubsets(*a_.frame, of_a, *b_.frame, of_b, matching)) {
+      if (a_.landmarks[m.a] == b_.landmarks[m.b]) continue;  // says what the map says
       matches_.push_back(MatchOf(map_, a_, m.a, b_, m.b, settings_));
     }
     if (static_cast<int>(matches_.size()) < Scaled(settings_.min_matches)) return false;
@@ -256,10 +257,13 @@ class Verifier {
     return T_other_a * alignment_.T_camera_world;
   }
 
-  // One camera must know the scale by which its map is laid on the other. And the farther it must
-  // have leapt from one to the other, the more must be found of the place, and look like it.
+  // Both keyframes of one camera must know the scale by which the maps are laid together. And the
+  // farther it must have leapt from one to the other, the more must be found of the place, and look
+  // like it.
   bool CanMerge() const {
-    if (with_scale_ && CountOfKnownScale(a_) < settings_.min_known_scale) return false;
+    if (with_scale_ &&
+        std::min(CountOfKnownScale(a_), CountOfKnownScale(b_)) < Scaled(settings_.min_known_scale))
+      return false;
     const double doubt = Doubt();
     const double alike = std::max(settings_.min_merge_alike, settings_.reach.plain_alike);
     return DifferentKeypoints(match_.found) >=
@@ -302,9 +306,10 @@ class Verifier {
   bool Confirmed() const {
     const LandmarkSearch search{settings_.search_radius, settings_.max_distance, {}};
     int asked = 0, agreed = 0;
-    for (const Neighbour& n : a_.covisible) {
+    for (KeyFrameId id : TiedTo(a_, a_.map == b_.map ? settings_.tied_share : 0)) {
       if (asked >= settings_.confirm_keyframes) break;
-      const KeyFrame& other = *map_.Find(n.id);
+      if (id == b_.id) continue;
+      const KeyFrame& other = *map_.Find(id);
       int visible = 0;
       const auto found =
           FindLandmarks(map_, around_, other, InWorldOfPlace(other), camera_, search, &visible);

@@ -1,6 +1,7 @@
 #include "alidade/map/reach.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "alidade/base/error.h"
 
@@ -8,15 +9,16 @@ namespace alidade {
 namespace {
 
 // Fastest in the last `span` seconds of a way, between places far enough apart in time for their
-// noise not to count.
-double FastestOf(std::span<const TimedPlace> way, double span) {
+// noise not to count; none: there are no such two.
+std::optional<double> FastestOf(std::span<const TimedPlace> way, double span) {
   constexpr double kApart = 0.2;  // seconds
-  double fastest = 0;
+  std::optional<double> fastest;
   const TimedPlace* later = &way.back();
   for (size_t i = way.size() - 1; i-- > 0;) {
     const double seconds = later->time - way[i].time;
     if (seconds < kApart) continue;
-    fastest = std::max(fastest, (later->centre - way[i].centre).norm() / seconds);
+    const double speed = (later->centre - way[i].centre).norm() / seconds;
+    fastest = std::max(fastest.value_or(0), speed);
     later = &way[i];
     if (way.back().time - later->time >= span) break;
   }
@@ -42,9 +44,10 @@ void ReachSettings::Check() const {
 double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
                const ReachSettings& settings) {
   if (way.size() < 2 || !(way.back().time <= to.time)) return 0;
+  const std::optional<double> fastest = FastestOf(way, settings.span);
+  if (!fastest) return 0;
   const double seconds = to.time - way.back().time;
-  const double speed =
-      settings.speed * FastestOf(way, settings.span) + settings.depth_speed * depth;
+  const double speed = settings.speed * *fastest + settings.depth_speed * depth;
   const double reach = settings.floor * depth + speed * seconds + settings.drift * gone;
   const double moved = (to.centre - way.back().centre).norm();
   return moved < reach ? moved * moved / (reach * reach) : 1;

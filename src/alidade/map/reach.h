@@ -40,7 +40,7 @@ struct TimedPlace {
 
 // What speaks against the camera being at `to`: the square of its distance from where it was, as a
 // share of how far it can be; 1 at most. `way`: where the camera was, oldest first, in the world of
-// `to`; with less than two places, or when it ends after `to`, nothing does: 0. `depth`: median, at
+// `to`; when it is shorter than .2 s, or ends after `to`, nothing does: 0. `depth`: median, at
 // `to`. `gone`: what it went since the place was seen; all in map units.
 double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
                const ReachSettings& settings);

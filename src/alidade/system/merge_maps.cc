@@ -27,6 +27,7 @@ SlamSettings SettingsOf(const SavedMap& saved) {
     }
   }
   settings.loop.enabled = true;
+  settings.loop.tied_share = 0;  // what shares any landmark is tied: Tie() looks for the others
   return settings;
 }
 

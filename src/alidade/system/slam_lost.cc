@@ -11,7 +11,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
-constexpr int kReachFrames = 600;            // before a frame, that tell where the camera was last
+constexpr int kReachFrames = 3600;           // before a frame, that tell where the camera was last
 
 }  // namespace
 
@@ -61,12 +61,17 @@ bool Slam::Impl::CanBeThere(const TrackEstimate& found, const MapSnapshot& map) 
   const double share =
       found.placed.inliers / std::max<double>(1, static_cast<double>(found.sightings.size()));
   if (share >= settings.plain_share) return true;
+  // The log speaks of the map as it is now: corrected meanwhile, it is no measure for this frame.
+  if (workers_.map().Snapshot().corrections() != map.corrections()) return false;
   const MapId in = map.MapOf(found.reference);
   std::vector<TimedPlace> way;
   MapId last;
+  const std::vector<MapId> dropped = workers_.dropped();
   for (const FramePose& frame :
        log_.Trajectory(workers_.map(), std::max(0, log_.size() - kReachFrames))) {
-    if (!frame.tracked || frame.recording != log_.recording()) continue;
+    if (!frame.tracked || frame.recording != log_.recording() ||
+        std::find(dropped.begin(), dropped.end(), frame.map) != dropped.end())
+      continue;
     last = frame.map;
     if (last == in) way.push_back({frame.time, frame.T_world_camera.t});
   }
