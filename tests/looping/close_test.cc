@@ -98,6 +98,27 @@ TEST(CloseLoop, WithOneCameraMendsTheScaleToo) {
   }
 }
 
+// Keyframes of the place that share a few landmarks with the one that came back (far ones, in a
+// corridor) are where it is to be brought to: they are not moved along with it.
+TEST(CloseLoop, APlaceThatSharesALittleIsNotMovedAlong) {
+  auto place = ComeBack({.drifted = DriftAllAlong(0.4, 0.1, 1.25)});
+  ShareATenth(*place, kView, kPlace);
+  const MapSnapshot map = place->map();
+  ASSERT_TRUE(Covisible(*map.Find(place->KeyFrameOf(kView)), place->KeyFrameOf(kPlace)));
+  const auto match = place->Verify(kView, kPlace);
+  ASSERT_TRUE(match);
+  const auto moved = [&](const LoopSettings& settings) {  // of the place
+    const auto window = CorrectLoop(map, *match, place->world.camera, settings).window;
+    return std::count_if(window.begin(), window.end(),
+                         [&](KeyFrameId id) { return id < place->KeyFrameOf(kLap / 2); });
+  };
+  EXPECT_EQ(moved(place->settings), 0);
+  LoopSettings any = place->settings;
+  any.tied_share = 0;
+  EXPECT_GT(moved(any), 0);
+  CloseAndCheck(*place, 0.3, 0.07);
+}
+
 // A second time, over what the first left.
 TEST(CloseLoop, TwiceIsNoWorse) {
   auto place = ComeBack({.depth = true, .drifted = DriftAllAlong(1.2, 0.2)});

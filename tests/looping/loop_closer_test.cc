@@ -53,27 +53,8 @@ bool IsAmong(const std::vector<KeyFrameId>& found, int view) {
 TEST(LoopCandidates, AFewSharedLandmarksDoNotTieAPlace) {
   const auto place = ComeBack({.drifted = DriftInTheMiddle(0.4, 0.1)});
   constexpr int kView = 32, kOld = kView - kLap;
-  const KeyFrameId id = place->KeyFrameOf(kView), old = place->KeyFrameOf(kOld);
-  place->store.Commit([&](MapCommit& commit) {
-    const auto& now = place->world.views[kView].points;
-    const auto& then = place->world.views[kOld].points;
-    const auto& landmarks = commit.Find(id)->landmarks;
-    auto tenth = std::count_if(landmarks.begin(), landmarks.end(),
-                               [](LandmarkId landmark) { return landmark.valid(); }) /
-                 10;
-    for (size_t k = 0; k < now.size() && tenth > 0; ++k) {
-      const auto at = std::find(then.begin(), then.end(), now[k]);
-      if (now[k] < 0 || at == then.end()) continue;
-      const LandmarkId own = commit.Find(id)->landmarks[k];
-      const LandmarkId known = commit.Find(old)->landmarks[at - then.begin()];
-      if (!own.valid() || !known.valid()) continue;
-      commit.RemoveObservation(own, id);
-      commit.AddObservation(known, id, static_cast<int>(k));
-      --tenth;
-    }
-    ASSERT_EQ(tenth, 0);
-    commit.RefreshCovisibility(id);
-  });
+  const KeyFrameId id = place->KeyFrameOf(kView);
+  ShareATenth(*place, kView, kOld);
   PlaceIndex places;
   for (int v = 0; v < kView; ++v) places.Add(place->KeyFrameOf(v), place->world.views[v].frame);
   const auto found = [&] {

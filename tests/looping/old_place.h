@@ -84,6 +84,30 @@ inline DriftedMapSettings DriftInTheMiddle(double metres, double radians, double
   return settings;
 }
 
+// From now on the keyframe of a view sees a tenth of its landmarks as those the old place's saw.
+inline void ShareATenth(OldPlace& place, int view, int old_view) {
+  place.store.Commit([&](MapCommit& commit) {
+    const KeyFrameId id = place.KeyFrameOf(view), old = place.KeyFrameOf(old_view);
+    const std::vector<int>&now = place.world.views[view].points,
+          &then = place.world.views[old_view].points;
+    const std::vector<LandmarkId> landmarks = commit.Find(id)->landmarks;
+    auto tenth = std::count_if(landmarks.begin(), landmarks.end(),
+                               [](LandmarkId landmark) { return landmark.valid(); }) /
+                 10;
+    for (size_t k = 0; k < now.size() && tenth > 0; ++k) {
+      const auto at = std::find(then.begin(), then.end(), now[k]);
+      if (now[k] < 0 || at == then.end()) continue;
+      const LandmarkId known = commit.Find(old)->landmarks[at - then.begin()];
+      if (!landmarks[k].valid() || !known.valid()) continue;
+      commit.RemoveObservation(landmarks[k], id);
+      commit.AddObservation(known, id, static_cast<int>(k));
+      --tenth;
+    }
+    ASSERT_EQ(tenth, 0);
+    commit.RefreshCovisibility(id);
+  });
+}
+
 inline double Apart(const Se3& a, const Se3& b) { return (a.Inverse().t - b.Inverse().t).norm(); }
 
 }  // namespace alidade

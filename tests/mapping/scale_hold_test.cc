@@ -8,6 +8,7 @@
 #include <random>
 
 #include "alidade/geometry/se3.h"
+#include "alidade/map/view.h"
 #include "support/synthetic_map.h"
 
 namespace alidade::scale_hold_test {

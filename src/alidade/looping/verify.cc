@@ -261,20 +261,14 @@ class Verifier {
   // farther it must have leapt from one to the other, the more must be found of the place, and look
   // like it.
   bool CanMerge() const {
-    if (with_scale_ &&
-        std::min(CountOfKnownScale(a_), CountOfKnownScale(b_)) < Scaled(settings_.min_known_scale))
+    const int least = Scaled(settings_.min_known_scale);
+    if (with_scale_ && (CountOfKnownScale(map_, a_) < least || CountOfKnownScale(map_, b_) < least))
       return false;
     const double doubt = Doubt();
     const double alike = std::max(settings_.min_merge_alike, settings_.reach.plain_alike);
     return DifferentKeypoints(match_.found) >=
                doubt * settings_.reach.plain_share * match_.visible &&
            AlikeShare() >= settings_.min_merge_alike + doubt * (alike - settings_.min_merge_alike);
-  }
-
-  int CountOfKnownScale(const KeyFrame& keyframe) const {
-    return static_cast<int>(
-        std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),
-                      [&](LandmarkId id) { return id.valid() && map_.Find(id)->scale_known; }));
   }
 
   // Of two maps of one recording: DoubtOf() the camera having gone from the last keyframe of the

@@ -38,6 +38,15 @@ std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyfra
   return UpperMedian(depths);
 }
 
+int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe) {
+  int count = 0;
+  for (LandmarkId id : keyframe.landmarks) {
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    count += landmark && landmark->scale_known;
+  }
+  return count;
+}
+
 MapId LargestMap(const MapSnapshot& map) {
   MapId largest;
   size_t most = 0;

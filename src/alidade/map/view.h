@@ -30,4 +30,7 @@ MapId LargestMap(const MapSnapshot& map);
 // Of the landmarks a keyframe shows, along its optical axis; nullopt when it shows none.
 std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe);
 
+// Landmarks of the keyframe whose scale is known (Landmark::scale_known).
+int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe);
+
 }  // namespace alidade

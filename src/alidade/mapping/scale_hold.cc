@@ -56,15 +56,6 @@ std::vector<KeyFrameId> AtKnownDistance(const MapSnapshot& map, const KeyFrame& 
   return known;
 }
 
-int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe) {
-  int count = 0;
-  for (LandmarkId id : keyframe.landmarks) {
-    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    count += landmark && landmark->scale_known;
-  }
-  return count;
-}
-
 std::vector<LandmarkId> ScaleFoundFrom(const MapSnapshot& map, const KeyFrame& keyframe,
                                        const std::vector<KeyFrameId>& others) {
   std::vector<LandmarkId> found;

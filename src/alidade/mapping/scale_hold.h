@@ -26,9 +26,6 @@ Eigen::Matrix3d CentreCovariance(const MapSnapshot& map, const KeyFrame& keyfram
 std::vector<KeyFrameId> AtKnownDistance(const MapSnapshot& map, const KeyFrame& keyframe,
                                         const Camera& camera, const MapperSettings& settings);
 
-// Landmarks of the keyframe whose scale is known.
-int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe);
-
 // Landmarks of the keyframe whose scale was not known and is now: also seen from `others`, and not
 // made with an assumed depth.
 std::vector<LandmarkId> ScaleFoundFrom(const MapSnapshot& map, const KeyFrame& keyframe,
