@@ -97,8 +97,9 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--last", options.last, "Last frame, included")->type_name("N");
   command
       .add_option("--dynamics", options.dynamics,
-                  "off, geometry (leave out what moves) or full (and what a detector knows to)")
-      ->type_name("off|geometry|full");
+                  "auto (as off until much of the picture moves, then as geometry), off, geometry "
+                  "(leave out what moves) or full (and what a detector knows to)")
+      ->type_name("auto|off|geometry|full");
   command
       .add_option("--detector", options.detector,
                   "Network that finds people and other movers (YOLO, .onnx); implies "

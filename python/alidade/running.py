@@ -50,7 +50,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
     sensor: "mono", "stereo" or "rgbd"; None: what the recording has.
     semidense: map shape too: depth at every pixel with structure.
-    dynamics: "off", "geometry" (leave out what moves) or "full" (and what a detector knows to).
+    dynamics: "auto" (as "off" until much of the picture moves), "off", "geometry" (leave out what moves) or
+        "full" (and what a detector knows to).
     detector: a YOLO network (.onnx), or a function of an image that gives (class, score, x, y, width, height) of
         each thing; see Slam. Implies dynamics="full".
     camera: a camera.yaml, or a Camera, instead of the recording's own; fov: horizontal field of view in degrees

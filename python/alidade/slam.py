@@ -86,7 +86,7 @@ class Slam:
     """Visual SLAM: images in, poses and a map out.
 
     camera: of the images; or a camera.yaml. sensor: "mono", "stereo" (camera.baseline) or "rgbd" (camera.depth_factor).
-    semidense: map shape too. dynamics: "off", "geometry" or "full". profile: "desktop" or "phone". seed: of every
+    semidense: map shape too. dynamics: "auto", "off", "geometry" or "full". profile: "desktop" or "phone". seed: of every
     random choice. localise: only find poses in the map that is loaded, and leave it as it is.
     schedule: "inline" (default: each frame's work is done when track() returns; the same result every time) or
     "threaded" (track() never waits for mapping).

@@ -13,14 +13,15 @@ namespace {
 using testing::HasSubstr;
 
 TEST(DynamicsMode, HasANameThatIsReadBack) {
-  for (DynamicsMode mode : {DynamicsMode::kOff, DynamicsMode::kGeometry, DynamicsMode::kFull})
+  for (DynamicsMode mode :
+       {DynamicsMode::kOff, DynamicsMode::kAuto, DynamicsMode::kGeometry, DynamicsMode::kFull})
     EXPECT_EQ(DynamicsModeNamed("--dynamics", NameOf(mode)), mode);
 }
 
 TEST(DynamicsMode, AWordThatNamesNoneIsToldWithThoseThereAre) {
   const std::string message =
       MessageOf(ErrorKind::kUsage, [] { DynamicsModeNamed("--dynamics", "geometri"); });
-  for (const char* part : {"--dynamics", "geometri", "off", "geometry", "full"})
+  for (const char* part : {"--dynamics", "geometri", "off", "auto", "geometry", "full"})
     EXPECT_THAT(message, HasSubstr(part));
   EXPECT_THAT(message, HasSubstr("did you mean"));
   for (const char* word : {"", "Off", "on"})
@@ -42,6 +43,13 @@ TEST(DynamicsSettings, WhatCannotBeIsNamed) {
       {"drop_detections", [=](auto& s) { s.drop_detections = nan; }},
       {"bridge_seconds", [](auto& s) { s.bridge_seconds = -1; }},
       {"bridge_seconds", [=](auto& s) { s.bridge_seconds = nan; }},
+      {"watch_frames", [](auto& s) { s.watch_frames = s.votes.agreement_ago; }},
+      {"watch_every", [](auto& s) { s.watch_every = s.watch_frames - 1; }},
+      {"watch_mean", [](auto& s) { s.watch_mean = 0; }},
+      {"watch_moved", [](auto& s) { s.watch_moved = 0; }},
+      {"watch_moved", [=](auto& s) { s.watch_moved_depth = nan; }},
+      {"watch_lens", [](auto& s) { s.watch_lens = -1; }},
+      {"watch_rival_frames", [](auto& s) { s.watch_rival_frames = 0; }},
       {"min_score", [](auto& s) { s.detector.min_score = 2; }},
   };
   for (const auto& [name, change] : cases) {

@@ -166,10 +166,17 @@ bool DynamicFilter::IsCarried(const MovingObject& object, std::span<const float>
          settings_.objects.carried_share * static_cast<double>(object.cells.size());
 }
 
-bool DynamicFilter::FollowsMover() const {
+double DynamicFilter::RivalShare() const {
   const uint64_t seed = settings_.seed + static_cast<uint64_t>(now_.number);
   return ShareOfRivalMotion(camera_, cells_, tracks_.tracks(), belief_.votes, seed,
-                            settings_.votes) > settings_.votes.rival_share;
+                            settings_.votes);
+}
+
+double DynamicFilter::MovedShare() const {
+  const auto moved = std::count(belief_.votes.begin(), belief_.votes.end(), int8_t{-1});
+  const auto stood = std::count(belief_.votes.begin(), belief_.votes.end(), int8_t{1});
+  if (moved + stood < settings_.votes.agreement_tracks) return 0;
+  return static_cast<double>(moved) / static_cast<double>(moved + stood);
 }
 
 void DynamicFilter::Forget() {

@@ -64,8 +64,12 @@ class DynamicFilter {
   // Ends the frame. `T_camera_world`: its pose, in that world; null when lost.
   void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
 
-  // Whether most of the picture agrees on another motion than that of the pose just judged by.
-  bool FollowsMover() const;
+  // Share of the picture that agrees on another motion than that of the pose just judged by: see
+  // ShareOfRivalMotion().
+  double RivalShare() const;
+  // Of the tracks just judged of which flow tells whether they move, those that do; 0 when there
+  // are fewer than votes.agreement_tracks.
+  double MovedShare() const;
   void Forget();  // what was believed by poses that were wrong
 
   // What there is where a point of the camera's frame should be seen.

@@ -8,16 +8,27 @@
 namespace alidade {
 
 const char* NameOf(DynamicsMode mode) {
-  return mode == DynamicsMode::kOff ? "off" : mode == DynamicsMode::kFull ? "full" : "geometry";
+  switch (mode) {
+    case DynamicsMode::kOff:
+      return "off";
+    case DynamicsMode::kAuto:
+      return "auto";
+    case DynamicsMode::kGeometry:
+      return "geometry";
+    case DynamicsMode::kFull:
+      break;
+  }
+  return "full";
 }
 
 DynamicsMode DynamicsModeNamed(const std::string& what, const std::string& word) {
   std::vector<std::string> names;
-  for (DynamicsMode mode : {DynamicsMode::kOff, DynamicsMode::kGeometry, DynamicsMode::kFull}) {
+  for (DynamicsMode mode :
+       {DynamicsMode::kOff, DynamicsMode::kAuto, DynamicsMode::kGeometry, DynamicsMode::kFull}) {
     if (word == NameOf(mode)) return mode;
     names.push_back(NameOf(mode));
   }
-  ThrowUsage(what + " cannot be '" + word + "' (it is one of off, geometry, full)" +
+  ThrowUsage(what + " cannot be '" + word + "' (it is one of off, auto, geometry, full)" +
              DidYouMean(word, names));
 }
 
@@ -35,6 +46,13 @@ void DynamicsSettings::Check() const {
   box.Check();
   features.Check();
   landmarks.Check();
+  require(watch_mean >= 1, "watch_mean must be at least 1");
+  require(watch_moved > 0 && watch_moved_depth > 0,
+          "watch_moved and watch_moved_depth must be positive");
+  require(watch_frames > votes.agreement_ago, "watch_frames must exceed votes.agreement_ago");
+  require(watch_every >= watch_frames, "watch_every must be at least watch_frames");
+  require(watch_lens >= 0, "watch_lens must not be negative");
+  require(watch_rival_frames >= 1, "watch_rival_frames must be at least 1");
   require(detector_every_frames >= 1, "detector_every_frames must be at least 1");
   require(detector_latency_frames >= 0 && detector_latency_frames <= 30,
           "detector_latency_frames must be from 0 to 30");

@@ -27,7 +27,11 @@ size_t CountUpTo(size_t most, const MapSnapshot& map, MapId within) {
 }  // namespace
 
 Mapper::Mapper(MapStore& map, const Camera& camera, MapperSettings settings)
-    : map_(map), camera_(camera), settings_(settings), has_depth_(camera.StereoBaseline() > 0) {
+    : map_(map),
+      camera_(camera),
+      settings_(settings),
+      has_depth_(camera.StereoBaseline() > 0),
+      young_static_(settings.young_static) {
   settings_.Check();
   settings_.noise.right_from_sensor = camera.baseline <= 0;
 }
@@ -54,7 +58,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
       if (!MakesLandmark(keypoint)) continue;
       if (commit.Find(id)->landmarks[i].valid()) continue;
       Landmark landmark;
-      landmark.static_probability = settings_.young_static;
+      landmark.static_probability = young_static_;
       landmark.p_world = T_world_camera * camera_.Unproject(keypoint.pixel(), keypoint.depth);
       landmark.reference = landmark.born = id;
       landmark.observations = {{id, static_cast<int>(i)}};
@@ -83,7 +87,7 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
     for (const auto& point : start.points) {
       Landmark landmark;
       landmark.p_world = point.p_a;
-      landmark.static_probability = settings_.young_static;
+      landmark.static_probability = young_static_;
       landmark.reference = first;
       landmark.born = second;
       landmark.observations = {{first, point.keypoint_a}, {second, point.keypoint_b}};
@@ -199,7 +203,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     for (const auto& [landmark, probability] : belief) {
       const float entered = probability > settings_.sure_static ? 1 : probability;
       const Landmark* before = commit.Find(landmark);
-      if (settings_.young_static >= 1 || !before || before->static_probability == entered) continue;
+      if (young_static_ >= 1 || !before || before->static_probability == entered) continue;
       commit.Edit(landmark)->static_probability = entered;
     }
     for (LandmarkId landmark : weak) commit.Remove(landmark);
@@ -226,7 +230,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     for (const NewLandmark& entry : made) {
       Landmark landmark;
       landmark.p_world = entry.p_world;
-      landmark.static_probability = settings_.young_static;
+      landmark.static_probability = young_static_;
       landmark.reference = landmark.born = id;
       landmark.observations = {entry.first, entry.second};
       landmark.scale_known = entry.scale_known;

@@ -57,6 +57,9 @@ class Mapper {
   // adjustment short.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
 
+  // MapperSettings::young_static, of landmarks from now on. Thread-safe.
+  void SetYoungStatic(float probability) { young_static_ = probability; }
+
   // The map is of this camera from now on. Nothing else may be at work.
   void SetCamera(const Camera& camera) { camera_ = camera; }
 
@@ -75,6 +78,7 @@ class Mapper {
   Camera camera_;
   MapperSettings settings_;
   bool has_depth_;
+  std::atomic<float> young_static_;
   std::vector<LandmarkId> young_;  // on trial
   std::mutex tallies_mutex_;
   IdMap<LandmarkId, SightingTally> tallies_;

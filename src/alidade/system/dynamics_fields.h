@@ -120,6 +120,13 @@ void VisitBelief(Settings& y, Visit&& visit) {
 template <typename Settings, typename Visit>
 void VisitDynamics(Settings& y, Visit&& visit) {
   visit("dynamics.mode", y.mode);
+  visit("dynamics.watch_frames", y.watch_frames);
+  visit("dynamics.watch_every", y.watch_every);
+  visit("dynamics.watch_mean", y.watch_mean);
+  visit("dynamics.watch_moved", y.watch_moved);
+  visit("dynamics.watch_moved_depth", y.watch_moved_depth);
+  visit("dynamics.watch_rival_frames", y.watch_rival_frames);
+  visit("dynamics.watch_lens", y.watch_lens);
   visit("dynamics.moving_classes", y.moving_classes);
   visit("dynamics.carried_classes", y.carried_classes);
   visit("dynamics.detector.min_score", y.detector.min_score);

@@ -1,9 +1,11 @@
 #include "alidade/system/mover_watch.h"
 
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
 #include "alidade/base/timing.h"
 
 namespace alidade {
@@ -13,24 +15,44 @@ MoverWatch::MoverWatch(const Camera& camera, const SlamSettings& settings,
     : detections_(settings.dynamics.mode == DynamicsMode::kFull ? detector : nullptr,
                   settings.dynamics, settings.threaded, settings.seed),
       camera_(camera),
+      sensor_(settings.sensor),
       settings_(settings.dynamics) {
   const DynamicsMode mode = settings.dynamics.mode;
   if (mode == DynamicsMode::kFull && !detector) ThrowUsage("dynamics full needs a detector");
   if (mode == DynamicsMode::kOff) return;
   if (mode == DynamicsMode::kFull) class_names_ = detector->ClassNames();
   filter_.emplace(camera_, settings_, class_names_);
+  used_ = mode != DynamicsMode::kAuto;
 }
 
-void MoverWatch::Begin(const FrameInput& prepared, int number) {
+bool MoverWatch::Watches(bool young) {
+  if (young) rest_ = 0;
+  if (rest_ > 0 && --rest_ > 0) return false;
+  if (watched_ == 0) {  // the last frame it had is long ago
+    filter_.emplace(camera_, settings_, class_names_);
+    moved_.clear();
+  }
+  ++watched_;
+  if (!young && watched_ >= settings_.watch_frames && doubtful_ == 0) {  // the last of this look
+    watched_ = 0;
+    rest_ = settings_.watch_every - settings_.watch_frames + 1;
+  }
+  return true;
+}
+
+void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool young) {
   present_ms_ = 0;
-  if (!filter_) return;
+  if (!placed && !used_) watched_ = doubtful_ = 0;
+  looks_ = filter_ && (used_ || (placed && Watches(young)));
+  if (!looks_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
   const std::optional<FrameDetections> arrived = detections_.Take(number);
   Remember(arrived, number, prepared.time);
   const Stopwatch advancing;
-  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, prepared.right},
-                   arrived);
+  // Matching a stereo pair takes four times as long as flow does: not for a look.
+  const cv::Mat right = used_ ? prepared.right : cv::Mat();
+  filter_->Advance({number, prepared.time, prepared.image, prepared.depth, right}, arrived);
   present_ms_ += advancing.Milliseconds();
 }
 
@@ -46,20 +68,41 @@ void MoverWatch::Remember(const std::optional<FrameDetections>& arrived, int num
   answer_ = std::make_shared<const FrameDetections>(*arrived);
 }
 
-cv::Mat MoverWatch::Expected() const { return filter_ ? filter_->ExpectedMovers() : cv::Mat(); }
+cv::Mat MoverWatch::Expected() const { return used_ ? filter_->ExpectedMovers() : cv::Mat(); }
 
-bool MoverWatch::FollowsMover() {
-  if (!filter_) return false;
-  doubtful_ = std::max(0, doubtful_ + (filter_->FollowsMover() ? 1 : -1));
-  return doubtful_ >= settings_.votes.rival_frames;
+bool MoverWatch::MuchMoves(bool young) {
+  moved_.push_back(filter_->MovedShare());
+  if (moved_.size() < static_cast<size_t>(settings_.watch_mean)) return false;
+  if (moved_.size() > static_cast<size_t>(settings_.watch_mean)) moved_.pop_front();
+  const double mean =
+      std::accumulate(moved_.begin(), moved_.end(), 0.0) / static_cast<double>(moved_.size());
+  if (sensor_ == Sensor::kRgbd) return mean > settings_.watch_moved_depth;
+  return mean > settings_.watch_moved && (young || sensor_ == Sensor::kStereo);
+}
+
+bool MoverWatch::FollowsMover(bool young) {
+  if (!looks_ || (used_ && !young)) return false;
+  const Stopwatch watch;
+  const bool rival = filter_->RivalShare() > settings_.votes.rival_share;
+  doubtful_ = std::max(0, doubtful_ + (rival ? 1 : -1));
+  const int enough = young ? settings_.votes.rival_frames : settings_.watch_rival_frames;
+  const bool follows = doubtful_ >= enough;
+  if (!used_ && (MuchMoves(young) || follows)) {
+    LogWarning(
+        "much of the picture moves: from now on what moves is left out (--dynamics off: never)");
+    used_ = true;
+  }
+  present_ms_ += watch.Milliseconds();
+  return follows;
 }
 
 void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
-  if (!filter_) return;
+  if (!looks_) return;
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
   filter_->Judge(frame, guess);
-  if (frame.picture) {
+  if (!used_) frame.static_probability.clear();
+  if (used_ && frame.picture) {
     Picture picture = *frame.picture;
     picture.mask = filter_->Mask();
     frame.picture = std::make_shared<Picture>(picture);
@@ -71,7 +114,7 @@ LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot
   LandmarkNews news;
   int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
-    if (!filter_) {
+    if (!looks_ || !used_) {
       news.sightings.push_back({s.landmark, s.found});
       continue;
     }
@@ -93,7 +136,8 @@ void MoverWatch::Forget() {
 }
 
 void MoverWatch::End(const Frame& frame, const TrackResult& result) {
-  if (!filter_) return;
+  if (!looks_) return;
+  looks_ = false;
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
   filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
@@ -103,15 +147,18 @@ void MoverWatch::End(const Frame& frame, const TrackResult& result) {
 
 void MoverWatch::SetCamera(const Camera& camera) {
   camera_ = camera;
+  watched_ = 0;
   if (filter_) filter_.emplace(camera_, settings_, class_names_);
 }
 
 void MoverWatch::Recover() noexcept {
-  doubtful_ = 0;
-  if (!filter_) return;
+  doubtful_ = watched_ = 0;
+  looks_ = false;
+  if (settings_.mode == DynamicsMode::kOff || filter_failed_) return;
   try {
     filter_.emplace(camera_, settings_, class_names_);
   } catch (...) {  // there is none now
+    used_ = false;
     const std::lock_guard<std::mutex> lock(failure_mutex_);
     failure_ = std::current_exception();
     filter_failed_ = true;
@@ -120,7 +167,8 @@ void MoverWatch::Recover() noexcept {
 
 std::vector<StageHealth> MoverWatch::health() const {
   std::vector<StageHealth> stages;
-  if (settings_.mode == DynamicsMode::kOff) return stages;
+  const bool only_watches = settings_.mode == DynamicsMode::kAuto && !used_ && !filter_failed_;
+  if (settings_.mode == DynamicsMode::kOff || only_watches) return stages;
   {
     const std::lock_guard<std::mutex> lock(failure_mutex_);
     stages.push_back(HealthOf("dynamics", failure_, 0));

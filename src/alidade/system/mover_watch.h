@@ -1,5 +1,6 @@
 // What moves, frame by frame: the detector and the dynamic filter, and what they say of frames and
-// landmarks. Without dynamics everything is taken to stand still.
+// landmarks. Without dynamics everything is taken to stand still. With `auto`, too, while the
+// filter looks at some of the frames: until it sees the poses follow something that moves.
 #pragma once
 
 #include <atomic>
@@ -35,8 +36,10 @@ class MoverWatch {
   MoverWatch(const Camera& camera, const SlamSettings& settings,
              const std::shared_ptr<Detector>& detector);
 
-  bool on() const { return filter_.has_value(); }
-  void Begin(const FrameInput& prepared, int number);  // before there are features
+  bool on() const { return used_; }  // what moves is left out
+  // Before there are features. `placed`: the last frame has a pose that flow can be held against.
+  // `young`: in a map of one camera that may yet be begun again.
+  void Begin(const FrameInput& prepared, int number, bool placed, bool young);
   // The detector's newest answer, and how old the picture was that it is of when the present frame
   // came, seconds; null: none so far.
   const std::shared_ptr<const FrameDetections>& detections() const { return answer_; }
@@ -46,8 +49,9 @@ class MoverWatch {
   // one, gets the mask. `guess`: null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
   // Once for each frame judged with a guess: whether the poses of the last ones follow something
-  // that moves, while the room agrees on another motion.
-  bool FollowsMover();
+  // that moves, while the room agrees on another motion. With `auto` what moves is left out from
+  // then on. `young`: the map is; older ones are asked about with `auto` alone.
+  bool FollowsMover(bool young);
   void Forget();  // what was believed by such poses
   // No evidence when half of what was expected lies on movers: it is those that are not believed.
   LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
@@ -60,7 +64,7 @@ class MoverWatch {
   void Recover() noexcept;
 
   // As DynamicFilter::BeliefOfCells, after End; empty when off.
-  cv::Mat BeliefOfCells() const { return filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
+  cv::Mat BeliefOfCells() const { return used_ ? filter_->BeliefOfCells() : cv::Mat(); }
   // Any thread may ask. One for each frame; one for each the detector was given.
   const SampleLog& milliseconds() const { return milliseconds_; }
   const std::vector<std::string>& class_names() const { return class_names_; }  // the detector's
@@ -69,10 +73,17 @@ class MoverWatch {
   bool any_stopped() const { return filter_failed_ || detections_.failure(); }
 
  private:
+  bool Watches(bool young);    // with `auto`, a frame: whether the filter looks at it
+  bool MuchMoves(bool young);  // likewise: with this frame too much to go on with
   void Remember(const std::optional<FrameDetections>& arrived, int number, double time);
 
   DetectionFeed detections_;
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
+  std::atomic<bool> used_{false};        // what the filter says counts
+  bool looks_ = false;                   // the filter has the present frame
+  int watched_ = 0;                      // frames of the present look, with `auto` …
+  int rest_ = 0;                         // … and those until the next
+  std::deque<double> moved_;             // of its last frames, DynamicFilter::MovedShare()
   WorldId world_;                        // of the last pose
   int doubtful_ = 0;                     // frames whose pose follows a mover, less the others
   std::deque<std::pair<int, double>> offered_;  // frames, and their times: not answered yet
@@ -82,6 +93,7 @@ class MoverWatch {
   SampleLog milliseconds_;
 
   Camera camera_;
+  Sensor sensor_;
   DynamicsSettings settings_;
   std::vector<std::string> class_names_;  // the detector's
   std::atomic<bool> filter_failed_{false};

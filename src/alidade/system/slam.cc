@@ -19,12 +19,14 @@ namespace alidade {
 namespace {
 
 constexpr int kLastQuestions = 3;  // of the camera at the end: each change makes the next smaller
+constexpr float kYoungStatic = 0.5f;  // MapperSettings::young_static, while movers are left out
 constexpr int kReanchorFrames = 300;  // how often frames are tied to living keyframes: each 10 s
 
 // Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
 SlamSettings InUse(SlamSettings settings) {
-  if (settings.dynamics.mode != DynamicsMode::kOff && settings.dynamics.weigh)
-    settings.mapper.young_static = 0.5f;
+  const DynamicsMode mode = settings.dynamics.mode;
+  if ((mode == DynamicsMode::kGeometry || mode == DynamicsMode::kFull) && settings.dynamics.weigh)
+    settings.mapper.young_static = kYoungStatic;
   settings.dynamics.seed = settings.tracker.seed = settings.start.two_view.seed =
       settings.loop.seed = settings.seed;
   settings.Check();
@@ -96,15 +98,15 @@ TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
   RefineCamera();
   const bool left = LeavesUnknownScale();
   const int number = first_number_ + log_.size() - 1;
-  movers_.Begin(prepared, number);
+  const bool placed = state_ == TrackState::kTracking;
+  movers_.Begin(prepared, number, placed && KnowsLens(), young_.WantsGlance(number));
   tracker_.SetReadout(workers_.readout());
   const Stopwatch extracting;
   const auto frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
                                       movers_.Expected());
   extract_ms_.Add(extracting.Milliseconds());
   if (dense_) frame->picture = PictureOf(prepared);
-  if (settings_.sensor == Sensor::kMono &&
-      (state_ != TrackState::kTracking || young_.WantsGlance(number) || KeepsFrames()))
+  if (settings_.sensor == Sensor::kMono && (!placed || young_.WantsGlance(number) || KeepsFrames()))
     frame->glance = Glance(prepared.image);
   last_ = {};
   last_keyframe_ = {};
@@ -174,14 +176,33 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
   track_ms_.Add(predicting + estimating.Milliseconds());
   if (young_.on_trial() && !young_.Confirm(estimate))
     return GiveUpStart("the first points did not hold");
-  if (young_.IsYoung(*frame, tracker_.reference(), map) && movers_.FollowsMover())
-    return GiveUpStart("the first points moved");
-  if (estimate.tracked && settings_.sensor == Sensor::kMono &&
-      young_.IsYoung(*frame, tracker_.reference(), map) && young_.StandsStill(estimate.placed))
+  const bool young = young_.IsYoung(*frame, tracker_.reference(), map);
+  if (FollowsMover(young) && young) return GiveUpStart("the first points moved");
+  if (estimate.tracked && settings_.sensor == Sensor::kMono && young &&
+      young_.StandsStill(estimate.placed))
     return GiveUpStart("something moves, the camera seems to stand still");
   if (estimate.tracked) return Accept(std::move(estimate), map);
   Lose();
   return WithoutPose("too few landmarks found", frame->time, map);
+}
+
+// Whether flow can be held against poses: with a focal length that is far off all seems to move.
+// One that is looked for is believed once the map is not begun anew over it any more.
+bool Slam::Impl::KnowsLens() const {
+  if (settings_.refine.enabled) {
+    const std::optional<CameraEstimate> found = workers_.lens_watch().found();
+    return found && found->known && !KeepsFrames();
+  }
+  return settings_.start.two_view.lens_uncertainty <= settings_.dynamics.watch_lens;
+}
+
+// With dynamics.mode auto what moves may be left out from here on.
+bool Slam::Impl::FollowsMover(bool young) {
+  const bool left_out = movers_.on();
+  const bool follows = movers_.FollowsMover(young);
+  if (movers_.on() && !left_out && settings_.dynamics.weigh)
+    workers_.mapper().SetYoungStatic(kYoungStatic);
+  return follows;
 }
 
 TrackResult Slam::Impl::Accept(TrackEstimate estimate, const MapSnapshot& map) {

@@ -83,6 +83,8 @@ class Slam::Impl {
   // slam.cc: a frame.
   TrackResult TrackCounted(const FrameInput& prepared, double time);
   TrackResult Continue(const std::shared_ptr<Frame>& frame);
+  bool KnowsLens() const;
+  bool FollowsMover(bool young);
   TrackResult Accept(TrackEstimate estimate, const MapSnapshot& map);
   void Place(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
   void AddKeyFrame(PlacedFrame& placed, const Anchor& anchor);

@@ -1,0 +1,120 @@
+// dynamics.mode auto: what moves is left out once the poses are seen to follow it, and nothing is
+// different where nothing moves.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "alidade/evaluation/ate.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+#include "support/expect_error.h"
+
+namespace alidade::dynamics_auto_test {
+namespace {
+
+// Someone walks ahead of the camera, near and full of corners, for 3 s; or no one does.
+SynthRecording Room(int actors, int width, uint64_t seed = 4) {
+  SynthSettings settings;
+  settings.frames = 200;
+  settings.actors = actors;
+  settings.width = width;
+  settings.height = width * 3 / 4;
+  settings.seed = seed;
+  return SynthRecording(settings);
+}
+
+struct Played {
+  int tracked = 0, with_mask = 0;  // frames
+  int landmarks = 0;
+  double rmse = 0, path = 0;  // of the ATE, after Sim(3); of the truth, metres
+  std::vector<std::string> stages;
+  std::string poses, warnings;
+};
+
+Played Play(const SynthRecording& recording, DynamicsMode mode, Sensor sensor, int frames) {
+  SlamSettings settings;
+  settings.sensor = sensor;
+  settings.dynamics.mode = mode;
+  const WarningCatcher warnings;
+  Camera camera = recording.camera();
+  camera.baseline = 0;
+  Slam slam(camera, settings);
+  Played played;
+  Trajectory truth, estimate;
+  for (int i = 0; i < frames; ++i) {
+    const RenderedFrame frame = recording.Render(i);
+    FrameInput input;
+    input.time = frame.time;
+    input.image = frame.image;
+    if (sensor == Sensor::kRgbd) input.depth = frame.depth;
+    slam.Track(input);
+    played.with_mask += !slam.MoverMask().empty();
+    truth.push_back({frame.time, recording.Pose(i), ""});
+    if (i > 0) played.path += (recording.Pose(i).t - recording.Pose(i - 1).t).norm();
+  }
+  slam.Finish();
+  for (const FramePose& pose : slam.Trajectory()) {
+    if (!pose.tracked) continue;
+    ++played.tracked;
+    estimate.push_back({pose.time, pose.T_world_camera, ""});
+  }
+  for (const StageHealth& stage : slam.Health().stages) played.stages.push_back(stage.name);
+  played.rmse = EvaluateAte(truth, estimate, {.align = Alignment::kSim3}).error.rmse;
+  played.poses = FormatTumTrajectory(estimate);
+  played.landmarks = slam.Snapshot().landmark_count();
+  played.warnings = warnings.text();
+  return played;
+}
+
+TEST(DynamicsAuto, LeavesOutWhomTheCameraFollowed) {
+  constexpr int kFrames = 110;
+  const SynthRecording people = Room(3, 480);
+  const Played off = Play(people, DynamicsMode::kOff, Sensor::kMono, kFrames);
+  const Played watched = Play(people, DynamicsMode::kAuto, Sensor::kMono, kFrames);
+  EXPECT_GT(off.rmse, 0.1 * off.path);  // else there is nothing to show
+  EXPECT_LT(watched.rmse, 0.25 * off.rmse);
+  EXPECT_GE(watched.tracked, 80);
+  EXPECT_GT(watched.with_mask, 30);
+  EXPECT_LT(watched.with_mask, kFrames);  // not from the start
+  EXPECT_THAT(watched.warnings, testing::HasSubstr("moves is left out"));
+  EXPECT_THAT(watched.stages, testing::Contains("dynamics"));
+}
+
+TEST(DynamicsAuto, IsOffWhereNothingMoves) {
+  const SynthRecording empty = Room(0, 320);
+  for (Sensor sensor : {Sensor::kMono, Sensor::kRgbd}) {
+    const Played off = Play(empty, DynamicsMode::kOff, sensor, 70);
+    const Played watched = Play(empty, DynamicsMode::kAuto, sensor, 70);
+    EXPECT_EQ(watched.poses, off.poses) << NameOf(sensor);
+    EXPECT_EQ(watched.landmarks, off.landmarks);
+    EXPECT_EQ(watched.with_mask, 0);
+    EXPECT_EQ(watched.warnings, "");
+    EXPECT_EQ(watched.stages, off.stages);
+  }
+}
+
+TEST(DynamicsAuto, WithDepthAShareOfWhatMovesIsEnough) {
+  const SynthRecording people = Room(3, 320);
+  SlamSettings settings;
+  settings.sensor = Sensor::kRgbd;
+  settings.dynamics.watch_moved_depth = 0.01;
+  Camera camera = people.camera();
+  camera.baseline = 0;
+  Slam slam(camera, settings);
+  int from = -1;
+  for (int i = 0; i < 90; ++i) {
+    const RenderedFrame frame = people.Render(i);
+    FrameInput input;
+    input.time = frame.time;
+    input.image = frame.image;
+    input.depth = frame.depth;
+    slam.Track(input);
+    if (from < 0 && !slam.MoverMask().empty()) from = i;
+  }
+  EXPECT_GE(from, settings.dynamics.watch_mean);  // its mean needs as many frames
+}
+
+}  // namespace
+}  // namespace alidade::dynamics_auto_test
