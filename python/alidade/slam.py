@@ -224,7 +224,8 @@ class Slam:
         return Features(*self._core.features())
 
     def mover_mask(self) -> Optional[numpy.ndarray]:
-        """(h, w) uint8, 255 where something was left out of the last frame as moving; None without dynamics."""
+        """(h, w) uint8, 255 where something was left out of the last frame as moving; None without dynamics
+        and while "auto" has seen nothing to leave out."""
         return self._core.mover_mask()
 
     def detections(self) -> Optional[List[Tuple[Union[str, int], float, float, float, float, float]]]:

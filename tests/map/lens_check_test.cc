@@ -27,8 +27,8 @@ MapSnapshot MapOf(const Walk& walk) {
   Random random(walk.seed);
   std::vector<Eigen::Vector3d> points;
   for (int i = 0; i < 40 * walk.keyframes; ++i) {
-    points.emplace_back(random.Uniform(-2, 0.15 * walk.keyframes + 2), random.Uniform(-1.5, 1.5),
-                        random.Uniform(2, 5));
+    const double z = random.Uniform(2, 5), y = random.Uniform(-1.5, 1.5);
+    points.emplace_back(random.Uniform(-2, 0.15 * walk.keyframes + 2), y, z);
   }
   std::vector<std::vector<Observation>> seen(points.size());
   MapStore store;

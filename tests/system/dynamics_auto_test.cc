@@ -27,8 +27,8 @@ SynthRecording Room(int actors, int width, uint64_t seed = 4) {
 
 struct Played {
   int tracked = 0, with_mask = 0;  // frames
-  int landmarks = 0;
-  double rmse = 0, path = 0;  // of the ATE, after Sim(3); of the truth, metres
+  int landmarks = 0, looks = 0;    // looks: frames the filter had
+  double rmse = 0, path = 0;       // of the ATE, after Sim(3); of the truth, metres
   std::vector<std::string> stages;
   std::string poses, warnings;
 };
@@ -64,6 +64,7 @@ Played Play(const SynthRecording& recording, DynamicsMode mode, Sensor sensor, i
   played.rmse = EvaluateAte(truth, estimate, {.align = Alignment::kSim3}).error.rmse;
   played.poses = FormatTumTrajectory(estimate);
   played.landmarks = slam.Snapshot().landmark_count();
+  played.looks = static_cast<int>(slam.Times().dynamics.size());
   played.warnings = warnings.text();
   return played;
 }
@@ -89,6 +90,9 @@ TEST(DynamicsAuto, IsOffWhereNothingMoves) {
     const Played watched = Play(empty, DynamicsMode::kAuto, sensor, 70);
     EXPECT_EQ(watched.poses, off.poses) << NameOf(sensor);
     EXPECT_EQ(watched.landmarks, off.landmarks);
+    EXPECT_GE(watched.looks, 16);
+    EXPECT_LT(watched.looks, 60);
+    EXPECT_EQ(off.looks, 0);
     EXPECT_EQ(watched.with_mask, 0);
     EXPECT_EQ(watched.warnings, "");
     EXPECT_EQ(watched.stages, off.stages);

@@ -50,6 +50,7 @@ void DynamicsSettings::Check() const {
   require(watch_moved > 0 && watch_moved_depth > 0,
           "watch_moved and watch_moved_depth must be positive");
   require(watch_frames > votes.agreement_ago, "watch_frames must exceed votes.agreement_ago");
+  require(watch_mean <= watch_frames, "watch_mean must be at most watch_frames");
   require(watch_every >= watch_frames, "watch_every must be at least watch_frames");
   require(watch_lens >= 0, "watch_lens must not be negative");
   require(watch_rival_frames >= 1, "watch_rival_frames must be at least 1");

@@ -12,7 +12,7 @@ namespace ALIDADE_API alidade {
 
 enum class DynamicsMode {
   kOff,       // everything is taken to stand still
-  kAuto,      // the same, until the poses are seen to follow something that moves; then kGeometry
+  kAuto,      // the same, until much moves or the poses follow what does; then kGeometry
   kGeometry,  // what moves against the rest is left out
   kFull       // and so is what a detector knows to move by itself, even while it rests
 };

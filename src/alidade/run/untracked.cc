@@ -90,7 +90,7 @@ std::string AdviceOn(const std::string& reason) {
       {"two motions explain what is seen",
        "Looking at more than one flat wall, and moving on, helps"},
       {"too few points agree on one motion",
-       "Something in view moves by itself: looking elsewhere, or --dynamics, helps"},
+       "Something in view moves by itself: looking elsewhere, or --dynamics geometry, helps"},
       {"the first points did not hold", "Moving on, sideways, helps"},
       {"the first points moved", "Looking where nothing moves helps"},
       {"mapping has stopped", "A part of the program failed: see the warnings"}};

@@ -31,19 +31,19 @@ bool MoverWatch::Watches(bool young) {
   if (watched_ == 0) {  // the last frame it had is long ago
     filter_.emplace(camera_, settings_, class_names_);
     moved_.clear();
+    doubtful_ = 0;
   }
   ++watched_;
-  if (!young && watched_ >= settings_.watch_frames && doubtful_ == 0) {  // the last of this look
-    watched_ = 0;
-    rest_ = settings_.watch_every - settings_.watch_frames + 1;
-  }
+  young_ = young;
   return true;
 }
 
 void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool young) {
   present_ms_ = 0;
-  if (!placed && !used_) watched_ = doubtful_ = 0;
+  if (!placed) watched_ = 0;
   looks_ = filter_ && (used_ || (placed && Watches(young)));
+  counts_ = looks_ && used_;
+  shows_ = false;
   if (!looks_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
@@ -51,7 +51,7 @@ void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool
   Remember(arrived, number, prepared.time);
   const Stopwatch advancing;
   // Matching a stereo pair takes four times as long as flow does: not for a look.
-  const cv::Mat right = used_ ? prepared.right : cv::Mat();
+  const cv::Mat right = counts_ ? prepared.right : cv::Mat();
   filter_->Advance({number, prepared.time, prepared.image, prepared.depth, right}, arrived);
   present_ms_ += advancing.Milliseconds();
 }
@@ -68,7 +68,7 @@ void MoverWatch::Remember(const std::optional<FrameDetections>& arrived, int num
   answer_ = std::make_shared<const FrameDetections>(*arrived);
 }
 
-cv::Mat MoverWatch::Expected() const { return used_ ? filter_->ExpectedMovers() : cv::Mat(); }
+cv::Mat MoverWatch::Expected() const { return counts_ ? filter_->ExpectedMovers() : cv::Mat(); }
 
 bool MoverWatch::MuchMoves(bool young) {
   moved_.push_back(filter_->MovedShare());
@@ -81,13 +81,13 @@ bool MoverWatch::MuchMoves(bool young) {
 }
 
 bool MoverWatch::FollowsMover(bool young) {
-  if (!looks_ || (used_ && !young)) return false;
+  if (!looks_ || (counts_ && !young)) return false;
   const Stopwatch watch;
   const bool rival = filter_->RivalShare() > settings_.votes.rival_share;
   doubtful_ = std::max(0, doubtful_ + (rival ? 1 : -1));
   const int enough = young ? settings_.votes.rival_frames : settings_.watch_rival_frames;
   const bool follows = doubtful_ >= enough;
-  if (!used_ && (MuchMoves(young) || follows)) {
+  if (!counts_ && (MuchMoves(young) || follows)) {
     LogWarning(
         "much of the picture moves: from now on what moves is left out (--dynamics off: never)");
     used_ = true;
@@ -101,8 +101,8 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
   filter_->Judge(frame, guess);
-  if (!used_) frame.static_probability.clear();
-  if (used_ && frame.picture) {
+  if (!counts_) frame.static_probability.clear();
+  if (counts_ && frame.picture) {
     Picture picture = *frame.picture;
     picture.mask = filter_->Mask();
     frame.picture = std::make_shared<Picture>(picture);
@@ -114,7 +114,7 @@ LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot
   LandmarkNews news;
   int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
-    if (!looks_ || !used_) {
+    if (!counts_) {
       news.sightings.push_back({s.landmark, s.found});
       continue;
     }
@@ -137,7 +137,12 @@ void MoverWatch::Forget() {
 
 void MoverWatch::End(const Frame& frame, const TrackResult& result) {
   if (!looks_) return;
-  looks_ = false;
+  shows_ = counts_;
+  looks_ = counts_ = false;
+  if (!used_ && !young_ && watched_ >= settings_.watch_frames && doubtful_ == 0) {
+    watched_ = 0;  // the last frame of this look
+    rest_ = settings_.watch_every - settings_.watch_frames + 1;
+  }
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
   filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
@@ -153,7 +158,7 @@ void MoverWatch::SetCamera(const Camera& camera) {
 
 void MoverWatch::Recover() noexcept {
   doubtful_ = watched_ = 0;
-  looks_ = false;
+  looks_ = counts_ = shows_ = false;
   if (settings_.mode == DynamicsMode::kOff || filter_failed_) return;
   try {
     filter_.emplace(camera_, settings_, class_names_);

@@ -1,6 +1,7 @@
 // What moves, frame by frame: the detector and the dynamic filter, and what they say of frames and
 // landmarks. Without dynamics everything is taken to stand still. With `auto`, too, while the
-// filter looks at some of the frames: until it sees the poses follow something that moves.
+// filter looks at some of the frames: until much of the picture moves, or the poses follow
+// something that does.
 #pragma once
 
 #include <atomic>
@@ -50,7 +51,8 @@ class MoverWatch {
   void Judge(Frame& frame, const PoseGuess* guess);
   // Once for each frame judged with a guess: whether the poses of the last ones follow something
   // that moves, while the room agrees on another motion. With `auto` what moves is left out from
-  // then on. `young`: the map is; older ones are asked about with `auto` alone.
+  // the next frame on, as it is when much of the picture moves. `young`: the map is; older ones are
+  // asked about with `auto` alone.
   bool FollowsMover(bool young);
   void Forget();  // what was believed by such poses
   // No evidence when half of what was expected lies on movers: it is those that are not believed.
@@ -64,8 +66,8 @@ class MoverWatch {
   void Recover() noexcept;
 
   // As DynamicFilter::BeliefOfCells, after End; empty when off.
-  cv::Mat BeliefOfCells() const { return used_ ? filter_->BeliefOfCells() : cv::Mat(); }
-  // Any thread may ask. One for each frame; one for each the detector was given.
+  cv::Mat BeliefOfCells() const { return shows_ && filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
+  // Any thread may ask. One for each frame the filter had; one for each the detector was given.
   const SampleLog& milliseconds() const { return milliseconds_; }
   const std::vector<std::string>& class_names() const { return class_names_; }  // the detector's
   const SampleLog& detector_milliseconds() const { return detections_.milliseconds(); }
@@ -79,8 +81,11 @@ class MoverWatch {
 
   DetectionFeed detections_;
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
-  std::atomic<bool> used_{false};        // what the filter says counts
+  std::atomic<bool> used_{false};        // what the filter says counts, from the next frame on
   bool looks_ = false;                   // the filter has the present frame
+  bool counts_ = false;                  // and what it says of it counts
+  bool shows_ = false;                   // the last frame's counted
+  bool young_ = false;                   // the map it was placed in is
   int watched_ = 0;                      // frames of the present look, with `auto` …
   int rest_ = 0;                         // … and those until the next
   std::deque<double> moved_;             // of its last frames, DynamicFilter::MovedShare()

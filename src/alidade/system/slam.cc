@@ -200,6 +200,7 @@ bool Slam::Impl::KnowsLens() const {
 bool Slam::Impl::FollowsMover(bool young) {
   const bool left_out = movers_.on();
   const bool follows = movers_.FollowsMover(young);
+  if (follows && !young) movers_.Forget();  // what was believed by such poses
   if (movers_.on() && !left_out && settings_.dynamics.weigh)
     workers_.mapper().SetYoungStatic(kYoungStatic);
   return follows;

@@ -176,7 +176,7 @@ class Slam {
   // Every frame so far that was not let go, from the `since`th on: FramePose::index.
   std::vector<FramePose> Trajectory(int since = 0) const;
   // Of the last frame that was done: its features, and what was left out as moving (CV_8U, 255, of
-  // the camera's size; empty without dynamics).
+  // the camera's size; empty without dynamics, and while `auto` has seen nothing).
   std::vector<FeatureUse> Features() const;
   cv::Mat MoverMask() const;
   // The newest answer that had come by then; nothing before the first one, and without a detector.
