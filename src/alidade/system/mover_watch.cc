@@ -90,7 +90,7 @@ bool MoverWatch::FollowsMover(bool young) {
   if (!counts_ && (MuchMoves(young) || follows)) {
     LogWarning(
         "much of the picture moves: from now on what moves is left out (--dynamics off: never)");
-    used_ = true;
+    used_ = counts_ = true;  // of this frame: what it says of landmarks
   }
   present_ms_ += watch.Milliseconds();
   return follows;

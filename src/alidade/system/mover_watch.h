@@ -51,8 +51,8 @@ class MoverWatch {
   void Judge(Frame& frame, const PoseGuess* guess);
   // Once for each frame judged with a guess: whether the poses of the last ones follow something
   // that moves, while the room agrees on another motion. With `auto` what moves is left out from
-  // the next frame on, as it is when much of the picture moves. `young`: the map is; older ones are
-  // asked about with `auto` alone.
+  // the next frame on (and this one tells of landmarks on it), as when much of the picture moves.
+  // `young`: the map is; older ones are asked about with `auto` alone.
   bool FollowsMover(bool young);
   void Forget();  // what was believed by such poses
   // No evidence when half of what was expected lies on movers: it is those that are not believed.
