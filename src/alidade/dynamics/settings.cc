@@ -7,6 +7,10 @@
 
 namespace alidade {
 
+bool LeavesOutFromStart(DynamicsMode mode) {
+  return mode == DynamicsMode::kGeometry || mode == DynamicsMode::kFull;
+}
+
 const char* NameOf(DynamicsMode mode) {
   switch (mode) {
     case DynamicsMode::kOff:

@@ -17,6 +17,8 @@ enum class DynamicsMode {
   kFull       // and so is what a detector knows to move by itself, even while it rests
 };
 
+// Whether what moves is left out whatever is seen: geometry and full.
+bool LeavesOutFromStart(DynamicsMode mode);
 const char* NameOf(DynamicsMode mode);  // off, auto, geometry, full
 // Throws Error (usage) for a word that names none; `what` is whose word it is.
 DynamicsMode DynamicsModeNamed(const std::string& what, const std::string& word);

@@ -76,8 +76,7 @@ RunSettings SettingsFrom(const RunOptions& options) {
     ThrowUsage("--dynamics full needs --detector MODEL.onnx");
   if (mode != DynamicsMode::kFull && HasDetector(options))
     ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
-  const bool leaves_out = mode == DynamicsMode::kGeometry || mode == DynamicsMode::kFull;
-  if (!leaves_out && options.write_masks)
+  if (!LeavesOutFromStart(mode) && options.write_masks)
     ThrowUsage(
         "--write-masks needs --dynamics geometry or full: else nothing is left out from the start");
   all.Check();

@@ -22,19 +22,25 @@ MoverWatch::MoverWatch(const Camera& camera, const SlamSettings& settings,
   if (mode == DynamicsMode::kOff) return;
   if (mode == DynamicsMode::kFull) class_names_ = detector->ClassNames();
   filter_.emplace(camera_, settings_, class_names_);
-  used_ = mode != DynamicsMode::kAuto;
+  used_ = LeavesOutFromStart(mode);
 }
 
 bool MoverWatch::Watches(bool young) {
+  if (!young && watched_ >= settings_.watch_frames && doubtful_ == 0) {  // the look is over
+    watched_ = 0;
+    rest_ = settings_.watch_every - settings_.watch_frames;
+  }
   if (young) rest_ = 0;
-  if (rest_ > 0 && --rest_ > 0) return false;
+  if (rest_ > 0) {
+    --rest_;
+    return false;
+  }
   if (watched_ == 0) {  // the last frame it had is long ago
     filter_.emplace(camera_, settings_, class_names_);
     moved_.clear();
     doubtful_ = 0;
   }
   ++watched_;
-  young_ = young;
   return true;
 }
 
@@ -43,7 +49,6 @@ void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool
   if (!placed) watched_ = 0;
   looks_ = filter_ && (used_ || (placed && Watches(young)));
   counts_ = looks_ && used_;
-  shows_ = false;
   if (!looks_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
@@ -114,7 +119,7 @@ LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot
   LandmarkNews news;
   int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
-    if (!counts_) {
+    if (!looks_ || !counts_) {
       news.sightings.push_back({s.landmark, s.found});
       continue;
     }
@@ -137,12 +142,7 @@ void MoverWatch::Forget() {
 
 void MoverWatch::End(const Frame& frame, const TrackResult& result) {
   if (!looks_) return;
-  shows_ = counts_;
-  looks_ = counts_ = false;
-  if (!used_ && !young_ && watched_ >= settings_.watch_frames && doubtful_ == 0) {
-    watched_ = 0;  // the last frame of this look
-    rest_ = settings_.watch_every - settings_.watch_frames + 1;
-  }
+  looks_ = false;
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
   filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
@@ -158,7 +158,7 @@ void MoverWatch::SetCamera(const Camera& camera) {
 
 void MoverWatch::Recover() noexcept {
   doubtful_ = watched_ = 0;
-  looks_ = counts_ = shows_ = false;
+  looks_ = counts_ = false;
   if (settings_.mode == DynamicsMode::kOff || filter_failed_) return;
   try {
     filter_.emplace(camera_, settings_, class_names_);

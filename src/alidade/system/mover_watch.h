@@ -66,7 +66,9 @@ class MoverWatch {
   void Recover() noexcept;
 
   // As DynamicFilter::BeliefOfCells, after End; empty when off.
-  cv::Mat BeliefOfCells() const { return shows_ && filter_ ? filter_->BeliefOfCells() : cv::Mat(); }
+  cv::Mat BeliefOfCells() const {
+    return counts_ && filter_ ? filter_->BeliefOfCells() : cv::Mat();
+  }
   // Any thread may ask. One for each frame the filter had; one for each the detector was given.
   const SampleLog& milliseconds() const { return milliseconds_; }
   const std::vector<std::string>& class_names() const { return class_names_; }  // the detector's
@@ -82,10 +84,8 @@ class MoverWatch {
   DetectionFeed detections_;
   std::optional<DynamicFilter> filter_;  // none: everything is taken to stand still
   std::atomic<bool> used_{false};        // what the filter says counts, from the next frame on
-  bool looks_ = false;                   // the filter has the present frame
-  bool counts_ = false;                  // and what it says of it counts
-  bool shows_ = false;                   // the last frame's counted
-  bool young_ = false;                   // the map it was placed in is
+  bool looks_ = false;                   // the filter has the present frame, until its End()
+  bool counts_ = false;                  // what it says of that frame counts
   int watched_ = 0;                      // frames of the present look, with `auto` …
   int rest_ = 0;                         // … and those until the next
   std::deque<double> moved_;             // of its last frames, DynamicFilter::MovedShare()

@@ -24,8 +24,7 @@ constexpr int kReanchorFrames = 300;  // how often frames are tied to living key
 
 // Checked, with one seed for every random choice; with dynamics landmarks must earn their weight.
 SlamSettings InUse(SlamSettings settings) {
-  const DynamicsMode mode = settings.dynamics.mode;
-  if ((mode == DynamicsMode::kGeometry || mode == DynamicsMode::kFull) && settings.dynamics.weigh)
+  if (LeavesOutFromStart(settings.dynamics.mode) && settings.dynamics.weigh)
     settings.mapper.young_static = kYoungStatic;
   settings.dynamics.seed = settings.tracker.seed = settings.start.two_view.seed =
       settings.loop.seed = settings.seed;
@@ -190,8 +189,9 @@ TrackResult Slam::Impl::Continue(const std::shared_ptr<Frame>& frame) {
 // One that is looked for is believed once the map is not begun anew over it any more.
 bool Slam::Impl::KnowsLens() const {
   if (settings_.refine.enabled) {
+    if (KeepsFrames()) return false;
     const std::optional<CameraEstimate> found = workers_.lens_watch().found();
-    return found && found->known && !KeepsFrames();
+    return found && found->known;
   }
   return settings_.start.two_view.lens_uncertainty <= settings_.dynamics.watch_lens;
 }
