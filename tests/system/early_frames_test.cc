@@ -82,5 +82,42 @@ TEST(EarlyFrames, ACutForgetsThoseThatWait) {
   EXPECT_TRUE(trajectory[2].tracked);
 }
 
+// Turning, the camera comes to see the map from what is at its edge alone, where depths are wrong
+// and agree with each other: frame for frame it creeps, then it leaps.
+TEST(EarlyFrames, NoneIsPlacedBeyondALeap) {
+  SynthSettings settings;
+  settings.path = "turn";
+  settings.arm = 0.4;
+  settings.frames = 160;
+  settings.fps = 15;
+  settings.seed = 2;
+  settings.width = 480;
+  settings.height = 360;
+  constexpr int kFirst = 70, kLast = 125;
+  const SynthRecording recording(settings);
+  std::vector<RenderedFrame> frames;
+  for (int i = kFirst; i < kLast; ++i) frames.push_back(recording.Render(i));
+  // The longest step from one frame to the next of those placed later, as shares of the median.
+  const auto leap = [&](double max_leap) {
+    SlamSettings with = Settings(180);
+    with.early.max_leap = max_leap;
+    Slam slam(recording.camera(), with);
+    for (const RenderedFrame& frame : frames) slam.Track({frame.time, frame.image, {}, {}});
+    slam.Finish(60);
+    std::vector<double> steps;
+    const std::vector<FramePose> poses = slam.Trajectory();
+    for (size_t i = 1; i < poses.size(); ++i) {
+      if (poses[i - 1].tracked && poses[i].tracked)
+        steps.push_back((poses[i].T_world_camera.t - poses[i - 1].T_world_camera.t).norm());
+    }
+    std::sort(steps.begin(), steps.end());
+    return steps.empty() ? 0 : steps.back() / steps[steps.size() / 2];
+  };
+  EXPECT_GT(leap(1000), 6);
+  const double held = leap(EarlyFrameSettings().max_leap);
+  EXPECT_GT(held, 0);
+  EXPECT_LT(held, 4.5);
+}
+
 }  // namespace
 }  // namespace alidade::early_frames_test

@@ -1,10 +1,12 @@
 #include "alidade/system/early_frames.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <utility>
 
 #include "alidade/features/undistort.h"
+#include "alidade/map/view.h"
 
 namespace alidade {
 namespace {
@@ -58,6 +60,11 @@ void EarlyFrames::ForgetWaiting() {
   std::erase_if(frames_, [](const Early& early) { return !early.map.valid(); });
 }
 
+void EarlyFrames::Reanchor(const MapSnapshot& map) {
+  for (Step& step : way_) step.anchor = Reanchored(map.state(), step.anchor);
+  std::erase_if(way_, [](const Step& step) { return !step.anchor.keyframe.valid(); });
+}
+
 void EarlyFrames::SetCamera(const Camera& camera) {
   for (Early& early : frames_) {
     auto frame = std::make_shared<Frame>(*early.frame);
@@ -82,8 +89,11 @@ void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapsh
                            FrameLog& log) {
   const KeyFrameId near = NearestKeyFrame(map, early.map, early.frame->number);
   if (!near.valid()) return;  // its map is gone
+  const double time = early.frame->time;
   if (map.Find(near)->frame->number == early.frame->number) {
-    log.PlaceLate(early.index, {near, Se3(), map.ScaleOf(near)});
+    const Anchor anchor{near, Se3(), map.ScaleOf(near)};
+    log.PlaceLate(early.index, anchor);
+    Passed(time, anchor, early.map);
     return;
   }
   if (early.before && missed_in_ != early.map) {
@@ -92,11 +102,38 @@ void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapsh
   }
   if (early.before && missed_ >= settings_.most_missed) return;
   const TrackEstimate estimate = tracker.PlaceAgain(early.frame, map, near);
-  if (estimate.tracked) {
-    log.PlaceLate(early.index,
-                  AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world));
-  }
   if (early.before) missed_ = estimate.tracked ? 0 : missed_ + 1;
+  if (!estimate.tracked) return;
+  if (early.before && way_in_ == early.map && Leaps(estimate, map)) {
+    missed_ = settings_.most_missed;
+    return;
+  }
+  const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
+  log.PlaceLate(early.index, anchor);
+  Passed(time, anchor, early.map);
+}
+
+void EarlyFrames::Passed(double time, const Anchor& anchor, MapId map) {
+  if (way_in_ != map) way_.clear();
+  way_in_ = map;
+  way_.push_back({time, anchor});
+  if (way_.size() > 2) way_.pop_front();
+}
+
+// Against the velocity of the two frames after it.
+bool EarlyFrames::Leaps(const TrackEstimate& estimate, const MapSnapshot& map) const {
+  if (way_.size() < 2) return false;
+  const PlacedFrame& placed = estimate.placed;
+  const auto centre = [&](const Step& step) {
+    return PoseOf(map.state(), step.anchor).Inverse().t;
+  };
+  const Eigen::Vector3d last = centre(way_[1]);
+  const Eigen::Vector3d step = (last - centre(way_[0])) * ((placed.frame->time - way_[1].time) /
+                                                           (way_[1].time - way_[0].time));
+  const double off = (placed.T_camera_world.Inverse().t - (last + step)).norm();
+  const double sigma = std::sqrt(placed.covariance.topLeftCorner<3, 3>().trace());
+  const double depth = MedianDepth(map, *map.Find(estimate.reference)).value_or(0);
+  return off > settings_.max_leap * (step.norm() + 3 * sigma) && off > settings_.min_leap * depth;
 }
 
 }  // namespace alidade

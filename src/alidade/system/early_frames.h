@@ -29,6 +29,9 @@ class EarlyFrames {
   // What waits is of no use any more: the next frame need not go on where it was.
   void ForgetWaiting();
 
+  // From then on nothing here needs a keyframe that was culled in `map`.
+  void Reanchor(const MapSnapshot& map);
+
   // All frames that wait are of this camera.
   void SetCamera(const Camera& camera);
 
@@ -45,6 +48,13 @@ class EarlyFrames {
   };
   void PlaceOne(const Early& early, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
   void Keep(const Frame& frame, int index, MapId map);
+  bool Leaps(const TrackEstimate& estimate, const MapSnapshot& map) const;
+  void Passed(double time, const Anchor& anchor, MapId map);
+
+  struct Step {  // where the camera was
+    double time = 0;
+    Anchor anchor;
+  };
 
   EarlyFrameSettings settings_;
   std::deque<Early> frames_;  // oldest first
@@ -52,6 +62,8 @@ class EarlyFrames {
   int begun_ = 0;             // number of the frame it was begun with
   int missed_ = 0;            // frames before the start that were not recognised, on end …
   MapId missed_in_;           // … in that map
+  std::deque<Step> way_;      // going back: the two placed last, the earlier one last …
+  MapId way_in_;              // … in that map
 };
 
 }  // namespace alidade

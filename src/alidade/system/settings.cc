@@ -89,6 +89,8 @@ void TrajectorySettings::Check() const {
 void EarlyFrameSettings::Check() const {
   if (most < 0 || settle < 0 || most_missed < 1)
     ThrowUsage("early.most and early.settle must not be negative, early.most_missed not below 1");
+  if (!(max_leap > 0)) ThrowUsage("early.max_leap must be positive");
+  if (!(min_leap >= 0)) ThrowUsage("early.min_leap must not be negative");
 }
 
 void SlamSettings::Check() const {

@@ -207,6 +207,8 @@ void VisitEarly(Settings& e, Visit&& visit) {
   visit("early.most", e.most);
   visit("early.settle", e.settle);
   visit("early.most_missed", e.most_missed);
+  visit("early.max_leap", e.max_leap);
+  visit("early.min_leap", e.min_leap);
 }
 
 template <typename Settings, typename Visit>

@@ -249,6 +249,7 @@ void Slam::Impl::Reanchor() {
   const MapSnapshot map = workers_.map().Snapshot();
   log_.Reanchor(map);
   tracker_.Reanchor(map);
+  early_.Reanchor(map);
   workers_.map().ReleaseCulledKeyFrames(map.version());
 }
 
