@@ -53,10 +53,14 @@ if(ALIDADE_SANITIZE)
   endif()
   target_compile_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer)
+  if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND ALIDADE_SANITIZE MATCHES "address" AND ALIDADE_SANITIZE MATCHES "undefined")
+    # What the address sanitizer sees as soon as it is touched; a quarter of the time to compile, in code full of references.
+    target_compile_options(alidade_flags INTERFACE -fno-sanitize=null,object-size,vptr)
+  endif()
+  # Warnings are what the other builds are for. GCC sees uninitialised values in the sanitizers' own code.
+  target_compile_options(alidade_flags INTERFACE -Wno-error)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # The sanitizers' own code makes GCC see uninitialised values inside Eigen where there are none.
-    # Warnings are what the other builds are for: here they would be of code nobody wrote.
-    target_compile_options(alidade_flags INTERFACE -Wno-maybe-uninitialized -Wno-tsan -Wno-error)
+    target_compile_options(alidade_flags INTERFACE -Wno-maybe-uninitialized -Wno-tsan)
   endif()
   target_link_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE})
 endif()

@@ -39,10 +39,13 @@ alidade_artefact(static STATIC LINKS ${NEEDS})
 alidade_artefact(shared SHARED LINKS ${NEEDS})
 # Templates of other libraries, instantiated here, are nobody's business.
 set(SYMBOLS ${CMAKE_CURRENT_LIST_DIR}/alidade.map)
-target_link_options(alidade_shared PRIVATE -Wl,--version-script=${SYMBOLS} -Wl,--no-undefined)
+target_link_options(alidade_shared PRIVATE -Wl,--version-script=${SYMBOLS})
 set_target_properties(alidade_shared PROPERTIES LINK_DEPENDS ${SYMBOLS})
 if(ALIDADE_SANITIZE)
+  # Clang links the sanitizer's library into programs alone: shared libraries find its functions there.
   target_link_options(alidade_shared PRIVATE -fsanitize=${ALIDADE_SANITIZE})
+else()
+  target_link_options(alidade_shared PRIVATE -Wl,--no-undefined)
 endif()
 
 # The API is the headers that mark their namespace as visible, and they are what is installed. tests/architecture sees to
