@@ -117,23 +117,25 @@ void EarlyFrames::Passed(double time, const Anchor& anchor, MapId map) {
   if (way_in_ != map) way_.clear();
   way_in_ = map;
   way_.push_back({time, anchor});
-  if (way_.size() > 2) way_.pop_front();
+  while (way_.size() > 2 && way_[1].time - time >= settings_.leap_seconds) way_.pop_front();
 }
 
-// Against the velocity of the two frames after it.
+// Against the velocity of the frames after it.
 bool EarlyFrames::Leaps(const TrackEstimate& estimate, const MapSnapshot& map) const {
   if (way_.size() < 2) return false;
   const PlacedFrame& placed = estimate.placed;
   const auto centre = [&](const Step& step) {
     return PoseOf(map.state(), step.anchor).Inverse().t;
   };
-  const Eigen::Vector3d last = centre(way_[1]);
-  const Eigen::Vector3d step = (last - centre(way_[0])) * ((placed.frame->time - way_[1].time) /
-                                                           (way_[1].time - way_[0].time));
-  const double off = (placed.T_camera_world.Inverse().t - (last + step)).norm();
+  const Step &first = way_.front(), &last = way_.back();
+  const double seconds = placed.frame->time - last.time;  // negative: going back
+  const Eigen::Vector3d velocity = (centre(last) - centre(first)) / (last.time - first.time);
+  const Eigen::Vector3d expected = centre(last) + velocity * seconds;
+  const double off = (placed.T_camera_world.Inverse().t - expected).norm();
+  const double way = velocity.norm() * std::max(std::abs(seconds), settings_.leap_seconds);
   const double sigma = std::sqrt(placed.covariance.topLeftCorner<3, 3>().trace());
   const double depth = MedianDepth(map, *map.Find(estimate.reference)).value_or(0);
-  return off > settings_.max_leap * (step.norm() + 3 * sigma) && off > settings_.min_leap * depth;
+  return off > settings_.max_leap * (way + 3 * sigma) && off > settings_.min_leap * depth;
 }
 
 }  // namespace alidade

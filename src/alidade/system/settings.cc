@@ -91,6 +91,7 @@ void EarlyFrameSettings::Check() const {
     ThrowUsage("early.most and early.settle must not be negative, early.most_missed not below 1");
   if (!(max_leap > 0)) ThrowUsage("early.max_leap must be positive");
   if (!(min_leap >= 0)) ThrowUsage("early.min_leap must not be negative");
+  if (!(leap_seconds > 0)) ThrowUsage("early.leap_seconds must be positive");
 }
 
 void SlamSettings::Check() const {

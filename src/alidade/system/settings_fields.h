@@ -209,6 +209,7 @@ void VisitEarly(Settings& e, Visit&& visit) {
   visit("early.most_missed", e.most_missed);
   visit("early.max_leap", e.max_leap);
   visit("early.min_leap", e.min_leap);
+  visit("early.leap_seconds", e.leap_seconds);
 }
 
 template <typename Settings, typename Visit>
