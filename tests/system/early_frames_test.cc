@@ -2,6 +2,7 @@
 // with exact poses.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "alidade/slam.h"
@@ -97,7 +98,7 @@ TEST(EarlyFrames, NoneIsPlacedBeyondALeap) {
   const SynthRecording recording(settings);
   std::vector<RenderedFrame> frames;
   for (int i = kFirst; i < kLast; ++i) frames.push_back(recording.Render(i));
-  // The longest step from one frame to the next of those placed later, as shares of the median.
+  // The longest step from one frame to the next of all with a pose, in medians.
   const auto leap = [&](double max_leap) {
     SlamSettings with = Settings(180);
     with.early.max_leap = max_leap;
