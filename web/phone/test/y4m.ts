@@ -34,10 +34,10 @@ export function grayOf({ files }: Recording, number: number): Uint8Array {
 
 export const DARK = -1; // a frame of nothing
 
-// `order`: frames of the recording, or DARK, in the order that the camera shows them.
-export function writeY4m(path: string, { files, width, height }: Recording, order: readonly number[], numbered = true): void {
+// `order`: frames of the recording, or DARK, in the order that the camera shows them, `rate` a second.
+export function writeY4m(path: string, { files, width, height }: Recording, order: readonly number[], numbered = true, rate = 30): void {
   const out = openSync(path, 'w');
-  writeSync(out, `YUV4MPEG2 W${width} H${height} F30:1 Ip A1:1 C420jpeg\n`);
+  writeSync(out, `YUV4MPEG2 W${width} H${height} F${rate}:1 Ip A1:1 C420jpeg\n`);
   const y = Buffer.alloc(width * height);
   const u = Buffer.alloc((width * height) / 4);
   const v = Buffer.alloc((width * height) / 4);
