@@ -71,6 +71,13 @@ class Slam::Impl {
   KeyFrameId last_keyframe_;  // it became
   YoungMap young_;            // of one camera
   EarlyFrames early_;         // likewise
+  // The frame before this one, where it hung on a keyframe that went with the start of this one …
+  struct LeftFrame {
+    int index = -2;  // in the log
+    Anchor anchor;   // … and where it is, should this one be found in the same map
+    MapId map;
+  };
+  LeftFrame left_;
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
   CameraClock clock_;
@@ -100,6 +107,7 @@ class Slam::Impl {
   void Lose();
   void LeaveMap();
   bool LeavesUnknownScale();
+  void KeepFramesBetween(MapId gone);
   void ForgetWhere();
 
   // slam_start.cc: the begin and the end of a map.

@@ -11,7 +11,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kRelocaliseCandidates = 5;  // keyframes tried for each frame while lost
-constexpr int kReachFrames = 3600;           // before a frame, that tell where the camera was last
+constexpr int kReachFrames = 3600;           // before a frame, that are looked back at
 
 }  // namespace
 
@@ -104,6 +104,8 @@ std::vector<KeyFrameId> Slam::Impl::PlacesLike(const Frame& frame, const MapSnap
 // A place just found again is confirmed by the frames after it before the map grows on it.
 TrackResult Slam::Impl::FoundBack(TrackEstimate estimate, const MapSnapshot& map) {
   ++relocalisations_;
+  if (left_.index + 1 == Index() && left_.map == map.MapOf(estimate.reference))
+    log_.PlaceLate(left_.index, left_.anchor);
   young_.Reset();
   early_.ForgetWaiting();
   tracker_.KeyFrameInserted(estimate.placed.frame->number);
@@ -161,8 +163,28 @@ bool Slam::Impl::LeavesUnknownScale() {
     early_.ForgetWaiting();
     ForgetWhere();
   }
+  KeepFramesBetween(unknown);
   workers_.Drop(unknown);
   return there;
+}
+
+// A keyframe hangs on itself, frames beside it on the keyframe that shares most landmarks with
+// them: where those stay placed when the map `gone` goes, so does the keyframe's own frame, told by
+// the keyframe they hang on. The newest one's stays where the next frame is found beside it.
+void Slam::Impl::KeepFramesBetween(MapId gone) {
+  const MapSnapshot map = workers_.map().Snapshot();
+  const std::vector<FramePose> frames =
+      log_.Trajectory(workers_.map(), std::max(0, log_.size() - kReachFrames));
+  for (size_t i = 1; i < frames.size(); ++i) {
+    const FramePose &before = frames[i - 1], &frame = frames[i];
+    if (frame.map != gone || !before.tracked || before.map == gone) continue;
+    const Anchor anchor = AnchorTo(map.state(), before.reference, frame.T_world_camera.Inverse());
+    if (i + 1 == frames.size()) {
+      left_ = {frame.index, anchor, before.map};
+    } else if (frames[i + 1].map == before.map) {
+      log_.PlaceLate(frame.index, anchor);
+    }
+  }
 }
 
 }  // namespace alidade
