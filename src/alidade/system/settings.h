@@ -31,7 +31,9 @@ struct TrajectorySettings {
 // Frames that one camera saw before its map could tell where they were, and in its first moments,
 // are placed in it later (EarlyFrames).
 struct EarlyFrameSettings {
-  int most = 180;   // frames kept for it, some 80 kB each; 0: none is placed later
+  // Frames kept for it, some 80 kB each; 0: none is placed later. 13 s at 30 Hz, 7 at 60: a drone
+  // far from all it sees starts after 6.5 s.
+  int most = 400;
   int settle = 60;  // frames after the start, from when on one is placed with each tracked frame
   int most_missed = 10;  // on end that are not recognised, going back: the rest is not tried
   // Cameras do not leap: a frame before the start that lies farther from where those after it lead
