@@ -54,7 +54,7 @@ if(ALIDADE_SANITIZE)
   target_compile_options(alidade_flags INTERFACE -fsanitize=${ALIDADE_SANITIZE} -fno-sanitize-recover=all
                          -fno-omit-frame-pointer)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang" AND ALIDADE_SANITIZE MATCHES "address" AND ALIDADE_SANITIZE MATCHES "undefined")
-    # What the address sanitizer sees as soon as it is touched; a quarter of the time to compile, in code full of references.
+    # What the address sanitizer sees as soon as it is touched, and long to compile in code full of references.
     target_compile_options(alidade_flags INTERFACE -fno-sanitize=null,object-size)
   endif()
   # Warnings are what the other builds are for. GCC sees uninitialised values in the sanitizers' own code.

@@ -94,7 +94,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
 
 // `time`: as it was given; that of `prepared` never jumps.
 TrackResult Slam::Impl::TrackCounted(const FrameInput& prepared, double time) {
-  left_ = {};
+  orphan_ = {};
   RefineCamera();
   const bool left = LeavesUnknownScale();
   const int number = first_number_ + log_.size() - 1;

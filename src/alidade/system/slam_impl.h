@@ -72,12 +72,12 @@ class Slam::Impl {
   YoungMap young_;            // of one camera
   EarlyFrames early_;         // likewise
   // The frame before this one, where it hung on a keyframe that went with the start of this one …
-  struct LeftFrame {
+  struct OrphanFrame {
     int index = -2;  // in the log
     Anchor anchor;   // … and where it is, should this one be found in the same map
     MapId map;
   };
-  LeftFrame left_;
+  OrphanFrame orphan_;
   TrackState state_ = TrackState::kInitialising;
   FrameLog log_;
   CameraClock clock_;

@@ -104,8 +104,8 @@ std::vector<KeyFrameId> Slam::Impl::PlacesLike(const Frame& frame, const MapSnap
 // A place just found again is confirmed by the frames after it before the map grows on it.
 TrackResult Slam::Impl::FoundBack(TrackEstimate estimate, const MapSnapshot& map) {
   ++relocalisations_;
-  if (left_.index + 1 == Index() && left_.map == map.MapOf(estimate.reference))
-    log_.PlaceLate(left_.index, left_.anchor);
+  if (orphan_.index + 1 == Index() && orphan_.map == map.MapOf(estimate.reference))
+    log_.PlaceLate(orphan_.index, orphan_.anchor);
   young_.Reset();
   early_.ForgetWaiting();
   tracker_.KeyFrameInserted(estimate.placed.frame->number);
@@ -180,7 +180,7 @@ void Slam::Impl::KeepFramesBetween(MapId gone) {
     if (frame.map != gone || !before.tracked || before.map == gone) continue;
     const Anchor anchor = AnchorTo(map.state(), before.reference, frame.T_world_camera.Inverse());
     if (i + 1 == frames.size()) {
-      left_ = {frame.index, anchor, before.map};
+      orphan_ = {frame.index, anchor, before.map};
     } else if (frames[i + 1].map == before.map) {
       log_.PlaceLate(frame.index, anchor);
     }

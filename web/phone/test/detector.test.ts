@@ -140,7 +140,7 @@ test('people are left out, and the camera does not wait for the network', onWalk
   console.log(`features on people a picture: ${without.used.toFixed(1)} used without a detector; with it ${found.used.toFixed(1)} used, ${found.leftOut.toFixed(1)} left out, ${found.elsewhere.toFixed(1)} elsewhere; `
     + `${rateWithout.toFixed(1)} pictures/s without, ${rateWith.toFixed(1)} with; ${milliseconds.toFixed(0)} ms a look, ${((later[1] - processed) / (later[0] - looks)).toFixed(1)} pictures for each, ${age.toFixed(2)} s late`);
   assert.ok(without.used > 5 && without.leftOut === 0);
-  assert.ok(found.used < 0.7 * without.used, // late answers: 0.47 on a machine that two programs share
+  assert.ok(found.used < 0.7 * without.used, // late answers: 0.39 beside a compiler
      `${found.used} of ${without.used}`);
   assert.ok(later[1] - processed > 2 * (later[0] - looks), 'pictures wait for the network');
   assert.ok(age > 0);
