@@ -166,7 +166,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     const TrackResult& result = frame.result;
     nlohmann::json told = {{"frame", number},
                            {"state", NameOfState(result.state)},
-                           {"reason", result.state == TrackState::kTracking ? "" : result.reason},
+                           {"reason", result.state == TrackState::kTracking ? "" : result.reason()},
                            {"predicted", result.predicted},
                            {"milliseconds", frame.milliseconds},
                            {"keyframes", frame.keyframes},

@@ -122,7 +122,7 @@ EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels,
   return Guarded(
       [&]() -> const double* {
         const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
-        session->reason = frame.result.reason;
+        session->reason = frame.result.reason();
         const Eigen::Vector3d& t = frame.result.T_world_camera.t;
         const Eigen::Quaterniond q(frame.result.T_world_camera.R);
         const bool placed =

@@ -133,7 +133,7 @@ ALIDADE_NATIVE(void, nativeNumbers)(JNIEnv* env, jclass, jlong handle, jdoubleAr
 
 ALIDADE_NATIVE(jstring, nativeReason)(JNIEnv* env, jclass, jlong handle) {
   return Guarded(env, jstring{nullptr}, [&] {
-    return env->NewStringUTF(SessionOf(handle).Numbers().frame.result.reason);
+    return env->NewStringUTF(SessionOf(handle).Numbers().frame.result.reason());
   });
 }
 

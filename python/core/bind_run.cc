@@ -81,7 +81,7 @@ class Onlooker : public RunWatcher {
   const Slam* slam_ = nullptr;
   std::string stage_ = "opening", folder_, viewer_;
   int frames_ = 0, total_ = -1, keyframes_ = 0, points_ = 0;
-  TrackState state_ = TrackState::kInitialising;
+  TrackState state_ = TrackState::kInitializing;
   MapHolder map_;
 };
 

@@ -37,7 +37,7 @@ py::object CovarianceOf(const TrackedFrame& frame) {
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
   return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
-                  "pose"_a = PoseOf(frame), "reason"_a = result.reason,
+                  "pose"_a = PoseOf(frame), "reason"_a = result.reason(),
                   "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
                   "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
                   "cut"_a = result.cut, "expected"_a = result.quality.expected,

@@ -133,7 +133,7 @@ TEST(PhoneSlam, DetectionsThatCannotBeAreRefusedAndThoseWithoutADetectorIgnored)
 TEST(PhoneSlam, ColoursAreTurnedToGrey) {
   PhoneSlam slam(64, 48, 60, PhoneSettings::Default(false));
   const std::vector<uint8_t> pixels(size_t{64} * 48 * 4, 90);
-  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitialising);
+  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitializing);
 }
 
 TEST(PhoneSettings, AreSetByLines) {

@@ -59,7 +59,7 @@ TEST(Predicted, IsNearTheTruthForAMomentAndInNoTrajectory) {
   }
   EXPECT_EQ(run.counts.predicted, 10);
   for (size_t i = kCovered + 10; i < run.results.size(); ++i) {
-    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason;
+    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason();
     EXPECT_LT((run.results[i].T_world_camera.t - run.TrueFromFirst(static_cast<int>(i)).t).norm(),
               0.01);
   }

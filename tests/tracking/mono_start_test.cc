@@ -28,7 +28,7 @@ Start FeedAll(const SyntheticWorld& world, MonoStart& start) {
   for (const SyntheticView& view : world.views) {
     outcome.result = start.Add(view.frame);
     if (outcome.result) break;
-    outcome.reason = start.reason();
+    outcome.reason = ReasonText(start.failure());
   }
   return outcome;
 }

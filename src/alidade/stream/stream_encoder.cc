@@ -87,7 +87,7 @@ std::string Words(TrackState state, const std::string& reason) {
 struct StreamEncoder::Path {
   struct Entry {
     int number = 0;
-    TrackState state = TrackState::kInitialising;
+    TrackState state = TrackState::kInitializing;
     KeyFrameId reference;
     double time = 0;
     Se3 T_reference_camera;
@@ -222,7 +222,7 @@ void StreamEncoder::TellMap(const MapSnapshot& map, int number, double time,
 
 void StreamEncoder::TellState(const StreamFrame& frame, std::vector<std::string>& messages) {
   const TrackState state = frame.result.state;
-  const std::string reason = Words(state, frame.result.reason);
+  const std::string reason = Words(state, frame.result.reason());
   const auto event = [&](stream::EventKind kind, const std::string& text) {
     messages.push_back(EncodeEvent(kind, frame.number, frame.time, text));
     events_.push_back(messages.back());
@@ -265,7 +265,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   path_->Add(entry, static_cast<size_t>(settings_.path_frames));
 
   fb::FlatBufferBuilder builder(65536);
-  const auto reason = builder.CreateString(result.reason);
+  const auto reason = builder.CreateString(result.reason());
   const auto cut = builder.CreateString(result.cut);
   const auto ms = builder.CreateVector(frame.ms.data(), frame.ms.size());
   std::vector<uint8_t> features;

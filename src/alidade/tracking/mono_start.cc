@@ -50,8 +50,8 @@ void MonoStartSettings::Check() const {
   require(still_memory >= 0, "still_memory must not be negative");
   require(min_still_motion > 0, "min_still_motion must be positive");
   require(min_still_frames >= 1, "min_still_frames must be at least 1");
-  require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
-          "trial_share must lie in [0, 1]");
+  require(trial_frames >= 1, "trial_frames must be at least 1");
+  require(trial_share >= 0 && trial_share <= 1, "trial_share must lie in [0, 1]");
 }
 
 MonoStart::Step MonoStart::StepOf(TwoViewFailure failure) {
@@ -160,30 +160,30 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
   return {};
 }
 
-const char* MonoStart::reason() const {
+TrackFailure MonoStart::failure() const {
   switch (farthest_) {
     case Step::kNoFrame:
-      return "no frame yet";
+      return TrackFailure::kFirstView;
     case Step::kFewCorners:
-      return "too few corners in the image";
+      return TrackFailure::kFewCorners;
     case Step::kFewMatches:
-      return "too few matches between frames";
+      return TrackFailure::kFewMatches;
     case Step::kLittleMotion:
-      return "the camera hardly moves";
+      return TrackFailure::kLittleMotion;
     case Step::kNoModel:
-      return "too few points agree on one motion";
+      return TrackFailure::kNoMotionModel;
     case Step::kLowParallax:
-      return "too little parallax: move the camera sideways";
+      return TrackFailure::kLowParallax;
     case Step::kUnknownLens:
-      return "a turn on the spot explains what is seen: move the camera sideways";
+      return TrackFailure::kPureRotation;
     case Step::kAmbiguous:
-      return "two motions explain what is seen";
+      return TrackFailure::kTwoMotions;
     case Step::kStillCamera:
-      return "something moves, the camera seems to stand still";
+      return TrackFailure::kStillCamera;
     case Step::kStarts:
       break;
   }
-  return "";
+  return TrackFailure::kNone;
 }
 
 }  // namespace alidade

@@ -11,6 +11,7 @@
 #include "alidade/features/frame.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/two_view.h"
+#include "alidade/tracking/track_failure.h"
 
 namespace ALIDADE_API alidade {
 
@@ -74,9 +75,8 @@ class MonoStart {
   // The next frame; a result once it and an earlier one tell where the points are.
   std::optional<MonoStartResult> Add(std::shared_ptr<const Frame> frame);
   void Reset() { references_.clear(); }
-  // Why the last frame did not start a map: of the pairs it was tried in, the one that came nearest
-  // to a start.
-  const char* reason() const;
+  // Why the last frame did not start a map: the furthest step that any of its pairs reached.
+  TrackFailure failure() const;
 
  private:
   struct Reference {
