@@ -25,9 +25,8 @@ inline Se3 PoseOf(const MapState& map, const Anchor& anchor) {
 
 // Re-expresses an anchor relative to the nearest live ancestor of a culled keyframe; an anchor to a
 // live keyframe is returned unchanged. Returns an anchor without a keyframe if the map was dropped.
-//   T_camera_parent = T_camera_keyframe(lengths × s_keyframe) · T_keyframe_parent(lengths ×
-//   s_parent),
-// stored for a parent of scale 1, so that it does not depend on the current scale.
+//   T_camera_parent = T_camera_keyframe · T_keyframe_parent, translations scaled by s_keyframe and
+// s_parent. Stored for a parent of scale 1, so that it does not depend on the current scale.
 inline Anchor Reanchored(const MapState& map, Anchor anchor) {
   const CulledKeyFrame* gone = map.culled.At(anchor.keyframe.value);
   if (gone) {

@@ -40,7 +40,7 @@ class ByteBudget {
 };
 
 // Largest coordinate, meters; products and squares stay finite.
-inline constexpr double kFarthest = 1e12;  // metres
+inline constexpr double kFarthest = 1e12;
 
 template <typename Vector>
 size_t SizeOf(const Vector* vector) {

@@ -11,7 +11,7 @@
 namespace alidade {
 
 struct ActorLooks {
-  double height = 1.75;                                                     // metres
+  double height = 1.75;                                                     // meters
   double girth = 1;                                                         // factor
   int head = 0, shirt = 0, sleeves = 0, trousers = 0, shoes = 0, skin = 0;  // texture indices
 };

@@ -12,7 +12,7 @@ namespace alidade {
 // Camera position and viewing direction. Yaw is the angle from the world's x axis about the
 // vertical; pitch is positive upwards.
 struct PathKnot {
-  Eigen::Vector3d position;   // metres
+  Eigen::Vector3d position;   // meters
   double yaw = 0, pitch = 0;  // radians
 };
 

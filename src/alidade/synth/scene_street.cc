@@ -167,7 +167,7 @@ struct Way {
 
 // Speed profile of a car: 10 m/s, 5 m/s at corners, acceleration ±2.5 m/s². Knots at equal times.
 std::vector<PathKnot> Drive(double& period) {
-  constexpr double kKnot = 0.25, kStep = 0.01;  // seconds, metres
+  constexpr double kKnot = 0.25, kStep = 0.01;  // seconds, meters
   const Way way;
   std::vector<double> until = {0};  // seconds at each step
   for (double s = 0; s < way.Length(); s += kStep) {
