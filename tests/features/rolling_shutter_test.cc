@@ -68,7 +68,7 @@ TEST(RollingShutter, IsUndoneForPointsOfKnownDepthInEitherDirection) {
     View view = Take(camera, false);
     ASSERT_GT(WorstShift(view), 3);
     UndoRollingShutter(camera, kMotion, view.inverse_depths, 0, view.frame);
-    // the depth at the row's readout time differs slightly from that at the middle
+    // The depth at the row's readout time differs slightly from that at the middle.
     EXPECT_LT(WorstShift(view), 0.1);
     EXPECT_EQ(view.frame.motion, kMotion);
     for (const Keypoint& k : view.frame.keypoints) EXPECT_NEAR(k.x - k.right_x, 20, 1e-3);
@@ -85,7 +85,7 @@ TEST(RollingShutter, WhatIsNotKnownIsTakenToBeAsFarAsTheRest) {
   const double before = WorstShift(near);
   UndoRollingShutter(camera, kMotion, {}, 1 / 3.5, near.frame);
   EXPECT_LT(WorstShift(near), 0.5 * before);
-  // distant points are displaced by rotation only
+  // Distant points are displaced by rotation only.
   UndoRollingShutter(camera, kMotion, {}, 0, far.frame);
   EXPECT_LT(WorstShift(far), 0.01);
 }

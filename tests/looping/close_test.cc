@@ -107,7 +107,7 @@ TEST(CloseLoop, APlaceThatSharesALittleIsNotMovedAlong) {
   ASSERT_TRUE(Covisible(*map.Find(place->KeyFrameOf(kView)), place->KeyFrameOf(kPlace)));
   const auto match = place->Verify(kView, kPlace);
   ASSERT_TRUE(match);
-  // number of the old place's keyframes in the window
+  // Number of the old place's keyframes in the window.
   const auto moved = [&](const LoopSettings& settings) {
     const auto window = CorrectLoop(map, *match, place->world.camera, settings).window;
     return std::count_if(window.begin(), window.end(),

@@ -183,7 +183,7 @@ TEST(CommitMerge, ParentsAreOlderThanTheirChildrenWhereverTheMapsTouch) {
   const KeyFrameId root = AddEmpty(store, {}), second = AddEmpty(store, root);
   const KeyFrameId other_root = AddEmpty(store, {});
   AddEmpty(store, other_root);
-  // the older map is continued after relocalization
+  // The older map is continued after relocalization.
   const KeyFrameId third = AddEmpty(store, second);
   const KeyFrameId fourth = AddEmpty(store, third);
   const MapSnapshot map = store.Commit([&](MapCommit& commit) {

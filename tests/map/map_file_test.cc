@@ -225,7 +225,7 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
       {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = NAN; }},
       {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{1}}; }},
       {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{77}}; }},
-      // the other keyframe still refers to it
+      // The other keyframe still refers to it.
       {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {}; }},
       {"order",
        [](MapCommit& c) {

@@ -32,7 +32,7 @@ TEST(RefreshCovisibility, EqualsCountingByBruteForce) {
   ExpectConsistent(map);
   int pairs = 0, weak_pairs = 0;
   for (KeyFrameId a : map.KeyFrames()) {
-    // by descending number of shared landmarks, then by id
+    // By descending number of shared landmarks, then by id.
     std::vector<std::pair<int, KeyFrameId>> expected;
     for (KeyFrameId b : map.KeyFrames()) {
       const int shared = a == b ? 0 : SharedLandmarks(*map.Find(a), *map.Find(b));

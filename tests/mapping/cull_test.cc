@@ -131,7 +131,7 @@ TEST_F(WeakLandmarksTest, SeenByTooFewAfterTwoKeyframesIsWeak) {
   EXPECT_TRUE(Weak(made_.keyframes[1]).empty());  // too early to decide
   EXPECT_EQ(still_young_, std::vector<LandmarkId>{one_});
   EXPECT_EQ(Weak(made_.keyframes[2]), std::vector<LandmarkId>{one_});
-  // with depth, two observations suffice
+  // With depth, two observations suffice.
   EXPECT_TRUE(Weak(made_.keyframes[2], /*has_depth=*/true).empty());
   KeepObservations(1);
   EXPECT_EQ(Weak(made_.keyframes[2], true), std::vector<LandmarkId>{one_});

@@ -67,7 +67,7 @@ TEST(FindDuplicates, FindsSightingsNobodyNoticed) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
   const KeyFrameId newest = made.keyframes.back();
-  // landmark, and its keypoint in the newest keyframe
+  // Landmark, and its keypoint in the newest keyframe.
   std::vector<std::pair<LandmarkId, int>> forgotten;
   store.Commit([&](MapCommit& commit) {
     const std::vector<LandmarkId> seen = commit.Find(newest)->landmarks;

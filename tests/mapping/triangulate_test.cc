@@ -74,7 +74,7 @@ TEST(TriangulateNew, FindsTheTruePointsOfAnExactWorld) {
   }
   ASSERT_GT(possible.size(), 100u);
   EXPECT_GE(judgement.right,
-            // a few lie on each other's epipolar lines
+            // A few lie on each other's epipolar lines.
             0.97 * static_cast<double>(possible.size()));
 }
 

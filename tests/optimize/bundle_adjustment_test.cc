@@ -141,7 +141,7 @@ TEST(AdjustBundle, AMapBentAllAlongIsStraightenedWithLittleDamping) {
                                           .rotation_error = 0,
                                           .seed = 31});
   const auto bend = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
-    // angle along the ring; the first cameras are at 0
+    // Angle along the ring; the first cameras are at 0.
     const double turn = std::atan2(p.x(), p.z());
     return (1 + 0.03 * (1 - std::cos(turn))) * p + Eigen::Vector3d(0, 0.15 * std::sin(2 * turn), 0);
   };

@@ -117,7 +117,7 @@ void Roll(World& world, const Eigen::Vector2d& readout) {
       const auto camera = static_cast<size_t>(o.camera);
       const Eigen::Vector3d p =
           window.T_camera_world[camera] * window.points[static_cast<size_t>(o.point)];
-      // fixed-point iteration: the readout time depends on the position
+      // Fixed-point iteration: the readout time depends on the position.
       for (int i = 0; i < 20; ++i) {
         o.read = {o.pixel.x() / 640 - 0.5, o.pixel.y() / 480 - 0.5};
         const Eigen::Vector3d q = Se3::Exp(readout.dot(o.read) * window.motions[camera]) * p;

@@ -125,7 +125,7 @@ TEST(SynthWays, LowLightIsDarkerAndNoisierAgainstWhatIsSeen) {
   };
   double day = 0, dusk = 0, night = 0;
   EXPECT_NEAR(noise_of(1, &day), 4, 0.3);
-  // same brightness as by day, with a quarter of the light
+  // Same brightness as by day, with a quarter of the light.
   EXPECT_NEAR(noise_of(0.25, &dusk), 8, 0.6);
   EXPECT_NEAR(noise_of(0.0625, &night), 4, 0.3);
   EXPECT_NEAR(dusk, day, 0.02);

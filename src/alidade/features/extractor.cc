@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kBandCells = 3;  // rows of cells per task
 constexpr int kChunk = 64;     // keypoints described per task
-// of the usual density in avoided regions: enough to detect motion there
+// Of the usual density in avoided regions: enough to detect motion there.
 constexpr double kAvoidedShare = 0.4;
 constexpr int kAround = 4;  // rows that FAST needs above and below
 

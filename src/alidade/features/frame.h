@@ -72,7 +72,7 @@ struct Frame {
   // Camera motion during the image readout, if known: T_camera_world at s seconds after the middle
   // of the image is Exp(s motion) T_camera_world. Map units and radians per second.
   Vector6d motion = Vector6d::Zero();
-  // input of semi-dense mapping until handed over; otherwise null
+  // Input of semi-dense mapping until it is handed over; otherwise null.
   std::shared_ptr<const Picture> picture;
 
   // Keypoints with a static probability below kUsable are not used for the pose; those below

@@ -24,7 +24,7 @@ struct Camera {
   // negative if read from last to first, 0 for a global shutter. A phone held upright reads its
   // images along x.
   std::array<double, 2> readout{};
-  // false: `readout` is an initial guess to be estimated (tracking/readout.h)
+  // False: `readout` is an initial guess to be estimated (tracking/readout.h).
   bool readout_known = false;
   // Index into `readout` of the likely readout direction if it is not calibrated: a sensor is read
   // line by line, and its lines lie along the longer side of the image.

@@ -58,7 +58,7 @@ enum class TwoViewFailure {
   kTooFewMatches,
   kNoModel,
   kLowParallax,
-  // pure rotation with another focal length or radial distortion explains the matches
+  // Pure rotation with another focal length or radial distortion explains the matches.
   kUnknownLens,
   kAmbiguous,
   kTooFewPoints

@@ -14,7 +14,7 @@ struct LoopCorrection {
   LoopMatch match;
   std::vector<KeyFrameId> window;    // the keyframe and its neighbors, by id
   std::vector<FusedSighting> fused;  // landmarks of the place found in the window
-  // loop: new poses of all keyframes of the map, by id
+  // Loop: new poses of all keyframes of the map, by id.
   std::vector<KeyFrameCorrection> corrections;
   MapId older, younger;  // merge: the two maps
   Sim3 T_older_younger;  // merge: transform between their worlds

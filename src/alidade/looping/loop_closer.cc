@@ -93,7 +93,7 @@ void LoopCloser::AdjustAll(
   adjusted.outliers.clear();  // left to the mapper
   while_mapper_rests([&] {
     map_.CommitAside([&](MapCommit& commit) {
-      // another loop was closed meanwhile
+      // Another loop was closed meanwhile.
       if (commit.state().corrections != map.corrections()) return;
       CommitAdjustment(commit, map, adjusted);
       commit.CountCorrection();

@@ -14,15 +14,15 @@
 namespace alidade {
 namespace {
 
-// of an unmistakable place: landmarks found, as a multiple of min_found
+// Unmistakable place: landmarks found, as a multiple of min_found.
 constexpr int kPlainFound = 3;
-// of an unmistakable place: landmarks found, as a share of those expected
+// Unmistakable place: landmarks found, as a share of those expected.
 constexpr double kPlainShare = 0.35;
-// drift limit as a share of the path length when the monocular scale has failed
+// Drift limit as a share of the path length when the monocular scale has failed.
 constexpr double kBrokenDrift = 0.6;
 constexpr size_t kPoseKeyFrames = 4;  // additional keyframes around the place used for the pose
 constexpr int kMinRatios = 10;        // landmarks known in both maps, needed for a scale estimate
-// largest ratio of the upper to the lower quartile of the depth ratios
+// Largest ratio of the upper to the lower quartile of the depth ratios.
 constexpr double kMaxSpread = 1.3;
 
 std::vector<int> Known(const KeyFrame& keyframe) {
@@ -119,7 +119,7 @@ class Verifier {
     matching.ratio = 0.8;
     const std::vector<int> of_a = Known(a_), of_b = Known(b_);
     for (const IndexMatch& m : MatchSubsets(*a_.frame, of_a, *b_.frame, of_b, matching)) {
-      // both observe one landmark: no new information
+      // Both observe one landmark: no new information.
       if (a_.landmarks[m.a] == b_.landmarks[m.b]) continue;
       matches_.push_back(MatchOf(map_, a_, m.a, b_, m.b, settings_));
     }

@@ -34,7 +34,7 @@ struct AdjustSettings {
 struct Adjustment {
   std::vector<std::pair<KeyFrameId, Se3>> poses;               // T_camera_world, by id
   std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points;  // adjusted positions, world frame
-  // observations rejected by the chi² test
+  // Observations rejected by the chi² test.
   std::vector<std::pair<LandmarkId, KeyFrameId>> outliers;
   BundleReport report;
 };

@@ -12,7 +12,7 @@
 namespace alidade {
 namespace {
 
-// in sigmas of the readout time; below it the readout counts as zero
+// In sigmas of the readout time; below it the readout counts as zero.
 constexpr double kLeastTold = 3;
 
 LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,

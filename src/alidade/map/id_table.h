@@ -59,7 +59,7 @@ class IdTree {
   static constexpr int kBits = 6, kSlots = 1 << kBits;
   static constexpr uint32_t kMask = kSlots - 1;
   struct Node {
-    // child nodes; on the lowest level objects
+    // Child nodes; on the lowest level objects.
     std::array<std::shared_ptr<const void>, kSlots> slots;
     int used = 0;  // number of nonempty slots
     uint64_t version = 0;

@@ -33,7 +33,7 @@ struct KeyFrame {
   std::shared_ptr<const DepthMap> depth;  // semi-dense depth; null: not available (yet)
   uint64_t version = 0;                   // commit that last changed it
 
-  // camera center, world frame
+  // Camera center, world frame.
   Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }
 };
 

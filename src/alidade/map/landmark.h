@@ -38,7 +38,7 @@ struct Landmark {
   // Its depth is an assumption, because it was created during a pure rotation (MapTurn()). Not
   // saved.
   bool depth_assumed = false;
-  // newest keyframe at its creation; recent landmarks are on probation (mapping/cull.h)
+  // Newest keyframe at its creation; recent landmarks are on probation (mapping/cull.h).
   KeyFrameId born;
 };
 

@@ -23,10 +23,10 @@ struct LensCheckSettings {
 
 struct LensCheck {
   int windows = 0;  // number of windows with a result
-  // radial distortion in addition to the camera model, unitless: median of the windows
+  // Radial distortion in addition to the camera model, unitless: median of the windows.
   double k1 = 0;
   double sigma = 0;  // standard deviation of k1, from the spread of the windows
-  // displacement by k1 at the image corner, relative to its distance from the center
+  // Displacement by k1 at the image corner, relative to its distance from the center.
   double bend = 0;
   bool strong = false;  // significant and larger than min_bend
 };

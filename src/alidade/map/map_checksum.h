@@ -15,7 +15,7 @@ inline constexpr uint32_t kMapVersion = 2;
 inline uint64_t MapChecksum(const uint8_t* bytes, size_t size, size_t skip) {
   uint64_t hash = 0xcbf29ce484222325u;
   for (size_t i = 0; i < size; ++i) {
-    // unsigned arithmetic: smaller i wrap around to large numbers
+    // Unsigned arithmetic: smaller i wrap around to large numbers.
     hash ^= i - skip < 8 ? 0 : bytes[i];
     hash *= 0x100000001b3u;
   }

@@ -168,7 +168,7 @@ void MapCommit::Remove(MapId id) {
   state_.keyframes.ForEach([&](const KeyFrame& keyframe) {
     if (keyframe.map == id) keyframes.push_back(keyframe.id);
   });
-  // collected first, because the map of a culled keyframe is found through its parent
+  // Collected first, because the map of a culled keyframe is found through its parent.
   std::vector<KeyFrameId> culled;
   state_.culled.ForEach([&](const CulledKeyFrame& gone) {
     if (state_.MapOf(gone.parent) == id) culled.push_back(gone.id);

@@ -60,7 +60,7 @@ Se3 MapState::PoseOf(KeyFrameId id) const {
 std::vector<MapId> MapSnapshot::Maps() const {
   std::vector<MapId> maps;
   keyframes().ForEach([&](const KeyFrame& keyframe) {
-    // each map has exactly one first keyframe
+    // Each map has exactly one first keyframe.
     if (!keyframe.parent.valid()) maps.push_back(keyframe.map);
   });
   std::sort(maps.begin(), maps.end());

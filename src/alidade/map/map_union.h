@@ -14,7 +14,7 @@ struct UnitedPart {
   uint32_t first_keyframe = 0, end_keyframe = 0;  // [first, end)
   uint32_t first_landmark = 0;
   uint32_t first_map = 0, end_map = 0;
-  // added to Frame::number, so that frame numbers of different maps are distinct
+  // Added to Frame::number, so that frame numbers of different maps are distinct.
   int first_frame = 0;
 };
 

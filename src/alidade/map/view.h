@@ -14,7 +14,7 @@ struct LandmarkView {
   Eigen::Vector2d pixel;  // undistorted
   double right_x = -1;    // column in the right image; -1 for a monocular camera
   double distance = 0;    // from the camera center, meters
-  // of the angle between the line of sight and the landmark's mean viewing direction
+  // Of the angle between the line of sight and the landmark's mean viewing direction.
   double cosine = 1;
   int level = 0;  // expected pyramid level
 };

@@ -142,7 +142,7 @@ void Mapper::Restore(const MapSnapshot& map) {
 }
 
 void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
-  // log-odds; bounds the time to revise a long-held belief to about 1 s
+  // Log-odds; bounds the time to revise a long-held belief to about 1 s.
   constexpr float kBound = 4;
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   for (const auto& [id, log_odds] : evidence) {

@@ -112,7 +112,7 @@ void SchurSolver::AddCameras(const Linearisation& system, double lambda) {
     const CameraBlock& c = system.cameras[i];
     Matrix6d H = c.Hessian();
     H.diagonal() += DampingOf(c, lambda);
-    // the last block of a row is on the diagonal
+    // The last block of a row is on the diagonal.
     SquareBlock<6>& S = sum.blocks[row_begin_[i + 1] - 1];
     for (int j = 0; j < 6; ++j) {
       for (int n = 0; n < 3; ++n) S.column[j][n] += Double2{H(2 * n, j), H(2 * n + 1, j)};

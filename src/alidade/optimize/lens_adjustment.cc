@@ -18,7 +18,7 @@ constexpr int kUnknowns = LensAdjustment::kParameters;
 // Median of a residual's chi² with 2 degrees of freedom: 2 ln 2.
 constexpr double kMedianChi2 = 1.3862943611198906;
 constexpr size_t kLeastClusters = 3;  // windows needed for the sandwich estimator
-// relative to the diagonal; also added before inverting for the covariance
+// Relative to the diagonal; also added before inverting for the covariance.
 constexpr double kGaugeDamping = 1e-8;
 
 RadialLens Moved(RadialLens lens, const LensVector& step) {
@@ -191,7 +191,7 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
     for (const LensSystem& system : alone) meat += system.g * system.g.transpose();
     const auto n = static_cast<double>(windows.size());
     const LensMatrix sandwich = inverse * (n / (n - 1) * meat) * inverse;
-    // scaled as a whole, so that it remains a valid covariance
+    // Scaled as a whole, so that it remains a valid covariance.
     for (int k = 0; k < kUnknowns; ++k) {
       const double more = std::sqrt(std::max(1.0, sandwich(k, k) / result.covariance(k, k)));
       result.covariance.row(k) *= more;

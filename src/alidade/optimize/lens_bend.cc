@@ -10,7 +10,7 @@ namespace alidade {
 namespace {
 
 constexpr double kHuber = 2.447;  // sqrt(5.991): 95 % of chi² with 2 degrees of freedom
-// relative to the diagonal: fixes the gauge and points without parallax
+// Relative to the diagonal: fixes the gauge and points without parallax.
 constexpr double kDamping = 1e-8;
 constexpr int kLens = 2;  // parameters of the lens: log of the focal length, k1
 using Lens = Eigen::Matrix<double, 3, kLens>;

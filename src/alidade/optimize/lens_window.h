@@ -41,7 +41,7 @@ struct WindowSystem {
     Eigen::Matrix<double, LensAdjustment::kParameters, 3> by_lens;  // lens × point
     std::vector<std::pair<int, Eigen::Matrix<double, 6, 3>>> by_camera;
   };
-  // one per point of the window; empty by_camera: the point is not moved
+  // One per point of the window; empty by_camera: the point is not moved.
   std::vector<Point> points;
 };
 

@@ -30,7 +30,7 @@ Vector7d EdgeResidual(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_
 PoseGraphResidual LineariseEdge(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_world) {
   PoseGraphResidual e;
   e.r = EdgeResidual(T_a_b, T_a_world, T_b_world);
-  // right Jacobian at r = left Jacobian at -r
+  // Right Jacobian at r = left Jacobian at -r.
   const Matrix7d right = LeftJacobianInverseSim3(-e.r);
   e.J_a = -right;
   e.J_b = right * AdjointSim3(T_a_world * T_b_world.Inverse());

@@ -187,7 +187,7 @@ Descent Descend(const Intrinsics& k, const Se3& start, const std::vector<MatchPa
     const double gain = -0.5 * d.at_end.g.dot(step);
     if (!step.allFinite() || !(gain >= 0)) break;
     const Se3 trial = Se3::Exp(step) * d.T;
-    // accept such a small step without evaluating it
+    // Accept such a small step without evaluating it.
     if (gain < tolerance * d.at_end.cost + 1e-12) {
       d.T = trial;
       d.at_end.cost -= gain;
@@ -246,7 +246,7 @@ Matrix6d PoseCovariance(const Matrix6d& information, double cost, double measure
   if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return Matrix6d::Zero();
   const double raw = 2 * cost / free;
   double factor = raw;
-  // fixed-point iteration: the truncation correction depends on the noise
+  // Fixed-point iteration: the truncation correction depends on the noise.
   for (int i = 0; i < 20; ++i) {
     const double half = 0.5 * gate / factor;
     const double kept = half < 500 ? 1 - half / std::expm1(half) : 1;

@@ -59,7 +59,7 @@ class PlaceIndex {
   PlaceSettings settings_;
   uint64_t seed_ = 1;
   std::mutex writer_;  // held during a whole change; serializes writers
-  // guards all members below; held exclusively while they change
+  // Guards all members below; held exclusively while they change.
   mutable std::shared_mutex content_;
   std::unique_ptr<WordIndex> index_;
   uint32_t grown_at_ = 0;

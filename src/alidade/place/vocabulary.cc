@@ -42,7 +42,7 @@ Vocabulary::Vocabulary(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
 
 void Vocabulary::NumberWords() {
   if (nodes_.empty()) return;
-  // number of words below each node; parents precede their children
+  // Number of words below each node; parents precede their children.
   std::vector<uint32_t> words(nodes_.size(), 0);
   for (size_t i = nodes_.size(); i-- > 0;) {
     const Node& node = nodes_[i];

@@ -31,7 +31,7 @@ class Vocabulary {
     uint32_t children = 0;     // 0: a leaf, i.e. a word
   };
   static constexpr uint32_t kMaxNodes = 1 << 20;
-  // with kMaxLevels, bounds the cost of looking up one word
+  // With kMaxLevels, bounds the cost of looking up one word.
   static constexpr int kMaxChildren = 64;
   static constexpr int kMaxLevels = 8;
 

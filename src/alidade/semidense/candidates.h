@@ -44,7 +44,7 @@ class Candidates {
  private:
   static constexpr int kMost = 3;
   struct Group {
-    // sum of weighted inverse depths; sum of weights (inverse variances)
+    // Sum of weighted inverse depths; sum of weights (inverse variances).
     float sum = 0, weight = 0;
     Hypothesis mean;
   };

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// cells of DepthRange per cell of the landmark grid, along each axis
+// Cells of DepthRange per cell of the landmark grid, along each axis.
 constexpr int kLandmarkCells = 4;
 constexpr int kEnoughLandmarks = 4;  // needed nearby for a local range
 constexpr int kEnoughDepth = 12;     // pixels with depth needed nearby for a local range

@@ -56,7 +56,7 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
   const cv::Mat gray = straight(picture.gray, cv::INTER_LINEAR);
   const cv::Mat color = straight(picture.color, cv::INTER_LINEAR);
   cv::Mat mask = straight(picture.mask, cv::INTER_NEAREST);
-  // by one pixel, the support of the gradient
+  // By one pixel, the support of the gradient.
   if (!mask.empty()) cv::dilate(mask, mask, cv::Mat());
   cv::Mat gx, gy, magnitude, angle;
   cv::Scharr(gray, gx, CV_32F, 1, 0, 1.0 / 32);

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastBaseline = 0.02;
 constexpr int kEnough = 20;  // landmarks needed to estimate an exposure
 constexpr int kRounds = 5;
-// gray levels; pairs of intensities with a larger residual are down-weighted
+// Gray levels; pairs of intensities with a larger residual are down-weighted.
 constexpr double kTrust = 8;
 
 std::optional<double> MeanAround(const GradientImage& image, const Keypoint& keypoint) {
@@ -60,7 +60,7 @@ Exposure CompareExposures(const KeyFrame& reference, const GradientImage& refere
     if (mean) here.push_back({reference.landmarks[i], *mean});
   }
   std::sort(here.begin(), here.end());
-  // intensity in the reference and in the other image
+  // Intensity in the reference and in the other image.
   std::vector<std::pair<double, double>> pairs;
   for (size_t i = 0; i < other.landmarks.size(); ++i) {
     const LandmarkId id = other.landmarks[i];

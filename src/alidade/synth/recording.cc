@@ -171,7 +171,7 @@ SynthRecording::SynthRecording(SynthSettings settings) {
   if (settings.things > 0 && !layout.table)
     ThrowUsage("synth: no table for things in the scene \"" + settings.scene + "\"");
   std::vector<ActorLooks> looks;
-  // separate stream: the scene is the same with and without people
+  // Separate stream: the scene is the same with and without people.
   Random random(settings.seed, 51);
   for (int i = 0; i < settings.actors; ++i) looks.push_back(DressActor(builder, random));
   std::vector<Thing> things;

@@ -193,7 +193,7 @@ Layout LayOutStreet(SceneBuilder& builder) {
   AddRoad(furnish);
   const double x = kBlockX, y = kBlockY, ox = x + kStreet, oy = y + kStreet;
   const Vector2d outer[4] = {{-ox, -oy}, {ox, -oy}, {ox, oy}, {-ox, oy}};
-  // the street is to the left of each side
+  // The street is to the left of each side.
   const Vector2d inner[4] = {{-x, -y}, {-x, y}, {x, y}, {x, -y}};
   for (int i = 0; i < 4; ++i) {
     const Vector2d &a = outer[i], &b = outer[(i + 1) % 4], &c = inner[i], &d = inner[(i + 1) % 4];

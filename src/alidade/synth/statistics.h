@@ -12,7 +12,7 @@ struct SynthStatistics {
   int frames = 0;
   double path_length = 0;   // meters
   double median_speed = 0;  // meters per second
-  // degrees per second, median over frames of the rotation to the next frame
+  // Degrees per second, median over frames of the rotation to the next frame.
   double median_turn = 0;
   double plain_share = 0;    // share of the image area almost without texture, mean over frames
   double missing_depth = 0;  // share of pixels without a depth reading, mean over frames

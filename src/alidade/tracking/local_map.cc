@@ -10,7 +10,7 @@ namespace {
 // Best covisible keyframes added for each keyframe that shares landmarks with the frame.
 constexpr int kNeighboursEach = 10;
 constexpr double kMaxTurn = 0.7;  // cosine of 45°, between the optical axes
-// largest distance, relative to the depth of the observed landmarks
+// Largest distance, relative to the depth of the observed landmarks.
 constexpr double kMaxMove = 0.5;
 // Longest path since, relative to the same depth. After a longer path with drift, the loop closer
 // must match the place first.

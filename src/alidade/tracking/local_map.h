@@ -13,7 +13,7 @@ struct LocalMap {
   // Keyframes that share landmarks with the frame; those with a similar pose (covisibility is lost
   // when the camera turns away and back); then covisible keyframes of both.
   std::vector<KeyFrameId> keyframes;
-  // all they observe, without duplicates; valid as long as the snapshot
+  // All they observe, without duplicates; valid as long as the snapshot.
   std::vector<const Landmark*> landmarks;
   KeyFrameId reference;  // the keyframe that shares the most landmarks
 };

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kChunk = 256;        // landmarks per task
 constexpr double kHeadOn = 0.998;  // cosine to the mean viewing direction
-// relative to the radius at oblique views: 2.5 to 4 (Mur-Artal et al. 2015)
+// Relative to the radius at oblique views: 2.5 to 4 (Mur-Artal et al. 2015).
 constexpr float kHeadOnRadius = 0.625;
 
 struct Candidate {

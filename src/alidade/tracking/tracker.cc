@@ -288,7 +288,7 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  // allocations come first, so that bad_alloc leaves the tracker unchanged
+  // Allocations come first, so that bad_alloc leaves the tracker unchanged.
   PlacedFrame copy = placed;
   const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unproven_frames;
