@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// How far about points lie: the area of the ellipse of one standard deviation, by pi.
+// Spatial extent of points: the area of their one-sigma ellipse divided by π.
 struct Extent {
   double count = 0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -141,7 +141,7 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
     if (step == Step::kStarts && still_ && frame->number - *still_ <= settings_.still_memory)
       step = Step::kStillCamera;
     farthest_ = std::max(farthest_, step);
-    if (step == Step::kStarts) {  // the oldest that can has the most parallax
+    if (step == Step::kStarts) {  // the oldest reference has the most parallax
       references_.clear();
       return tried;
     }
@@ -150,7 +150,7 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
   references_ = std::move(kept);
   if (references_.empty() ||
       frame->number - references_.back().frame->number >= settings_.reference_gap) {
-    // The oldest pairs have the most parallax; a newer one gives way.
+    // Old references have the most parallax, so the newest one is replaced.
     if (static_cast<int>(references_.size()) >= settings_.references) references_.pop_back();
     Reference reference{frame, {}};
     for (const Keypoint& keypoint : frame->keypoints)
