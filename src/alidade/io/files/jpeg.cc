@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <csetjmp>
-#include <cstdio>  // jpeglib.h needs it first
+#include <cstdio>  // must precede jpeglib.h
 #include <cstdlib>
 #include <cstring>
 #include <limits>
