@@ -33,7 +33,7 @@ py::object CovarianceOf(const TrackedFrame& frame) {
   return array;
 }
 
-// As keyword arguments of alidade.TrackResult.
+// Keyword arguments of alidade.TrackResult.
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
   return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),

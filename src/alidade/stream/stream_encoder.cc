@@ -55,7 +55,7 @@ std::string EncodeEvent(stream::EventKind kind, int number, double time, const s
                 stream::Body::Event);
 }
 
-// What is left out as moving, as closed polygons.
+// Outlines of the moving parts of the image as closed polygons.
 fb::Offset<fb::Vector<fb::Offset<stream::Outline>>> EncodeOutlines(fb::FlatBufferBuilder& builder,
                                                                    const cv::Mat& mask,
                                                                    double tolerance) {
@@ -83,7 +83,7 @@ std::string Words(TrackState state, const std::string& reason) {
 
 }  // namespace
 
-// Where frames were, by what they hang on.
+// Poses of past frames, relative to keyframes.
 struct StreamEncoder::Path {
   struct Entry {
     int number = 0;
@@ -93,14 +93,14 @@ struct StreamEncoder::Path {
     Se3 T_reference_camera;
   };
   std::vector<Entry> entries;
-  std::map<KeyFrameId, std::vector<size_t>> of;  // entries, by reference
+  std::map<KeyFrameId, std::vector<size_t>> of;  // indices of entries, by reference
 
   void Add(const Entry& entry, size_t most) {
     if (entries.size() >= most) Thin();
     if (entry.reference.valid()) of[entry.reference].push_back(entries.size());
     entries.push_back(entry);
   }
-  // Every other one of the older half goes.
+  // Removes every second entry of the older half.
   void Thin() {
     size_t kept = 0;
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -144,7 +144,7 @@ std::string StreamEncoder::Hello() const {
   fb::FlatBufferBuilder builder;
   const Camera& c = source_.camera;
   const std::vector<double> distortion(c.distortion.begin(), c.distortion.end());
-  std::vector<double> turn;  // row by row
+  std::vector<double> turn;  // row-major
   if (!source_.R_camera_rectified.isIdentity(0)) {
     for (int i = 0; i < 9; ++i) turn.push_back(source_.R_camera_rectified(i / 3, i % 3));
   }
