@@ -124,8 +124,9 @@ EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels,
       [&]() -> const double* {
         const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
         session->reason = frame.result.reason();
-        const Eigen::Vector3d& t = frame.result.T_world_camera.t;
-        const Eigen::Quaterniond q(frame.result.T_world_camera.R);
+        const alidade::Se3 pose = frame.result.predicted.value_or(frame.result.T_world_camera);
+        const Eigen::Vector3d& t = pose.t;
+        const Eigen::Quaterniond q(pose.R);
         const bool placed =
             frame.result.state == alidade::TrackState::kTracking || frame.result.predicted;
         session->numbers = {static_cast<double>(frame.result.state),

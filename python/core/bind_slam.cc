@@ -18,7 +18,7 @@ py::object PoseOf(const TrackedFrame& frame) {
 }
 
 py::object PredictedOf(const TrackedFrame& frame) {
-  return frame.result.predicted ? py::object(PoseArray(frame.result.T_world_camera))
+  return frame.result.predicted ? py::object(PoseArray(*frame.result.predicted))
                                 : py::object(py::none());
 }
 

@@ -55,7 +55,7 @@ TEST(Predicted, IsNearTheTruthForAMomentAndInNoTrajectory) {
     // Better than to say that it stands where it was last seen.
     const Se3 truth = run.TrueFromFirst(i);
     const double stood = (run.TrueFromFirst(kCovered - 1).t - truth.t).norm();
-    EXPECT_LT((result.T_world_camera.t - truth.t).norm(), 0.7 * stood) << i;
+    EXPECT_LT((result.predicted->t - truth.t).norm(), 0.7 * stood) << i;
   }
   EXPECT_EQ(run.counts.predicted, 10);
   for (size_t i = kCovered + 10; i < run.results.size(); ++i) {

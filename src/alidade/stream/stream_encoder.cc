@@ -291,7 +291,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   }
   const MapSnapshot& map = told_.snapshot();
   const stream::Pose beside = PackPose(entry.T_reference_camera);
-  const stream::Pose live = PackPose(result.T_world_camera);
+  const stream::Pose live = PackPose(result.predicted.value_or(result.T_world_camera));
   stream::FrameBuilder made(builder);
   made.add_number(frame.number);
   made.add_time(frame.time);
@@ -305,7 +305,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
     made.add_t_reference_camera(&beside);
   }
   if (result.state == TrackState::kTracking || result.predicted) made.add_t_world_camera(&live);
-  made.add_predicted(result.predicted);
+  made.add_predicted(result.predicted.has_value());
   made.add_keyframes(static_cast<uint32_t>(map.keyframe_count()));
   made.add_landmarks(static_cast<uint32_t>(map.landmark_count()));
   made.add_matches(static_cast<uint32_t>(result.matches));

@@ -317,8 +317,7 @@ TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const 
   result.state = PublicState(session_.state());
   result.failure = failure;
   if (const auto T_camera_world = tracker_.PredictedPose(time, map)) {
-    result.predicted = true;
-    result.T_world_camera = T_camera_world->Inverse();
+    result.predicted = T_camera_world->Inverse();
     ++counts_.predicted;
   }
   return result;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -47,10 +48,10 @@ struct PoseQuality {
 
 struct TrackResult {
   TrackState state = TrackState::kInitializing;
-  Se3 T_world_camera;  // valid when tracking or predicted
-  // Lost for less than tracker.predict_seconds: T_world_camera extrapolates the last motion at
-  // constant velocity. Predicted poses are in no trajectory.
-  bool predicted = false;
+  Se3 T_world_camera;  // valid when tracking
+  // Lost for less than tracker.predict_seconds: T_world_camera extrapolated from the last motion at
+  // constant velocity. A guess: it is in no trajectory.
+  std::optional<Se3> predicted;
   int matches = 0;                             // landmarks that agree with the pose
   bool keyframe = false;                       // this frame became a keyframe
   TrackFailure failure = TrackFailure::kNone;  // why there is no pose

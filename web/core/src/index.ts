@@ -70,8 +70,8 @@ export interface Pose {
 export interface Frame {
   number: number; // number of the image passed to track(), from 0
   state: State;
-  pose: Pose | null; // null: unknown
-  predicted: boolean; // recently lost; the pose is extrapolated
+  pose: Pose | null; // null unless tracking
+  predicted: Pose | null; // recently lost: extrapolated from the motion, a guess; null otherwise
   reason: string; // why there is no pose; '' while tracking
   counts: { keyframes: number; landmarks: number; matches: number; features: number; maps: number };
   milliseconds: number; // processing time
@@ -166,11 +166,12 @@ export class Slam {
     if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
     const n = Array.from(new Float64Array(core.HEAPU8.buffer, at, NUMBERS)) as [number, ...number[]];
     const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, cameraChanges] = n as number[] & { length: 19 };
+    const pose: Pose | null = placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null;
     return {
       number: n[19]!,
       state: STATES[state!] ?? 'lost',
-      pose: placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null,
-      predicted: predicted === 1,
+      pose: predicted ? null : pose,
+      predicted: predicted ? pose : null,
       reason: state === 1 ? '' : core.UTF8ToString(core._alidade_reason(this.#session)),
       counts: { keyframes: keyframes!, landmarks: landmarks!, matches: matches!, features: features!, maps: maps! },
       milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, cameraChanges: cameraChanges!,

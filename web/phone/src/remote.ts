@@ -1,6 +1,6 @@
 // Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/phone.md). At most
 // IN_FLIGHT images are unanswered; main.ts then skips to the newest.
-import type { Frame } from '../../core/src/index.ts';
+import type { Frame, Pose } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
 import type { Saved, Start } from './protocol.ts';
 
@@ -15,7 +15,7 @@ const MOST_BUFFERED = 1 << 20; // bytes not yet sent by the browser; beyond this
 interface Told {
   welcome?: boolean; last?: number; resumed?: boolean; error?: string;
   frame?: number; state?: Frame['state']; reason?: string; milliseconds?: number; skipped?: boolean;
-  keyframes?: number; landmarks?: number; matches?: number; features?: number; fov?: number; fovSigma?: number; pose?: number[] | null;
+  keyframes?: number; landmarks?: number; matches?: number; features?: number; fov?: number; fovSigma?: number; pose?: number[] | null; predicted?: number[] | null;
 }
 
 export class RemoteEngine implements Engine {
@@ -164,14 +164,12 @@ export class RemoteEngine implements Engine {
     if (!sent) return;
     this.sent.delete(told.frame!);
     if (told.skipped) return sent.bitmap.close();
-    const pose = told.pose ?? null;
     const messages = this.pending;
     this.pending = [];
     this.hooks.done({
       kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn,
       frame: {
-        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', predicted: false,
-        pose: pose && { position: [pose[4]!, pose[5]!, pose[6]!], orientation: [pose[0]!, pose[1]!, pose[2]!, pose[3]!] },
+        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
         milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0,
       },
@@ -183,4 +181,11 @@ export class RemoteEngine implements Engine {
     this.pending = [];
     this.hooks.messages(messages);
   }
+}
+
+// Seven numbers: quaternion x y z w, position.
+function poseFrom(numbers: number[] | null | undefined): Pose | null {
+  return numbers
+    ? { position: [numbers[4]!, numbers[5]!, numbers[6]!], orientation: [numbers[0]!, numbers[1]!, numbers[2]!, numbers[3]!] }
+    : null;
 }
