@@ -31,6 +31,7 @@ class Table:
     metrics: dict                                # metric -> (heading, format)
     across: str = ""                             # a field with a column for each of its values; one figure or two
     only: dict = field(default_factory=dict)     # field -> value that a row must have
+    datasets: tuple = ("",)                      # beginnings of the data sets that are shown
     provenance: bool = True                      # say commit, date and machine
     verdict: bool = False                        # a colour in front of each line (robustness)
 
@@ -53,8 +54,8 @@ PAIR = {"ate_rmse": ("RMSE", ""), "ate_std": ("Std", "")}
 TABLES = {
     "recordings": Table({**RECORDING, "frames": "Frames"},
                         {"ate": ("ATE, cm", ".2f"), "coverage": ("Coverage, %", ".1f"), "maps": ("Maps", "")}),
-    "readme": Table({"dataset": "Recording", "case": "Part", "sensor": "Camera"}, {"ate": ("ATE, cm", "")},
-                    across="variant", only={"profile": "desktop"}),
+    "readme": Table({"dataset": "Recording", "case": "Part", "sensor": "Camera"}, {"ate": ("ATE, cm", ".1f")},
+                    across="variant", only={"profile": "desktop"}, datasets=("TUM", "EuRoC", "KITTI")),
     "calibration": Table({"dataset": "Recording", "case": "Begun at"},
                          {"truth": ("True, px", ""), "focal": ("Found, px", ""), "sigma": ("± px", ""),
                           "ate": ("ATE, cm", ".1f")}),
@@ -145,7 +146,10 @@ def render(name, rows):
     """A table of TABLES as Markdown."""
     table = TABLES[name]
     rows = [row for row in rows if row["table"] in ROWS_OF.get(name, [name])
+            and row["dataset"].startswith(table.datasets)
             and all(row.get(key, value) == value for key, value in table.only.items())]
+    first = {}                                   # lines of one data set stand together
+    rows.sort(key=lambda row: first.setdefault(row["dataset"], len(first)))
     if not rows:
         raise Problem(f"there are no results for the table {name}")
     columns = list(dict.fromkeys(row.get(table.across, "") for row in rows))
