@@ -1,6 +1,6 @@
 # alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are compiled
 # several at a time (see AlidadeFlags); those named APART one by one: long ones, or with names their neighbours have too.
-# Its link list is the floor plan of docs/architecture.md; tests/architecture_test holds the includes to it.
+# Its link list is the floor plan of docs/development/architecture.md; tests/architecture_test holds the includes to it.
 function(alidade_floor NAME)
   cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)

@@ -38,8 +38,8 @@ struct SessionNumbers {
 class CameraSession {
  public:
   // `settings`: lines of name=value, as after --set, over the phone profile. `detector`: an ONNX
-  // file for people (docs/detectors.md), "" for none; it is opened by the session's thread, since
-  // that takes seconds. Throws Error on what cannot be.
+  // file for people (docs/guides/detectors.md), "" for none; it is opened by the session's thread,
+  // since that takes seconds. Throws Error on what cannot be.
   CameraSession(int width, int height, const LensNumbers& lens, const std::string& settings,
                 const std::string& detector);
   ~CameraSession();  // when no other call is under way

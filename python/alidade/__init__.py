@@ -27,7 +27,7 @@ pose is a (4, 4) array ``T_world_camera``, which takes points of the camera's fr
 no metres: its maps have a unit of their own. A trajectory is (n, 8): timestamp tx ty tz qx qy qz qw.
 
 Errors are ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``) and say what to do.
-Warnings go to the logger ``alidade``. See docs/python.md.
+Warnings go to the logger ``alidade``. See docs/guides/python.md.
 """
 
 from . import _core

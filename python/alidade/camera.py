@@ -58,7 +58,7 @@ class Camera:
 
     @classmethod
     def from_yaml(cls, path: PathLike, sensor: str = "mono") -> Camera:
-        """Reads a camera.yaml (docs/formats.md). ``sensor``: what it is to be used as, "mono",
+        """Reads a camera.yaml (docs/reference/camera.md). ``sensor``: what it is to be used as, "mono",
         "stereo" or "rgbd". Fisheyes, and stereo pairs that are not rectified yet, need a Rectifier."""
         return _core.read_camera(os.fspath(path), sensor)
 

@@ -22,7 +22,7 @@ def _poses(path: str) -> numpy.ndarray:
 
 
 class Result:
-    """A finished run: the folder ``alidade run`` leaves (docs/formats.md), as arrays.
+    """A finished run: the folder ``alidade run`` leaves (docs/reference/run-folder.md), as arrays.
 
     ``Result("alidade-out/desk")`` opens one that is there, whoever made it.
     """
@@ -48,7 +48,7 @@ class Result:
         """Writes what other programs read, as ``alidade export`` does of the folder; returns what it was, in words.
 
         to: "mcap": the run frame by frame as it was (if it was recorded, ``record=True``; else its poses), with path
-            and points as they are in the end, as ROS 2 messages (docs/mcap.md). Others: its map, as Map.export().
+            and points as they are in the end, as ROS 2 messages (docs/reference/mcap.md). Others: its map, as Map.export().
             None: by the ending of the path.
         format, part, min_observations: as of Map.export(), not for "mcap".
         """

@@ -77,7 +77,7 @@
     if-eqz v0, :named
     const-string v7, "/index.html"
     :named
-    # As the program sends with it (docs/phone.md).
+    # As the program sends with it (docs/guides/phone.md).
     new-instance v5, Ljava/util/HashMap;
     invoke-direct {v5}, Ljava/util/HashMap;-><init>()V
     const-string v0, "Content-Security-Policy"

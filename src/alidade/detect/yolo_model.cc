@@ -42,7 +42,7 @@ bool LeavesSizeOpen(const OnnxModel& model) {
   return shape.size() != 4 || shape[2] < 1 || shape[3] < 1;
 }
 
-// What a network was trained with can't be read off its outputs; see docs/detectors.md.
+// What a network was trained with can't be read off its outputs; see docs/guides/detectors.md.
 InputConvention ConventionOf(const OnnxModel& model, const YoloLayout& layout) {
   const bool yolox = layout.family == YoloFamily::kAnchorFree && !layout.sure_of_objects;
   if (model.normalises_input) return {/*red_first=*/true, /*scale=*/1};

@@ -16,7 +16,7 @@
 
 namespace alidade {
 
-// Which files work, and how colours and sizes are chosen: docs/detectors.md.
+// Which files work, and how colours and sizes are chosen: docs/guides/detectors.md.
 class YoloModel {
  public:
   // Of an ONNX file's bytes, which may go afterwards. Throws Error (input) when they are no network

@@ -1,4 +1,5 @@
-// A run told to ROS: what is on which topic, in which frame (docs/mcap.md), in one MCAP file.
+// A run told to ROS: what is on which topic, in which frame (docs/reference/mcap.md), in one MCAP
+// file.
 #pragma once
 
 #include <map>

@@ -1,4 +1,4 @@
-// The computer that serves the page does the work: pictures go there as JPEGs, what it tells comes back (docs/phone.md).
+// The computer that serves the page does the work: pictures go there as JPEGs, what it tells comes back (docs/reference/phone-protocol.md).
 // At most IN_FLIGHT pictures are on their way; of those that come meanwhile only the newest is sent, by main.ts.
 import type { Frame } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
