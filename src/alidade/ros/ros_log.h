@@ -1,5 +1,4 @@
-// A run told to ROS: what is on which topic, in which frame (docs/reference/mcap.md), in one MCAP
-// file.
+// A run as ROS 2 messages in one MCAP file; topics and frames: docs/reference/mcap.md.
 #pragma once
 
 #include <map>

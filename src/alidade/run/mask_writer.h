@@ -1,5 +1,4 @@
-// mask/TIMESTAMP.png and mask.txt: what was left out of each frame as moving
-// (docs/guides/moving-objects.md).
+// mask/TIMESTAMP.png and mask.txt: what each frame left out (docs/guides/moving-objects.md).
 #pragma once
 
 #include <memory>

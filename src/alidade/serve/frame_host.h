@@ -21,8 +21,7 @@ using FrameTell = std::function<void(std::vector<FrameMessage> messages, bool la
 class FrameSeat {
  public:
   virtual ~FrameSeat() = default;
-  // A binary message of the page: 16 bytes and a JPEG (docs/reference/phone-protocol.md). Returns
-  // at once.
+  // A binary message of the page (docs/reference/phone-protocol.md). Returns at once.
   virtual void Take(std::string bytes) = 0;
 };
 
