@@ -1,4 +1,4 @@
-// `alidade bench`: how long the parts take, in milliseconds and in U (docs/benchmarks.md).
+// `alidade bench`: how long the parts take, in milliseconds and in U (docs/benchmarks/index.md).
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>

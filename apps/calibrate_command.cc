@@ -103,7 +103,7 @@ int CalibrateCommand(const CalibrateOptions& options) {
     throw Error(
         ErrorKind::kNothingMapped,
         "the camera stays unknown: move it sideways and turn it, before things near and far "
-        "(docs/calibration.md)");
+        "(docs/guides/calibration.md)");
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());

@@ -20,7 +20,7 @@
 namespace alidade {
 namespace {
 
-using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+using json = nlohmann::ordered_json;  // in the order of docs/reference/evaluation.md
 
 struct EvaluateOptions {
   std::string truth, estimate;  // paths

@@ -19,7 +19,7 @@
 namespace alidade {
 namespace {
 
-using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+using json = nlohmann::ordered_json;  // in the order of docs/reference/evaluation.md
 
 struct Options {
   std::string sequence, result;  // as typed

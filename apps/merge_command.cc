@@ -97,7 +97,7 @@ void AddMergeCommand(CLI::App& app, Action& action) {
       "\nWhat shows one place is joined, whatever order it is given in; what does not stays a map "
       "of its own in the same\nfile, and that is said. The world of the largest map is the common "
       "one. Trajectories in it: NAME.txt for each\nrecording, of all frames where a folder is "
-      "given, of keyframes where a map is (docs/merge.md).");
+      "given, of keyframes where a map is (docs/guides/several-maps.md).");
   command->callback([arguments, &action] { action = [arguments] { return Merge(*arguments); }; });
 }
 

@@ -21,7 +21,8 @@ constexpr char kExamples[] =
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
-    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ (docs/formats.md).";
+    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ "
+    "(docs/reference/run-folder.md).";
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command

@@ -1,5 +1,5 @@
-// Writes rendered recordings to disk, laid out as known datasets are (docs/formats.md), with depth
-// and masks always.
+// Writes rendered recordings to disk, laid out as known datasets are (docs/reference/sources.md),
+// with depth and masks always.
 #pragma once
 
 #include <memory>

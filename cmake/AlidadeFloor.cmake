@@ -1,6 +1,6 @@
 # alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are
 # compiled several at a time (see AlidadeFlags), except those listed in APART: long files, and files whose names clash
-# with others'. LINKS is the floor plan of docs/architecture.md; tests/architecture_test checks the includes against it.
+# with others'. LINKS is the floor plan of docs/development/architecture.md; tests/architecture_test checks the includes against it.
 function(alidade_floor NAME)
   cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)

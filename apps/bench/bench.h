@@ -1,4 +1,4 @@
-// What the benchmarks share: frames held in memory, and times beside U (docs/benchmarks.md).
+// What the benchmarks share: frames held in memory, and times beside U (docs/benchmarks/index.md).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// SLAM among moving people: the tables of docs/benchmarks.md, "dynamic".
+// SLAM among moving people: the tables of docs/benchmarks/dynamic.md, "dynamic".
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct DynamicOptions {
   std::vector<std::string> plain;       // the same frames without people, one for each source
   std::vector<std::string> settings;    // name=value, of every run
   std::string pictures;                 // folder for pictures of the features; "": none
-  int frames = 0;                       // of each source, at most; 0: see docs/benchmarks.md
+  int frames = 0;  // of each source, at most; 0: see docs/benchmarks/dynamic.md
   int seeds = 1;
   bool ablation = false, latency = false, live = true;
 };

@@ -12,7 +12,7 @@ namespace alidade::bench {
 // name. None given: the rendered room, desk and wall.
 std::vector<std::string> SemiDenseSources(const std::vector<std::string>& given);
 
-// On the first `frames` of a recording with depth; 0: as docs/benchmarks.md says.
+// On the first `frames` of a recording with depth; 0: as docs/benchmarks/semidense.md says.
 Section BenchSemiDense(const std::string& source, int frames);
 
 // Tracking with and without semi-dense mapping behind it, in turns, as a live caller meets them.

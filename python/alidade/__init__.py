@@ -27,7 +27,7 @@ pose is a (4, 4) array ``T_world_camera``, which maps points of the camera's fra
 map is unknown: it has a unit of its own. A trajectory is (n, 8): timestamp tx ty tz qx qy qz qw.
 
 Errors are raised as ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``); the message
-says what to do. Warnings go to the logger ``alidade``. See docs/python.md.
+says what to do. Warnings go to the logger ``alidade``. See docs/guides/python.md.
 """
 
 from . import _core

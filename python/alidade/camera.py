@@ -58,7 +58,7 @@ class Camera:
 
     @classmethod
     def from_yaml(cls, path: PathLike, sensor: str = "mono") -> Camera:
-        """Reads a camera.yaml (docs/formats.md). ``sensor``: its use, "mono", "stereo" or "rgbd".
+        """Reads a camera.yaml (docs/reference/camera.md). ``sensor``: its use, "mono", "stereo" or "rgbd".
         Fisheye cameras and unrectified stereo pairs require a Rectifier. Raises InputError."""
         return _core.read_camera(os.fspath(path), sensor)
 

@@ -22,7 +22,7 @@ def _poses(path: str) -> numpy.ndarray:
 
 
 class Result:
-    """The results of a run: the files of ``alidade run`` (docs/formats.md) as arrays.
+    """The results of a run: the files of ``alidade run`` (docs/reference/run-folder.md) as arrays.
 
     ``Result("alidade-out/desk")`` opens an existing folder of results. Raises InputError for any other folder.
     """
@@ -48,7 +48,7 @@ class Result:
         """Exports to another format, as ``alidade export`` does. Returns a description of what was written.
 
         to: "mcap": the run frame by frame (if recorded with ``record=True``; else its poses) and the final path and
-            points, as ROS 2 messages (docs/mcap.md). Other formats: the map, as Map.export(). None: by the ending of
+            points, as ROS 2 messages (docs/reference/mcap.md). Other formats: the map, as Map.export(). None: by the ending of
             the path.
         format, part, min_observations: as in Map.export(), not for "mcap".
         """

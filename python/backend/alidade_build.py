@@ -30,7 +30,7 @@ def _metadata():
             "Summary: Visual SLAM: where the camera is, and what the place looks like\n"
             "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n"
             "Classifier: Programming Language :: Python :: 3\nClassifier: Typing :: Typed\n"
-            "Description-Content-Type: text/markdown\n\n" + (ROOT / "docs/python.md").read_text(encoding="utf-8"))
+            "Description-Content-Type: text/markdown\n\n" + (ROOT / "docs/guides/python.md").read_text(encoding="utf-8"))
 
 
 def _tag():

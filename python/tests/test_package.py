@@ -102,12 +102,12 @@ def test_images_that_other_formats_hold_are_read_through_the_module(tmp_path):
 
 def test_the_examples_of_the_documentation_work(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / "docs" / "python.md").read_text()
+    text = (ROOT / "docs" / "guides" / "python.md").read_text()
     examples = re.findall(r"```python\n(.*?)```", text, re.S)
     assert len(examples) >= 8
     names = {}
     for example in examples:
-        exec(compile(example, "docs/python.md", "exec"), names)  # pylint: disable=exec-used
+        exec(compile(example, "docs/guides/python.md", "exec"), names)  # pylint: disable=exec-used
 
 
 def test_a_wheel_is_made_without_a_network(tmp_path):

@@ -1,5 +1,5 @@
 // `alidade bench phone`: that its tables say what was run. How fast that was is for
-// docs/benchmarks.md.
+// docs/benchmarks/speed.md.
 #include <gtest/gtest.h>
 
 #include <algorithm>

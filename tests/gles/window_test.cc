@@ -21,7 +21,7 @@ class Window : public testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_ / name; }
 
-  // The file format of docs/stream.md.
+  // The file format of docs/reference/stream.md.
   void Write(const Teller& teller) const {
     std::ofstream file(Path("run.stream"), std::ios::binary);
     file << "ALIDSTR1";

@@ -77,7 +77,7 @@
     if-eqz v0, :named
     const-string v7, "/index.html"
     :named
-    # The same policy as the program's server sends (docs/phone.md).
+    # The same policy as the program's server sends (docs/guides/phone.md).
     new-instance v5, Ljava/util/HashMap;
     invoke-direct {v5}, Ljava/util/HashMap;-><init>()V
     const-string v0, "Content-Security-Policy"

@@ -43,7 +43,7 @@ bool LeavesSizeOpen(const OnnxModel& model) {
 }
 
 // The training's color order and scale do not follow from the outputs' shapes; see
-// docs/detectors.md.
+// docs/guides/detectors.md.
 InputConvention ConventionOf(const OnnxModel& model, const YoloLayout& layout) {
   const bool yolox = layout.family == YoloFamily::kAnchorFree && !layout.sure_of_objects;
   if (model.normalises_input) return {/*red_first=*/true, /*scale=*/1};

@@ -17,7 +17,7 @@
 
 namespace alidade {
 
-// docs/detectors.md lists supported files and explains the choice of color order and size.
+// docs/guides/detectors.md lists supported files and explains the choice of color order and size.
 class YoloModel {
  public:
   // Parses the bytes of an ONNX file, which need not outlive this object. Throws Error (input) when

@@ -14,8 +14,8 @@ struct LensCheckSettings {
   int max_windows = 40;  // at most, spread over the map: one takes some 5 ms
   int min_seen = 3;      // keyframes of a window that must see a landmark for it to count
   // Shift at the picture's corner, of its distance from the middle, from which a lens bends
-  // strongly. Measured (docs/benchmarks.md): lenses that are told of or bend little up to 0.04, one
-  // with k1 = -0.22 that nobody told of 0.09 to 0.11.
+  // strongly. Measured (docs/development/decisions/0009-lens-check.md): lenses that are told of or
+  // bend little up to 0.04, one with k1 = -0.22 that nobody told of 0.09 to 0.11.
   double min_bend = 0.06;
   double min_sigmas = 3;  // that the median of the windows must be away from 0
   void Check() const;     // throws Error (usage) naming the field that cannot be

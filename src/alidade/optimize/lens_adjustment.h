@@ -58,9 +58,9 @@ struct LensAdjustmentSettings {
   bool hold_focal = false;  // the focal length stays as it starts, whatever its sigma
   // About which the centre is believed to be, pixels; else its start.
   std::optional<Eigen::Vector2d> centre = {};
-  // Standard deviations that residuals tell of are those of independent noise. What they do not
-  // tell (keypoints that creep along edges, blur, a rolling shutter) makes errors so many times as
-  // large: against the prior, and in the covariance. Measured, docs/calibration.md.
+  // Factor on the standard deviations that residuals give: those assume independent noise, and
+  // keypoints that move along edges, blur and rolling shutter are correlated. Used in the prior
+  // and the covariance (docs/development/decisions/0005-offline-self-calibration.md).
   double inflation = 3.0;
   // Bound c of Geman & McClure's loss ½ r² / (1 + r² / c²), in standard deviations of the noise
   // seen: matches that are no points pull no more. The noise is the median of all residuals'.

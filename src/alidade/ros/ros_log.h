@@ -1,4 +1,4 @@
-// Writes a run as ROS 2 messages to one MCAP file. docs/mcap.md lists topics and frames.
+// Writes a run as ROS 2 messages to one MCAP file. docs/reference/mcap.md lists topics and frames.
 #pragma once
 
 #include <map>

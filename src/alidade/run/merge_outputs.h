@@ -27,7 +27,7 @@ MergePlaces MergePlacesOf(const std::string& out);
 // Throws Error (usage) where results of something else would be lost.
 void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs);
 
-// Writes all of it (docs/merge.md). Throws Error (input) when a file cannot be written.
+// Writes all of it (docs/guides/several-maps.md). Throws Error (input) if that fails.
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                 const MergedMaps& merged);
 

@@ -1,4 +1,4 @@
-// The folder `alidade run` leaves behind (docs/formats.md).
+// The folder `alidade run` leaves behind (docs/reference/run-folder.md).
 #pragma once
 
 #include <array>

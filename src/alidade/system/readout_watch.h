@@ -15,7 +15,7 @@ namespace ALIDADE_API alidade {
 
 // Where nothing is told of a camera's readout (`readout` in its file). Rows that are read later
 // show a later place: 30 ms cost half of the accuracy of hand-held recordings
-// (docs/calibration.md).
+// (docs/development/decisions/0007-rolling-shutter.md).
 struct ReadoutSettings {
   bool enabled = true;
   int first_keyframes = 10;   // of a map, when it is asked first …

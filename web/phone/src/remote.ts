@@ -1,4 +1,4 @@
-// Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/phone.md). At most
+// Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/reference/phone-protocol.md). At most
 // IN_FLIGHT images are unanswered; main.ts then skips to the newest.
 import type { Frame, Pose } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
