@@ -1,4 +1,5 @@
-// Visual SLAM behind one class: images in, poses and a map out.
+// Visual SLAM in one class: images in, poses and a map out. Call Finish() after the last frame:
+// without it the last adjustment and the poses of deferred localization are missing.
 #pragma once
 
 #include <limits>
@@ -19,81 +20,87 @@
 
 namespace ALIDADE_API alidade {
 
-// Threads. The driving calls, Load, Track, Reset and Finish, take turns: one waits for the one
-// before it, from whatever thread it comes. All others are questions. Any thread may ask them at
-// any time, beside a driving call, too; none of them makes Track() wait longer than it takes to
-// copy a few pointers (Times(): a megabyte), and none waits for a frame, a keyframe or a commit to
-// be done. Every answer is a value that belongs to the caller and never changes. Two answers may be
-// of different moments: what is of one frame comes out of one call.
+// Threads. Load, Track, Reset and Finish are driving calls. They may come from any thread; each
+// waits until the one before it has returned. All other calls are queries: any thread may make them
+// at any time, also during a driving call. A query delays Track() by no more than the copying of a
+// few pointers (Times(): a megabyte), and does not wait until a frame, a keyframe or a commit is
+// finished. It returns a value that belongs to the caller and never changes. Two queries may refer
+// to different frames; values of one frame come from one call.
 //
-// Failure. Track() throws Error (input) on what it is given; nothing has changed then. Anything
-// else it throws (std::bad_alloc, cv::Exception, …) has cost that one frame: it counts, unless
-// there was no memory even for that (see frames()), and the next one is tracked as ever. What a
-// part of the system beside the tracker throws (mapping, loop closing, full adjustment, semi-dense
-// mapping, dynamics, the detector; threaded or not) ends that part, drops what waits for it, and is
-// told by TrackResult::warning of the next Track() and all after it, and by Health(); it is thrown
-// nowhere. The tracker goes on in the map that stands, which is always whole: a change that was not
-// finished has not happened. Without mapping it grows no more.
+// Failures. Track() throws Error (input) if its input is invalid; the frame is then ignored. Any
+// other exception (std::bad_alloc, cv::Exception, …) costs that frame its pose: it counts in
+// frames(), unless memory is too low even for that, and the next frame is tracked as usual. An
+// exception in another part (mapping, loop closing, full adjustment, semi-dense mapping, dynamics
+// or detector, in both schedules) stops that part and drops its queue. It is not rethrown:
+// TrackResult::warning of all later frames and Health() report it. Tracking continues in the
+// existing map, which is always consistent, because an unfinished change is not committed. Without
+// mapping the map does not grow.
 class Slam {
  public:
-  // Throws Error on a camera or settings that cannot be. RGB-D needs camera.depth_factor, stereo
+  // Throws Error if the camera or the settings are invalid. RGB-D needs camera.depth_factor, stereo
   // camera.baseline, settings.dynamics.mode full a detector.
   Slam(const Camera& camera, const SlamSettings& settings,
        std::shared_ptr<Detector> detector = nullptr);
-  ~Slam();  // when no other call is under way; what is in work is cut short
+  ~Slam();  // no other call may be running; work in progress is ended early
   Slam(const Slam&) = delete;
   Slam& operator=(const Slam&) = delete;
 
   // Driving calls.
 
-  // Goes on in a saved map (DecodeMap() of what SaveMap() gave). Before the first frame. Throws
-  // Error (input) when it was made with another camera or sensor.
+  // Continues in a saved map: DecodeMap() of what SaveMap() returned. Before the first frame.
+  // Throws Error (input) if the map was made with another camera or sensor.
   void Load(const SavedMap& saved);
-  // One frame, in order of time. Throws Error (input) on an image of the wrong size or type, or a
-  // time that does not grow. A time that has jumped is told (TrackResult::cut) and taken as a cut:
-  // known places are tried before the last one is believed. Ahead: a gap (settings.time). Back:
-  // when as many frames as settings.time.agree_frames agree.
+  // Processes one frame; frames come in order of time. Throws Error (input) if an image has the
+  // wrong size or type, or if the time does not increase. A jump of the time is treated as a cut
+  // and reported in TrackResult::cut: the frame need not continue the last one. Forward, a jump is
+  // a gap as defined by settings.time; backward, it takes settings.time.agree_frames frames with
+  // increasing times.
   TrackResult Track(const FrameInput& input);
-  // The next frame begins a new recording, its time may be any; the maps are kept and gone on with.
+  // The next frame starts a new recording and may have any time. The maps are kept and extended.
   void Reset();
-  // Waits until the workers have nothing left to do (those that failed have not), `limit` seconds
-  // at most, and what it takes to end the step in work. The map is sound then; the next Finish()
-  // does what was left, but for keyframes that waited to be mapped: they stay as they were entered.
+  // Waits until the workers have finished (a part that has failed does no more work), at most
+  // `limit` seconds plus the time to end the current step. The map is consistent then. The next
+  // Finish() does the remaining work, except for mapping the keyframes that were waiting: they stay
+  // as inserted.
   void Finish(double limit = std::numeric_limits<double>::infinity());
-  // Any thread's, beside a driving call: as if the limit of Finish() were reached.
+  // As if the limit of the running Finish(), or else of the next one, had passed. Any thread, also
+  // during a driving call.
   void CutFinishShort();
 
-  // Questions.
+  // Queries.
 
-  SlamHealth Health() const;     // which parts run, and why one does not any more
+  SlamHealth Health() const;     // which parts run, and why a part stopped
   MapSnapshot Snapshot() const;  // cheap, consistent, safe to keep
-  // How many frames Track() has counted: all but those it refused with an Error. One that is in
-  // work counts; Trajectory() has it once it is done.
+  // Frames that Track() has counted: all but those refused with an Error. Includes the frame in
+  // progress, which is in Trajectory() once it is finished.
   int frames() const;
-  // Every frame so far that was not let go, from the `since`th on: FramePose::index.
+  // All frames so far with FramePose::index at least `since`, except those older than
+  // settings.trajectory.keep_seconds.
   std::vector<FramePose> Trajectory(int since = 0) const;
-  // Of the last frame that was done: its features, and what was left out as moving (CV_8U, 255, of
-  // the camera's size; empty without dynamics, and while `auto` has seen nothing).
+  // Of the last finished frame: its features, and the mask of moving objects (CV_8U, 255 = moving,
+  // the camera's size; empty without dynamics, and with auto until something moves).
   std::vector<FeatureUse> Features() const;
   cv::Mat MoverMask() const;
-  // The newest answer that had come by then; nothing before the first one, and without a detector.
+  // The detector's newest result at that frame; nullopt before the first one, and without a
+  // detector.
   std::optional<ShownDetections> Detections() const;
-  // The map with all that is saved of it: cheap, a value to read, keep or encode (EncodeMap()).
+  // The map and everything that is saved with it; cheap, a value to read, keep or encode
+  // (EncodeMap()).
   SavedMap Saved() const;
-  std::string SaveMap() const;  // the map as bytes (map.alidade), to be written where it pleases
+  std::string SaveMap() const;  // the map as bytes, the content of map.alidade
   StageTimes Times() const;
   LatestTimes Latest() const;
-  // As used: scaled by the profile, with what was found of its rolling shutter by now.
+  // The camera in use: scaled to the processed images, with the readout time estimated so far.
   Camera camera() const;
-  // With settings.refine: what the map says of a camera nobody calibrated, of the size it is used
-  // in; none: nothing it can vouch for so far. camera() follows it, in steps.
+  // With settings.refine: the camera estimated from the map, for the processed images; nullopt: no
+  // sufficiently certain estimate so far. camera() follows it in steps.
   std::optional<CameraEstimate> camera_found() const;
-  int camera_changes() const;  // how often camera() changed in the middle of a map
-  // Standard deviation of that, seconds; 0: the camera told it, or none was found.
+  int camera_changes() const;  // how often camera() was changed to camera_found()
+  // Standard deviation of the estimated readout time, seconds; 0: it was given, or not estimated.
   double readout_sigma() const;
   SlamCounts Counts() const;
-  SemiDenseReport SemiDense() const;  // of the keyframes that are done
-  // Frame::number of the first call of Track(): keyframes of a loaded map have smaller ones.
+  SemiDenseReport SemiDense() const;  // of the keyframes processed so far
+  // Frame::number of the first frame given to Track(); keyframes of a loaded map have smaller ones.
   int first_number() const;
 
  private:
