@@ -1,4 +1,4 @@
-// Depth as far as it can be told: stereo pairs outdoors, depth cameras with nothing in range.
+// Depth at its limits: stereo pairs outdoors, depth cameras with nothing in range.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,9 +16,9 @@ SlamSettings StereoSettings() {
   return settings;
 }
 
-// Nothing is known of speed at first, and far trees agree with standing still.
+// The speed is not known at first, and distant trees also fit a stationary camera.
 TEST(StereoOutdoors, TheFirstMotionIsTheTrueOne) {
-  for (const double step : {1.0, 2.0}) {  // metres: 36 and 72 km/h at 10 frames a second
+  for (const double step : {1.0, 2.0}) {  // meters: 36 and 72 km/h at 10 frames per second
     const Motorway motorway = DriveMotorway({.step = step, .frames = 8});
     Slam slam(motorway.camera, StereoSettings());
     Se3 last;
@@ -35,7 +35,7 @@ TEST(StereoOutdoors, TheFirstMotionIsTheTrueOne) {
   }
 }
 
-// All that a sensor says is too far for it: that is no map, whatever is seen.
+// All depths are beyond the sensor's range: no map starts, however many keypoints there are.
 TEST(Start, WithoutALandmarkIsNoStart) {
   const Motorway motorway = DriveMotorway({.frames = 2});
   Camera camera = motorway.camera;
@@ -55,7 +55,7 @@ TEST(Start, WithoutALandmarkIsNoStart) {
     EXPECT_EQ(slam.Snapshot().keyframe_count(), 0);
   }
   {
-    settings.tracker.depth_range = 20;  // as one says who knows that his reaches farther
+    settings.tracker.depth_range = 20;  // as for a sensor of longer range
     Slam slam(camera, settings);
     const cv::Mat far(camera.height, camera.width, CV_16UC1, cv::Scalar(12000));
     const TrackResult result = slam.Track({0, motorway.frames[0].left, {}, far});
