@@ -1,6 +1,6 @@
-# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are compiled
-# several at a time (see AlidadeFlags); those named APART one by one: long ones, or with names their neighbours have too.
-# Its link list is the floor plan of docs/development/architecture.md; tests/architecture_test holds the includes to it.
+# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are
+# compiled several at a time (see AlidadeFlags), except those listed in APART: long files, and files whose names clash
+# with others'. LINKS is the floor plan of docs/development/architecture.md; tests/architecture_test checks the includes against it.
 function(alidade_floor NAME)
   cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)
@@ -18,10 +18,10 @@ function(alidade_floor NAME)
   set_property(GLOBAL APPEND PROPERTY ALIDADE_FLOORS alidade_${NAME})
 endfunction()
 
-# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest and, but for
-# end-to-end tests, labelled with its folder. Tests are compiled several files at a time: each has a namespace of its own, alidade::FILE.
-# Problem generators shared with the benchmarks are in bench/support.
-# With END_TO_END the tests get that label, and are no part of the target unit_tests.
+# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program. Each test is registered with CTest
+# under the folder's label. Tests are compiled several files at a time, so each file has its own namespace,
+# alidade::FILE. Problem generators shared with the benchmarks are in bench/support.
+# With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
 function(alidade_test FOLDER)
   cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${FOLDER}/*.cc)
@@ -31,7 +31,7 @@ function(alidade_test FOLDER)
   add_executable(test_${FOLDER} ${SOURCES})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
-  # What is tested is compiled as it is used; the tests themselves are not what takes time.
+  # The tested code is compiled as in the program; the test code itself is not time-critical.
   target_compile_options(test_${FOLDER} PRIVATE $<$<CONFIG:Release>:-O1>)
   if(ARG_END_TO_END)
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end

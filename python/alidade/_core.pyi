@@ -1,4 +1,4 @@
-"""The C++ side (python/core)."""
+"""Types of the C++ module (python/core)."""
 
 from typing import Any, Callable, Dict, List, Optional, Tuple
 

@@ -1,4 +1,4 @@
-"""Whole runs: the same as the program's, and stopped in the middle."""
+"""Whole runs: the same results as the program, and interrupted runs."""
 
 import inspect
 import os
@@ -34,7 +34,7 @@ def test_all_levels_give_the_bytes_of_the_program(tmp_path, program, sensor):
     assert read(tmp_path, "slam.txt") == read(tmp_path / "program", "trajectory.txt")
     slam.save(tmp_path / "slam.alidade")
     assert read(tmp_path, "slam.alidade") == read(tmp_path / "program", "map.alidade")
-    numpy.testing.assert_allclose(slam.trajectory(), result.trajectory, rtol=0, atol=1e-6)  # files round
+    numpy.testing.assert_allclose(slam.trajectory(), result.trajectory, rtol=0, atol=1e-6)  # files have rounded numbers
 
     saved = alidade.Map.load(tmp_path / "program")
     assert saved.to_bytes() == read(tmp_path / "program", "map.alidade")
@@ -73,7 +73,7 @@ def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
 
     recorded = alidade.run(DESK, sensor="rgbd", semidense=True, record=True)
     recorded.export(tmp_path / "stream.mcap")
-    assert len(read(tmp_path, "stream.mcap")) > 1.5 * len(read(tmp_path, "result.mcap"))  # pictures, each frame's news
+    assert len(read(tmp_path, "stream.mcap")) > 1.5 * len(read(tmp_path, "result.mcap"))  # images, frames
     with pytest.raises(alidade.UsageError, match="to="):
         result.export(tmp_path / "model")
     with pytest.raises(alidade.UsageError, match="min-observations"):
@@ -119,7 +119,7 @@ def test_what_progress_raises_ends_the_run():
     with pytest.raises(Enough) as stopped:
         alidade.run("synth:desk?frames=100000&width=320&height=240", sensor="rgbd", progress=stop)
     assert 5 < stopped.value.result.stats["frames"] < 100000
-    assert alidade.run(DESK, sensor="rgbd", last=4).stats["frames"] == 5  # the next one is not stopped
+    assert alidade.run(DESK, sensor="rgbd", last=4).stats["frames"] == 5  # the next run is not interrupted
 
 
 def test_ctrl_c_leaves_the_results(tmp_path):
@@ -149,7 +149,7 @@ def test_a_detector_that_is_a_function(tmp_path):
 
     result = alidade.run(DESK, sensor="rgbd", detector=detect, last=9)
     assert result.stats["settings"]["dynamics.mode"] == "full" and result.stats["tracked"] == 10
-    assert set(shapes) == {(240, 320)}  # rendered recordings are grey
+    assert set(shapes) == {(240, 320)}  # rendered recordings are gray
 
 
 def test_the_stream_is_recorded(tmp_path):
@@ -172,7 +172,7 @@ def test_the_viewer_serves_while_it_runs():
 
 
 @pytest.mark.skipif("ALIDADE_DATA" not in os.environ, reason="ALIDADE_DATA names no real recordings")
-@pytest.mark.parametrize("name", ["kitchen", "euroc_micro"])  # depth; a stereo pair to be rectified
+@pytest.mark.parametrize("name", ["kitchen", "euroc_micro"])  # RGB-D; an unrectified stereo pair
 def test_a_real_recording_gives_the_bytes_of_the_program(tmp_path, program, name):
     source = os.path.join(os.environ["ALIDADE_DATA"], name)
     if not os.path.isdir(source):

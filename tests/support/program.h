@@ -1,4 +1,4 @@
-// Runs the real alidade program, as a user would, and collects what it says.
+// Runs the real alidade program as a user would, and captures its output.
 #pragma once
 
 #include <fcntl.h>
@@ -18,7 +18,7 @@
 namespace alidade {
 
 struct ProgramResult {
-  int status = -1;       // exit status; -1 when a signal ended it
+  int status = -1;       // exit status; -1: ended by a signal
   std::string out, err;  // stdout, stderr
 };
 
@@ -27,7 +27,7 @@ inline std::string ReadText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// `while_running` is given the process id, to send it signals.
+// `while_running` is called with the process id, to send signals.
 inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
                                 const std::function<void(pid_t)>& while_running = nullptr) {
   const TempFolder folder;
@@ -56,7 +56,7 @@ inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
   return result;
 }
 
-// How many lines a text has: an error is one.
+// Number of lines; an error message is one line.
 inline int LineCount(const std::string& text) {
   int lines = 0;
   for (const char c : text) lines += c == '\n';

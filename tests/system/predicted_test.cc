@@ -55,11 +55,11 @@ TEST(Predicted, IsNearTheTruthForAMomentAndInNoTrajectory) {
     // Better than to say that it stands where it was last seen.
     const Se3 truth = run.TrueFromFirst(i);
     const double stood = (run.TrueFromFirst(kCovered - 1).t - truth.t).norm();
-    EXPECT_LT((result.T_world_camera.t - truth.t).norm(), 0.7 * stood) << i;
+    EXPECT_LT((result.predicted->t - truth.t).norm(), 0.7 * stood) << i;
   }
   EXPECT_EQ(run.counts.predicted, 10);
   for (size_t i = kCovered + 10; i < run.results.size(); ++i) {
-    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason;
+    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason();
     EXPECT_LT((run.results[i].T_world_camera.t - run.TrueFromFirst(static_cast<int>(i)).t).norm(),
               0.01);
   }

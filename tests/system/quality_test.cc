@@ -132,7 +132,7 @@ TEST(QualityOfAView, FewerLandmarksMakeItLarger) {
     }
     (i == 5 ? veiled : clear) = slam.Track({frame.time, left, right, {}});
   }
-  ASSERT_EQ(veiled.state, TrackState::kTracking) << veiled.reason;
+  ASSERT_EQ(veiled.state, TrackState::kTracking) << veiled.reason();
   EXPECT_LT(veiled.quality.inliers, 0.8 * clear.quality.inliers);
   EXPECT_LT(veiled.quality.found_share, 0.8 * clear.quality.found_share);
   EXPECT_GT(veiled.quality.covariance.trace(), 1.5 * clear.quality.covariance.trace());

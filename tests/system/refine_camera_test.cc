@@ -117,6 +117,30 @@ TEST(RefineCamera, BeginsAnewWhereTheLensWasFarOff) {
   EXPECT_LT(anew.ate, 0.005);
 }
 
+// A map that exists before a cut cannot be rebuilt from the frames after it: it is changed to the
+// camera as it stands, and keeps all its poses.
+TEST(RefineCamera, AfterACutTheFramesBeforeItKeepTheirPoses) {
+  constexpr int kCut = 60;
+  Slam slam(Assumed(100), Unknown());
+  int changes_before = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    if (i == kCut) {
+      changes_before = slam.camera_changes();
+      slam.Reset();
+    }
+    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    slam.Track({frame.time, frame.image, {}, {}});
+  }
+  slam.Finish();
+  EXPECT_GT(slam.camera_changes(), changes_before) << "the camera must change after the cut";
+  int before = 0, after = 0;
+  for (const FramePose& pose : slam.Trajectory()) {
+    (pose.index < kCut ? before : after) += pose.tracked;
+  }
+  EXPECT_GT(before, 0.8 * kCut);
+  EXPECT_GT(after, 0.8 * (kFrames - kCut));
+}
+
 // Until no keyframe waits for the mapper: recordings are handed over faster than cameras give them,
 // and a mapper that lags behind asks a map of few keyframes, made by a tracker that had nothing
 // newer.

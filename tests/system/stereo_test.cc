@@ -25,7 +25,7 @@ TEST(StereoOutdoors, TheFirstMotionIsTheTrueOne) {
     for (size_t i = 0; i < motorway.frames.size(); ++i) {
       const Motorway::Pair& pair = motorway.frames[i];
       const TrackResult result = slam.Track({pair.time, pair.left, pair.right, {}});
-      ASSERT_EQ(result.state, TrackState::kTracking) << i << ": " << result.reason;
+      ASSERT_EQ(result.state, TrackState::kTracking) << i << ": " << result.reason();
       if (i > 0) {
         const double moved = (last.Inverse() * result.T_world_camera).t.norm();
         EXPECT_NEAR(moved, step, 0.1) << "frame " << i << " at " << step << " m per frame";
@@ -48,9 +48,9 @@ TEST(Start, WithoutALandmarkIsNoStart) {
     for (const Motorway::Pair& pair : motorway.frames) {
       const cv::Mat far(camera.height, camera.width, CV_16UC1, cv::Scalar(12000));  // 12 m
       const TrackResult result = slam.Track({pair.time, pair.left, {}, far});
-      EXPECT_EQ(result.state, TrackState::kInitialising);
+      EXPECT_EQ(result.state, TrackState::kInitializing);
       EXPECT_EQ(result.matches, 0);
-      EXPECT_EQ(std::string(result.reason), "too few corners with depth in the sensor's range");
+      EXPECT_EQ(std::string(result.reason()), "too few corners with depth in the sensor's range");
     }
     EXPECT_EQ(slam.Snapshot().keyframe_count(), 0);
   }
@@ -59,7 +59,7 @@ TEST(Start, WithoutALandmarkIsNoStart) {
     Slam slam(camera, settings);
     const cv::Mat far(camera.height, camera.width, CV_16UC1, cv::Scalar(12000));
     const TrackResult result = slam.Track({0, motorway.frames[0].left, {}, far});
-    EXPECT_EQ(result.state, TrackState::kTracking) << result.reason;
+    EXPECT_EQ(result.state, TrackState::kTracking) << result.reason();
     EXPECT_GT(result.matches, 200);
     EXPECT_EQ(slam.Snapshot().landmark_count(), result.matches);
   }
@@ -71,8 +71,8 @@ TEST(Start, APairThatSeesOnlyWhatIsTooFarForItSaysSo) {
   settings.mapper.max_depth_error = 0.008;  // as if the baseline were ten times shorter
   Slam slam(motorway.camera, settings);
   const TrackResult result = slam.Track({0, motorway.frames[0].left, motorway.frames[0].right, {}});
-  EXPECT_EQ(result.state, TrackState::kInitialising);
-  EXPECT_EQ(std::string(result.reason), "too few corners near enough for the sensor to place");
+  EXPECT_EQ(result.state, TrackState::kInitializing);
+  EXPECT_EQ(std::string(result.reason()), "too few corners near enough for the sensor to place");
 }
 
 }  // namespace

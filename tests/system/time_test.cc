@@ -162,7 +162,7 @@ TEST_F(Time, AMapOfOneCameraOnTrialDoesNotSurviveAGap) {
     result = slam.Track({0.1 * i, TheRoom().Frame(i).image, {}, {}});
   ASSERT_EQ(result.state, TrackState::kTracking);
   result = slam.Track({600, TheRoom().Frame(i).image, {}, {}});
-  EXPECT_EQ(result.state, TrackState::kInitialising);
+  EXPECT_EQ(result.state, TrackState::kInitializing);
   EXPECT_EQ(slam.Snapshot().keyframe_count(), 0);
 }
 

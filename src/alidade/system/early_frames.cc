@@ -49,7 +49,7 @@ void EarlyFrames::Tracked(const Frame& frame, int index) {
   if (map_.valid() && frame.number - begun_ < settings_.settle) Keep(frame, index, map_);
 }
 
-void EarlyFrames::GiveUp() {
+void EarlyFrames::Release() {
   for (Early& early : frames_) {
     if (early.map == map_) early = {early.frame, early.index, {}, true};
   }

@@ -24,8 +24,8 @@ class EarlyFrames {
   void Begin(MapId map, int number);
   // A frame that was tracked in that map.
   void Tracked(const Frame& frame, int index);
-  // The map is given up: its frames wait for the next one.
-  void GiveUp();
+  // The newest map is dropped: its frames may be localized in the next one.
+  void Release();
   // What waits is of no use any more: the next frame need not go on where it was.
   void ForgetWaiting();
 

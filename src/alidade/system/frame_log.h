@@ -14,7 +14,7 @@
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
-#include "alidade/system/slam.h"
+#include "alidade/system/types.h"
 
 namespace alidade {
 

@@ -19,7 +19,7 @@
 #include "alidade/map/map_store.h"
 #include "alidade/system/detection_feed.h"
 #include "alidade/system/health.h"
-#include "alidade/system/slam.h"
+#include "alidade/system/types.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {

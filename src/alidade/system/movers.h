@@ -9,6 +9,10 @@
 
 namespace alidade {
 
+// MapperSettings::young_static while moving objects are left out: the prior probability that a new
+// landmark is static.
+constexpr float kYoungStatic = 0.5f;
+
 // Whether a frame is tied to the map by what stands still for certain: only that enters keyframes.
 bool HoldsWithoutMovers(const PlacedFrame& placed);
 

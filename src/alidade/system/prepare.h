@@ -5,7 +5,8 @@
 
 #include "alidade/features/picture.h"
 #include "alidade/geometry/camera.h"
-#include "alidade/system/slam.h"
+#include "alidade/system/settings.h"
+#include "alidade/system/types.h"
 
 namespace alidade {
 

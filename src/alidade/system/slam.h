@@ -9,118 +9,15 @@
 
 #include "alidade/base/api.h"
 #include "alidade/base/error.h"
-#include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
 #include "alidade/semidense/report.h"
 #include "alidade/system/health.h"
 #include "alidade/system/settings.h"
+#include "alidade/system/types.h"
 
 namespace ALIDADE_API alidade {
-
-enum class TrackState { kInitialising, kTracking, kLost };
-
-struct FrameInput {
-  double time = 0;  // seconds
-  cv::Mat image;    // 8 bit grey (or BGR), the camera's size
-  cv::Mat right;    // stereo: the rectified right image
-  cv::Mat depth;  // RGB-D: registered depth, CV_16U in camera.depth_factor units or CV_32F metres;
-                  // empty = none
-  cv::Mat color = {};  // `image` in colour (BGR) when it is grey, for clouds; empty = none
-};
-
-// How far a pose can be relied on.
-struct PoseQuality {
-  // Covariance of the pose's error, in the camera's own frame: T_world_camera * Exp(xi) is true
-  // with xi = (translation; rotation) ~ N(0, covariance); m², m rad, rad² (monocular: map units).
-  // From the normal equations of the pose, scaled by the residuals, so that noise of images and
-  // landmarks is in it. It is the error against the map as it stands around the camera; what the
-  // map itself is off by, in its world (drift, until a loop closes), is not in it: with one camera,
-  // in the first second or two of a map, motions are off by some four times what this says. Zero:
-  // not known, or the first frame of a map, which is where it is by definition.
-  Matrix6d covariance = Matrix6d::Zero();
-  int expected = 0;        // landmarks that should be in view
-  int inliers = 0;         // of these, found where the pose says
-  double found_share = 0;  // inliers / expected, 0…1. A third is usual: some are hidden
-};
-
-struct TrackResult {
-  TrackState state = TrackState::kInitialising;
-  Se3 T_world_camera;  // only when tracking or predicted
-  // Lost, for so short that the camera is taken to go on as it moved (tracker.predict_seconds):
-  // T_world_camera is where that leads. A guess: it is in no trajectory.
-  bool predicted = false;
-  int matches = 0;          // landmarks the pose agrees with
-  bool keyframe = false;    // this frame became one
-  const char* reason = "";  // why there is no pose
-  const char* cut = "";     // why the frame does not go on where the one before was
-  PoseQuality quality;      // of the pose; only when tracking
-  std::string warning;      // what has stopped: SlamHealth::Stopped(), with every frame since
-};
-
-// One frame of the finished trajectory.
-struct FramePose {
-  int index = 0;      // call of Track() it came from, from 0
-  double time = 0;    // seconds
-  int recording = 0;  // Reset() and clocks set back begin the next: times grow within each
-  bool tracked = false;
-  MapId map;           // whose world the pose is in: none when not tracked
-  Se3 T_world_camera;  // corrected by all that was learnt since
-  // The frame had no pose when it was done, and got one later (of one camera: frames before the
-  // start).
-  bool late = false;
-  Se3 T_world_camera_live;  // as it was when the frame was done; of no meaning when late
-  // The same told by the keyframe it hangs on (living, or culled and followed by another, see
-  // MapState::culled), with lengths as if that one's scale were 1: what a correction leaves alone.
-  KeyFrameId reference;
-  Se3 T_reference_camera;
-};
-
-// A feature of a frame, and what became of it.
-struct FeatureUse {
-  float x = 0, y = 0;            // raw pixels
-  float static_probability = 1;  // 0…1
-  bool matched = false;          // the pose agrees with the landmark it shows
-  // The landmark it shows is new: made with the newest keyframe or the one before (a mapper in its
-  // own thread is one behind). If the frame is that keyframe, the pose may know nothing of it yet.
-  bool fresh = false;
-};
-
-// What the detector answered last.
-struct ShownDetections {
-  int frames_ago = 0;      // how many frames before the last one it was given the picture, …
-  double seconds_ago = 0;  // … and how long before it that one was taken, by the images' clock
-  std::vector<Detection> detections;  // pixels of that picture, which is of the camera's size
-  std::vector<std::string> names;     // of each: what its class is called
-};
-
-// Milliseconds, one sample per frame (map, loop, semidense: per keyframe). Of more than 262,144
-// (2.4 hours at 30 frames a second) a part, drawn evenly: see SampleLog.
-struct StageTimes {
-  std::vector<double> frame, extract, track, map, loop, semidense;
-  std::vector<double> detect;    // per frame the detector was given
-  std::vector<double> dynamics;  // flow, geometry and belief, not the detector
-};
-
-// The newest reading of each, and how many there were: a stage whose number has not grown has not
-// run since one asked last.
-struct LatestTimes {
-  SampleLog::Reading frame, extract, track, map, loop, semidense, detect, dynamics;
-};
-
-// Frames that Trajectory() has no longer (settings.trajectory.keep_seconds).
-struct LetGoFrames {
-  int frames = 0;
-  int tracked = 0;  // of those, as it was when they were done
-};
-
-struct SlamCounts {
-  int relocalisations = 0, loops = 0, merges = 0;
-  int cuts = 0;       // gaps and jumps of the time, and calls of Reset()
-  int predicted = 0;  // frames of TrackResult::predicted
-  LetGoFrames let_go;
-};
 
 // Threads. The driving calls, Load, Track, Reset and Finish, take turns: one waits for the one
 // before it, from whatever thread it comes. All others are questions. Any thread may ask them at

@@ -71,9 +71,23 @@ Workers::~Workers() {  // who hands on stops before who is handed to
   adjusting_.Stop();
 }
 
-void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
+void Workers::MapKeyFrame(KeyFrameId id, const std::atomic<bool>* stop) {
   const MapperReport report = mapper_.Process(id, stop);
-  if (report.split.valid()) unknown_scale_ = report.split.value;
+  if (!report.split.valid()) return;
+  const std::lock_guard<std::mutex> lock(news_mutex_);
+  unknown_scale_.push_back(report.split);
+}
+
+WorkerNews Workers::TakeNews() {
+  WorkerNews news;
+  news.camera = lens_watch_.Take();
+  const std::lock_guard<std::mutex> lock(news_mutex_);
+  news.unknown_scale.swap(unknown_scale_);
+  return news;
+}
+
+void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
+  MapKeyFrame(id, stop);
   if (readout_watch_.Mapped(id, map_.Snapshot())) {
     map_.Commit([&](MapCommit& commit) { CommitShutter(commit, readout_watch_.camera()); });
     adjusting_.Add(id);
@@ -148,7 +162,7 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
       }
     });
     if (Apart(from, to) > lens_watch_.settings().rework) {
-      for (KeyFrameId id : map_.Snapshot().KeyFrames()) mapper_.Process(id);
+      for (KeyFrameId id : map_.Snapshot().KeyFrames()) MapKeyFrame(id, nullptr);
     }
     semidense_mapper_.SetCamera(to);
     readout_watch_.SetCamera(to);

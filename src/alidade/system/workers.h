@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "alidade/looping/loop_closer.h"
@@ -22,6 +23,12 @@
 #include "alidade/system/stage.h"
 
 namespace alidade {
+
+// What the workers found since the last call of Workers::TakeNews().
+struct WorkerNews {
+  std::optional<Camera> camera;      // the map supports this camera rather than the one in use
+  std::vector<MapId> unknown_scale;  // maps split off because their scale is unknown
+};
 
 class Workers {
  public:
@@ -62,9 +69,7 @@ class Workers {
   // A map and its places, without a trace. Not awaited when threaded.
   void Drop(MapId id);
   std::vector<MapId> dropped() const;  // and not out of the map yet
-  // The map that was split off last because its scale is not known (MapperReport::split), told
-  // once.
-  MapId TakeUnknownScale() { return {unknown_scale_.exchange(MapId{}.value)}; }
+  WorkerNews TakeNews();               // each item once
 
   // Any thread may ask.
   std::vector<StageHealth> health() const;
@@ -78,6 +83,7 @@ class Workers {
   const SampleLog& semidense_milliseconds() const { return semidense_.milliseconds(); }
 
  private:
+  void MapKeyFrame(KeyFrameId id, const std::atomic<bool>* stop);
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
   void DrainStages();
@@ -93,9 +99,10 @@ class Workers {
   SemiDenseMapper semidense_mapper_;
   bool dense_;  // semi-dense mapping is asked for
   std::atomic<bool> cut_short_{false};
-  std::atomic<decltype(MapId::value)> unknown_scale_{MapId{}.value};
-  bool limit_told_ = false;      // that keyframes go because there are too many; mapping_'s
-  uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
+  std::mutex news_mutex_;
+  std::vector<MapId> unknown_scale_;  // WorkerNews::unknown_scale
+  bool limit_told_ = false;           // that keyframes go because there are too many; mapping_'s
+  uint32_t adjusted_up_to_ = 0;       // keyframes there were at the last adjustment of Drain()
   mutable std::mutex dropped_mutex_;
   std::vector<MapId> dropped_;  // given up, and not out of the map yet
   Stage adjusting_, looping_, semidense_, mapping_;

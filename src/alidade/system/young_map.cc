@@ -106,8 +106,9 @@ void YoungMap::SetCamera(const Camera& camera, double focal_sigma) {
   views_.clear();  // of another camera
 }
 
-void YoungMap::GiveUp() {
-  workers_.Drop(map_);
+void YoungMap::Drop() {
+  if (map_.valid()) workers_.Drop(map_);
+  map_ = {};
   start_.Reset();
   trial_left_ = 0;
   started_ = -1;

@@ -28,10 +28,12 @@ class YoungMap {
     bool holds = false;  // enough points for a trial; otherwise it is to be given up
   };
   std::optional<Begun> Begin(const std::shared_ptr<const Frame>& frame);
-  const char* reason() const { return start_.reason(); }  // why the last frame began none
-  void Reset() { start_.Reset(); }  // the views kept so far are of no use any more
+  TrackFailure failure() const { return start_.failure(); }  // why the last frame began none
+  void ForgetViews() { start_.Reset(); }  // the reference views so far are useless
 
-  bool on_trial() const { return trial_left_ > 0; }
+  // The newest map; invalid before the first one and after Drop().
+  MapId map() const { return map_; }
+  bool confirmed() const { return trial_left_ == 0; }
   // One frame of the trial: whether it confirms the map. After the last its keyframes are handed to
   // the workers.
   bool Confirm(const TrackEstimate& estimate);
@@ -50,7 +52,7 @@ class YoungMap {
   }
   // Of all frames from now on: views kept so far are of no use any more. `focal_sigma`: relative.
   void SetCamera(const Camera& camera, double focal_sigma);
-  void GiveUp();  // out of the map, frames placed in it included; begins anew
+  void Drop();  // removes the newest map, with the poses of the frames placed in it
 
  private:
   static constexpr int kYoung = 40;       // frames

@@ -1,4 +1,4 @@
-// The phone's page: camera or video → engine (core.wasm in a Worker, or another computer) → picture, map, numbers.
+// The phone page: camera or video → engine (core.wasm in a Worker, or another computer) → image, map, numbers.
 import { decode, DecodeError, State } from '@alidade/scene';
 import { byId, write } from '../../viewer/src/dom.ts';
 import { CameraProblem, holdFocus, openCamera, workingSize } from './camera.ts';
@@ -27,7 +27,7 @@ const video = byId('video') as HTMLVideoElement;
 const picture = new PictureView();
 const map = new MapView(() => state);
 const detector = new DetectorHost(choices, (text) => notice(text, 'detector'));
-const notices = new Map<string, string>(); // by what they are about
+const notices = new Map<string, string>(); // by topic
 let state = new State();
 let phase: Phase = 'idle';
 let engine: Engine | null = null;
@@ -36,13 +36,13 @@ let file: VideoFile | null = null;
 let recorder: Recorder | null = null;
 let cube: Cube | null = null;
 let shown: Done | null = null;
-let angle = 0;         // of the screen when it began, degrees
-let upright = false;   // the picture was higher than wide then
-let lastTime = -1;     // seconds: of the last picture of the camera
+let angle = 0; // screen rotation at the start, degrees
+let upright = false; // whether the image was in portrait orientation at the start
+let lastTime = -1; // time of the last camera image, seconds
 let grab: { canvas: OffscreenCanvas; context: OffscreenCanvasRenderingContext2D } | null = null;
 let focusHeld = false;
 let wake: WakeLockSentinel | null = null;
-let info: { connected?: boolean; core?: boolean; threads?: boolean } = {}; // info.json: what the server offers
+let info: { connected?: boolean; core?: boolean; threads?: boolean } = {}; // info.json: the server's capabilities
 const counters = { processed: 0, milliseconds: [] as number[] };
 let watch: ((done: Done) => void) | null = null; // for tests
 
@@ -123,7 +123,7 @@ function setCube(next: Cube | null): void {
   draw();
 }
 
-// A new engine and an empty state for pictures of that size.
+// Creates a new engine and an empty state for images of this size.
 async function begin(width: number, height: number): Promise<void> {
   engine?.close();
   forget();
@@ -201,7 +201,8 @@ function grabbed(): ImageBitmap {
   return grab.canvas.transferToImageBitmap();
 }
 
-// Browsers turn the camera's picture as the phone is turned. Quarters clockwise by which it is turned back, so that the lens stays the same.
+// Browsers rotate the camera image with the phone. Returns the clockwise quarter turns that undo this, so that the lens
+// model remains valid.
 function turned(): number {
   const quarters = Math.round(((screen.orientation?.angle ?? 0) - angle) / 90) & 3;
   const changed = (video.videoHeight > video.videoWidth) !== upright;
@@ -249,7 +250,7 @@ function stopCamera(): void {
   wake = null;
 }
 
-// `why`: '' when it is over as it should be: the map is adjusted as a whole once more.
+// `why`: reason for an abnormal end, or '': then the whole map is adjusted once more.
 function end(why: string): void {
   if (phase !== 'running') return;
   if (recorder) void stopRecording('');
@@ -283,12 +284,12 @@ function toggleRecording(): void {
     userAgent: navigator.userAgent, width: video.videoWidth, height: video.videoHeight, focusHeld, fov: choices.fov, began: new Date().toISOString(),
   });
   byId('record').setAttribute('aria-pressed', 'true');
-  // iOS asks the user for the motion sensors.
+  // iOS asks the user for permission to use the motion sensors.
   const asks = DeviceMotionEvent as unknown as { requestPermission?(): Promise<string> } | undefined;
   void asks?.requestPermission?.().catch(() => {});
 }
 
-// The field of view that was given, for pictures of the recording's size.
+// camera.yaml with the chosen field of view, for images of the recording's size.
 function cameraYaml(): string {
   const { videoWidth: width, videoHeight: height } = video;
   const focal = width / (2 * Math.tan(((choices.fov ?? 66) * Math.PI) / 360));
@@ -313,7 +314,8 @@ function watchTrack(): void {
   });
 }
 
-// The camera was taken away, by the system or while the page was hidden: the map stays, and is found again.
+// Reopens the camera after the system took it, or while the page was hidden. The map is kept, and the camera
+// relocalizes.
 async function reopen(): Promise<void> {
   if (!stream) return;
   try {
@@ -332,7 +334,7 @@ async function stayAwake(): Promise<void> {
   try {
     wake = await navigator.wakeLock?.request('screen') ?? null;
   } catch {
-    // not allowed now (little battery): the screen may go dark
+    // not permitted now (low battery): the screen may turn off
   }
 }
 
@@ -384,7 +386,7 @@ async function askInfo(): Promise<void> {
     const answer = await fetch('info.json' + location.search);
     if (answer.ok) info = await answer.json() as typeof info;
   } catch {
-    // offline, or a plain file server: the core works here
+    // offline, or a static file server: the core runs in the page
   }
   byId('set-connected-row').hidden = !(info.connected && info.core !== false);
   if (info.connected) write(byId('unless'), info.core === false ? ': they go to the computer that serves this page, which does the work.' : ', unless you have the computer that serves this page do the work.');
@@ -395,10 +397,10 @@ if ('serviceWorker' in navigator && isSecureContext) {
   void navigator.serviceWorker.register('sw.js' + location.search).then(({ installing, waiting, active }) => {
     document.body.dataset.offline = active ? 'ready' : 'soon';
     (installing ?? waiting)?.addEventListener('statechange', function changed() { if (this.state === 'activated') document.body.dataset.offline = 'ready'; });
-  }).catch(() => {}); // not offline, then
+  }).catch(() => {}); // then the page does not work offline
 }
 
-// For tests, and for the curious.
+// For tests and debugging.
 Object.assign(window, {
   phone: {
     get state() { return state; },

@@ -1,4 +1,4 @@
-// The map in 3D: the viewer's scene, drawn some times a second so that a phone has time for the rest.
+// The map in 3D: the viewer's scene, updated at a limited rate to save the phone's CPU time.
 import { NoWebGL, Scene } from '@alidade/scene';
 import type { Colours, State, ViewMode } from '@alidade/scene';
 import { byId } from '../../viewer/src/dom.ts';

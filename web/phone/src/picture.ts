@@ -1,4 +1,4 @@
-// The camera picture as it was worked on, with its features and the cube.
+// The processed camera image with its features and the cube.
 import type { Frame as StreamFrame, State } from '@alidade/scene';
 import { boxes, features, outlines } from '../../viewer/src/picture_marks.ts';
 import { byId } from '../../viewer/src/dom.ts';
@@ -12,7 +12,8 @@ export class PictureView {
   private readonly draw = this.canvas.getContext('2d')!;
   private turn = 0;
 
-  // `turn`: quarters the screen was turned clockwise since the start. What is told in pixels is told for the picture as it lay then.
+  // `turn`: clockwise quarter turns of the screen since the start. Pixel coordinates refer to the image as oriented at
+  // the start.
   show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marks: boolean): void {
     const { canvas, draw } = this;
     this.turn = turn;
@@ -37,14 +38,15 @@ export class PictureView {
     if (cube) this.drawCube(cube, state, w, h);
   }
 
-  // Pixels of the stream's camera where the page was tapped; null: beside the picture.
+  // Pixel of the stream's camera at the tap; null: outside the image.
   at(event: PointerEvent, state: State): Point | null {
     const camera = state.hello?.camera;
     if (!camera) return null;
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const { width: cw, height: ch } = this.canvas;
     const scale = Math.min(width / cw, height / ch); // object-fit: contain
-    const [x, y] = [(event.clientX - left - width / 2) / scale, (event.clientY - top - height / 2) / scale]; // from the middle
+    // Relative to the center.
+    const [x, y] = [(event.clientX - left - width / 2) / scale, (event.clientY - top - height / 2) / scale];
     const [w, h] = this.size();
     const angle = (this.turn * Math.PI) / 2;
     const [u, v] = [x * Math.cos(angle) - y * Math.sin(angle) + w / 2, x * Math.sin(angle) + y * Math.cos(angle) + h / 2];
@@ -52,7 +54,7 @@ export class PictureView {
     return [(u * camera.width) / w - 0.5, (v * camera.height) / h - 0.5];
   }
 
-  // Of the picture as it lay at the start.
+  // Size of the image as oriented at the start.
   private size(): [number, number] {
     const { width, height } = this.canvas;
     return this.turn % 2 ? [height, width] : [width, height];

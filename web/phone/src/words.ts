@@ -1,9 +1,9 @@
-// What the core says, for people with a phone in their hand: short, and what to do.
+// Short texts for phone users: the core's state, and what to do.
 import type { Frame } from '../../core/src/index.ts';
 
 export const STATE_WORDS: Record<Frame['state'], string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
 
-const DARK = 35; // mean grey, 0…255
+const DARK = 35; // mean gray level, 0…255
 
 const ADVICE: readonly [RegExp, string][] = [
   [/hardly moves/, 'Move sideways, slowly.'],
@@ -18,7 +18,7 @@ const ADVICE: readonly [RegExp, string][] = [
   [/too few landmarks found/, 'Go back slowly to what it has seen.'],
 ];
 
-// `light`: mean grey of the picture; NaN: not known.
+// `light`: mean gray level of the image; NaN: unknown.
 export function advice({ state, reason, predicted }: Frame, light: number): string {
   if (state === 'tracking') return light < DARK ? 'It is dark: more light would help.' : '';
   if (predicted) return 'Hold on: it guesses where you are.';

@@ -1,10 +1,11 @@
-// A fake camera's file for Chromium: frames of a recording as raw video, each with its number in its upper left corner.
+// Writes a file for Chromium's fake camera: frames of a recording as raw video, each with its number encoded in the
+// upper left corner.
 import { closeSync, openSync, readFileSync, writeSync } from 'node:fs';
 import { join } from 'node:path';
 import jpeg from 'jpeg-js';
 import { readPng } from '../../scene/test/png.ts';
 
-export const CELL = 16;  // pixels: a bit of the number
+export const CELL = 16; // pixels per bit of the number
 export const BITS = 12;
 
 export interface Recording { times: number[]; files: string[]; width: number; height: number }
@@ -26,15 +27,15 @@ export function openRecording(folder: string): Recording {
   return { times: lines.map(([time]) => Number(time)), files, width, height };
 }
 
-// A picture of it in grey, a byte a pixel.
+// A frame of the recording in gray, one byte per pixel.
 export function grayOf({ files }: Recording, number: number): Uint8Array {
   const { width, height, data } = readPicture(files[number]!);
   return Uint8Array.from({ length: width * height }, (_, k) => (299 * data[4 * k]! + 587 * data[4 * k + 1]! + 114 * data[4 * k + 2]! + 500) / 1000);
 }
 
-export const DARK = -1; // a frame of nothing
+export const DARK = -1; // a black frame
 
-// `order`: frames of the recording, or DARK, in the order that the camera shows them, `rate` a second.
+// `order`: frames of the recording, or DARK, in playback order, `rate` per second.
 export function writeY4m(path: string, { files, width, height }: Recording, order: readonly number[], numbered = true, rate = 30): void {
   const out = openSync(path, 'w');
   writeSync(out, `YUV4MPEG2 W${width} H${height} F${rate}:1 Ip A1:1 C420jpeg\n`);
@@ -43,7 +44,7 @@ export function writeY4m(path: string, { files, width, height }: Recording, orde
   const v = Buffer.alloc((width * height) / 4);
   for (const number of order) {
     const { data } = number === DARK ? { data: new Uint8Array(4 * width * height) } : readPicture(files[number]!);
-    // BT.601, limited range, as browsers take it.
+    // BT.601, limited range, as browsers expect.
     for (let i = 0; i < width * height; ++i) y[i] = 16 + (65.738 * data[4 * i]! + 129.057 * data[4 * i + 1]! + 25.064 * data[4 * i + 2]!) / 256;
     for (let r = 0; r < height / 2; ++r) {
       for (let c = 0; c < width / 2; ++c) {

@@ -29,7 +29,7 @@ function assertSame(a: State, b: State): void {
     const one = a.landmarks.at(i);
     const other = b.landmarks.get(one.id)!;
     assert.equal(one.keyframe, other.keyframe);
-    near(one.p, other.p, 1e-6, `landmark ${one.id}`); // told in another keyframe, rounded once more
+    near(one.p, other.p, 1e-6, `landmark ${one.id}`); // anchored to another keyframe and rounded once more
   }
   assert.deepEqual([...a.clouds.keys()].sort(), [...b.clouds.keys()].sort());
   for (const [id, cloud] of a.clouds) assert.deepEqual(cloud, b.clouds.get(id));

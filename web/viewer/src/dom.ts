@@ -11,7 +11,7 @@ export function make<Tag extends keyof HTMLElementTagNameMap>(tag: Tag, text = '
   return element;
 }
 
-// Writes only what is other: a page that stands still costs nothing.
+// Changes the text only if it differs, to avoid needless layout.
 export function write(element: Element, text: string): void {
   if (element.textContent !== text) element.textContent = text;
 }

@@ -1,15 +1,15 @@
-// What is drawn over the camera picture.
+// Draws marks over the camera image.
 import { USES } from '@alidade/scene';
 import type { Frame } from '@alidade/scene';
 
 export interface Canvas {
   draw: CanvasRenderingContext2D;
-  w: number; h: number; // pixels of the canvas
-  ratio: number; // of these to the page's
+  w: number; h: number; // size of the canvas in pixels
+  ratio: number; // canvas pixels per CSS pixel
   colour(name: string): string;
 }
 
-// Told apart by form as well as by colour: tracked are squares, new ones rings, unused ones dots, those left out crosses.
+// Kinds differ in shape as well as in color: tracked squares, new rings, unused dots, excluded crosses.
 export function features({ draw, w, h, ratio, colour }: Canvas, frame: Frame, visible: ReadonlySet<string>): void {
   const { features: packed } = frame;
   const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
@@ -43,7 +43,7 @@ export function features({ draw, w, h, ratio, colour }: Canvas, frame: Frame, vi
   });
 }
 
-// What is left out: a polygon inside another one is a hole.
+// Outlines of the excluded parts; a polygon inside another one is a hole.
 export function outlines({ draw, w, h, ratio, colour }: Canvas, frame: Frame): void {
   if (frame.outlines.length === 0) return;
   draw.beginPath();
@@ -64,13 +64,13 @@ export function outlines({ draw, w, h, ratio, colour }: Canvas, frame: Frame): v
   draw.stroke();
 }
 
-export const OLD = 0.1; // seconds: boxes that are older are dashed
+export const OLD = 0.1; // seconds: older boxes are dashed
 
-// `width`, `height`: the camera's, pixels.
+// `width`, `height`: size of the camera image, pixels.
 export function boxes({ draw, w, h, ratio, colour }: Canvas, frame: Frame, width: number, height: number): void {
   const old = frame.detectionAge > OLD;
   draw.font = `${11 * ratio}px system-ui, sans-serif`;
-  for (const box of [...frame.detections].reverse()) { // the best last: over the others
+  for (const box of [...frame.detections].reverse()) { // the best last, on top of the others
     const [x, y] = [(box.x * w) / width, (box.y * h) / height];
     const size = [(box.width * w) / width, (box.height * h) / height] as const;
     draw.setLineDash(old ? [5 * ratio, 3 * ratio] : []);

@@ -1,11 +1,11 @@
-// Chromium for the tests of the page, and what they look at.
+// Starts Chromium for the tests of the page, and inspects the page.
 import { existsSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { chromium } from 'playwright-core';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
 import { readPng } from '../../scene/test/png.ts';
 
-declare const WEB: string; // by tools/test.mjs
+declare const WEB: string; // defined by tools/test.mjs
 
 export const CHROMIUM = process.env.CHROMIUM ?? '/usr/bin/chromium';
 export const SKIP = existsSync(CHROMIUM) ? false : `no ${CHROMIUM}`;
@@ -18,11 +18,11 @@ export function launch(flags: string[] = []): Promise<Browser> {
 
 export interface Opened { page: Page; problems: string[]; requests: string[] }
 
-// Complaints that say nothing of the page: the renderer's of its own speed; and that a camera's next picture came a second
-// late, which it does where the machine held everything up.
+// Warnings that do not concern the page: the renderer's about its own speed, and about a late camera image on a busy
+// machine.
 const OF_THE_MACHINE = /GL Driver Message|the time jumps ahead/;
 
-// `problems`: what the console and the page complain of.
+// `problems`: errors and warnings of the console and the page.
 export async function open(browser: Browser, address: string, options: BrowserContextOptions = {}, before?: (page: Page) => Promise<void>): Promise<Opened> {
   const context = await browser.newContext({ viewport: { width: 1280, height: 800 }, ...options });
   const page = await context.newPage();
@@ -42,7 +42,7 @@ export const count = async (page: Page, name: string) => Number(await page.textC
 export const frames = (page: Page, least: number) =>
   page.waitForFunction((n) => Number(document.querySelector('[data-count=frames]')!.textContent) >= n, least, { timeout: 120e3 });
 
-// What axe finds wrong with the page as it is now.
+// Violations that axe finds in the current page.
 export async function violations(page: Page): Promise<string[]> {
   await page.evaluate(readFileSync(join(WEB, 'node_modules/axe-core/axe.min.js'), 'utf8'));
   return page.evaluate(async () => {
@@ -57,12 +57,12 @@ export async function screenshot(page: Page, clip?: { x: number; y: number; widt
   return decodePng(await page.screenshot({ clip }));
 }
 
-// Of the canvas alone, without what lies over it.
+// Screenshot of the canvas without the elements above it.
 export async function sceneOnly(page: Page): Promise<Picture> {
   await page.evaluate(() => { for (const id of ['picture', 'panel', 'counts', 'status', 'transport', 'panel-toggle', 'notice']) document.getElementById(id)!.style.visibility = 'hidden'; });
   let last = '';
   let still: Buffer = Buffer.alloc(0);
-  for (let i = 0; i < 60; ++i) { // until it stands still
+  for (let i = 0; i < 60; ++i) { // until it no longer changes
     still = await page.screenshot();
     const now = still.toString('base64');
     if (now === last) break;

@@ -1,4 +1,4 @@
-// The real program as a server, started and ended by the tests.
+// Starts and stops the real program as a server.
 import { spawn } from 'node:child_process';
 import { mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
@@ -12,7 +12,7 @@ export const NO_PROGRAM = SKIP || NO_BINARY;
 export interface Program {
   address: string;
   port: number;
-  ended: Promise<number | null>; // its status; null: by a signal
+  ended: Promise<number | null>; // exit status; null: ended by a signal
   kill(signal: NodeJS.Signals): void;
 }
 
@@ -21,7 +21,7 @@ const running = new Set<Program>();
 
 export const inFolder = (name: string) => join(folder, name);
 
-// One that serves the page; the address is the first that it prints.
+// Starts a program that serves the page; the address is the first one it prints.
 export async function start(...args: string[]): Promise<Program> {
   const child = spawn(BINARY, args, { stdio: ['ignore', 'pipe', 'pipe'] });
   let said = '';
