@@ -20,7 +20,7 @@ endfunction()
 
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest and, but for
 # end-to-end tests, labelled with its folder. Tests are compiled several files at a time: each has a namespace of its own, alidade::FILE.
-# Problem generators shared with the benchmarks are in bench/support.
+# Problem generators shared with the benchmarks are in tests/problems.
 # With END_TO_END the tests get that label, and are no part of the target unit_tests.
 function(alidade_test FOLDER)
   cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
@@ -29,7 +29,7 @@ function(alidade_test FOLDER)
     return()
   endif()
   add_executable(test_${FOLDER} ${SOURCES})
-  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
+  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
   # What is tested is compiled as it is used; the tests themselves are not what takes time.
   target_compile_options(test_${FOLDER} PRIVATE $<$<CONFIG:Release>:-O1>)

@@ -1,4 +1,4 @@
-// `alidade bench phone` runs the module by this: node bench.mjs FOLDER. It reads job.json and frames.gray there (pictures on end, a byte a pixel) and writes result.json:
+// `alidade-bench phone` runs the module by this: node bench.mjs FOLDER. It reads job.json and frames.gray there (pictures on end, a byte a pixel) and writes result.json:
 // milliseconds of each stage as the stream tells them, and the trajectory.
 import { closeSync, openSync, readFileSync, readSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
