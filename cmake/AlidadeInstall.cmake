@@ -67,7 +67,7 @@ if(TARGET alidade_serve)
   install(TARGETS alidade_serve LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
 endif()
 
-# The core for browsers, where scripts/wasm has built it: `alidade phone` serves it.
+# The core for browsers, where scripts/wasm/build has built it: `alidade phone` serves it.
 foreach(VARIANT single threads)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/build-wasm/${VARIANT}/bin/
           DESTINATION ${CMAKE_INSTALL_DATADIR}/alidade/core/${VARIANT} OPTIONAL

@@ -1,6 +1,6 @@
 # alidade_viewer_page(OUT): makes the C++ file OUT that holds the files of the pages (web/viewer/dist, web/phone/dist), which npm
 # builds when Node.js is there; without, a plain page stands for it. Built again only when something in web/ has changed.
-# PREBUILT takes the pages as they are in web/: where packages are built there is no network (scripts/package).
+# PREBUILT takes the pages as they are in web/: where packages are built there is no network (scripts/package/build).
 set(ALIDADE_WEB ON CACHE STRING "ON: build the pages with npm; PREBUILT: take those in web/*/dist; OFF: none")
 
 function(alidade_viewer_page OUT)

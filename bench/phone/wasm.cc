@@ -87,7 +87,8 @@ std::optional<PhoneRun> RunWasm(const PhoneRecording& from, const SlamSettings& 
   const std::string driver = FindDriver();
   if (driver.empty()) {
     *problem =
-        "the core for browsers is not there (scripts/wasm single, npm run build:core in web/).";
+        "the core for browsers is not there (scripts/wasm/build single, npm run build:core in "
+        "web/).";
     return std::nullopt;
   }
   if (std::system("command -v node >/dev/null 2>&1") != 0) {

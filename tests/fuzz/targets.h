@@ -1,5 +1,5 @@
-// What reads bytes that somebody else wrote. The fuzzer (scripts/fuzz) feeds each of these with
-// millions of inputs; corpus_test.cc with those worth keeping.
+// What reads bytes that somebody else wrote. The fuzzer (scripts/check/fuzz) feeds each of these
+// with millions of inputs; corpus_test.cc with those worth keeping.
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Puts the npm package together: core/dist with index.js, its types and the modules that scripts/wasm has built.
+// Puts the npm package together: core/dist with index.js, its types and the modules that scripts/wasm/build has built.
 import { build } from 'esbuild';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, rmSync } from 'node:fs';
@@ -20,7 +20,7 @@ await build({ entryPoints: [join(web, 'core/bench/bench.ts')], outfile: join(bui
 for (const variant of ['single', 'threads']) {
   const from = join(built, variant, 'bin');
   if (!existsSync(join(from, 'alidade.wasm'))) {
-    console.log(`${variant}: not built (scripts/wasm ${variant})`);
+    console.log(`${variant}: not built (scripts/wasm/build ${variant})`);
     continue;
   }
   mkdirSync(join(dist, variant));

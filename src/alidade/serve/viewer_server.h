@@ -51,9 +51,9 @@ class ViewerServer {
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
                                           const std::string& replay_path, const std::string& title);
 
-// The page for phones. `core_folder`: where the core as WebAssembly is (scripts/wasm: build-wasm);
-// empty: nowhere. `frames`, which must outlive the server: who works on pictures that pages send;
-// null: nobody does.
+// The page for phones. `core_folder`: where the core as WebAssembly is (scripts/wasm/build:
+// build-wasm); empty: nowhere. `frames`, which must outlive the server: who works on pictures that
+// pages send; null: nobody does.
 std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
                                              const std::string& core_folder, FrameHost* frames);
 // Which variants of the core are in a folder: "single", "threads".

@@ -1,8 +1,8 @@
-# For scripts/test-android: the packaged page (scripts/apk), verified, and unpacked again.
+# For scripts/android/test: the packaged page (scripts/android/apk), verified, and unpacked again.
 apk=$work/page.apk
 status=0
 rm -f "$apk"
-scripts/apk "$apk" >"$work/apk.log" 2>&1 || status=$?
+scripts/android/apk "$apk" >"$work/apk.log" 2>&1 || status=$?
 if [ "$status" -eq 69 ]; then
   skip "the packaged page: $(tail -1 "$work/apk.log")"
 elif [ "$status" -ne 0 ]; then
@@ -30,7 +30,7 @@ else
   check "its page is web/phone/dist, to the byte" same web/phone/dist "$work/unpacked/assets/page"
   core=${ALIDADE_CORE:-build-wasm/single/bin}
   for file in alidade.mjs alidade.wasm; do
-    check "its $file is what scripts/wasm built, to the byte" cmp "$core/$file" "$work/unpacked/assets/page/core/single/$file"
+    check "its $file is what scripts/wasm/build built, to the byte" cmp "$core/$file" "$work/unpacked/assets/page/core/single/$file"
   done
   detector=${ALIDADE_DETECTOR:-build-wasm/detector/bin}
   if [ -f "$detector/alidade_detector.wasm" ]; then

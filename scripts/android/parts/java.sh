@@ -1,4 +1,4 @@
-# For scripts/test-android: the app's Java against the public API 29, made from the framework's own list of signatures; resources by aapt2; the
+# For scripts/android/test: the app's Java against the public API 29, made from the framework's own list of signatures; resources by aapt2; the
 # hand-written bytecode of the packaged page against the same, and through the JVM's verifier.
 app=android/app/src/main
 framework=/usr/share/android-framework-res/framework-res.apk
@@ -6,7 +6,7 @@ stubs=
 if ! command -v javac >/dev/null || ! command -v aapt2 >/dev/null || [ ! -f "$framework" ]; then
   skip "Java against API 29: no JDK, aapt2 or android-framework-res (scripts/setup --android)"
 else
-  stubs=$(scripts/android-stubs-jar) || { stubs=; skip "Java against API 29: the framework's signatures could not be fetched"; }
+  stubs=$(scripts/android/stubs-jar) || { stubs=; skip "Java against API 29: the framework's signatures could not be fetched"; }
 fi
 
 # compiles FOLDER: the app's Java as it is in a folder of sources.

@@ -1,11 +1,11 @@
-# For scripts/test-android: core and bridge built for 64-bit ARM, as phones have it, and run by qemu.
+# For scripts/android/test: core and bridge built for 64-bit ARM, as phones have it, and run by qemu.
 root=
 if ! command -v aarch64-linux-gnu-g++ >/dev/null || ! command -v qemu-aarch64-static >/dev/null; then
   skip "the core on ARM: no cross-compiler or qemu (scripts/setup --android)"
 elif [ ${#PICTURES[@]} -eq 0 ]; then
   skip "the core on ARM: no JDK, whose headers the bridge needs (scripts/setup --android)"
 else
-  root=$(scripts/arm64-sysroot) || { root=; skip "the core on ARM: its libraries could not be fetched"; }
+  root=$(scripts/android/arm64-sysroot) || { root=; skip "the core on ARM: its libraries could not be fetched"; }
 fi
 
 if [ -n "$root" ]; then

@@ -273,7 +273,8 @@ int Run() {
     mean_spread += std::abs(first.Mean(t) - 0.5) / kBits;
   }
   std::printf(
-      "// Made by scripts/make_orb_pattern; do not edit. x0, y0, x1, y1 in pixels of the patch.\n");
+      "// Made by scripts/research/make_orb_pattern; do not edit. x0, y0, x1, y1 in pixels of the "
+      "patch.\n");
   std::printf("// %d patches, correlation <= %.2f, mean |p - 0.5| %.3f, mean flips %.3f.\n",
               first.count(), limit - 0.05, mean_spread, mean_flip);
   for (size_t i = 0; i < taken.size(); ++i) {
