@@ -16,7 +16,7 @@
 #include "alidade/run/batch_process.h"
 #include "alidade/run/loop.h"
 #include "batch_arguments.h"
-#include "terminal.h"
+#include "program/terminal.h"
 
 namespace alidade {
 namespace {

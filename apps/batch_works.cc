@@ -7,8 +7,8 @@
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/loop.h"
-#include "arguments.h"
 #include "batch_arguments.h"
+#include "program/arguments.h"
 #include "run_flags.h"
 
 namespace alidade {

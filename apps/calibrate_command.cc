@@ -17,7 +17,7 @@
 #include "alidade/run/options.h"
 #include "alidade/run/unknown_camera.h"
 #include "commands.h"
-#include "terminal.h"
+#include "program/terminal.h"
 
 namespace alidade {
 namespace {

@@ -2,15 +2,9 @@
 // `action`, which main then runs: what it returns is the program's exit status.
 #pragma once
 
-#include <functional>
-
-namespace CLI {
-class App;
-}
+#include "program/program.h"
 
 namespace alidade {
-
-using Action = std::function<int()>;
 
 void AddRunCommand(CLI::App& app, Action& action);
 void AddLocalizeCommand(CLI::App& app, Action& action);
@@ -24,7 +18,7 @@ void AddMergeCommand(CLI::App& app, Action& action);
 void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
-void AddBenchCommand(CLI::App& app, Action& action);
+void AddBenchCommand(CLI::App& app, Action& action);      // says what it is called now
 void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
 
 }  // namespace alidade

@@ -13,9 +13,9 @@
 #include "alidade/evaluation/rpe.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
-#include "arguments.h"
 #include "commands.h"
 #include "evaluate_depth.h"
+#include "program/arguments.h"
 
 namespace alidade {
 namespace {

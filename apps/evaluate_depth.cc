@@ -12,8 +12,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/evaluation/depth_error.h"
-#include "arguments.h"
 #include "depth_folder.h"
+#include "program/arguments.h"
 #include "true_depth.h"
 
 namespace alidade {

@@ -12,7 +12,7 @@
 #include "alidade/run/merge_inputs.h"
 #include "alidade/run/merge_outputs.h"
 #include "commands.h"
-#include "terminal.h"
+#include "program/terminal.h"
 
 namespace alidade {
 namespace {

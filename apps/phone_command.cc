@@ -43,10 +43,12 @@ int Phone(const PhoneArguments& arguments) {
   settings.tls = arguments.tls;
   const std::string core = arguments.core.empty() ? FindCoreFolder() : arguments.core;
   if (!arguments.core.empty() && !HasCore(core, "single"))
-    ThrowUsage("--core " + core + ": there is no single/alidade.wasm (scripts/wasm builds it)");
+    ThrowUsage("--core " + core +
+               ": there is no single/alidade.wasm (scripts/wasm/build builds it)");
   if (core.empty() && !arguments.connected)
     ThrowUsage(
-        "the core for browsers was not built: scripts/wasm does it (some minutes, once), or let "
+        "the core for browsers was not built: scripts/wasm/build does it (some minutes, once), or "
+        "let "
         "this computer do the work with --connected");
   std::unique_ptr<PhoneHost> host;
   if (arguments.connected) {
@@ -71,8 +73,9 @@ int Phone(const PhoneArguments& arguments) {
   std::printf("The page for phones is at %s (Ctrl-C ends)\n", address.c_str());
   if (arguments.connected)
     std::printf("Pages may send their pictures here%s\n",
-                core.empty() ? "; the core for browsers was not built (scripts/wasm), so all do"
-                             : ": Settings, Work on the computer that serves this page");
+                core.empty()
+                    ? "; the core for browsers was not built (scripts/wasm/build), so all do"
+                    : ": Settings, Work on the computer that serves this page");
   if (!server->fingerprint().empty())
     std::printf(
         "The certificate was made just now: the phone's browser asks once whether to go on.\n"
@@ -106,7 +109,7 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
                     "phones");
   command
       ->add_option("--core", arguments->core,
-                   "Folder of the core as WebAssembly (scripts/wasm; default: beside the "
+                   "Folder of the core as WebAssembly (scripts/wasm/build; default: beside the "
                    "program, or build-wasm of the tree it was built in)")
       ->type_name("FOLDER");
   command

@@ -4,7 +4,7 @@
 
 #include "alidade/base/timing.h"
 #include "alidade/run/watcher.h"
-#include "terminal.h"
+#include "program/terminal.h"
 
 namespace alidade {
 

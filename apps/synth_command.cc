@@ -15,8 +15,8 @@
 #include "alidade/run/options.h"
 #include "alidade/synth/recording.h"
 #include "alidade/synth/statistics.h"
-#include "arguments.h"
 #include "commands.h"
+#include "program/arguments.h"
 #include "synth_writer.h"
 
 namespace alidade {

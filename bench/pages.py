@@ -13,6 +13,8 @@ import pathlib
 import sys
 from dataclasses import dataclass, field
 
+from bench_files import from_bench
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 KEYS = ("table", "dataset", "case", "sensor", "profile", "variant", "metric")
 REQUIRED = ("table", "dataset", "metric", "value", "unit", "commit", "date")
@@ -64,8 +66,7 @@ TABLES = {
     "semidense_cost": Table({"dataset": "Recording"},
                             {"without": ("Without, ms", ".1f"), "with": ("With, ms", ".1f"), "ratio": ("Ratio", ".2f"),
                              "behind": ("Behind", ".0f"), "cpu": ("Added CPU per keyframe, ms", ".0f")}),
-    "wild": Table({"case": "Case"}, WILD, only={"profile": "default"}, verdict=True),
-    "wild_phone": Table({"case": "Case"}, WILD, only={"profile": "phone"}, verdict=True),
+    "wild": Table({"case": "Case"}, WILD, verdict=True),
     "kitchen_people": Table({"case": "People, camera"}, {"ate": ("ATE, cm", ".2f")}, across="variant"),
     "ablation": Table({"sensor": "Camera"}, {"ate": ("ATE, cm", ""), "tracked": ("frames", "")}, across="variant"),
     "latency": Table({"sensor": "Camera"}, {"ate": ("ATE, cm", ".2f")}, across="variant"),
@@ -85,7 +86,7 @@ TABLES = {
 }
 # Tables that show rows stored under other tables' names.
 ROWS_OF = {"depth_room": ["depth"], "depth_desk": ["depth"], "depth_wall": ["depth"], "depth_kitchen": ["depth"],
-           "wild_phone": ["wild"], "readme": ["recordings", "published_mono"]}
+           "readme": ["recordings", "published_mono"]}
 
 
 def read_results(folder):
@@ -93,6 +94,8 @@ def read_results(folder):
     rows = {}
     for path in sorted(folder.glob("*.json")):
         content = json.loads(path.read_text(encoding="utf-8"))
+        if "benchmark" in content:
+            content = from_bench(content)
         defaults = {key: content[key] for key in REQUIRED + OPTIONAL if key in content}
         for number, entry in enumerate(content["rows"]):
             row = {**defaults, **entry}

@@ -20,7 +20,7 @@ endfunction()
 
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program. Each test is registered with CTest
 # under the folder's label. Tests are compiled several files at a time, so each file has its own namespace,
-# alidade::FILE. Problem generators shared with the benchmarks are in bench/support.
+# alidade::FILE. Problem generators shared with the benchmarks are in tests/problems.
 # With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
 function(alidade_test FOLDER)
   cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
@@ -29,7 +29,7 @@ function(alidade_test FOLDER)
     return()
   endif()
   add_executable(test_${FOLDER} ${SOURCES})
-  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests ${PROJECT_SOURCE_DIR}/bench)
+  target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
   # The tested code is compiled as in the program; the test code itself is not time-critical.
   target_compile_options(test_${FOLDER} PRIVATE $<$<CONFIG:Release>:-O1>)

@@ -68,7 +68,7 @@ if(TARGET alidade_serve)
   install(TARGETS alidade_serve LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
 endif()
 
-# The WebAssembly core, if scripts/wasm has built it, for `alidade phone`.
+# The WebAssembly core, if scripts/wasm/build has built it, for `alidade phone`.
 foreach(VARIANT single threads)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/build-wasm/${VARIANT}/bin/
           DESTINATION ${CMAKE_INSTALL_DATADIR}/alidade/core/${VARIANT} OPTIONAL

@@ -1,6 +1,6 @@
 # alidade_viewer_page(OUT): generates the C++ file OUT with the files of the pages (web/viewer/dist, web/phone/dist).
 # They are built with npm if Node.js is available, else replaced by a plain page, and rebuilt when files in web/ change.
-# PREBUILT uses existing pages in web/, for package builds without network access (scripts/package).
+# PREBUILT uses existing pages in web/, for package builds without network access (scripts/package/build).
 set(ALIDADE_WEB ON CACHE STRING "ON: build the pages with npm; PREBUILT: take those in web/*/dist; OFF: none")
 
 function(alidade_viewer_page OUT)

@@ -1,10 +1,10 @@
-# Debian's cross-compiler for 64-bit ARM with the libraries unpacked by scripts/arm64-sysroot. The programs run in
+# Debian's cross-compiler for 64-bit ARM with the libraries unpacked by scripts/android/arm64-sysroot. The programs run in
 # qemu-aarch64-static. -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64.cmake -DALIDADE_SYSROOT=FOLDER (preset aarch64)
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)
-set(ALIDADE_SYSROOT "$ENV{ALIDADE_SYSROOT}" CACHE PATH "What scripts/arm64-sysroot printed")
+set(ALIDADE_SYSROOT "$ENV{ALIDADE_SYSROOT}" CACHE PATH "What scripts/android/arm64-sysroot printed")
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES ALIDADE_SYSROOT)
 set(CMAKE_SYSROOT ${ALIDADE_SYSROOT})
 set(CMAKE_LIBRARY_ARCHITECTURE aarch64-linux-gnu)

@@ -31,7 +31,7 @@ int main(int count, char** arguments) try {
       const Eigen::Vector3d& p = result.T_world_camera.t;  // position of the camera
       std::printf("%s %.4f %.4f %.4f\n", frame->stamp.c_str(), p.x(), p.y(), p.z());
     } else {
-      std::printf("%s no pose: %s\n", frame->stamp.c_str(), result.reason);
+      std::printf("%s no pose: %s\n", frame->stamp.c_str(), result.reason());
     }
   }
   slam.Finish();  // last adjustment; without it the final poses and the map are not complete

@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "describe/completion.h"
+#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {

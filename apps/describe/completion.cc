@@ -7,10 +7,4 @@ std::string ShortHelp(const std::string& help) {
   return help.substr(0, end);
 }
 
-std::string ShellQuoted(const std::string& text) {
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 }  // namespace alidade

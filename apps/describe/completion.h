@@ -14,7 +14,5 @@ std::string FishCompletion(const CommandText& program);
 
 // The first sentence of a help text, without a full stop: there is one line for it.
 std::string ShortHelp(const std::string& help);
-// In single quotes, as bash and zsh read them.
-std::string ShellQuoted(const std::string& text);
 
 }  // namespace alidade

@@ -168,7 +168,7 @@ TEST(ManPages, ThereIsOneForEachCommandAndTheirReaderHasNothingToComplainOf) {
                                                   {"run"},
                                                   {"evaluate"},
                                                   {"evaluate", "ate"},
-                                                  {"bench"},
+                                                  {"export"},
                                                   {"synth"}}) {
     std::string page = "alidade";
     std::vector<std::string> arguments = command;

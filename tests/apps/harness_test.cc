@@ -1,4 +1,4 @@
-// Harnesses of others: scripts/vslam-lab is called as VSLAM-LAB calls its baselines.
+// Harnesses of others: scripts/research/vslam-lab is called as VSLAM-LAB calls its baselines.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -61,7 +61,7 @@ TEST(VslamLab, GetsTheTrajectoryOfARunInItsOwnForm) {
       << field("cx") << ", " << field("cy") << "], image_dimension: [320, 240], fps: 30, "
       << "depth_factor: " << field("depth_factor") << "}\n";
   folder.Write("calibration.yaml", calibration.str());
-  const std::string command = "ALIDADE='" ALIDADE_BINARY "' '" + Script("vslam-lab") +
+  const std::string command = "ALIDADE='" ALIDADE_BINARY "' '" + Script("research/vslam-lab") +
                               "' mode:rgbd sequence_path:'" + recording + "' calibration_yaml:'" +
                               (folder / "calibration.yaml") + "' rgb_csv:'" + (folder / "rgb.csv") +
                               "' exp_folder:'" + (folder / "exp") + "' exp_it:7";

@@ -1,7 +1,6 @@
 // The accuracy goals on whole rendered recordings: minutes each, so only with scripts/test --long.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -72,28 +71,6 @@ TEST_F(LongRecording, PlacesThatLookAlikeAreNotTakenForOneAnother) {
     const std::string corridor = Rendered({"corridor", "--frames", "1000", "--seed", seed});
     EXPECT_LE(RunAndMeasure(corridor, "rgbd"), 0.005 * PathLength(ReadTrajectory(corridor)));
   }
-}
-
-TEST_F(LongRecording, HoursInOnePlaceCostNoMemory) {
-  const std::string out = folder_ / "lasting.json";
-  const ProgramResult bench = RunAlidade({"bench", "lasting", Rendered({"room", "--frames", "300"}),
-                                          "--sensor", "mono", "--frames", "20000", "--out", out});
-  ASSERT_EQ(bench.status, 0) << bench.err;
-  const json tables = json::parse(ReadText(out))["benches"][0]["tables"];
-  const auto column = [&](const json& table, const std::string& name) {
-    const json& columns = table["columns"];
-    return static_cast<size_t>(std::find(columns.begin(), columns.end(), name) - columns.begin());
-  };
-  const size_t frames = column(tables[0], "frames"), rss = column(tables[0], "RSS MB");
-  double middle = 0, end = 0;
-  for (const json& row : tables[0]["rows"]) {
-    if (row[frames] == 10000) middle = row[rss];
-    if (row[frames] == 20000) end = row[rss];
-  }
-  ASSERT_GT(middle, 0);
-  // The trajectory's own: 128 bytes a frame.
-  EXPECT_LE(end, 1.1 * middle + 10000 * 128e-6);
-  EXPECT_EQ(tables[1]["rows"][0][column(tables[1], "localised %")], 100);
 }
 
 class LongStart : public LongRecording,

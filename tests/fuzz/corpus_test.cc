@@ -1,4 +1,4 @@
-// Runs the fuzz targets on the seed corpus and on all inputs that ever failed (scripts/fuzz): every
+// Runs the fuzz targets on the seed corpus and on all inputs that ever failed (scripts/check/fuzz): every
 // file must be read or rejected as its name states, in every build and without libFuzzer.
 #include <gtest/gtest.h>
 

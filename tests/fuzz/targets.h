@@ -1,4 +1,4 @@
-// Readers of untrusted bytes. The fuzzer (scripts/fuzz) runs each with millions of inputs,
+// Readers of untrusted bytes. The fuzzer (scripts/check/fuzz) runs each with millions of inputs,
 // corpus_test.cc with a selection.
 #pragma once
 

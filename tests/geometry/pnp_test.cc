@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "support/pnp_problem.h"
+#include "problems/pnp_problem.h"
 
 namespace alidade::pnp_test {
 namespace {

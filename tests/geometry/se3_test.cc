@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "alidade/base/random.h"
-#include "support/two_view_problem.h"
+#include "problems/two_view_problem.h"
 
 namespace alidade::se3_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "alidade/base/error.h"
+#include "problems/sim3_problem.h"
 #include "support/expect_error.h"
-#include "support/sim3_problem.h"
 
 namespace alidade::sim3_ransac_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <unsupported/Eigen/MatrixFunctions>
 
 #include "alidade/base/random.h"
-#include "support/two_view_problem.h"
+#include "problems/two_view_problem.h"
 
 namespace alidade::sim3_test {
 namespace {

@@ -10,7 +10,7 @@
 #include "alidade/geometry/fundamental.h"
 #include "alidade/geometry/homography.h"
 #include "alidade/geometry/smallest_eigenvector.h"
-#include "support/two_view_problem.h"
+#include "problems/two_view_problem.h"
 
 namespace alidade::two_view_models_test {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "support/two_view_problem.h"
+#include "problems/two_view_problem.h"
 
 namespace alidade::two_view_test {
 namespace {

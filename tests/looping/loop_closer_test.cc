@@ -7,8 +7,8 @@
 
 #include "alidade/looping/candidates.h"
 #include "looping/old_place.h"
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::loop_closer_test {
 namespace {

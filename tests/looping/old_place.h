@@ -3,7 +3,7 @@
 
 #include "alidade/looping/close.h"
 #include "alidade/looping/verify.h"
-#include "support/drifted_map.h"
+#include "problems/drifted_map.h"
 
 namespace alidade {
 

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "alidade/map/anchor.h"
+#include "problems/drifted_map.h"
 #include "support/check_map.h"
-#include "support/drifted_map.h"
 
 namespace alidade::correction_test {
 namespace {

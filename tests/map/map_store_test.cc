@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "alidade/map/anchor.h"
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::map_store_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "problems/drifted_map.h"
 #include "support/check_map.h"
-#include "support/drifted_map.h"
 
 namespace alidade::map_union_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::reach_test {
 namespace {

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "alidade/map/map_store.h"
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::refresh_test {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "alidade/map/correction.h"
+#include "problems/drifted_map.h"
 #include "support/check_map.h"
-#include "support/drifted_map.h"
 
 namespace alidade::split_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::cull_test {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <set>
 
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::fuse_test {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "alidade/mapping/mapper.h"
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::limit_test {
 namespace {

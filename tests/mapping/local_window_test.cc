@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade::local_window_test {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/map/map_file.h"
+#include "problems/synthetic_world.h"
 #include "support/check_map.h"
-#include "support/synthetic_world.h"
 
 namespace alidade::mapper_test {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "alidade/geometry/se3.h"
 #include "alidade/map/view.h"
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::scale_hold_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <set>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::triangulate_test {
 namespace {

@@ -12,7 +12,7 @@
 #include "alidade/map/view.h"
 #include "alidade/mapping/local_window.h"
 #include "alidade/mapping/mapper.h"
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::turn_test {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
-#include "support/bundle_problem.h"
+#include "problems/bundle_problem.h"
 
 namespace alidade::bundle_adjustment_test {
 namespace {

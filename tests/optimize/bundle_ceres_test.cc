@@ -3,7 +3,7 @@
 
 #include "alidade/optimize/bundle_schur.h"
 #include "ceres_bundle.h"
-#include "support/bundle_problem.h"
+#include "problems/bundle_problem.h"
 
 namespace alidade::bundle_ceres_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "ceres_loss.h"
 #include "ceres_reprojection.h"
-#include "support/bundle_problem.h"
+#include "problems/bundle_problem.h"
 
 namespace alidade::bundle_linearise_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-#include "support/bundle_problem.h"
+#include "problems/bundle_problem.h"
 
 namespace alidade::bundle_schur_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/bundle_problem.h"
+#include "problems/bundle_problem.h"
 
 namespace alidade {
 namespace {

@@ -8,8 +8,8 @@
 #include "alidade/base/parallel.h"
 #include "alidade/optimize/pose_graph_system.h"
 #include "ceres_sim3.h"
+#include "problems/pose_graph_problem.h"
 #include "support/expect_error.h"
-#include "support/pose_graph_problem.h"
 
 namespace alidade::pose_graph_test {
 namespace {

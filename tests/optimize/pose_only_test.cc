@@ -7,8 +7,8 @@
 
 #include "alidade/base/error.h"
 #include "ceres_reprojection.h"
+#include "problems/pose_problem.h"
 #include "support/expect_error.h"
-#include "support/pose_problem.h"
 
 namespace alidade::pose_only_test {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "alidade/base/error.h"
 #include "ceres_sim3.h"
+#include "problems/sim3_problem.h"
 #include "support/expect_error.h"
-#include "support/sim3_problem.h"
 
 namespace alidade::sim3_refine_test {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::landmark_agreement_test {
 namespace {

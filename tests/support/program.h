@@ -28,11 +28,12 @@ inline std::string ReadText(const std::string& path) {
 }
 
 // `while_running` is called with the process id, to send signals.
-inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
+inline ProgramResult RunProgram(const std::string& program,
+                                const std::vector<std::string>& arguments,
                                 const std::function<void(pid_t)>& while_running = nullptr) {
   const TempFolder folder;
   const std::string out = folder / "out", err = folder / "err";
-  std::vector<std::string> words = {ALIDADE_BINARY};
+  std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -54,6 +55,11 @@ inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
   result.out = ReadText(out);
   result.err = ReadText(err);
   return result;
+}
+
+inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
+                                const std::function<void(pid_t)>& while_running = nullptr) {
+  return RunProgram(ALIDADE_BINARY, arguments, while_running);
 }
 
 // Number of lines; an error message is one line.

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "alidade/map/map_file.h"
+#include "problems/synthetic_map.h"
 #include "support/check_map.h"
-#include "support/synthetic_map.h"
 
 namespace alidade {
 

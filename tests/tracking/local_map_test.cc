@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::local_map_test {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "support/synthetic_world.h"
+#include "problems/synthetic_world.h"
 
 namespace alidade::mono_start_test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "support/synthetic_map.h"
+#include "problems/synthetic_map.h"
 
 namespace alidade::tracker_test {
 namespace {

@@ -1,4 +1,4 @@
-// Run by `alidade bench phone` as node bench.mjs FOLDER. Reads job.json and frames.gray (consecutive images, one byte
+// Run by `alidade-bench phone` as node bench.mjs FOLDER. Reads job.json and frames.gray (consecutive images, one byte
 // per pixel) in the folder, and writes result.json: milliseconds per stage from the stream, and the trajectory.
 import { closeSync, openSync, readFileSync, readSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';

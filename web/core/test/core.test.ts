@@ -14,7 +14,7 @@ declare const WEB: string;
 const dist = join(WEB, 'core/dist');
 const program = process.env.ALIDADE_BINARY ?? join(WEB, '../build/bin/alidade');
 const built = existsSync(join(dist, 'single/alidade.wasm'));
-const options = { skip: built ? false : 'scripts/wasm has not been run', timeout: 300e3 };
+const options = { skip: built ? false : 'scripts/wasm/build has not been run', timeout: 300e3 };
 const { Slam } = (built ? await import(pathToFileURL(join(dist, 'index.js')).href) : {}) as { Slam: typeof SlamType };
 
 const create = (more: Partial<SlamOptions> & { width: number; height: number }) =>

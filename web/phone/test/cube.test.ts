@@ -20,7 +20,7 @@ declare const WEB: string;
 
 const program = process.env.ALIDADE_BINARY ?? join(WEB, '../build/bin/alidade');
 const dist = join(WEB, 'core/dist');
-const lacks = !existsSync(join(dist, 'single/alidade.wasm')) ? 'scripts/wasm has not been run' : !existsSync(program) ? `no ${program}` : false;
+const lacks = !existsSync(join(dist, 'single/alidade.wasm')) ? 'scripts/wasm/build has not been run' : !existsSync(program) ? `no ${program}` : false;
 
 const median = (values: number[]) => [...values].sort((a, b) => a - b)[values.length >> 1]!;
 

@@ -18,8 +18,8 @@ declare const WEB: string;
 const data = process.env.ALIDADE_DATA ?? '';
 const walk = join(data, 'kitchen_walk');
 const model = join(data, '../models/yolov5n_640x480.onnx');
-const lacks = SKIP || (!existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm has not been run')
-  || (!existsSync(join(DETECTOR, 'ort.wasm.min.mjs')) && 'scripts/wasm detector has not been run') || false;
+const lacks = SKIP || (!existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm/build has not been run')
+  || (!existsSync(join(DETECTOR, 'ort.wasm.min.mjs')) && 'scripts/wasm/build detector has not been run') || false;
 const options = { skip: lacks, timeout: 300e3 };
 const onWalk = { ...options, skip: lacks || (!(data && existsSync(walk) && existsSync(model)) && 'ALIDADE_DATA, and the folder models beside it, are needed') || false };
 const PHONE = { viewport: { width: 412, height: 915 }, isMobile: true, hasTouch: true, permissions: ['camera'] };

@@ -13,7 +13,7 @@ declare const WEB: string;
 
 const minutes = Number(process.env.ALIDADE_MINUTES ?? 0);
 const kitchen = join(process.env.ALIDADE_DATA ?? '', 'kitchen');
-const lacks = SKIP || !(minutes > 0) && 'ALIDADE_MINUTES does not ask for it' || !existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm has not been run'
+const lacks = SKIP || !(minutes > 0) && 'ALIDADE_MINUTES does not ask for it' || !existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm/build has not been run'
   || !(process.env.ALIDADE_DATA && existsSync(kitchen)) && 'ALIDADE_DATA does not point to the recordings' || false;
 const MOST = 800; // MB: the page, its Worker and the core's memory, with at most 2000 keyframes
 

@@ -16,7 +16,7 @@ import { DARK, openRecording, writeY4m } from './y4m.ts';
 declare const WEB: string;
 
 const built = existsSync(join(WEB, 'core/dist/single/alidade.wasm'));
-const options = { skip: NO_PROGRAM || (built ? false : 'scripts/wasm has not been run'), timeout: 300e3 };
+const options = { skip: NO_PROGRAM || (built ? false : 'scripts/wasm/build has not been run'), timeout: 300e3 };
 const onProgram = { skip: NO_PROGRAM as string | false, timeout: 300e3 };
 const FRAMES = 100;
 const SIZE = { width: 412, height: 915 };

@@ -37,7 +37,7 @@ onmessage = async ({ data: { module, width, height, frames, fov } }) => {
 
 interface Outcome { tracked: number; trajectory: string; map: string; median: number }
 
-test('the module with threads gives the same bytes as the one without', { skip: SKIP || NO_PROGRAM || (built ? false : 'scripts/wasm has not built both modules'), timeout: 300e3 }, async () => {
+test('the module with threads gives the same bytes as the one without', { skip: SKIP || NO_PROGRAM || (built ? false : 'scripts/wasm/build has not built both modules'), timeout: 300e3 }, async () => {
   const folder = mkdtempSync(join(tmpdir(), 'alidade-modules-'));
   const kitchen = join(process.env.ALIDADE_DATA ?? '', 'kitchen');
   let source = join(folder, 'room');

@@ -18,7 +18,7 @@ declare const WEB: string;
 
 const program = process.env.ALIDADE_BINARY ?? join(WEB, '../build/bin/alidade');
 const kitchen = join(process.env.ALIDADE_DATA ?? '', 'kitchen');
-const lacks = SKIP || (!existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm has not been run')
+const lacks = SKIP || (!existsSync(join(WEB, 'core/dist/single/alidade.wasm')) && 'scripts/wasm/build has not been run')
   || (!(process.env.ALIDADE_DATA && existsSync(kitchen) && existsSync(program)) && 'ALIDADE_DATA does not point to the recordings') || false;
 const options = { skip: lacks, timeout: 240e3 };
 const PHONE = { viewport: { width: 412, height: 915 }, isMobile: true, hasTouch: true, deviceScaleFactor: 2, userAgent: devices['Pixel 7'].userAgent };
@@ -137,7 +137,7 @@ for (const kind of ['isolated', 'plain'] as const) {
 }
 
 const both = existsSync(join(WEB, 'core/dist/threads/alidade.wasm'));
-test('the module with threads, working with one, says the same to the last byte', { ...options, skip: lacks || (!both && 'scripts/wasm threads has not been run') }, async () => {
+test('the module with threads, working with one, says the same to the last byte', { ...options, skip: lacks || (!both && 'scripts/wasm/build threads has not been run') }, async () => {
   const count = 200;
   const site = await startSite(true, Object.fromEntries(recording.files.slice(0, count).map((file, i) => [`${i}.jpg`, file])));
   const { page, problems } = await open(browser, site.address, PHONE);

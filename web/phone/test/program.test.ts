@@ -52,7 +52,7 @@ const noting = (page: Page) => page.evaluate(() => {
 });
 const numbers = (page: Page) => page.evaluate(() => (window as unknown as { numbers: number[] }).numbers);
 
-test('the program serves the page and the core, cross-origin isolated', { ...options, skip: lacks || !existsSync(join(core, 'single/alidade.wasm')) && 'scripts/wasm has not been run' }, async () => {
+test('the program serves the page and the core, cross-origin isolated', { ...options, skip: lacks || !existsSync(join(core, 'single/alidade.wasm')) && 'scripts/wasm/build has not been run' }, async () => {
   const program = await start('phone', '--port', '0', '--core', core);
   const { page, problems } = await open(browser, program.address, PHONE);
   assert.equal(await page.evaluate(() => self.crossOriginIsolated), true);

@@ -13,7 +13,7 @@ const TYPES: Record<string, string> = {
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
   "style-src 'self'; img-src 'self' blob: data:; media-src 'self' blob:; connect-src 'self'; manifest-src 'self'";
 
-// Built by scripts/wasm detector.
+// Built by scripts/wasm/build detector.
 export const DETECTOR = join(process.env.ALIDADE_WASM ?? join(WEB, '../build-wasm'), 'detector/bin');
 
 export interface Site { address: string; close(): Promise<void> }
