@@ -27,9 +27,10 @@ inline std::string ReadText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// `while_running` is given the process id, to send it signals.
+// `while_running` is given the process id, to send it signals. `in`: the folder the program starts in.
 inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
-                                const std::function<void(pid_t)>& while_running = nullptr) {
+                                const std::function<void(pid_t)>& while_running = nullptr,
+                                const std::string& in = ".") {
   const TempFolder folder;
   const std::string out = folder / "out", err = folder / "err";
   std::vector<std::string> words = {ALIDADE_BINARY};
@@ -43,6 +44,7 @@ inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    if (chdir(in.c_str()) != 0) _exit(127);
     execv(argv[0], argv.data());
     _exit(127);
   }

@@ -37,6 +37,9 @@ void CheckIsFile(const std::string& path);
 bool IsFile(const std::string& path);
 bool IsFolder(const std::string& path);
 bool IsThere(const std::string& path);  // whatever it is, even a link that leads nowhere
+// The last part of a path as it was typed, links left alone: "walk" of "recordings/walk/"; of "."
+// what the folder is called.
+std::string NameAsTyped(const std::string& path);
 // What is in a folder, unsorted. Throws Error (input) when it cannot be read.
 std::vector<std::string> NamesIn(const std::string& folder);
 
