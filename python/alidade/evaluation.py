@@ -37,6 +37,10 @@ class ErrorStatistics:
 class TrajectoryError(ErrorStatistics):
     """Absolute trajectory error, metres."""
 
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """one camera, depth or stereo, the sensor is not known, or it was asked for"""
     transform: numpy.ndarray
     """(4, 4): lays the estimate on the truth; with its scale in it"""
     pairs: numpy.ndarray
@@ -53,6 +57,10 @@ class RelativePoseError:
     """metres"""
     rot: ErrorStatistics
     """degrees"""
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """one camera, depth or stereo, the sensor is not known, or it was asked for"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,34 +99,37 @@ class DepthErrors:
     """of each map, metres per unit"""
 
 
-def _estimate(estimate: Any, span: Span) -> Tuple[Any, Span]:
+def _estimate(estimate: Any, span: Span) -> Tuple[Any, str, Span]:
+    """Poses, sensor (empty: not known), span."""
     if not isinstance(estimate, Result):
-        return estimate, span
-    known = estimate.stats["span"]
-    return estimate.trajectory, span or ((known[0], known[1]) if known else None)
+        return estimate, "", span
+    stats = estimate.stats
+    known = stats["span"]
+    return estimate.trajectory, stats["sensor"], span or ((known[0], known[1]) if known else None)
 
 
-def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "se3",
+def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "auto",
         association: str = "tum", max_dt: float = 0.02, span: Span = None) -> TrajectoryError:
     """Absolute trajectory error: distance to the truth after alignment.
 
     truth, estimate: (n, 8) timestamp tx ty tz qx qy qz qw, in any order; estimate may be a Result.
-    align: "se3" (rotate and shift), "sim3" (scale as well: one camera) or "none".
+    align: "se3" (rotate and shift), "sim3" (scale as well), "none", or "auto": "sim3" for a Result of one camera, which
+    has no scale of its own, else "se3". What was done is the answer's `align`.
     association: "tum" (one-to-one, best first) or "evo"; max_dt: seconds between matched stamps.
     span: first and last frame of the recording in seconds, which coverage is judged over; None: the Result's, or the
     estimate's own.
     """
-    poses, span = _estimate(estimate, span)
-    return TrajectoryError(**_core.ate(truth, poses, align, association, max_dt, span))
+    poses, sensor, span = _estimate(estimate, span)
+    return TrajectoryError(**_core.ate(truth, poses, align, sensor, association, max_dt, span))
 
 
 def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: float = 1.0, unit: str = "s",
-        pairs: str = "all", align: str = "se3", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
+        pairs: str = "all", align: str = "auto", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
     """Relative pose error: drift over a fixed step. delta: in seconds (unit "s") or poses ("frames"). pairs: "all",
     from every pose, as TUM's tool; "consecutive": without overlap. All else as for ate()."""
-    poses, span = _estimate(estimate, span)
-    trans, rot = _core.rpe(truth, poses, delta, unit, pairs, align, max_dt, span)
-    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot))
+    poses, sensor, span = _estimate(estimate, span)
+    trans, rot, aligned, why = _core.rpe(truth, poses, delta, unit, pairs, align, sensor, max_dt, span)
+    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot), aligned, why)
 
 
 def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndarray],

@@ -43,7 +43,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
         first: int = 0, last: int = -1, record: Union[None, bool, PathLike] = None,
         viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False,
-        progress: Optional[Callable[[Progress], None]] = None) -> Result:
+        overwrite: bool = False, progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Tracks a recording, video or camera and maps what it sees, as ``alidade run`` does: the same options by the
     same names, the same bytes in every file.
 
@@ -59,7 +59,9 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     profile: "desktop" or "phone"; config: a YAML file of settings; settings: {"tracker.extractor.features": 1500}:
         by the names of ``--set`` (alidade.settings() has them all).
     load: a map to go on in (a Map, or its path).
-    out: folder for the results. None: a temporary one, which goes with the Result.
+    out: folder for the results. None: a temporary one, which goes with the Result. Results of another source in it
+        are refused; those of the same one are kept when the run fails, is interrupted or has fewer frames (its own
+        are in the folder's last-attempt then). overwrite: replace them whatever they are.
     schedule: "inline" (the same result every time) or "threaded" (as live); rate: "realtime", "max" or frames per
         second. repeat: forth and back so many times. threads: for parallel loops, 0 = all cores; results are the same.
     first, last: frame numbers, both included.
@@ -76,7 +78,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     return _run(dict(
         source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks,
+        overwrite=overwrite),
         detector, camera, config, load, out, record, viewer, progress)
 
 
@@ -88,7 +91,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
              record: Union[None, bool, PathLike] = None, viewer: Union[None, bool, int] = None,
-             host: Optional[str] = None, write_masks: bool = False,
+             host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Finds the poses of a recording in a map, which stays as it is, as ``alidade localize`` does. Poses are in the
     map's world. map: a Map, or the path of one; all else as for run()."""
@@ -96,7 +99,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
         first=first, last=last, host=host,
-        write_masks=write_masks, localise=True),
+        write_masks=write_masks, overwrite=overwrite, localise=True),
         detector, camera, config, map, out, record, viewer, progress)
 
 
@@ -141,7 +144,7 @@ def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load:
     try:
         _core.run(options, told, outcome)
     except BaseException as error:
-        if os.path.isfile(os.path.join(outcome.get("folder", ""), "stats.json")):
+        if "folder" in outcome:
             error.result = result()  # type: ignore[attr-defined]
         raise
     finally:
