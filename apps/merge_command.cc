@@ -20,7 +20,7 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> maps;
   std::string out;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
 };
 
 // "monday, tuesday and friday"
@@ -53,7 +53,7 @@ int Merge(const MergeArguments& arguments) {
   if (!arguments.out.empty() && places.map == arguments.out && IsFolder(arguments.out))
     ThrowUsage("--out " + arguments.out + " is a folder, though it is called as a map is");
   const std::vector<MergeInput> inputs = ReadMergeInputs(arguments.maps);
-  CheckMergePlaces(places, inputs);
+  CheckMergePlaces(places, inputs, arguments.overwrite);
   Terminal terminal(arguments.quiet);
   Stopwatch clock;
   double shown_at = -1e9;
@@ -88,6 +88,8 @@ void AddMergeCommand(CLI::App& app, Action& action) {
                    "trajectories")
       ->type_name("MAP")
       ->required();
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "Replace what is there, even a map of other recordings");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->footer(
       "\nExamples:\n"

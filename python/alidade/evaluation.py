@@ -37,6 +37,10 @@ class ErrorStatistics:
 class TrajectoryError(ErrorStatistics):
     """Absolute trajectory error, meters."""
 
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """the reason: monocular, depth or stereo, unknown sensor, or requested"""
     transform: numpy.ndarray
     """(4, 4): aligns the estimate to the ground truth; includes the scale"""
     pairs: numpy.ndarray
@@ -53,6 +57,10 @@ class RelativePoseError:
     """meters"""
     rot: ErrorStatistics
     """degrees"""
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """the reason: monocular, depth or stereo, unknown sensor, or requested"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -91,37 +99,40 @@ class DepthErrors:
     """of each map, meters per unit"""
 
 
-def _estimate(estimate: Any, span: Span) -> Tuple[Any, Span]:
+def _estimate(estimate: Any, span: Span) -> Tuple[Any, str, Span]:
+    """Returns poses, sensor ("" if unknown) and span."""
     if not isinstance(estimate, Result):
-        return estimate, span
-    known = estimate.stats["span"]
-    return estimate.trajectory, span or ((known[0], known[1]) if known else None)
+        return estimate, "", span
+    stats = estimate.stats
+    known = stats["span"]
+    return estimate.trajectory, stats["sensor"], span or ((known[0], known[1]) if known else None)
 
 
-def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "se3",
+def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "auto",
         association: str = "tum", max_dt: float = 0.02, span: Span = None) -> TrajectoryError:
     """Absolute trajectory error: distance to the ground truth after alignment (Sturm et al. 2012).
 
     truth, estimate: (n, 8) timestamp tx ty tz qx qy qz qw, in any order; estimate may be a Result.
-    align: "se3" (rotation and translation), "sim3" (also scale, for monocular results) or "none".
+    align: "se3" (rotation and translation), "sim3" (also scale), "none", or "auto": "sim3" for a monocular Result,
+        whose scale is unknown, otherwise "se3". The returned `align` says which was used.
     association: "tum" (one-to-one, closest first) or "evo"; max_dt: largest difference of matched stamps, seconds.
     span: times of the first and last frame of the recording, seconds, used for coverage; None: the Result's, or the
     estimate's own.
 
     Raises InputError for values that are not finite, and for fewer than 3 matched poses.
     """
-    poses, span = _estimate(estimate, span)
-    return TrajectoryError(**_core.ate(truth, poses, align, association, max_dt, span))
+    poses, sensor, span = _estimate(estimate, span)
+    return TrajectoryError(**_core.ate(truth, poses, align, sensor, association, max_dt, span))
 
 
 def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: float = 1.0, unit: str = "s",
-        pairs: str = "all", align: str = "se3", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
+        pairs: str = "all", align: str = "auto", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
     """Relative pose error: drift over a fixed step (Sturm et al. 2012). delta: seconds (unit "s") or poses ("frames").
     pairs: "all", one from every pose as in TUM's tool; "consecutive": without overlap. Other arguments and errors as
     for ate()."""
-    poses, span = _estimate(estimate, span)
-    trans, rot = _core.rpe(truth, poses, delta, unit, pairs, align, max_dt, span)
-    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot))
+    poses, sensor, span = _estimate(estimate, span)
+    trans, rot, aligned, why = _core.rpe(truth, poses, delta, unit, pairs, align, sensor, max_dt, span)
+    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot), aligned, why)
 
 
 def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndarray],

@@ -42,7 +42,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         load: Union[None, PathLike, Map] = None, out: Optional[PathLike] = None, schedule: Optional[str] = None,
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
         first: int = 0, last: int = -1, record: Union[None, bool, PathLike] = None,
-        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False,
+        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
         progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Runs SLAM on a recording, video or live camera, as ``alidade run`` does: with the same options and names, and
     the same bytes in every file.
@@ -60,7 +60,9 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     profile: "desktop" or "phone"; config: a YAML file of settings; settings: {"tracker.extractor.features": 1500},
         with the names of ``--set`` (alidade.settings() lists them all).
     load: a map to continue (a Map, or its path).
-    out: folder for the results. None: a temporary folder, which is deleted with the Result.
+    out: folder for the results. None: a temporary folder, which is deleted with the Result. Results of another source
+        in it are refused. Earlier results of the same source are kept when the run fails, is interrupted or has fewer
+        frames; its own are then in the folder's last-attempt. overwrite: replace whatever results are there.
     schedule: "inline" (reproducible) or "threaded" (as live); rate: "realtime", "max" or frames per second.
         repeat: number of times to play forwards and backwards. threads: for parallel loops, 0 = all cores; does not
         change results.
@@ -78,7 +80,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     return _run(dict(
         source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks,
+        overwrite=overwrite),
         detector, camera, config, load, out, record, viewer, progress)
 
 
@@ -90,7 +93,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
              record: Union[None, bool, PathLike] = None, viewer: Union[None, bool, int] = None,
-             host: Optional[str] = None, write_masks: bool = False,
+             host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
@@ -98,7 +101,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
         first=first, last=last, host=host,
-        write_masks=write_masks, localise=True),
+        write_masks=write_masks, overwrite=overwrite, localise=True),
         detector, camera, config, map, out, record, viewer, progress)
 
 
@@ -143,7 +146,7 @@ def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load:
     try:
         _core.run(options, told, outcome)
     except BaseException as error:
-        if os.path.isfile(os.path.join(outcome.get("folder", ""), "stats.json")):
+        if "folder" in outcome:
             error.result = result()  # type: ignore[attr-defined]
         raise
     finally:

@@ -34,13 +34,12 @@ class Onlooker : public RunWatcher {
     stage_ = "calibrating";
     frames_ = progress.frames;
   }
-  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override {
+  void Begin(const Slam& slam, const RunRecord& record, const std::string&) override {
     const std::lock_guard<std::mutex> lock(mutex_);
     slam_ = &slam;
     total_ = record.source.frames;
     frames_ = 0;
     stage_ = "running";
-    folder_ = folder;
   }
   void Frame(const SourceFrame& frame, const TrackResult& result) override {
     (void)frame;
@@ -60,6 +59,7 @@ class Onlooker : public RunWatcher {
     const std::lock_guard<std::mutex> lock(mutex_);
     map_ = std::move(saved);
   }
+  void Placed(const std::string& folder) override { folder_ = folder; }
   void ShownAt(const std::string& address) {
     const std::lock_guard<std::mutex> lock(mutex_);
     viewer_ = address;

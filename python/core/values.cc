@@ -40,6 +40,7 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"viewer", &options.viewer},     {"host", &options.host}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
                                                  {"localise", &options.localise},
+                                                 {"overwrite", &options.overwrite},
                                                  {"semidense", &options.semidense},
                                                  {"write_masks", &options.write_masks}};
   const std::map<std::string, int*> numbers = {{"threads", &options.threads},

@@ -51,7 +51,8 @@ def test_a_result_has_what_the_run_left(tmp_path):
     assert result.trajectory.shape == (40, 8) and result.trajectory_live.shape == (40, 8)
     assert result.stats["tracked"] == 40 and result.stats["sensor"] == "rgbd"
     assert result.groundtruth.shape == (40, 8)
-    assert alidade.ate(result.groundtruth, result).rmse < 0.02
+    error = alidade.ate(result.groundtruth, result)
+    assert error.rmse < 0.02 and (error.align, error.align_why) == ("se3", "depth or stereo")
     assert result.keyframes.shape[0] == len(result.map.keyframes.ids)
     assert told[-1].frames == 40 and told[-1].total == 40 and told[-1].stage == "finishing"
     assert "40 of 40 frames" in repr(result)
@@ -80,6 +81,28 @@ def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
         result.export(tmp_path / "other.mcap", min_observations=3)
     with pytest.raises(alidade.InputError):
         result.export(tmp_path / "nowhere" / "run.mcap")
+
+
+def test_one_cameras_result_is_scaled_unless_it_is_said_otherwise(tmp_path):
+    result = alidade.run(DESK, sensor="mono")
+    error, drift = alidade.ate(result.groundtruth, result), alidade.rpe(result.groundtruth, result)
+    assert (error.align, error.align_why) == (drift.align, drift.align_why) == ("sim3", "one camera")
+    assert error.rmse == alidade.ate(result.groundtruth, result, align="sim3").rmse
+    assert error.rmse < alidade.ate(result.groundtruth, result, align="se3").rmse
+    assert alidade.ate(result.groundtruth, result.trajectory).align == "se3"  # numbers alone do not say
+
+
+def test_a_result_is_not_replaced_by_less(tmp_path):
+    out = tmp_path / "out"
+    whole = alidade.run(DESK, sensor="rgbd", out=out).map.to_bytes()
+    with pytest.raises(alidade.InputError, match="last-attempt") as less:
+        alidade.run(DESK, sensor="rgbd", last=9, out=out)
+    assert less.value.result.folder == str(out / "last-attempt")
+    assert less.value.result.stats["frames"] == 10
+    with pytest.raises(alidade.InputError, match="overwrite"):
+        alidade.run(DESK + "&light=0.9", sensor="rgbd", out=out)
+    assert read(out, "map.alidade") == whole
+    assert alidade.run(DESK, sensor="rgbd", last=9, out=out, overwrite=True).stats["frames"] == 10
 
 
 def test_errors_are_pythons(tmp_path):

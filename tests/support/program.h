@@ -27,10 +27,11 @@ inline std::string ReadText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// `while_running` is called with the process id, to send signals.
+// `while_running` is called with the process id, to send signals. `in`: the working folder.
 inline ProgramResult RunProgram(const std::string& program,
                                 const std::vector<std::string>& arguments,
-                                const std::function<void(pid_t)>& while_running = nullptr) {
+                                const std::function<void(pid_t)>& while_running = nullptr,
+                                const std::string& in = ".") {
   const TempFolder folder;
   const std::string out = folder / "out", err = folder / "err";
   std::vector<std::string> words = {program};
@@ -44,6 +45,7 @@ inline ProgramResult RunProgram(const std::string& program,
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    if (chdir(in.c_str()) != 0) _exit(127);
     execv(argv[0], argv.data());
     _exit(127);
   }
@@ -58,8 +60,9 @@ inline ProgramResult RunProgram(const std::string& program,
 }
 
 inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
-                                const std::function<void(pid_t)>& while_running = nullptr) {
-  return RunProgram(ALIDADE_BINARY, arguments, while_running);
+                                const std::function<void(pid_t)>& while_running = nullptr,
+                                const std::string& in = ".") {
+  return RunProgram(ALIDADE_BINARY, arguments, while_running, in);
 }
 
 // Number of lines; an error message is one line.

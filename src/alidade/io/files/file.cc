@@ -143,6 +143,11 @@ bool IsThere(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0;
 }
 
+std::string NameAsTyped(const std::string& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 std::vector<std::string> NamesIn(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;

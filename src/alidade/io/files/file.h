@@ -38,6 +38,9 @@ void CheckIsFile(const std::string& path);
 bool IsFile(const std::string& path);
 bool IsFolder(const std::string& path);
 bool IsThere(const std::string& path);  // anything with this name, including a dangling link
+// The last part of a path as it was typed, without following links: "walk" for "recordings/walk/".
+// For ".", the name of the current folder.
+std::string NameAsTyped(const std::string& path);
 // Names of the entries of a folder, unsorted. Throws Error (input) when it cannot be read.
 std::vector<std::string> NamesIn(const std::string& folder);
 

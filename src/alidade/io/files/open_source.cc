@@ -1,7 +1,6 @@
 #include "alidade/io/files/open_source.h"
 
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -22,8 +21,6 @@
 
 namespace alidade {
 namespace {
-
-namespace fs = std::filesystem;
 
 // A folder of images in any supported layout; other files in it are ignored.
 bool IsKnownFolder(const std::string& path) {
@@ -77,8 +74,7 @@ double LensToldBy(const Recording& recording, const SourceOptions& options) {
 
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
-  std::error_code error;
-  recording.name = fs::weakly_canonical(path, error).filename().string();
+  recording.name = NameAsTyped(path);
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed, lens_told] =

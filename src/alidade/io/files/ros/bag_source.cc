@@ -21,8 +21,7 @@ namespace fs = std::filesystem;
 constexpr double kMillimetres = 1000;  // units per meter; REP 118: 16-bit depth is in millimeters
 
 std::string NameOfRecording(const std::string& path) {
-  std::error_code error;
-  fs::path name = fs::weakly_canonical(path, error).filename();
+  fs::path name = NameAsTyped(path);
   if (IsFolder(path)) return name.string();
   while (name.has_extension() && (name.extension() == ".zstd" || name.extension() == ".active"))
     name = name.stem();
