@@ -21,10 +21,15 @@ endfunction()
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest and, but for
 # end-to-end tests, labelled with its folder. Tests are compiled several files at a time: each has a namespace of its own, alidade::FILE.
 # Problem generators shared with the benchmarks are in tests/problems.
+# With FOLDERS, those instead of FOLDER: small ones whose tests are one program.
 # With END_TO_END the tests get that label, and are no part of the target unit_tests.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${FOLDER}/*.cc)
+  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS" ${ARGN})
+  if(NOT ARG_FOLDERS)
+    set(ARG_FOLDERS ${FOLDER})
+  endif()
+  list(TRANSFORM ARG_FOLDERS REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/*.cc")
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${ARG_FOLDERS})
   if(NOT SOURCES)
     return()
   endif()
