@@ -21,10 +21,15 @@ endfunction()
 # alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program. Each test is registered with CTest
 # under the folder's label. Tests are compiled several files at a time, so each file has its own namespace,
 # alidade::FILE. Problem generators shared with the benchmarks are in tests/problems.
+# With FOLDERS, the tests of several small folders are one program.
 # With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS" ${ARGN})
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${FOLDER}/*.cc)
+  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS" ${ARGN})
+  if(NOT ARG_FOLDERS)
+    set(ARG_FOLDERS ${FOLDER})
+  endif()
+  list(TRANSFORM ARG_FOLDERS REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/*.cc")
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${ARG_FOLDERS})
   if(NOT SOURCES)
     return()
   endif()

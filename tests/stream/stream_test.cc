@@ -9,7 +9,7 @@
 #include "alidade/stream/pack.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/stream/stream_scene.h"
-#include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::stream_test {
 namespace {
@@ -22,13 +22,6 @@ std::vector<int> Steps(int first, int last, int step) {
   return numbers;
 }
 
-SynthSettings Small() {
-  SynthSettings settings;
-  settings.width = 400;
-  settings.height = 300;
-  return settings;
-}
-
 SlamSettings Phone(bool threaded) {
   SlamSettings settings;
   settings.ApplyProfile("phone");
@@ -39,10 +32,7 @@ SlamSettings Phone(bool threaded) {
   return settings;
 }
 
-const SynthRecording& Room() {
-  static const SynthRecording room(Small());
-  return room;
-}
+RenderedFrames& Room() { return SmallRoom(); }
 
 // A run with its stream and a receiver.
 struct Streamed {
@@ -59,7 +49,7 @@ struct Streamed {
   // `told_each`: only every n-th frame is passed to the stream.
   void Play(const std::vector<int>& numbers, int told_each = 1) {
     for (int number : numbers) {
-      const RenderedFrame frame = Room().Render(std::max(number, 0));
+      const RenderedFrame& frame = Room().Frame(std::max(number, 0));
       const auto shown = [&](const cv::Mat& image) {
         return number == kBlack ? cv::Mat(cv::Mat::zeros(image.size(), image.type())) : image;
       };

@@ -7,12 +7,11 @@
 
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <string>
 #include <vector>
 
+#include "support/read_text.h"
 #include "support/temp_folder.h"
 
 namespace alidade {
@@ -21,11 +20,6 @@ struct ProgramResult {
   int status = -1;       // exit status; -1: ended by a signal
   std::string out, err;  // stdout, stderr
 };
-
-inline std::string ReadText(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 // `while_running` is called with the process id, to send signals. `in`: the working folder.
 inline ProgramResult RunProgram(const std::string& program,

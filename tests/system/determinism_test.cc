@@ -5,37 +5,13 @@
 #include "alidade/io/trajectory.h"
 #include "alidade/map/map_file.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/check_map.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::determinism_test {
 namespace {
 
-// Small images of a furnished room, rendered once for all tests.
-struct Rendered {
-  Camera camera;
-  std::vector<RenderedFrame> frames;
-  std::vector<Se3> T_world_camera;
-};
-
-const Rendered& Recording() {
-  static const Rendered rendered = [] {
-    SynthSettings settings;
-    settings.scene = "room";
-    settings.frames = 60;
-    settings.width = 320;
-    settings.height = 240;
-    const SynthRecording recording(settings);
-    Rendered made;
-    made.camera = recording.camera();
-    for (int i = 0; i < settings.frames; ++i) {
-      made.frames.push_back(recording.Render(i));
-      made.T_world_camera.push_back(recording.Pose(i));
-    }
-    return made;
-  }();
-  return rendered;
-}
+constexpr int kFrames = 60;
 
 struct Outcome {
   std::string trajectory, keyframes, map;  // bytes
@@ -44,27 +20,29 @@ struct Outcome {
 };
 
 Outcome Play(Sensor sensor, int threads, bool threaded = false) {
-  const Rendered& recording = Recording();
+  RenderedFrames& room = SmallRoom(320, 240);
   SetThreadCount(threads);
   SlamSettings settings;
   settings.sensor = sensor;
   settings.threaded = threaded;
   settings.tracker.extractor.features = 600;  // for a small image
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
-  Slam slam(recording.camera, settings);
-  for (const RenderedFrame& frame : recording.frames)
+  Slam slam(room.camera(), settings);
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame& frame = room.Frame(i);
     slam.Track({frame.time, frame.image, frame.right, frame.depth});
+  }
   slam.Finish();
   SetThreadCount(0);
 
   Outcome outcome;
   Trajectory trajectory, keyframes;
-  const Se3 T_first_world = recording.T_world_camera[0].Inverse();
+  const Se3 T_first_world = room.Pose(0).Inverse();
   for (const FramePose& pose : slam.Trajectory()) {
     if (!pose.tracked) continue;
     ++outcome.tracked;
     trajectory.push_back({pose.time, pose.T_world_camera, {}});
-    const Se3 truth = T_first_world * recording.T_world_camera[pose.index];
+    const Se3 truth = T_first_world * room.Pose(pose.index);
     outcome.worst = std::max(outcome.worst, (pose.T_world_camera.t - truth.t).norm());
   }
   const MapSnapshot map = slam.Snapshot();

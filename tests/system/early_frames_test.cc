@@ -7,31 +7,14 @@
 
 #include "alidade/slam.h"
 #include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::early_frames_test {
 namespace {
 
 constexpr int kFrames = 70;
 
-struct Room {
-  Camera camera;
-  std::vector<RenderedFrame> frames;
-};
-
-const Room& TheRoom() {
-  static const Room room = [] {
-    SynthSettings settings;
-    settings.frames = kFrames;
-    settings.width = 320;
-    settings.height = 240;
-    const SynthRecording recording(settings);
-    Room made;
-    made.camera = recording.camera();
-    for (int i = 0; i < kFrames; ++i) made.frames.push_back(recording.Render(i));
-    return made;
-  }();
-  return room;
-}
+RenderedFrames& TheRoom() { return SmallRoom(320, 240); }
 
 SlamSettings Settings(int most) {
   SlamSettings settings;
@@ -42,7 +25,7 @@ SlamSettings Settings(int most) {
 
 std::vector<FramePose> Feed(Slam& slam, int frames) {
   for (int i = 0; i < frames; ++i)
-    slam.Track({TheRoom().frames[i].time, TheRoom().frames[i].image, {}, {}});
+    slam.Track({TheRoom().Frame(i).time, TheRoom().Frame(i).image, {}, {}});
   return slam.Trajectory();
 }
 
@@ -54,7 +37,7 @@ int FirstTracked(const std::vector<FramePose>& trajectory) {
 }
 
 TEST(EarlyFrames, ThoseBeforeTheStartGetPosesOnceTheMapHasSettled) {
-  Slam without(TheRoom().camera, Settings(0)), with(TheRoom().camera, Settings(180));
+  Slam without(TheRoom().camera(), Settings(0)), with(TheRoom().camera(), Settings(180));
   const int start = FirstTracked(Feed(without, kFrames));
   ASSERT_GT(start, 1);
   const std::vector<FramePose> trajectory = Feed(with, kFrames);
@@ -66,7 +49,7 @@ TEST(EarlyFrames, ThoseBeforeTheStartGetPosesOnceTheMapHasSettled) {
 }
 
 TEST(EarlyFrames, WhatHasNotSettledIsPlacedAtTheEnd) {
-  Slam slam(TheRoom().camera, Settings(180));
+  Slam slam(TheRoom().camera(), Settings(180));
   const std::vector<FramePose> before = Feed(slam, 25);
   EXPECT_GT(FirstTracked(before), 1);
   slam.Finish(60);
@@ -74,7 +57,7 @@ TEST(EarlyFrames, WhatHasNotSettledIsPlacedAtTheEnd) {
 }
 
 TEST(EarlyFrames, ACutForgetsThoseThatWait) {
-  Slam slam(TheRoom().camera, Settings(180));
+  Slam slam(TheRoom().camera(), Settings(180));
   Feed(slam, 2);
   slam.Reset();
   const std::vector<FramePose> trajectory = Feed(slam, kFrames);

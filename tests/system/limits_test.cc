@@ -1,7 +1,6 @@
 // Limits on the number of keyframes and on the time that Finish() takes.
 #include <gtest/gtest.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -10,28 +9,11 @@
 #include "alidade/map/map_file.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/check_map.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::limits_test {
 namespace {
-
-SynthRecording& TheRoom() {
-  static SynthRecording room([] {
-    SynthSettings settings;
-    settings.width = 400;
-    settings.height = 300;
-    return settings;
-  }());
-  return room;
-}
-
-const RenderedFrame& Frame(int number) {
-  static std::map<int, RenderedFrame> frames;
-  auto& frame = frames[number];
-  if (frame.image.empty()) frame = TheRoom().Render(number);
-  return frame;
-}
 
 SlamSettings Phone() {
   SlamSettings settings;
@@ -41,7 +23,8 @@ SlamSettings Phone() {
 }
 
 TrackResult Show(Slam& slam, int number) {
-  return slam.Track({number / 30.0, Frame(number).image, {}, Frame(number).depth});
+  const RenderedFrame& frame = SmallRoom().Frame(number);
+  return slam.Track({number / 30.0, frame.image, {}, frame.depth});
 }
 
 class Limits : public testing::Test {
@@ -64,7 +47,7 @@ TEST_F(Limits, KeyFramesStayWithinTheirsAndTrackingGoesOn) {
   for (int threads : {1, 2}) {
     SetThreadCount(threads);
     warnings_.clear();
-    Slam slam(TheRoom().camera(), settings);
+    Slam slam(SmallRoom().camera(), settings);
     int untracked = 0;
     for (int i = 0; i <= 160; i += 4) {
       untracked += Show(slam, i).state != TrackState::kTracking;
@@ -79,7 +62,7 @@ TEST_F(Limits, KeyFramesStayWithinTheirsAndTrackingGoesOn) {
     EXPECT_NE(map.Find(KeyFrameId{0}), nullptr);
     ExpectConsistent(map);
     for (const FramePose& pose : slam.Trajectory()) {
-      const Se3 truth = TheRoom().Pose(0).Inverse() * TheRoom().Pose(4 * pose.index);
+      const Se3 truth = SmallRoom().Pose(0).Inverse() * SmallRoom().Pose(4 * pose.index);
       EXPECT_LT((pose.T_world_camera.t - truth.t).norm(), 0.1) << pose.index;
     }
     if (first.empty()) {
@@ -101,7 +84,7 @@ std::string Poses(const Slam& slam) {
 TEST_F(Limits, AFinishThatIsCutShortLeavesTheMapSoundAndTheNextOneDoesTheRest) {
   SlamSettings settings = Phone();
   settings.semidense.enabled = true;
-  Slam whole(TheRoom().camera(), settings), cut(TheRoom().camera(), settings);
+  Slam whole(SmallRoom().camera(), settings), cut(SmallRoom().camera(), settings);
   for (int i = 0; i <= 60; i += 4) {
     Show(whole, i);
     Show(cut, i);
@@ -125,7 +108,7 @@ TEST_F(Limits, AFinishWithoutTimeReturnsInTheThreadedSchedule) {
   SlamSettings settings = Phone();
   settings.threaded = true;
   settings.semidense.enabled = true;
-  Slam slam(TheRoom().camera(), settings);
+  Slam slam(SmallRoom().camera(), settings);
   for (int i = 0; i <= 60; i += 4) Show(slam, i);
   slam.Finish(0);
   ExpectConsistent(slam.Snapshot());

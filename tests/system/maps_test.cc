@@ -7,39 +7,11 @@
 #include "alidade/base/parallel.h"
 #include "alidade/map/map_file.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/check_map.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::maps_test {
 namespace {
-
-// Frames of the path around the room, rendered on first use.
-class Room {
- public:
-  Room() : recording_(Settings()) {}
-  const Camera& camera() const { return recording_.camera(); }
-  Se3 Pose(int number) const { return recording_.Pose(number); }
-  const RenderedFrame& Frame(int number) {
-    auto& frame = frames_[number];
-    if (frame.image.empty()) frame = recording_.Render(number);
-    return frame;
-  }
-
- private:
-  static SynthSettings Settings() {
-    SynthSettings settings;
-    settings.width = 400;
-    settings.height = 300;
-    return settings;
-  }
-  SynthRecording recording_;
-  std::map<int, RenderedFrame> frames_;
-};
-
-Room& TheRoom() {
-  static Room room;
-  return room;
-}
 
 SlamSettings Phone() {
   SlamSettings settings;
@@ -60,11 +32,11 @@ constexpr int kBlack = -1;
 // Plays frames of the room, 10 per second, and keeps their results.
 class Player {
  public:
-  explicit Player(const SlamSettings& settings) : slam(TheRoom().camera(), settings) {}
+  explicit Player(const SlamSettings& settings) : slam(SmallRoom().camera(), settings) {}
 
   void Play(const std::vector<int>& numbers) {
     for (int number : numbers) {
-      const RenderedFrame& frame = TheRoom().Frame(std::max(number, 0));
+      const RenderedFrame& frame = SmallRoom().Frame(std::max(number, 0));
       const auto shown = [&](const cv::Mat& image) {
         return number == kBlack ? cv::Mat(cv::Mat::zeros(image.size(), image.type())) : image;
       };
@@ -80,7 +52,7 @@ class Player {
     std::pair<double, int> worst{0, 0};
     for (const FramePose& pose : slam.Trajectory()) {
       if (!pose.tracked || pose.map != map) continue;
-      const Se3 truth = TheRoom().Pose(origin).Inverse() * TheRoom().Pose(played[pose.index]);
+      const Se3 truth = SmallRoom().Pose(origin).Inverse() * SmallRoom().Pose(played[pose.index]);
       worst.first = std::max(worst.first, (pose.T_world_camera.t - truth.t).norm());
       ++worst.second;
     }

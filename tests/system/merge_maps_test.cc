@@ -5,14 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <map>
 #include <string>
 #include <vector>
 
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/check_map.h"
 #include "support/expect_error.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::merge_maps_test {
 namespace {
@@ -23,25 +22,23 @@ struct Visit {
   std::vector<int> numbers;  // frame of the scene's path for each frame of the visit
 };
 
-const SynthRecording& Scene(const std::string& name) {
-  static std::map<std::string, SynthRecording> scenes;
-  if (const auto it = scenes.find(name); it != scenes.end()) return it->second;
+RenderedFrames& Scene(const std::string& name) {
   SynthSettings settings;
   settings.scene = name;
   settings.width = 320;
   settings.height = 240;
-  return scenes.emplace(name, SynthRecording(settings)).first->second;
+  return FramesOf(settings);
 }
 
 // Frames `first`, `first` + 3, … of a scene's path.
 Visit Play(const std::string& scene, int first, int last, Sensor sensor = Sensor::kRgbd) {
-  const SynthRecording& recording = Scene(scene);
+  RenderedFrames& recording = Scene(scene);
   SlamSettings settings;
   settings.sensor = sensor;
   Slam slam(recording.camera(), settings);
   Visit visit;
   for (int i = first; i <= last; i += 3) {
-    const RenderedFrame frame = recording.Render(i);
+    const RenderedFrame& frame = recording.Frame(i);
     slam.Track({0.1 * static_cast<double>(visit.numbers.size()), frame.image, {}, frame.depth});
     visit.numbers.push_back(i);
   }
@@ -129,7 +126,7 @@ TEST_F(MergeMapsOfARoom, AMergedMapIsGoneOnWith) {
   slam.Load(again);
   int tracked = 0;
   for (int i = 0; i < 5; ++i) {  // where only the late visit was
-    const RenderedFrame frame = Scene("room").Render(160 + i);
+    const RenderedFrame& frame = Scene("room").Frame(160 + i);
     tracked += slam.Track({0.1 * i, frame.image, {}, frame.depth}).state == TrackState::kTracking;
   }
   EXPECT_GE(tracked, 4);

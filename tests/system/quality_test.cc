@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::quality_test {
 namespace {
@@ -18,29 +18,12 @@ constexpr int kSettled = 20;
 // covariances say.
 constexpr int kGap = 10;
 
-struct Room {
-  Camera camera;
-  std::vector<RenderedFrame> frames;
-  std::vector<Se3> T_world_camera;
-};
-
-const Room& TheRoom() {
-  static const Room room = [] {
-    SynthSettings settings;
-    settings.frames = kFrames;
-    settings.width = 320;
-    settings.height = 240;
-    settings.stereo = true;
-    const SynthRecording recording(settings);
-    Room made;
-    made.camera = recording.camera();
-    for (int i = 0; i < kFrames; ++i) {
-      made.frames.push_back(recording.Render(i));
-      made.T_world_camera.push_back(recording.Pose(i));
-    }
-    return made;
-  }();
-  return room;
+RenderedFrames& TheRoom() {
+  SynthSettings settings;
+  settings.width = 320;
+  settings.height = 240;
+  settings.stereo = true;
+  return FramesOf(settings);
 }
 
 // Ad of X: X Exp(xi) X⁻¹ = Exp(Ad xi), xi = (translation; rotation) (Solà et al. 2018, example 6).
@@ -58,14 +41,16 @@ class Quality : public testing::TestWithParam<Sensor> {};
 // root mean square of error / standard deviation is 1. All six parameters of the motion count
 // equally.
 TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
-  const Room& room = TheRoom();
+  RenderedFrames& room = TheRoom();
   SlamSettings settings;
   settings.sensor = GetParam();
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
-  Slam slam(room.camera, settings);
+  Slam slam(room.camera(), settings);
   std::vector<TrackResult> results;
-  for (const RenderedFrame& frame : room.frames)
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame& frame = room.Frame(i);
     results.push_back(slam.Track({frame.time, frame.image, frame.right, frame.depth}));
+  }
 
   double sum = 0;
   int count = 0;
@@ -73,7 +58,7 @@ TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
     const TrackResult &before = results[i - kGap], &now = results[i];
     if (before.quality.covariance.isZero() || now.quality.covariance.isZero()) continue;
     const Se3 found = before.T_world_camera.Inverse() * now.T_world_camera;
-    const Se3 truth = room.T_world_camera[i - kGap].Inverse() * room.T_world_camera[i];
+    const Se3 truth = room.Pose(i - kGap).Inverse() * room.Pose(i);
     const Matrix6d carried = Adjoint(found.Inverse());
     const Matrix6d covariance =
         now.quality.covariance + carried * before.quality.covariance * carried.transpose();
@@ -89,13 +74,13 @@ TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
 }
 
 TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
-  const Room& room = TheRoom();
+  RenderedFrames& room = TheRoom();
   SlamSettings settings;
   settings.sensor = GetParam();
-  Slam slam(room.camera, settings);
+  Slam slam(room.camera(), settings);
   int tracked = 0;
   for (int i = 0; i < kSettled; ++i) {
-    const RenderedFrame& frame = room.frames[i];
+    const RenderedFrame& frame = room.Frame(i);
     const TrackResult result = slam.Track({frame.time, frame.image, frame.right, frame.depth});
     const PoseQuality& quality = result.quality;
     if (result.state != TrackState::kTracking) {
@@ -117,13 +102,13 @@ TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
 
 // Half of the image is blank: with fewer landmarks the covariance is larger.
 TEST(QualityOfAView, FewerLandmarksMakeItLarger) {
-  const Room& room = TheRoom();
+  RenderedFrames& room = TheRoom();
   SlamSettings settings;
   settings.sensor = Sensor::kStereo;
-  Slam slam(room.camera, settings);
+  Slam slam(room.camera(), settings);
   TrackResult clear, veiled;
   for (int i = 0; i < 6; ++i) {
-    const RenderedFrame& frame = room.frames[i];
+    const RenderedFrame& frame = room.Frame(i);
     cv::Mat left = frame.image.clone(), right = frame.right.clone();
     if (i == 5) {  // the left half is blank
       for (cv::Mat* image : {&left, &right})

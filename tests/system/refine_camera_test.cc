@@ -11,8 +11,8 @@
 
 #include "alidade/evaluation/ate.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/expect_error.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::refine_camera_test {
 namespace {
@@ -27,25 +27,13 @@ SlamSettings Unknown() {
   return settings;
 }
 
-const SynthRecording& Desk() {
-  static const SynthRecording desk = [] {
-    SynthSettings synth;
-    synth.scene = "desk";
-    synth.width = 400;
-    synth.height = 300;
-    synth.speed = 2;
-    return SynthRecording(synth);
-  }();
-  return desk;
-}
-
-const std::vector<RenderedFrame>& Frames() {
-  static const std::vector<RenderedFrame> frames = [] {
-    std::vector<RenderedFrame> rendered;
-    for (int i = 0; i < kFrames; ++i) rendered.push_back(Desk().Render(i));
-    return rendered;
-  }();
-  return frames;
+RenderedFrames& Desk() {
+  SynthSettings synth;
+  synth.scene = "desk";
+  synth.width = 400;
+  synth.height = 300;
+  synth.speed = 2;
+  return FramesOf(synth);
 }
 
 Camera Assumed(double fov) { return Camera::FromFieldOfView(400, 300, fov); }
@@ -63,7 +51,7 @@ Ran Play(const Camera& camera, const SlamSettings& settings) {
   Ran ran;
   Trajectory truth, estimate;
   for (int i = 0; i < kFrames; ++i) {
-    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    const RenderedFrame& frame = Desk().Frame(i);
     slam.Track({frame.time, frame.image, {}, {}});
     truth.push_back({frame.time, Desk().Pose(i), {}});
   }
@@ -163,7 +151,7 @@ TEST(RefineCamera, WithThreadsDenseDepthAndDynamics) {
   settings.dynamics.mode = DynamicsMode::kGeometry;
   Slam slam(Assumed(80), settings);
   for (int i = 0; i < kFrames; ++i) {
-    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    const RenderedFrame& frame = Desk().Frame(i);
     slam.Track({frame.time, frame.image, {}, {}});
     AwaitMapping(slam);
   }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::rolling_shutter_test {
 namespace {
@@ -24,7 +24,7 @@ Ran RunDesk(double milliseconds, bool known, bool looked_for = true) {
   synth.height = 300;
   synth.speed = 2;
   synth.rolling_shutter = milliseconds;
-  const SynthRecording recording(synth);
+  RenderedFrames& recording = FramesOf(synth);
   Camera camera = recording.camera();
   EXPECT_TRUE(camera.readout_known);
   if (!known) {
@@ -36,7 +36,7 @@ Ran RunDesk(double milliseconds, bool known, bool looked_for = true) {
   settings.readout.enabled = looked_for;
   Slam slam(camera, settings);
   for (int i = 0; i < 150; ++i) {
-    const RenderedFrame frame = recording.Render(i);
+    const RenderedFrame& frame = recording.Frame(i);
     slam.Track({frame.time, frame.image, {}, {}});
   }
   slam.Finish();

@@ -10,39 +10,26 @@
 
 #include "alidade/map/map_file.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
 #include "support/check_map.h"
+#include "support/rendered_frames.h"
 #include "support/scripted_detector.h"
 
 namespace alidade::threads_test {
 namespace {
 
-// Some frames of the path around the room, small.
-struct Rendered {
-  Camera camera;
-  std::vector<RenderedFrame> frames;
-};
-
 // One part of the room, then another without overlap, from which the camera returns to the first:
-// two maps that are merged.
-const Rendered& Recording() {
-  static const Rendered rendered = [] {
-    SynthSettings settings;
-    settings.width = 400;
-    settings.height = 300;
-    const SynthRecording recording(settings);
-    Rendered made{recording.camera(), {}};
-    const auto add = [&](int first, int last, int step) {
-      for (int i = first; i <= last; i += step) {
-        made.frames.push_back(recording.Render(i));
-        made.frames.back().time = 0.1 * static_cast<double>(made.frames.size());
-      }
-    };
-    add(0, 48, 3);
-    add(330, 640, 6);
-    return made;
-  }();
-  return rendered;
+// two maps that are merged. 10 frames per second.
+std::vector<RenderedFrame> TwoParts() {
+  std::vector<RenderedFrame> frames;
+  const auto add = [&](int first, int last, int step) {
+    for (int i = first; i <= last; i += step) {
+      frames.push_back(SmallRoom().Frame(i));
+      frames.back().time = 0.1 * static_cast<double>(frames.size());
+    }
+  };
+  add(0, 48, 3);
+  add(330, 640, 6);
+  return frames;
 }
 
 SlamSettings Everything() {
@@ -119,16 +106,16 @@ class Asker {
 };
 
 TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
-  const Rendered& recording = Recording();
+  const std::vector<RenderedFrame> frames = TwoParts();
   const auto detector = std::make_shared<ScriptedDetector>([](const cv::Mat&) {
     return std::vector<Detection>{{0, 0.9f, cv::Rect2f(20, 10, 30, 60)}};
   });
-  Slam slam(recording.camera, Everything(), detector);
+  Slam slam(SmallRoom().camera(), Everything(), detector);
   int tracked = 0;
   {
     const Asker first(slam), second(slam);
-    for (size_t i = 0; i < recording.frames.size(); ++i) {
-      const RenderedFrame& frame = recording.frames[i];
+    for (size_t i = 0; i < frames.size(); ++i) {
+      const RenderedFrame& frame = frames[i];
       const TrackResult result = slam.Track({frame.time, frame.image, {}, frame.depth});
       tracked += result.state == TrackState::kTracking;
       if (i % 3 == 2) slam.Finish();  // so that earlier places can be recognized
@@ -144,17 +131,17 @@ TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
 
 // Driving calls from several threads run one at a time.
 TEST(Threads, DrivingCallsTakeTurns) {
-  const Rendered& recording = Recording();
+  const std::vector<RenderedFrame> frames = TwoParts();
   SlamSettings settings = Everything();
   settings.dynamics.mode = DynamicsMode::kOff;
   settings.semidense.enabled = false;
-  Slam slam(recording.camera, settings);
+  Slam slam(SmallRoom().camera(), settings);
   std::atomic<bool> done{false};
   std::thread finisher([&] {
     while (!done) slam.Finish();
   });
   for (int i = 0; i < 8; ++i) {
-    const RenderedFrame& frame = recording.frames[static_cast<size_t>(i)];
+    const RenderedFrame& frame = frames[static_cast<size_t>(i)];
     EXPECT_EQ(slam.Track({frame.time, frame.image, {}, frame.depth}).state, TrackState::kTracking);
   }
   done = true;
@@ -165,7 +152,7 @@ TEST(Threads, DrivingCallsTakeTurns) {
 // A detector that throws something other than an Error: the next frames report it, in both
 // schedules.
 TEST(Failure, OfTheDetectorIsToldByTheFramesAndByHealth) {
-  const Rendered& recording = Recording();
+  const std::vector<RenderedFrame> frames = TwoParts();
   for (bool threaded : {false, true}) {
     SlamSettings settings = Everything();
     settings.threaded = threaded;
@@ -176,10 +163,10 @@ TEST(Failure, OfTheDetectorIsToldByTheFramesAndByHealth) {
           asked = true;
           throw 42;
         });
-    Slam slam(recording.camera, settings, detector);
+    Slam slam(SmallRoom().camera(), settings, detector);
     TrackResult result;
     for (int i = 0; i < 5; ++i) {
-      const RenderedFrame& frame = recording.frames[static_cast<size_t>(i)];
+      const RenderedFrame& frame = frames[static_cast<size_t>(i)];
       result = slam.Track({frame.time, frame.image, {}, frame.depth});
       EXPECT_EQ(result.state, TrackState::kTracking);
       while (slam.Health().ok()) std::this_thread::yield();  // until it has the frame

@@ -1,49 +1,20 @@
 // Irregular time stamps: gaps, clocks that are set back, several recordings, dropped frames.
 #include <gtest/gtest.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::time_test {
 namespace {
 
-// Frames of a furnished room in the size of the phone profile, rendered on first use.
-class Room {
- public:
-  Room() : recording_(Settings()) {}
-  const Camera& camera() const { return recording_.camera(); }
-  Se3 Pose(int number) const { return recording_.Pose(number); }
-  const RenderedFrame& Frame(int number) {
-    auto& frame = frames_[number];
-    if (frame.image.empty()) frame = recording_.Render(number);
-    return frame;
-  }
-
- private:
-  static SynthSettings Settings() {
-    SynthSettings settings;
-    settings.width = 400;
-    settings.height = 300;
-    return settings;
-  }
-  SynthRecording recording_;
-  std::map<int, RenderedFrame> frames_;
-};
-
-Room& TheRoom() {
-  static Room room;
-  return room;
-}
-
 class Time : public testing::Test {
  protected:
-  Time() : slam_(TheRoom().camera(), Phone()) {
+  Time() : slam_(SmallRoom().camera(), Phone()) {
     SetWarningListener([this](const std::string& warning) { warnings_.push_back(warning); });
   }
   ~Time() override { SetWarningListener(nullptr); }
@@ -57,7 +28,7 @@ class Time : public testing::Test {
 
   // False if the frame was refused.
   bool Show(int number, double time) {
-    const RenderedFrame& frame = TheRoom().Frame(number);
+    const RenderedFrame& frame = SmallRoom().Frame(number);
     try {
       result_ = slam_.Track({time, frame.image, {}, frame.depth});
     } catch (const Error& error) {
@@ -80,7 +51,8 @@ class Time : public testing::Test {
     for (const FramePose& pose : slam_.Trajectory()) {
       untracked += !pose.tracked;
       if (!pose.tracked) continue;
-      const Se3 truth = TheRoom().Pose(shown_[0]).Inverse() * TheRoom().Pose(shown_[pose.index]);
+      const Se3 truth =
+          SmallRoom().Pose(shown_[0]).Inverse() * SmallRoom().Pose(shown_[pose.index]);
       EXPECT_LT((pose.T_world_camera.t - truth.t).norm(), 0.05) << pose.index;
     }
     EXPECT_EQ(untracked, lost);
@@ -122,9 +94,9 @@ TEST_F(Time, AClockThatIsSetBackIsFollowed) {
 TEST_F(Time, ALostCameraWhoseClockIsSetBackBeginsANewMapInTime) {
   SlamSettings settings = Phone();
   settings.new_map_frames = 8;
-  Slam slam(TheRoom().camera(), settings);
+  Slam slam(SmallRoom().camera(), settings);
   const auto show = [&](int number, double time) {
-    const RenderedFrame& frame = TheRoom().Frame(number);
+    const RenderedFrame& frame = SmallRoom().Frame(number);
     return slam.Track({time, frame.image, {}, frame.depth});
   };
   for (int i = 0; i <= 48; i += 3) show(i, 1000 + 0.1 * i);
@@ -154,13 +126,13 @@ TEST_F(Time, AMapOfOneCameraOnTrialDoesNotSurviveAGap) {
   SlamSettings settings = Phone();
   settings.sensor = Sensor::kMono;
   settings.start.trial_frames = 1000;
-  Slam slam(TheRoom().camera(), settings);
+  Slam slam(SmallRoom().camera(), settings);
   int i = 0;
   TrackResult result;
   for (; i < 60 && result.state != TrackState::kTracking; ++i)
-    result = slam.Track({0.1 * i, TheRoom().Frame(i).image, {}, {}});
+    result = slam.Track({0.1 * i, SmallRoom().Frame(i).image, {}, {}});
   ASSERT_EQ(result.state, TrackState::kTracking);
-  result = slam.Track({600, TheRoom().Frame(i).image, {}, {}});
+  result = slam.Track({600, SmallRoom().Frame(i).image, {}, {}});
   EXPECT_EQ(result.state, TrackState::kInitializing);
   EXPECT_EQ(slam.Snapshot().keyframe_count(), 0);
 }
@@ -200,7 +172,7 @@ TEST_F(Time, DroppedFramesAreTrackedOn) {
   for (const int step : {1, 1, 3, 1, 2, 6, 1, 1, 4, 1, 7, 2, 1, 8, 1, 1, 3, 9, 1, 5, 1, 0}) {
     EXPECT_TRUE(Show(number, number / 30.0));
     EXPECT_EQ(result_.state, TrackState::kTracking) << number;
-    const Se3 truth = TheRoom().Pose(0).Inverse() * TheRoom().Pose(number);
+    const Se3 truth = SmallRoom().Pose(0).Inverse() * SmallRoom().Pose(number);
     // 0.08 m if the prediction assumes the same step for 0.2 s as for 0.07 s.
     EXPECT_LT((result_.T_world_camera.t - truth.t).norm(), 0.03) << number;
     number += step;

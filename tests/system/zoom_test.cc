@@ -7,7 +7,7 @@
 
 #include "alidade/evaluation/ate.h"
 #include "alidade/slam.h"
-#include "alidade/synth/recording.h"
+#include "support/rendered_frames.h"
 
 namespace alidade::zoom_test {
 namespace {
@@ -24,13 +24,13 @@ Ran RunRoom(double most, bool to_stay = false) {
   SynthSettings synth;
   synth.width = 400;
   synth.height = 300;
-  const SynthRecording recording(synth);
+  RenderedFrames& recording = FramesOf(synth);
   SlamSettings settings;
   settings.ApplyProfile("phone");
   Slam slam(recording.camera(), settings);
   Trajectory truth, estimate;
   for (int i = 0; i < kFrames; ++i) {
-    const RenderedFrame frame = recording.Render(i);
+    const RenderedFrame& frame = recording.Frame(i);
     const double share =
         to_stay ? std::clamp((i - kFrames / 2) / 15.0, 0.0, 1.0) : std::sin(M_PI * frame.time);
     const double zoom = 1 + (most - 1) * share;

@@ -45,6 +45,7 @@ struct SynthSettings {
 
   double Focal() const;  // focal length, pixels; of a fisheye: pixels per radian
   void Check() const;    // throws Error (usage) naming the field that cannot be
+  bool operator==(const SynthSettings&) const = default;
 };
 
 std::vector<std::string> SceneNames();

@@ -1,9 +1,8 @@
 // Tables of a batch, and what is worse than in an earlier one.
-#include "alidade/run/batch_table.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "alidade/run/batch_table.h"
 #include "support/expect_error.h"
 
 namespace alidade::batch_table_test {

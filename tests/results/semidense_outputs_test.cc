@@ -9,7 +9,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/image_file.h"
-#include "support/program.h"
+#include "support/read_text.h"
+#include "support/temp_folder.h"
 
 namespace alidade::semidense_outputs_test {
 namespace {

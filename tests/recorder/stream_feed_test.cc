@@ -9,8 +9,9 @@
 #include "alidade/run/stream_file.h"
 #include "alidade/stream/stream_scene.h"
 #include "alidade/synth/recording.h"
-#include "support/program.h"
+#include "support/read_text.h"
 #include "support/scripted_detector.h"
+#include "support/temp_folder.h"
 
 namespace alidade::stream_feed_test {
 namespace {

@@ -1,7 +1,6 @@
-#include "alidade/run/batch_process.h"
-
 #include <gtest/gtest.h>
 
+#include "alidade/run/batch_process.h"
 #include "alidade/run/loop.h"
 #include "support/temp_folder.h"
 

@@ -1,11 +1,10 @@
 // The list of a batch: words as a shell has them, names of folders.
-#include "alidade/run/batch_list.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
+#include "alidade/run/batch_list.h"
 #include "support/expect_error.h"
 
 namespace alidade::batch_list_test {
