@@ -40,14 +40,15 @@ class AnyOrder : public testing::Test {
  protected:
   AnyOrder() {
     Recording("a/walk", 12);
-    Recording("b/walk", 14);
+    Recording("b/walk", 14, /*black=*/false, /*step=*/2);
     Recording("dark/walk", 12, /*black=*/true);
     at_.Write("list.txt", "a/walk\nb/walk\ndark/walk\n");
   }
-  void Recording(const std::string& name, int frames, bool black = false) {
+  void Recording(const std::string& name, int frames, bool black = false, int step = 3) {
     const TempFolder draft;
     SlidingRecording options;
     options.frames = frames;
+    options.step = step;
     WriteSlidingTum(draft, options);
     for (int i = 0; black && i < frames; ++i)
       WriteImage(draft / SlidingImage(i), cv::Mat(240, 320, CV_8UC1, cv::Scalar(0)));
@@ -71,9 +72,9 @@ class AnyOrder : public testing::Test {
           name.find("run.tmp") != std::string::npos)
         continue;
       const json stats = json::parse(bytes);
-      const json& folder = stats["folder"];
-      results[path.parent_path()] = {folder["command"], folder["source"],
-                                     folder["complete"] == true && stats["tracked"] > 0,
+      const json folder = stats.value("folder", json::object());
+      results[path.parent_path()] = {folder.value("command", ""), folder.value("source", ""),
+                                     folder.value("complete", false) && stats["tracked"] > 0,
                                      stats["frames"]};
     }
     return results;
@@ -128,7 +129,8 @@ class AnyOrder : public testing::Test {
       EXPECT_TRUE(may_change) << name << (now == after.end() ? " is gone" : " is another");
     }
   }
-  void PlayAll(const std::vector<Step>& steps) {
+  // `left`: files that are there in the end.
+  void PlayAll(const std::vector<Step>& steps, const std::vector<std::string>& left) {
     Files before = AllFiles();
     for (const Step& step : steps) {
       std::string words;
@@ -144,6 +146,7 @@ class AnyOrder : public testing::Test {
     }
     for (const auto& [name, bytes] : before)
       EXPECT_EQ(name.find("run.done"), std::string::npos) << name;
+    for (const std::string& name : left) EXPECT_TRUE(before.count(name)) << name;
   }
 
   TempFolder at_;
@@ -173,28 +176,37 @@ const Step kRunA{{"run", "a/walk"}}, kRunB{{"run", "b/walk"}}, kRunDark{{"run", 
            {"many/log/", "many/done/", "many/batch", "many/compare.html", "many/merged/"}};
 
 TEST_F(AnyOrder, RunsOfSourcesOfOneName) {
-  PlayAll({kRunA, kRunB, kRunDark, kRunA, kRunPart, kRunNothing, kRunDark, kRunB});
+  PlayAll({kRunA, kRunB, kRunDark, kRunA, kRunPart, kRunNothing, kRunDark, kRunB},
+          {"alidade-out/walk/map.alidade", "alidade-out/walk/last-attempt/stats.json",
+           "alidade-out/walk-2/map.alidade", "alidade-out/walk-3/report.html"});
 }
 
 TEST_F(AnyOrder, RunsThatAreCutOff) {
-  PlayAll({kKilledA, kRunA, kKilledA, kInterruptedA, kKilledB, kRunB, kInterruptedA, kRunA});
+  PlayAll({kKilledA, kRunA, kKilledA, kInterruptedA, kKilledB, kRunB, kInterruptedA, kRunA},
+          {"alidade-out/walk/map.alidade", "alidade-out/walk-2/map.alidade"});
 }
 
 TEST_F(AnyOrder, AnInterruptedRunFirst) {
-  PlayAll({kInterruptedA, kRunB, kRunDark, kRunA, kInterruptedA, kRunPart});
+  PlayAll({kInterruptedA, kRunB, kRunDark, kRunA, kInterruptedA, kRunPart},
+          {"alidade-out/walk/map.alidade", "alidade-out/walk-2/map.alidade"});
 }
 
 TEST_F(AnyOrder, LocalizingAndGoingOn) {
-  PlayAll({kRunA, kLocalizeA, kLocalizeB, kRunA, kGoOn, kKilledLocalize, kLocalizeA, kRunB});
+  PlayAll({kRunA, kLocalizeA, kLocalizeB, kRunA, kGoOn, kKilledLocalize, kLocalizeA, kRunB},
+          {"alidade-out/walk-localized/trajectory.txt",
+           "alidade-out/walk-localized-2/trajectory.txt", "alidade-out/walk-2/map.alidade"});
 }
 
 TEST_F(AnyOrder, CommandsThatTakeResults) {
   PlayAll({kRunA, kRunB, kPly, kColmap, kMerge, kCompare, kRunDark, kCalibrate, kMerge, kRunPart,
-           kPly, kColmap, kCompare});
+           kPly, kColmap, kCompare},
+          {"walk.ply", "model/export.json", "both/map.alidade", "compare.html"});
 }
 
 TEST_F(AnyOrder, BatchesAndRenderedRecordings) {
-  PlayAll({kSynth, kRunSynth, kBatch, kRunA, kBatch, kSynth, kRunSynth, kBatch});
+  PlayAll({kSynth, kRunSynth, kBatch, kRunA, kBatch, kSynth, kRunSynth, kBatch},
+          {"desk/rgb.txt", "alidade-out/desk/stats.json", "many/walk/map.alidade",
+           "many/walk-2/map.alidade", "many/merged/map.alidade"});
 }
 
 // Whatever it was doing then.
@@ -214,7 +226,7 @@ TEST_F(AnyOrder, ARunThatIsKilledLeavesAWholeResult) {
   const std::string folder = at_ / "alidade-out/walk";
   int replaced = 0;
   for (int i = 2; i < 17; ++i) {
-    const auto wait = static_cast<useconds_t>(random.Below(static_cast<int>(taken)));
+    const auto wait = static_cast<useconds_t>(random.Below(static_cast<int>(2 * taken)));
     run(std::to_string(i), [&](pid_t program) {
       usleep(wait);
       kill(program, SIGKILL);

@@ -59,13 +59,13 @@ TEST(ParseBatchList, NamesFoldersAfterSourcesUnlessTold) {
 
 TEST(ParseBatchList, ALineKeepsItsFolderWhenOthersComeAndGo) {
   const auto names = [](const std::string& text) {
-    std::vector<std::string> names;
-    for (const BatchItem& item :
-         ParseBatchList(text, "list.txt", {}, [](const std::string& name, const std::string& source) {
-           return (name == "walk" && source != "a/walk") || (name == "walk-2" && source != "b/walk");
-         }))
-      names.push_back(item.name);
-    return names;
+    const auto is_others = [](const std::string& name, const std::string& source) {
+      return (name == "walk" && source != "a/walk") || (name == "walk-2" && source != "b/walk");
+    };
+    std::vector<std::string> all;
+    for (const BatchItem& item : ParseBatchList(text, "list.txt", {}, is_others))
+      all.push_back(item.name);
+    return all;
   };
   EXPECT_THAT(names("a/walk\nb/walk\n"), ElementsAre("walk", "walk-2"));
   EXPECT_THAT(names("b/walk\na/walk\n"), ElementsAre("walk-2", "walk"));

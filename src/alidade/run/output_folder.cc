@@ -24,7 +24,7 @@ bool HoldsOtherThings(const fs::path& folder) {
   std::error_code error;
   const bool empty = HoldsNoResult(folder, error);
   if (error) ThrowInput("cannot read " + folder.string() + ": " + error.message());
-  return !empty && !ResultIn(folder);
+  return !empty && !ResultIn(folder) && !ResultIn(folder / kRunDone);
 }
 
 void CheckOwner(const OutputClaim& claim) {
