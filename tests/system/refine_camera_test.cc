@@ -116,7 +116,7 @@ TEST(RefineCamera, AfterACutTheFramesBeforeItKeepTheirPoses) {
       changes_before = slam.camera_changes();
       slam.Reset();
     }
-    const RenderedFrame& frame = Frames()[static_cast<size_t>(i)];
+    const RenderedFrame& frame = Desk().Frame(i);
     slam.Track({frame.time, frame.image, {}, {}});
   }
   slam.Finish();
