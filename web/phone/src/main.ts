@@ -1,6 +1,7 @@
 // The phone page: camera or video → engine (core.wasm in a Worker, or another computer) → image, map, numbers.
 import { decode, DecodeError, State } from '@alidade/scene';
-import { byId, write } from '../../viewer/src/dom.ts';
+import { byId, write } from '../../shared/src/dom.ts';
+import { STATE_WORDS } from '../../shared/src/words.ts';
 import { CameraProblem, holdFocus, openCamera, workingSize } from './camera.ts';
 import { Cube } from './cube.ts';
 import { DetectorHost } from './detector.ts';
@@ -15,7 +16,7 @@ import { download, showOffers } from './save.ts';
 import type { Offer } from './save.ts';
 import { bind, coreSettings, detectorClasses, load } from './settings.ts';
 import { VideoFile } from './video_file.ts';
-import { advice, lensText, STATE_WORDS } from './words.ts';
+import { advice, lensText } from './words.ts';
 
 declare const BUNDLED: readonly { name: string; version: string; licence: string }[];
 declare const PROGRAM: string;

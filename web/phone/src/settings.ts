@@ -1,5 +1,5 @@
 // The user's choices, stored on the device.
-import { byId } from '../../viewer/src/dom.ts';
+import { byId } from '../../shared/src/dom.ts';
 
 export interface Choices {
   fov: number | null; // horizontal, degrees; null: self-calibrated

@@ -1,7 +1,6 @@
 // Short texts for phone users: the core's state, and what to do.
 import type { Frame } from '../../core/src/index.ts';
-
-export const STATE_WORDS: Record<Frame['state'], string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
+import { sentence } from '../../shared/src/words.ts';
 
 const DARK = 35; // mean gray level, 0…255
 
@@ -24,7 +23,7 @@ export function advice({ state, reason, predicted }: Frame, light: number): stri
   if (predicted) return 'Hold on: it guesses where you are.';
   if (light < DARK) return 'Too dark: switch on a light.';
   const found = ADVICE.find(([pattern]) => pattern.test(reason));
-  return found?.[1] ?? (reason ? `${reason.charAt(0).toUpperCase()}${reason.slice(1)}.` : '');
+  return found?.[1] ?? sentence(reason);
 }
 
 export function lensText({ fov, fovSigma }: Frame, given: boolean): string {
