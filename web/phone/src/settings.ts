@@ -9,7 +9,7 @@ export interface Choices {
 }
 
 const KEY = 'alidade-phone';
-const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
+export const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
 
 export function load(): Choices {
   try {

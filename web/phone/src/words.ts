@@ -1,6 +1,7 @@
 // Short texts for phone users: the core's state, and what to do.
 import type { Frame } from '../../core/src/index.ts';
-import { sentence } from '../../shared/src/words.ts';
+import { sentence, STATE_WORDS } from '../../shared/src/words.ts';
+import type { PageState } from './page_state.ts';
 
 const DARK = 35; // mean gray level, 0…255
 
@@ -24,6 +25,17 @@ export function advice({ state, reason, predicted }: Frame, light: number): stri
   if (light < DARK) return 'Too dark: switch on a light.';
   const found = ADVICE.find(([pattern]) => pattern.test(reason));
   return found?.[1] ?? sentence(reason);
+}
+
+export function statusOf({ phase, why, session, shown, cube }: PageState): { word: string; advice: string } {
+  if (phase === 'ended') return { word: 'Ended', advice: why ? '' : 'What there is can be saved.' };
+  if (shown) {
+    const { frame, light } = shown;
+    const tap = frame.state === 'tracking' && !cube && frame.counts.keyframes > 3;
+    return { word: STATE_WORDS[frame.state], advice: advice(frame, light) || (tap ? 'Tap a surface to put a cube on it.' : '') };
+  }
+  if (session) return { word: 'Loading', advice: session.remote ? 'Asking for the computer that does the work …' : 'The core (4 MB, the first time) …' };
+  return { word: 'Ready', advice: '' };
 }
 
 export function lensText({ fov, fovSigma }: Frame, given: boolean): string {
