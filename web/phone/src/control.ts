@@ -1,6 +1,5 @@
 // What the user does: starts the camera or opens a video, stops, records, saves. Moves images from their source to the
 // engine.
-import { byId } from '../../shared/src/dom.ts';
 import { CameraProblem, workingSize } from './camera.ts';
 import { CameraSource } from './camera_source.ts';
 import { Cube } from './cube.ts';
@@ -32,8 +31,7 @@ export class Control {
 
   async startCamera(): Promise<void> {
     await this.asked;
-    const button = byId('start') as HTMLButtonElement;
-    button.disabled = true;
+    this.dispatch({ kind: 'opening', opening: true });
     try {
       this.camera = await CameraSource.open(this.video, {
         image: (time) => this.take(time),
@@ -48,7 +46,7 @@ export class Control {
       this.dispatch({ kind: 'phase', phase: 'idle' });
       this.notice(error instanceof CameraProblem ? error.message : `It could not begin: ${(error as Error).message}.`, 'start');
     } finally {
-      button.disabled = false;
+      this.dispatch({ kind: 'opening', opening: false });
     }
   }
 

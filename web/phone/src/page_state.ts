@@ -15,6 +15,7 @@ export interface Progress { seconds: number; duration: number; share: number } /
 export type PageMessage =
   | { kind: 'info'; info: Info }
   | { kind: 'choices'; choices: Choices }
+  | { kind: 'opening'; opening: boolean } // the camera is being opened
   | { kind: 'begin'; remote: boolean; fov: number | null } // a session with an empty map
   | { kind: 'anew' } // the session continues with another, empty map
   | { kind: 'reset' } // there is no session any more
@@ -32,6 +33,7 @@ export class PageState {
   phase: Phase = 'idle';
   why = ''; // why the session ended by itself; '': the user ended it
   info: Info | null = null; // null: not known yet
+  opening = false; // the camera is being opened
   session: { remote: boolean; fov: number | null } | null = null; // as it began
   map = new State();
   shown: Done | null = null; // the last processed image
@@ -57,6 +59,9 @@ export class PageState {
       case 'choices':
         this.choices = message.choices;
         ++this.revision;
+        break;
+      case 'opening':
+        this.opening = message.opening;
         break;
       case 'begin':
         this.forget();

@@ -5,7 +5,7 @@ import type { Point } from './lens.ts';
 import { MapView } from './map_view.ts';
 import type { PageState } from './page_state.ts';
 import { PictureView } from './picture.ts';
-import { lensText, statusOf } from './words.ts';
+import { lensText, statusOf, whereText } from './words.ts';
 
 export class PageView {
   readonly map: MapView;
@@ -40,7 +40,9 @@ export class PageView {
     byId('again').hidden = phase !== 'ended';
     byId('remove').hidden = state.cube === null;
     byId('set-connected-row').hidden = !(info?.connected && info.core !== false);
-    if (info?.connected) write(byId('unless'), info.core === false ? ': they go to the computer that serves this page, which does the work.' : ', unless you have the computer that serves this page do the work.');
+    write(byId('where'), info ? whereText(state, location.host) : '');
+    (byId('file') as HTMLInputElement).disabled = info === null;
+    (byId('start') as HTMLButtonElement).disabled = info === null || state.opening;
     const { word, advice } = statusOf(state);
     write(byId('state-word'), word);
     write(byId('advice'), advice);

@@ -27,6 +27,13 @@ export function advice({ state, reason, predicted }: Frame, light: number): stri
   return found?.[1] ?? sentence(reason);
 }
 
+// Where the images of the next session go; the user reads it before the camera starts. `host`: of the page.
+export function whereText({ remote, info }: PageState, host: string): string {
+  if (remote) return `The images are sent to the computer that serves this page (${host}), which makes the map.`;
+  const choice = info?.connected ? ' In Settings you can let the computer that serves this page make the map: then the images are sent there.' : '';
+  return `The images stay on this device: nothing is uploaded.${choice}`;
+}
+
 export function statusOf({ phase, why, session, shown, cube }: PageState): { word: string; advice: string } {
   if (phase === 'ended') return { word: 'Ended', advice: why ? '' : 'What there is can be saved.' };
   if (shown) {
