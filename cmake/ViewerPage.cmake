@@ -18,8 +18,8 @@ function(alidade_viewer_page OUT)
     endif()
   endif()
   # Without the folders created by npm: node_modules, dist, generated.
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/viewer/src/*
-       ${WEB}/phone/src/* ${WEB}/core/src/*)
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/shared/src/*
+       ${WEB}/viewer/src/* ${WEB}/phone/src/* ${WEB}/core/src/*)
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/BuildViewerPage.cmake)
   add_custom_command(
     OUTPUT ${OUT}

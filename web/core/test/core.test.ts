@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
-import { grayOf, openRecording } from '../../phone/test/y4m.ts';
+import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 import { decode } from '../../scene/src/decode.ts';
 import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
 

@@ -1,5 +1,5 @@
 // Excludes people: runs the user's detector network in a Worker of its own.
-import { byId, write } from '../../viewer/src/dom.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 import { forgetFile, keepFile, keptFile, MOST_BYTES } from './detector_file.ts';
 import type { LocalEngine } from './engine.ts';
 import type { DetectorNews, ToDetector } from './protocol.ts';

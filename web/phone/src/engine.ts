@@ -4,6 +4,7 @@ import type { Done, FromWorker, Saved, Start, ToWorker } from './protocol.ts';
 export interface Hooks {
   done(result: Done): void;
   messages(messages: Uint8Array[]): void; // stream messages that do not belong to an image
+  anew(): void; // messages of another map follow
   failed(error: string): void; // the session has ended
   lost(text: string): void; // the connection was lost and is being retried; '': restored
 }

@@ -1,7 +1,7 @@
 // The processed camera image with its features and the cube.
+import { marks } from '@alidade/scene';
 import type { Frame as StreamFrame, State } from '@alidade/scene';
-import { boxes, features, outlines } from '../../viewer/src/picture_marks.ts';
-import { byId } from '../../viewer/src/dom.ts';
+import { byId } from '../../shared/src/dom.ts';
 import type { Cube } from './cube.ts';
 import type { Point } from './lens.ts';
 
@@ -14,7 +14,7 @@ export class PictureView {
 
   // `turn`: clockwise quarter turns of the screen since the start. Pixel coordinates refer to the image as oriented at
   // the start.
-  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marks: boolean): void {
+  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marked: boolean): void {
     const { canvas, draw } = this;
     this.turn = turn;
     if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
@@ -30,10 +30,10 @@ export class PictureView {
     const style = getComputedStyle(document.documentElement);
     const onto = { draw, w, h, ratio: Math.max(w, h) / 480, colour: (name: string) => style.getPropertyValue(name) };
     const camera = state.hello?.camera;
-    if (marks && frame) {
-      outlines(onto, frame);
-      features(onto, frame, MARKS);
-      if (camera) boxes(onto, frame, camera.width, camera.height);
+    if (marked && frame) {
+      marks.outlines(onto, frame);
+      marks.features(onto, frame, MARKS);
+      if (camera) marks.boxes(onto, frame, camera.width, camera.height);
     }
     if (cube) this.drawCube(cube, state, w, h);
   }

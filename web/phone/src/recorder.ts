@@ -7,6 +7,12 @@ const MOST_BYTES = 1.5e9; // about 15 minutes; limited by the page's memory
 
 export interface Device { userAgent: string; width: number; height: number; focusHeld: boolean; fov: number | null; began: string }
 
+// camera.yaml of images of this size with a horizontal field of view in degrees.
+export function cameraYaml(width: number, height: number, fov: number): string {
+  const focal = width / (2 * Math.tan((fov * Math.PI) / 360));
+  return `width: ${width}\nheight: ${height}\nfx: ${focal.toFixed(3)}\nfy: ${focal.toFixed(3)}\ncx: ${(width - 1) / 2}\ncy: ${(height - 1) / 2}\n`;
+}
+
 export class Recorder {
   readonly name: string;
   private readonly chunks: Blob[] = [];

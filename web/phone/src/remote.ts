@@ -1,5 +1,5 @@
 // Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/reference/phone-protocol.md). At most
-// IN_FLIGHT images are unanswered; main.ts then skips to the newest.
+// IN_FLIGHT images are unanswered; control.ts then skips to the newest.
 import type { Frame, Pose } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
 import type { Saved, Start } from './protocol.ts';
@@ -30,7 +30,6 @@ export class RemoteEngine implements Engine {
   private start: Omit<Start, 'kind' | 'base' | 'threads'> | null = null;
   private readonly sent = new Map<number, { time: number; bitmap: ImageBitmap; turn: number }>();
   private pending: Uint8Array[] = []; // messages since the last frame's result
-  private other = false; // the next hello belongs to a new map
   private begun: { resolve(): void; reject(error: Error): void } | null = null;
 
   constructor(private readonly hooks: Hooks) {}
@@ -55,13 +54,6 @@ export class RemoteEngine implements Engine {
   ask(what: Saved): Promise<Uint8Array<ArrayBuffer>> {
     if (what === 'finish') return Promise.resolve(new Uint8Array());
     return Promise.reject(new Error('it is on the computer that does the work'));
-  }
-
-  // Call after a hello: whether it belongs to another map than before the connection was lost.
-  beginsAnew(): boolean {
-    const { other } = this;
-    this.other = false;
-    return other;
   }
 
   close(): void {
@@ -153,7 +145,7 @@ export class RemoteEngine implements Engine {
     if (told.welcome) {
       this.open = true;
       this.tries = 0;
-      this.other = told.resumed !== true;
+      if (!this.begun && told.resumed !== true) this.hooks.anew();
       this.number = Math.max(this.number, (told.last ?? -1) + 1);
       this.hooks.lost('');
       this.begun?.resolve();

@@ -1,5 +1,5 @@
 // Dialog to save results: downloads each file, or shares it with another app where the browser supports this.
-import { byId, make } from '../../viewer/src/dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 
 export interface Offer { name: string; what: string; bytes(): Promise<Blob> }
 

@@ -1,5 +1,5 @@
 // The user's choices, stored on the device.
-import { byId } from '../../viewer/src/dom.ts';
+import { byId } from '../../shared/src/dom.ts';
 
 export interface Choices {
   fov: number | null; // horizontal, degrees; null: self-calibrated
@@ -9,7 +9,7 @@ export interface Choices {
 }
 
 const KEY = 'alidade-phone';
-const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
+export const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
 
 export function load(): Choices {
   try {

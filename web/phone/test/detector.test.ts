@@ -7,11 +7,11 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { USES } from '../../scene/src/messages.ts';
 import type { Browser, Page } from 'playwright-core';
-import { launch, open, SKIP, violations } from '../../viewer/test/browser.ts';
+import { launch, open, SKIP, violations } from '../../shared/test/browser.ts';
 import { readPng } from '../../scene/test/png.ts';
 import { DETECTOR, startSite } from './server.ts';
 import type { Site } from './server.ts';
-import { BITS, CELL, openRecording, writeY4m } from './y4m.ts';
+import { BITS, CELL, openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

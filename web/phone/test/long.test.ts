@@ -5,9 +5,9 @@ import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { launch, open, SKIP } from '../../viewer/test/browser.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
 import { startSite } from './server.ts';
-import { openRecording, writeY4m } from './y4m.ts';
+import { openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

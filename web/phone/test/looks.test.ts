@@ -7,11 +7,11 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
-import { launch, open, violations } from '../../viewer/test/browser.ts';
-import { BINARY, endAll, NO_PROGRAM, start } from '../../viewer/test/program.ts';
+import { launch, open, violations } from '../../shared/test/browser.ts';
+import { BINARY, endAll, NO_PROGRAM, start } from '../../shared/test/program.ts';
 import { startSite } from './server.ts';
 import type { Site } from './server.ts';
-import { DARK, openRecording, writeY4m } from './y4m.ts';
+import { DARK, openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

@@ -6,10 +6,10 @@ import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { launch, open, SKIP } from '../../viewer/test/browser.ts';
-import { BINARY, NO_PROGRAM } from '../../viewer/test/program.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
+import { BINARY, NO_PROGRAM } from '../../shared/test/program.ts';
 import { startSite } from './server.ts';
-import { grayOf, openRecording } from './y4m.ts';
+import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

@@ -7,12 +7,12 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { devices } from 'playwright-core';
 import type { Browser, Page } from 'playwright-core';
-import { CHROMIUM, differing, launch, open, screenshot, SKIP, violations } from '../../viewer/test/browser.ts';
+import { CHROMIUM, differing, launch, open, screenshot, SKIP, violations } from '../../shared/test/browser.ts';
 import type { Done, FromWorker } from '../src/protocol.ts';
 import { startSite } from './server.ts';
 import type { Site } from './server.ts';
-import { BITS, CELL, openRecording, writeY4m } from './y4m.ts';
-import type { Recording } from './y4m.ts';
+import { BITS, CELL, openRecording, writeY4m } from '../../shared/test/y4m.ts';
+import type { Recording } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

@@ -10,9 +10,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
 import { WebSocket } from 'ws';
-import { launch, open } from '../../viewer/test/browser.ts';
-import { endAll, NO_PROGRAM, start } from '../../viewer/test/program.ts';
-import { openRecording, writeY4m } from './y4m.ts';
+import { launch, open } from '../../shared/test/browser.ts';
+import { endAll, NO_PROGRAM, start } from '../../shared/test/program.ts';
+import { openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 

@@ -18,8 +18,8 @@ export const DETECTOR = join(process.env.ALIDADE_WASM ?? join(WEB, '../build-was
 
 export interface Site { address: string; close(): Promise<void> }
 
-// `more`: additional files, by name.
-export async function startSite(isolated: boolean, more: Readonly<Record<string, string>> = {}): Promise<Site> {
+// `more`: additional files, by name. `info`: replaces values of info.json.
+export async function startSite(isolated: boolean, more: Readonly<Record<string, string>> = {}, info: object = {}): Promise<Site> {
   const http = createServer((request, response) => {
     const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
     const name = path === '/' ? 'index.html' : path.slice(1);
@@ -31,7 +31,7 @@ export async function startSite(isolated: boolean, more: Readonly<Record<string,
     }
     if (name === 'info.json') { // the same as the program's
       response.setHeader('Content-Type', 'application/json');
-      return response.end(JSON.stringify({ mode: 'phone', connected: false, core: true, threads: existsSync(join(WEB, 'core/dist/threads/alidade.wasm')) }));
+      return response.end(JSON.stringify({ mode: 'phone', connected: false, core: true, threads: existsSync(join(WEB, 'core/dist/threads/alidade.wasm')), ...info }));
     }
     if (!existsSync(file)) {
       response.statusCode = 404;

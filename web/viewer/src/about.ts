@@ -1,4 +1,4 @@
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 
 declare const BUNDLED: readonly { name: string; version: string; licence: string }[]; // defined by tools/build.mjs
 

@@ -1,4 +1,4 @@
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 
 type Key = readonly [key: string, name: string, what: string, act: () => void];
 

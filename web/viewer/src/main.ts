@@ -1,9 +1,10 @@
 // The viewer's page: messages arrive, the player holds the state, and the parts draw it at most once per display frame.
 import { alignTruth, DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
-import type { Colours, ViewMode } from '@alidade/scene';
+import type { ViewMode } from '@alidade/scene';
+import { sceneColours } from '../../shared/src/colours.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 import { fillAbout } from './about.ts';
 import { Connection, query } from './connection.ts';
-import { byId, write } from './dom.ts';
 import { keys } from './keys.ts';
 import { layerSwitches, Panel } from './panel.ts';
 import { Picture } from './picture.ts';
@@ -228,19 +229,10 @@ function tick(now: number): void {
   requestAnimationFrame(tick);
 }
 
-function colours(): Colours {
-  const style = getComputedStyle(document.documentElement);
-  const of = (name: string) => style.getPropertyValue(name).trim();
-  return {
-    page: of('--space'), ink: of('--ink'), soft: of('--soft'), path: of('--path'), dot: of('--dot'), loop: of('--loop'), truth: of('--truth'),
-    camera: of('--fresh'), worst: of('--lost'),
-  };
-}
-
 const sizes = new ResizeObserver(layout);
 for (const id of ['scene', 'picture', 'panel']) sizes.observe(byId(id));
 onTheme(() => {
-  scene?.colours(colours());
+  scene?.colours(sceneColours());
   plot.make();
   timeline.refresh();
   picture.reset();

@@ -1,9 +1,10 @@
 // Panel: counts, state, run description, events.
 import { LAYERS } from '@alidade/scene';
 import type { Alignment, Event, LayerName, State } from '@alidade/scene';
-import { byId, make, write } from './dom.ts';
+import { byId, make, write } from '../../shared/src/dom.ts';
+import { STATE_WORDS } from '../../shared/src/words.ts';
 import type { Player } from './player.ts';
-import { clock, endText, eventText, reasonText, STATE_WORDS } from './words.ts';
+import { clock, endText, eventText, reasonText } from './words.ts';
 
 const LAYER_WORDS: Record<LayerName, string> = {
   path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Covisibility', loops: 'Loops',

@@ -1,9 +1,7 @@
 // The camera image with features, detections and outlines.
-import { USES } from '@alidade/scene';
+import { marks, USES } from '@alidade/scene';
 import type { Frame, State } from '@alidade/scene';
-import { byId, write } from './dom.ts';
-import { boxes, features, OLD, outlines } from './picture_marks.ts';
-import type { Canvas } from './picture_marks.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 
 const kPictureSeconds = 1; // seconds; programs send about ten images per second
 const MARKS = [...USES, 'things'] as const;
@@ -58,7 +56,7 @@ export class Picture {
     counts[USES.length] = frame?.detections.length ?? 0;
     this.counts.forEach((element, mark) => write(element, String(counts[mark])));
     const age = frame?.detectionAge ?? -1;
-    write(byId('things-age'), frame && frame.detections.length > 0 && age > OLD ? `${age.toFixed(1)} s ago` : '');
+    write(byId('things-age'), frame && frame.detections.length > 0 && age > marks.OLD ? `${age.toFixed(1)} s ago` : '');
     if (age >= 0) document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = false; // a detector is running
     if (frame?.picture) void this.decode(frame);
     else this.draw();
@@ -124,10 +122,10 @@ export class Picture {
     if (!frame) return;
     if (hasPicture) draw.drawImage(this.image!, 0, 0, w, h);
     const style = getComputedStyle(document.documentElement);
-    const on: Canvas = { draw, w, h, ratio, colour: (name) => style.getPropertyValue(name) };
-    if (this.visible.has('moving')) outlines(on, frame);
-    features(on, frame, this.visible);
-    if (this.visible.has('things')) boxes(on, frame, width, height);
+    const on: marks.Canvas = { draw, w, h, ratio, colour: (name) => style.getPropertyValue(name) };
+    if (this.visible.has('moving')) marks.outlines(on, frame);
+    marks.features(on, frame, this.visible);
+    if (this.visible.has('things')) marks.boxes(on, frame, width, height);
   }
 
   private movable(): void {

@@ -1,7 +1,7 @@
 // Processing time of each stage over the last frames, in milliseconds.
 import uPlot from 'uplot';
 import { STAGES } from '@alidade/scene';
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 import type { Player } from './player.ts';
 
 const FRAMES = 240;

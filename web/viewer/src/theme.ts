@@ -1,5 +1,5 @@
 // Light or dark theme: the system's until the user chooses.
-import { byId } from './dom.ts';
+import { byId } from '../../shared/src/dom.ts';
 
 const KEY = 'alidade-theme';
 

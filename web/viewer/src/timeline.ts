@@ -1,7 +1,7 @@
 // Timeline: the state of each frame, events as marks, and a handle to seek.
 import { STATES } from '@alidade/scene';
 import type { State } from '@alidade/scene';
-import { byId, write } from './dom.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 import type { Player } from './player.ts';
 import { clock, eventText } from './words.ts';
 

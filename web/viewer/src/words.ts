@@ -1,7 +1,6 @@
 // Texts for users: what the program is doing, and what to do.
-import type { Event, Frame, State, TrackingState } from '@alidade/scene';
-
-export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
+import type { Event, Frame, State } from '@alidade/scene';
+import { sentence } from '../../shared/src/words.ts';
 
 const ADVICE: readonly [RegExp, string][] = [
   [/hardly moves/, 'Move the camera sideways, slowly.'],
@@ -35,10 +34,6 @@ export function endText({ hello, frame, latest, keyframes }: State): { word: str
   if (latest?.state === 'tracking') return { word: 'Ended', reason: 'Tracked to the last frame.' };
   if (keyframes.size === 0) return { word: 'Ended', reason: `It did not start. ${why}`.trimEnd() };
   return { word: 'Ended', reason: `Lost at the last frame. ${why}`.trimEnd() };
-}
-
-function sentence(text: string): string {
-  return text && `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 }
 
 export function clock(seconds: number): string {

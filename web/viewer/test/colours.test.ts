@@ -27,7 +27,7 @@ function lab(rgb: number[]): number[] {
 }
 
 test('marks of different kinds are at least 20 apart in CIELAB, whatever cones one has', () => {
-  const css = readFileSync(join(WEB, 'viewer/src/palette.css'), 'utf8');
+  const css = readFileSync(join(WEB, 'shared/src/palette.css'), 'utf8');
   const kinds = ['matched', 'fresh', 'moving', 'things'];
   const colours = kinds.map((kind) => linear(new RegExp(`--${kind}: (#[0-9a-f]{6})`).exec(css)![1]));
   for (const [name, sight] of Object.entries(SIGHT)) {

@@ -4,7 +4,7 @@ import { test } from 'node:test';
 import type { MapChange, Message } from '@alidade/scene';
 import { encode } from '../../scene/test/encode.ts';
 import { Random } from '../../scene/test/sample.ts';
-import { launch, open, SKIP } from './browser.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
 import { startServer } from './server.ts';
 
 const KEYFRAMES = 2000, LANDMARKS = 125, POINTS = 125; // landmarks and semi-dense points per keyframe

@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Browser } from 'playwright-core';
 import type { LayerName } from '@alidade/scene';
-import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from './browser.ts';
+import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from '../../shared/test/browser.ts';
 import { encode } from '../../scene/test/encode.ts';
 import { startServer } from './server.ts';
 import type { Server, ServerSettings } from './server.ts';

@@ -5,9 +5,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
 import type { State } from '@alidade/scene';
-import { count, frames, launch, open, violations } from './browser.ts';
-import type { Opened } from './browser.ts';
-import { BINARY, endAll, inFolder, NO_PROGRAM, run, start, table } from './program.ts';
+import { count, frames, launch, open, violations } from '../../shared/test/browser.ts';
+import type { Opened } from '../../shared/test/browser.ts';
+import { BINARY, endAll, inFolder, NO_PROGRAM, run, start, table } from '../../shared/test/program.ts';
 
 const options = { skip: NO_PROGRAM, timeout: 600e3 };
 const ROOM = 'synth:room?frames=150';

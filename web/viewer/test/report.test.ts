@@ -3,8 +3,8 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
-import { differing, launch, open, screenshot, violations } from './browser.ts';
-import { endAll, inFolder, NO_PROGRAM, run } from './program.ts';
+import { differing, launch, open, screenshot, violations } from '../../shared/test/browser.ts';
+import { endAll, inFolder, NO_PROGRAM, run } from '../../shared/test/program.ts';
 
 const options = { skip: NO_PROGRAM, timeout: 600e3 };
 const PHONE = { viewport: { width: 400, height: 800 } };

@@ -1,6 +1,6 @@
-// Draws marks over the camera image.
-import { USES } from '@alidade/scene';
-import type { Frame } from '@alidade/scene';
+// Draws marks over a camera image: features, outlines of moving parts, detections.
+import { USES } from './messages.ts';
+import type { Frame } from './messages.ts';
 
 export interface Canvas {
   draw: CanvasRenderingContext2D;
