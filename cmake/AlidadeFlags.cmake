@@ -74,6 +74,7 @@ set(CMAKE_UNITY_BUILD_BATCH_SIZE 16 CACHE STRING "Files compiled in one go, at m
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
   # With paths relative to the sources, all clones share the cache.
+  # CCACHE_SLOPPINESS: required for precompiled headers.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
-      ${CCACHE_PROGRAM})
+      CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE_PROGRAM})
 endif()

@@ -105,4 +105,4 @@ def test_an_empty_map_says_so():
     slam = alidade.Slam(alidade.Camera.from_fov(160, 120, 60))
     assert slam.map().parts == [] and slam.trajectory().shape == (0, 8)
     with pytest.raises(alidade.UsageError, match="empty"):
-        slam.map().points  # pylint: disable=expression-not-assigned
+        _ = slam.map().points

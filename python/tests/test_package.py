@@ -7,7 +7,6 @@ import os
 import pathlib
 import pydoc
 import re
-import shutil
 import subprocess
 import sys
 

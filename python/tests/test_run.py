@@ -13,7 +13,7 @@ import numpy
 import pytest
 
 import alidade
-from conftest import DESK, play, read
+from conftest import DESK, read
 
 
 @pytest.mark.parametrize("sensor", ["mono", "rgbd"])

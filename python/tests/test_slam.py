@@ -242,7 +242,7 @@ def test_a_thousand_come_and_go():
             schedule = "threaded" if i % 4 == 0 else "inline"
             slam = alidade.Slam(camera, sensor="rgbd", schedule=schedule, detector=lambda seen: [])
             slam.track(0.0, image, depth=depth)
-            slam.map().points  # pylint: disable=expression-not-assigned
+            _ = slam.map().points
         del slam
         gc.collect()
 

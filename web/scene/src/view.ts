@@ -29,7 +29,7 @@ export class View {
     this.controls.addEventListener('controlstart', () => { this.touched = true; });
     this.controls.addEventListener('control', changed);
     this.controls.addEventListener('wake', changed);
-    this.controls.setLookAt(0, 1.2, 3, 0, 0, -2, false);
+    void this.controls.setLookAt(0, 1.2, 3, 0, 0, -2, false);
   }
 
   // Advances the animation; returns whether the change is visible.
