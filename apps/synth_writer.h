@@ -28,8 +28,8 @@ class SynthWriter {
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
                                              const Camera& camera, bool fisheye);
 
-// The folder of a recording, locked. The new one is gathered beside an earlier one of ours and takes
-// its place when it is whole; files that are not ours stay.
+// The folder of a recording, locked. The new one is gathered beside an earlier one of ours and
+// takes its place when it is whole; files that are not ours stay.
 class SynthFolder {
  public:
   // Makes the folder. Throws Error (input) when it holds anything else than a recording of ours.

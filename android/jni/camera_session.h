@@ -38,8 +38,8 @@ struct SessionNumbers {
 class CameraSession {
  public:
   // `settings`: lines of name=value, as after --set, on top of the phone profile. `detector`: ONNX
-  // file of a network that detects people (docs/guides/detectors.md), "" for none; opened in the session's
-  // thread, because that takes seconds. Throws Error for invalid arguments.
+  // file of a network that detects people (docs/guides/detectors.md), "" for none; opened in the
+  // session's thread, because that takes seconds. Throws Error for invalid arguments.
   CameraSession(int width, int height, const LensNumbers& lens, const std::string& settings,
                 const std::string& detector);
   ~CameraSession();  // requires that no other call is running

@@ -86,12 +86,12 @@ void WriteBag(const std::string& folder, const SlidingRecording& options) {
     const int64_t time = std::llround(1e9 * std::stod(SlidingStamp(i)));
     for (const bool depth : {false, true}) {
       const std::string format = depth ? "16UC1; compressedDepth png" : "png";
-      messages.push_back({depth ? "/depth/compressedDepth" : "/cam/compressed",
-                          "sensor_msgs/CompressedImage", time,
-                          CompressedMessage({true}, time, "camera", format,
-                                            (depth ? std::string(12, '\0') : "") +
-                                                ReadText(pictures / (depth ? "depth/" : "rgb/") +
-                                                         name))});
+      messages.push_back(
+          {depth ? "/depth/compressedDepth" : "/cam/compressed", "sensor_msgs/CompressedImage",
+           time,
+           CompressedMessage({true}, time, "camera", format,
+                             (depth ? std::string(12, '\0') : "") +
+                                 ReadText(pictures / (depth ? "depth/" : "rgb/") + name))});
     }
   }
   std::filesystem::create_directories(folder);
@@ -120,10 +120,10 @@ TEST(BatchCommand, ARecordingOrCalibrationThatWasReplacedIsRunAgain) {
   expect_begun(1);
   expect_begun(0);
   // Someone else's results are in its place.
-  ASSERT_EQ(RunAlidade({"run", kRoom + "15", "--sensor", "rgbd", "--out", out + "/w",
-                        "--overwrite"})
-                .status,
-            0);
+  ASSERT_EQ(
+      RunAlidade({"run", kRoom + "15", "--sensor", "rgbd", "--out", out + "/w", "--overwrite"})
+          .status,
+      0);
   const ProgramResult taken = Batch({list, "--out", out});
   EXPECT_EQ(taken.status, 1);
   EXPECT_THAT(taken.out, HasSubstr("--overwrite"));

@@ -1,5 +1,5 @@
-// Runs the fuzz targets on the seed corpus and on all inputs that ever failed (scripts/check/fuzz): every
-// file must be read or rejected as its name states, in every build and without libFuzzer.
+// Runs the fuzz targets on the seed corpus and on all inputs that ever failed (scripts/check/fuzz):
+// every file must be read or rejected as its name states, in every build and without libFuzzer.
 #include <gtest/gtest.h>
 
 #include <algorithm>

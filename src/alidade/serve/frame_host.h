@@ -21,7 +21,8 @@ using FrameTell = std::function<void(std::vector<FrameMessage> messages, bool la
 class FrameSeat {
  public:
   virtual ~FrameSeat() = default;
-  // A binary message of the page: a 16-byte header and a JPEG (docs/reference/phone-protocol.md). Does not block.
+  // A binary message of the page: a 16-byte header and a JPEG (docs/reference/phone-protocol.md).
+  // Does not block.
   virtual void Take(std::string bytes) = 0;
 };
 

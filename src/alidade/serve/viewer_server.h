@@ -51,9 +51,9 @@ class ViewerServer {
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
                                           const std::string& replay_path, const std::string& title);
 
-// Serves the phone page. `core_folder`: folder of the WebAssembly core (scripts/wasm/build: build-wasm);
-// empty: none. `frames`: processes images that pages send, must outlive the server; null: not
-// supported.
+// Serves the phone page. `core_folder`: folder of the WebAssembly core (scripts/wasm/build:
+// build-wasm); empty: none. `frames`: processes images that pages send, must outlive the server;
+// null: not supported.
 std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
                                              const std::string& core_folder, FrameHost* frames);
 // true when `core_folder` contains the variant ("single" or "threads") of the core.
