@@ -1,9 +1,5 @@
 // alidade batch: many recordings, each in a process and a folder of its own, and a table of all.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -14,6 +10,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/run/batch_compare.h"
 #include "alidade/run/batch_process.h"
+#include "alidade/run/folder_lock.h"
 #include "alidade/run/loop.h"
 #include "batch_arguments.h"
 #include "program/terminal.h"
@@ -53,25 +50,6 @@ std::string Tracked(const BatchFolder& folder, const BatchItem& item) {
   if (row.ate) std::snprintf(text + length, sizeof(text) - length, ", ATE %.4f m", *row.ate);
   return text;
 }
-
-// One batch at a time in a folder.
-class FolderLock {
- public:
-  explicit FolderLock(const std::string& folder)
-      : fd_(open((folder + "/done").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    errno = 0;
-    if (fd_ >= 0 && !Occupy(fd_) && errno == EWOULDBLOCK)
-      ThrowInput(folder + ": another `alidade batch` is at work there");
-  }
-  ~FolderLock() {
-    if (fd_ >= 0) close(fd_);
-  }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
-
- private:
-  int fd_;
-};
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
@@ -168,7 +146,7 @@ bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
     std::printf("Not merged: there are fewer than two maps\n");
     return true;
   }
-  task.words.insert(task.words.end(), {"--out", folder.path() + "/merged"});
+  task.words.insert(task.words.end(), {"--out", folder.path() + "/merged", "--overwrite"});
   int status = 0;
   ProcessEvents events;
   events.ended = [&](size_t, const ProcessEnd& end) { status = end.status; };
@@ -209,7 +187,7 @@ int Batch(const BatchArguments& arguments) {
   if (arguments.only > 0) return RunOnly(arguments, folder, works);
   if (arguments.slurm) return SubmitToSlurm(arguments, folder, works);
   if (!arguments.table) {
-    const FolderLock lock(folder.path());
+    const FolderLock lock(folder.path() + "/batch.lock", folder.path() + ": ");
     if (todo.size() < works.size())
       std::printf("%zu of %zu recordings are done already\n", works.size() - todo.size(),
                   works.size());

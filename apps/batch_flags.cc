@@ -27,7 +27,7 @@ constexpr char kFooter[] =
     "end\n"
     "\nWhat is done (same words, files and program) is not done again: after Ctrl-C the same "
     "command goes on.\nLeaves a folder for each, batch.json, batch.md and compare.html in --out "
-    "(docs/batch.md). For times that compare: --jobs 1.\n"
+    "(docs/guides/batch.md). For times that compare: --jobs 1.\n"
     "Exit status 1: something failed or got worse.";
 
 // An option that says how much worse a figure may get.

@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
+#include "alidade/run/earlier_result.h"
 #include "alidade/run/loop.h"
 #include "batch_arguments.h"
 #include "program/arguments.h"
@@ -46,7 +47,12 @@ std::string ProgramMark() {
 std::vector<BatchWork> WorksOf(const BatchArguments& arguments) {
   const std::string mark = ProgramMark();
   std::vector<BatchWork> works;
-  for (BatchItem& item : ParseBatchList(ReadFile(arguments.list), arguments.list, arguments.more)) {
+  const auto is_others = [&](const std::string& name, const std::string& source) {
+    return IsTakenFrom(ReadEarlierResult(arguments.out + "/" + name + "/stats.json"),
+                       OwnerOf(source, false));
+  };
+  for (BatchItem& item :
+       ParseBatchList(ReadFile(arguments.list), arguments.list, arguments.more, is_others)) {
     try {
       const RunOptions options = OptionsOf(item);
       BatchWork work;
@@ -63,8 +69,10 @@ std::vector<BatchWork> WorksOf(const BatchArguments& arguments) {
 
 bool IsDone(const BatchFolder& folder, const BatchWork& work) {
   const std::optional<BatchDone> done = folder.DoneOf(work.item);
-  return done && done->status == 0 && done->fingerprint == work.fingerprint &&
-         IsFile(folder.ResultOf(work.item) + "/stats.json");
+  if (!done || done->status != 0 || done->fingerprint != work.fingerprint) return false;
+  // Another run may have been sent there since.
+  const auto result = ReadEarlierResult(folder.ResultOf(work.item) + "/stats.json");
+  return result && result->complete && result->owner.source == SourceOf(work.item);
 }
 
 std::string OwnProgram() {

@@ -1,5 +1,4 @@
-// `alidade bench` of earlier versions: says that it is a program of its own now. Goes with the next
-// version.
+// `alidade-bench`: how long the parts take, in milliseconds and in U (docs/benchmarks/index.md).
 #include <CLI/CLI.hpp>
 
 #include "alidade/base/error.h"

@@ -15,6 +15,7 @@
 #include "alidade/run/find_camera.h"
 #include "alidade/run/loop.h"
 #include "alidade/run/options.h"
+#include "alidade/run/own_files.h"
 #include "alidade/run/unknown_camera.h"
 #include "commands.h"
 #include "program/terminal.h"
@@ -25,8 +26,29 @@ namespace {
 struct CalibrateOptions {
   std::vector<std::string> sources;
   std::string out = "camera.yaml";
+  bool overwrite = false;
   RunOptions run;
 };
+
+// How the file begins, and by that is known to be of these recordings.
+std::string HeadOf(const CalibrateOptions& options) {
+  std::string head = "Found by alidade calibrate from";
+  for (const std::string& source : options.sources) head += "\n" + source;
+  return head;
+}
+
+// Before the work: a calibration of something else, or one that somebody wrote, does not give way.
+void CheckIsFree(const CalibrateOptions& options) {
+  if (options.overwrite || !IsThere(options.out)) return;
+  CheckIsNoResult(options.out);
+  std::string head = "# " + HeadOf(options) + "\nfield of view";
+  for (size_t at = 2; (at = head.find('\n', at)) != std::string::npos; at += 3)
+    head.insert(at + 1, "# ");
+  if (IsFile(options.out) && ReadFile(options.out).rfind(head, 0) == 0) return;
+  ThrowInput(options.out +
+             " is there and is not of these recordings: name another with --out, or give "
+             "--overwrite to replace it");
+}
 
 CameraFound Calibrate(const std::string& source, const CalibrateOptions& options,
                       const RunSettings& settings, Terminal& terminal) {
@@ -74,6 +96,7 @@ CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings
 
 int CalibrateCommand(const CalibrateOptions& options) {
   CatchInterrupts();
+  CheckIsFree(options);
   RunSettings settings = SettingsFrom(options.run);
   settings.slam.WaryOfTurns();
   SetThreadCount(options.run.threads);
@@ -103,15 +126,13 @@ int CalibrateCommand(const CalibrateOptions& options) {
     throw Error(
         ErrorKind::kNothingMapped,
         "the camera stays unknown: move it sideways and turn it, before things near and far "
-        "(docs/calibration.md)");
+        "(docs/guides/calibration.md)");
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
-  std::string from;
-  for (const std::string& source : options.sources) from += "\n" + source;
   AtomicWriteFile(options.out,
-                  FormatCameraFile(all.camera, "Found by alidade calibrate from" + from +
-                                                   "\nfield of view " + CameraInWords(all) +
+                  FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " +
+                                                   CameraInWords(all) +
                                                    (all.known ? "" : "\nnot known for certain")));
   if (!options.run.quiet)
     std::printf("Written to %s: alidade run RECORDING --camera %s\n", options.out.c_str(),
@@ -132,6 +153,8 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
       ->type_name("PATH");
   command->add_option("--out", options->out, "Calibration to write (camera.yaml)")
       ->type_name("FILE");
+  command->add_flag("--overwrite", options->overwrite,
+                    "Replace what is there, even a calibration of other recordings");
   command
       ->add_option("--fov", options->run.fov,
                    "Horizontal field of view to begin with, degrees (66 along the longer side)")

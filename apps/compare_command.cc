@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/comparison.h"
+#include "alidade/run/own_files.h"
 #include "commands.h"
 
 namespace alidade {
@@ -17,7 +19,18 @@ struct CompareArguments {
   std::string out = "compare.html";
 };
 
+// An earlier page gives way; anything else of that name is somebody's.
+void CheckIsFree(const std::string& path) {
+  CheckIsNoResult(path);
+  if (!IsFile(path)) return;
+  const std::string page = ReadFile(path);
+  if (page.rfind("<!doctype html>", 0) == 0 && page.find(" runs compared</title>") < page.size())
+    return;
+  ThrowInput(path + " is there and is no page of `alidade compare`: name another with --out");
+}
+
 int Compare(const CompareArguments& arguments) {
+  CheckIsFree(arguments.out);
   std::vector<ComparedFolder> folders;
   for (const std::string& result : arguments.results) folders.push_back({result, ""});
   AtomicWriteFile(arguments.out, CompareResults(folders));

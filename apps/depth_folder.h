@@ -1,4 +1,4 @@
-// The semi-dense depth in the folder `alidade run --semidense` left (docs/formats.md).
+// The semi-dense depth in the folder `alidade run --semidense` left (docs/guides/shape.md).
 #pragma once
 
 #include <opencv2/core.hpp>

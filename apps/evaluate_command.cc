@@ -13,6 +13,7 @@
 #include "alidade/evaluation/rpe.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/truth.h"
 #include "commands.h"
 #include "evaluate_depth.h"
 #include "program/arguments.h"
@@ -20,27 +21,42 @@
 namespace alidade {
 namespace {
 
-using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+using json = nlohmann::ordered_json;  // in the order of docs/reference/evaluation.md
 
 struct EvaluateOptions {
   std::string truth, estimate;  // paths
-  std::string align = "se3", association = "tum", delta = "1s", pairs = "all";
+  std::string align = "auto", association = "tum", delta = "1s", pairs = "all";
   double max_dt = 0.02;
   bool as_json = false;
 };
 
-Alignment ParseAlignment(const std::string& word) {
-  return Choice<Alignment>(
-      "--align", word,
-      {{"se3", Alignment::kSe3}, {"sim3", Alignment::kSim3}, {"none", Alignment::kNone}});
+std::filesystem::path Beside(const std::string& path, const char* name) {
+  const std::filesystem::path folder(path);
+  return (IsFolder(path) ? folder : folder.parent_path()) / name;
+}
+
+// A JSON object beside what is judged; empty: there is none.
+json NotesBeside(const std::string& estimate, const char* name) {
+  const std::string path = Beside(estimate, name).string();
+  if (!IsFile(path)) return json::object();
+  json notes = json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
+  return notes.is_object() ? notes : json::object();
+}
+
+// As `run`, or `merge`, noted it beside the trajectory; empty: nobody did.
+std::string SensorOf(const std::string& estimate) {
+  for (const char* name : {"stats.json", "merge.json"}) {
+    const json notes = NotesBeside(estimate, name);
+    if (notes.contains("sensor") && notes["sensor"].is_string())
+      return notes["sensor"].get<std::string>();
+  }
+  return {};
 }
 
 // The span of the recording as `run` noted it beside the trajectory it wrote.
-std::optional<TimeSpan> SpanFromStats(const std::filesystem::path& stats_path) {
-  if (!IsFile(stats_path.string())) return std::nullopt;
-  const json stats =
-      json::parse(ReadFile(stats_path.string()), nullptr, /*allow_exceptions=*/false);
-  if (!stats.is_object() || !stats.contains("span")) return std::nullopt;
+std::optional<TimeSpan> SpanFromStats(const std::string& estimate) {
+  const json stats = NotesBeside(estimate, "stats.json");
+  if (!stats.contains("span")) return std::nullopt;
   const json& span = stats["span"];
   if (!span.is_array() || span.size() != 2 || !span[0].is_number() || !span[1].is_number()) {
     return std::nullopt;
@@ -66,12 +82,8 @@ std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path
 
 // First and last frame of the recording; unknown for a truth and an estimate that lie alone.
 std::optional<TimeSpan> SourceSpan(const EvaluateOptions& options) {
-  const auto beside = [](const std::string& path, const char* name) {
-    const std::filesystem::path folder(path);
-    return (IsFolder(path) ? folder : folder.parent_path()) / name;
-  };
-  if (const auto span = SpanFromStats(beside(options.estimate, "stats.json"))) return span;
-  return SpanFromImageList(beside(options.truth, "rgb.txt"));
+  if (const auto span = SpanFromStats(options.estimate)) return span;
+  return SpanFromImageList(Beside(options.truth, "rgb.txt"));
 }
 
 json ToJson(const ErrorStatistics& s, double scale, double coverage) {
@@ -79,9 +91,19 @@ json ToJson(const ErrorStatistics& s, double scale, double coverage) {
           {"min", s.min}, {"max", s.max},   {"scale", scale}, {"coverage", coverage}};
 }
 
+void AddAlignment(const ChosenAlignment& chosen, json& all) {
+  all["align"] = NameOf(chosen.align);
+  all["align_why"] = chosen.why;
+}
+
 void PrintRow(const char* name, const ErrorStatistics& s) {
   std::printf("%-12s %11.6f %11.6f %11.6f %11.6f %11.6f %11.6f\n", name, s.rmse, s.mean, s.median,
               s.std, s.min, s.max);
+}
+
+void PrintAlignment(const ChosenAlignment& chosen, double scale, const Trajectory& truth,
+                    const Trajectory& estimate, const EvaluateOptions& options) {
+  std::printf("%s\n\n", InWords(chosen, scale, truth, estimate, options.max_dt).c_str());
 }
 
 void PrintHead() {
@@ -89,17 +111,11 @@ void PrintHead() {
               "max");
 }
 
-std::string DescribeAlignment(Alignment align, double scale) {
-  if (align == Alignment::kNone) return "not aligned";
-  if (align == Alignment::kSe3) return "aligned by SE(3)";
-  char text[64];
-  std::snprintf(text, sizeof(text), "aligned by Sim(3), scale %.6f", scale);
-  return text;
-}
-
 int EvaluateAteCommand(const EvaluateOptions& options) {
   AteSettings settings;
-  settings.align = ParseAlignment(options.align);
+  const ChosenAlignment chosen =
+      AlignmentNamed("--align", options.align, SensorOf(options.estimate));
+  settings.align = chosen.align;
   settings.association =
       Choice<Association>("--association", options.association,
                           {{"tum", Association::kTum}, {"evo", Association::kEvo}});
@@ -109,15 +125,16 @@ int EvaluateAteCommand(const EvaluateOptions& options) {
   const Trajectory truth = ReadTrajectory(options.truth);
   const Trajectory estimate = ReadEstimate(options.estimate);
   const AteResult result = EvaluateAte(truth, estimate, settings);
-  const double scale = result.T_truth_estimate.s;
   if (options.as_json) {
-    std::printf("%s\n", ToJson(result.error, scale, result.coverage).dump(2).c_str());
+    json all = ToJson(result.error, result.T_truth_estimate.s, result.coverage);
+    AddAlignment(chosen, all);
+    std::printf("%s\n", all.dump(2).c_str());
     return 0;
   }
   std::printf("absolute trajectory error of %s\n", options.estimate.c_str());
-  std::printf("%d of %zu poses matched to the truth, %s; coverage %.1f %%\n\n", result.error.n,
-              estimate.size(), DescribeAlignment(settings.align, scale).c_str(),
-              100 * result.coverage);
+  std::printf("%d of %zu poses matched to the truth; coverage %.1f %%\n", result.error.n,
+              estimate.size(), 100 * result.coverage);
+  PrintAlignment(chosen, result.T_truth_estimate.s, truth, estimate, options);
   PrintHead();
   PrintRow("metres", result.error);
   return 0;
@@ -135,7 +152,9 @@ void ParseDelta(const std::string& word, RpeSettings& settings) {
 
 int EvaluateRpeCommand(const EvaluateOptions& options) {
   RpeSettings settings;
-  settings.align = ParseAlignment(options.align);
+  const ChosenAlignment chosen =
+      AlignmentNamed("--align", options.align, SensorOf(options.estimate));
+  settings.align = chosen.align;
   settings.pairs = Choice<PairSelection>(
       "--pairs", options.pairs,
       {{"all", PairSelection::kAll}, {"consecutive", PairSelection::kConsecutive}});
@@ -143,19 +162,21 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
   ParseDelta(options.delta, settings);
   settings.Check();
   settings.source_span = SourceSpan(options);
-  const RpeResult result =
-      EvaluateRpe(ReadTrajectory(options.truth), ReadEstimate(options.estimate), settings);
+  const Trajectory truth = ReadTrajectory(options.truth);
+  const Trajectory estimate = ReadEstimate(options.estimate);
+  const RpeResult result = EvaluateRpe(truth, estimate, settings);
   if (options.as_json) {
-    const json both = {{"trans", ToJson(result.trans, result.scale, result.coverage)},
-                       {"rot", ToJson(result.rot, result.scale, result.coverage)}};
+    json both = {{"trans", ToJson(result.trans, result.scale, result.coverage)},
+                 {"rot", ToJson(result.rot, result.scale, result.coverage)}};
+    AddAlignment(chosen, both);
     std::printf("%s\n", both.dump(2).c_str());
     return 0;
   }
   std::printf("relative pose error of %s over %s\n", options.estimate.c_str(),
               options.delta.c_str());
-  std::printf("%d %s pairs, scale %.6f; coverage %.1f %%\n\n", result.trans.n,
-              options.pairs == "all" ? "overlapping" : "consecutive", result.scale,
-              100 * result.coverage);
+  std::printf("%d %s pairs; coverage %.1f %%\n", result.trans.n,
+              options.pairs == "all" ? "overlapping" : "consecutive", 100 * result.coverage);
+  PrintAlignment(chosen, result.scale, truth, estimate, options);
   PrintHead();
   PrintRow("metres", result.trans);
   PrintRow("degrees", result.rot);
@@ -176,8 +197,9 @@ void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
       ->type_name("PATH");
   command
       .add_option("--align", options.align,
-                  "se3: rotate and shift; sim3: scale as well (one camera); none")
-      ->type_name("se3|sim3|none")
+                  "se3: rotate and shift; sim3: scale as well; none; auto: sim3 where the estimate's "
+                  "stats.json says one camera, else se3")
+      ->type_name("auto|se3|sim3|none")
       ->capture_default_str();
   command.add_option("--max-dt", options.max_dt, "Largest difference of matched time stamps")
       ->type_name("SECONDS")
@@ -204,7 +226,7 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       "\nExamples:\n"
       "  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n"
       "  alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n"
-      "\nJSON: n, rmse, mean, median, std, min, max (metres), scale, coverage.");
+      "\nJSON: n, rmse, mean, median, std, min, max (metres), scale, coverage, align, align_why.");
   ate->callback(
       [options, &action] { action = [options] { return EvaluateAteCommand(*options); }; });
 

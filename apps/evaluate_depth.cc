@@ -19,7 +19,7 @@
 namespace alidade {
 namespace {
 
-using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+using json = nlohmann::ordered_json;  // in the order of docs/reference/evaluation.md
 
 struct Options {
   std::string sequence, result;  // as typed
@@ -152,9 +152,12 @@ void PrintRow(const std::string& name, const DepthScore& s) {
               Percent(s.density_gradient).c_str(), Percent(s.edge_coverage).c_str());
 }
 
-std::string DescribeScales(const Evaluation& evaluation) {
-  if (!evaluation.fit_scale) return "not scaled";
-  std::string text = "scaled by";
+std::string DescribeScales(const Evaluation& evaluation, const Options& options) {
+  const std::string why = options.scale != "auto" ? "--scale"
+                          : evaluation.fit_scale  ? "one camera"
+                                                  : "depth or stereo";
+  if (!evaluation.fit_scale) return "not scaled (" + why + ")";
+  std::string text = "scaled (" + why + ") by";
   for (const double scale : evaluation.result.scales) {
     char number[32];
     std::snprintf(number, sizeof(number), " %.6f", scale);
@@ -168,7 +171,7 @@ void PrintTable(const Evaluation& evaluation, const Options& options) {
   std::printf("semi-dense depth of %s, against %s\n", options.result.c_str(),
               evaluation.rendered ? "exact (rendered) depth" : "a sensor's depth");
   std::printf("%zu keyframes, %s; relative errors and shares in %%\n\n", evaluation.files.size(),
-              DescribeScales(evaluation).c_str());
+              DescribeScales(evaluation, options).c_str());
   PrintHead("");
   PrintRow("all pixels", result.overall.all);
   PrintRow("depth-continuous", result.overall.continuous);

@@ -17,7 +17,7 @@
 namespace alidade {
 namespace {
 
-using json = nlohmann::ordered_json;  // in the order of docs/formats.md
+using json = nlohmann::ordered_json;  // in the order of docs/reference/map.md
 
 struct InfoOptions {
   std::string map;  // path

@@ -20,7 +20,7 @@ namespace {
 struct MergeArguments {
   std::vector<std::string> maps;
   std::string out;
-  bool quiet = false;
+  bool overwrite = false, quiet = false;
 };
 
 // "monday, tuesday and friday"
@@ -53,7 +53,7 @@ int Merge(const MergeArguments& arguments) {
   if (!arguments.out.empty() && places.map == arguments.out && IsFolder(arguments.out))
     ThrowUsage("--out " + arguments.out + " is a folder, though it is called as a map is");
   const std::vector<MergeInput> inputs = ReadMergeInputs(arguments.maps);
-  CheckMergePlaces(places, inputs);
+  CheckMergePlaces(places, inputs, arguments.overwrite);
   Terminal terminal(arguments.quiet);
   Stopwatch clock;
   double shown_at = -1e9;
@@ -88,6 +88,8 @@ void AddMergeCommand(CLI::App& app, Action& action) {
                    "trajectories")
       ->type_name("MAP")
       ->required();
+  command->add_flag("--overwrite", arguments->overwrite,
+                    "Replace what is there, even a map of other recordings");
   command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
   command->footer(
       "\nExamples:\n"
@@ -97,7 +99,7 @@ void AddMergeCommand(CLI::App& app, Action& action) {
       "\nWhat shows one place is joined, whatever order it is given in; what does not stays a map "
       "of its own in the same\nfile, and that is said. The world of the largest map is the common "
       "one. Trajectories in it: NAME.txt for each\nrecording, of all frames where a folder is "
-      "given, of keyframes where a map is (docs/merge.md).");
+      "given, of keyframes where a map is (docs/guides/several-maps.md).");
   command->callback([arguments, &action] { action = [arguments] { return Merge(*arguments); }; });
 }
 

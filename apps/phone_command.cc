@@ -126,7 +126,7 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
       "code\n"
       "  alidade phone --host 0.0.0.0 --tls --connected --out maps\n"
       "                                                 the same, and the work is done here\n"
-      "\nPrints the address, and goes on until Ctrl-C. docs/phone.md tells the rest.");
+      "\nPrints the address, and goes on until Ctrl-C. docs/guides/phone.md tells the rest.");
   command->callback([arguments, &action] { action = [arguments] { return Phone(*arguments); }; });
 }
 

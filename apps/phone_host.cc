@@ -1,5 +1,6 @@
 #include "phone_host.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -166,8 +167,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     const TrackResult& result = frame.result;
     nlohmann::json told = {{"frame", number},
                            {"state", NameOfState(result.state)},
-                           {"reason", result.state == TrackState::kTracking ? "" : result.reason},
-                           {"predicted", result.predicted},
+                           {"reason", result.state == TrackState::kTracking ? "" : result.reason()},
                            {"milliseconds", frame.milliseconds},
                            {"keyframes", frame.keyframes},
                            {"landmarks", frame.landmarks},
@@ -176,13 +176,16 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
                            {"fov", frame.fov},
                            {"fovSigma", frame.fov_sigma},
                            {"pose", nullptr},
+                           {"predicted", nullptr},
                            {"skipped", false}};
-    if (result.state == TrackState::kTracking || result.predicted) {
-      const Eigen::Quaterniond q(result.T_world_camera.R);
-      const Eigen::Vector3d& t = result.T_world_camera.t;
-      told["pose"] = {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()};
-    }
+    if (result.state == TrackState::kTracking) told["pose"] = NumbersOf(result.T_world_camera);
+    if (result.predicted) told["predicted"] = NumbersOf(*result.predicted);
     return told;
+  }
+
+  static std::array<double, 7> NumbersOf(const Se3& pose) {
+    const Eigen::Quaterniond q(pose.R);
+    return {q.x(), q.y(), q.z(), q.w(), pose.t.x(), pose.t.y(), pose.t.z()};
   }
 
   void Write() {

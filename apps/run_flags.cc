@@ -21,7 +21,8 @@ constexpr char kExamples[] =
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
     "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
-    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ (docs/formats.md).";
+    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ "
+    "(docs/reference/run-folder.md).";
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
@@ -91,8 +92,17 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
       .add_option("--host", options.host,
                   "Address the viewer listens on (127.0.0.1: this machine only)")
       ->type_name("ADDRESS");
-  command.add_option("--out", options.out, "Folder for the results (alidade-out/NAME)")
+  command
+      .add_option("--out", options.out,
+                  options.localise
+                      ? "Folder for the results (alidade-out/NAME-localized, or -2, -3, … where that "
+                        "is another source's)"
+                      : "Folder for the results (alidade-out/NAME, or NAME-2, NAME-3, … where that "
+                        "is another source's)")
       ->type_name("FOLDER");
+  command.add_flag("--overwrite", options.overwrite,
+                   "Replace the results in the folder, even those of another source, of a longer "
+                   "run, or of one that ended better");
   command.add_option("--first", options.first, "First frame, counted from 0")->type_name("N");
   command.add_option("--last", options.last, "Last frame, included")->type_name("N");
   command

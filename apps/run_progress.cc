@@ -14,7 +14,7 @@ constexpr double kInterval = 200;  // ms between two updates
 
 const char* NameOf(TrackState state) {
   switch (state) {
-    case TrackState::kInitialising:
+    case TrackState::kInitializing:
       return "initialising";
     case TrackState::kTracking:
       return "tracking";

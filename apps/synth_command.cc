@@ -90,13 +90,12 @@ int RenderAll(SynthArguments arguments) {
   }
   if (format != SynthFormat::kTum && settings.fisheye)
     ThrowUsage("--fisheye needs --format tum: the others are stereo");
-  PrepareSynthFolder(arguments.out);
-  const std::string marker = arguments.out + "/" + kSynthMarker;
+  SynthFolder folder(arguments.out);
+  const std::string marker = folder.draft() + "/" + kSynthMarker;
   ordered_json about = {{"program", "alidade synth"}, {"settings", Describe(settings)}};
-  AtomicWriteFile(marker, about.dump(2) + "\n");
 
   const SynthRecording recording(settings);
-  const auto writer = MakeSynthWriter(format, arguments.out, recording.camera(), settings.fisheye);
+  const auto writer = MakeSynthWriter(format, folder.draft(), recording.camera(), settings.fisheye);
   StatisticsCollector statistics(settings.fps);
   const bool progress = !arguments.quiet && isatty(STDERR_FILENO) != 0;
   for (int i = 0; i < recording.frames(); ++i) {
@@ -114,6 +113,7 @@ int RenderAll(SynthArguments arguments) {
   const SynthStatistics result = statistics.Result();
   about["statistics"] = Describe(result);
   AtomicWriteFile(marker, about.dump(2) + "\n");
+  folder.Place();
   if (!arguments.quiet) Print(result, arguments);
   return 0;
 }

@@ -1,10 +1,13 @@
-// Writes rendered recordings to disk, laid out as known datasets are (docs/formats.md), with depth
-// and masks always.
+// Writes rendered recordings to disk, laid out as known datasets are (docs/reference/sources.md),
+// with depth and masks always.
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "alidade/run/draft_folder.h"
+#include "alidade/run/folder_lock.h"
 #include "alidade/synth/recording.h"
 
 namespace alidade {
@@ -25,9 +28,20 @@ class SynthWriter {
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
                                              const Camera& camera, bool fisheye);
 
-// Makes the folder, or clears an earlier recording of ours out of it. Throws Error (input) when it
-// holds anything else.
-void PrepareSynthFolder(const std::string& folder);
+// The folder of a recording, locked. The new one is gathered beside an earlier one of ours and takes
+// its place when it is whole; files that are not ours stay.
+class SynthFolder {
+ public:
+  // Makes the folder. Throws Error (input) when it holds anything else than a recording of ours.
+  explicit SynthFolder(const std::string& path);
+  const std::string& draft() const { return draft_->path(); }
+  void Place();  // throws Error (input)
+
+ private:
+  const std::string path_;
+  std::optional<FolderLock> lock_;
+  std::optional<DraftFolder> draft_;
+};
 
 // The file that says a folder is ours.
 inline constexpr char kSynthMarker[] = "synth.json";

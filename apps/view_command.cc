@@ -62,9 +62,10 @@ std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& pa
 
 int View(const ViewArguments& arguments) {
   if (IsMcap(arguments.what))
-    ThrowInput(arguments.what +
-               ": MCAP files are for Foxglove, Lichtblick, Rerun and ros2 (docs/mcap.md); `alidade "
-               "view` shows results, run.stream and maps");
+    ThrowInput(
+        arguments.what +
+        ": MCAP files are for Foxglove, Lichtblick, Rerun and ros2 (docs/guides/mcap.md); `alidade "
+        "view` shows results, run.stream and maps");
   const std::string recorded = StreamIn(arguments.what);
   std::unique_ptr<StillHub> hub;
   if (recorded.empty()) {

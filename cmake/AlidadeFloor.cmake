@@ -1,6 +1,6 @@
-# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are compiled
-# several at a time (see AlidadeFlags); those named APART one by one: long ones, or with names their neighbours have too.
-# Its link list is the floor plan of docs/architecture.md; tests/architecture_test holds the includes to it.
+# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are
+# compiled several at a time (see AlidadeFlags), except those listed in APART: long files, and files whose names clash
+# with others'. LINKS is the floor plan of docs/development/architecture.md; tests/architecture_test checks the includes against it.
 function(alidade_floor NAME)
   cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
   file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)
@@ -18,11 +18,13 @@ function(alidade_floor NAME)
   set_property(GLOBAL APPEND PROPERTY ALIDADE_FLOORS alidade_${NAME})
 endfunction()
 
-# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program, each test known to CTest and, but for
-# end-to-end tests, labelled with its folder. Tests are compiled several files at a time: each has a namespace of its own, alidade::FILE.
-# Problem generators shared with the benchmarks are in tests/problems.
-# With FOLDERS, those instead of FOLDER: small ones whose tests are one program.
-# With END_TO_END the tests get that label, and are no part of the target unit_tests.
+# alidade_test(FOLDER LINKS ...): tests/FOLDER/*_test.cc as one GoogleTest program. Each test is registered with CTest
+# under the folder's label. Tests are compiled several files at a time, so each file has its own namespace,
+# alidade::FILE. Problem generators shared with the benchmarks are in tests/problems.
+# With FOLDERS, the tests of several small folders are one program.
+# With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
+# All test programs share the precompiled header of the target tests_precompiled (tests/CMakeLists.txt): headers of
+# GoogleTest, Eigen and OpenCV took a third of the time to compile a test.
 function(alidade_test FOLDER)
   cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS" ${ARGN})
   if(NOT ARG_FOLDERS)
@@ -36,8 +38,8 @@ function(alidade_test FOLDER)
   add_executable(test_${FOLDER} ${SOURCES})
   target_include_directories(test_${FOLDER} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(test_${FOLDER} PRIVATE ${ARG_LINKS} GTest::gtest_main GTest::gmock)
-  # What is tested is compiled as it is used; the tests themselves are not what takes time.
-  target_compile_options(test_${FOLDER} PRIVATE $<$<CONFIG:Release>:-O1>)
+  target_compile_options(test_${FOLDER} PRIVATE ${ALIDADE_TEST_OPTIONS})
+  target_precompile_headers(test_${FOLDER} REUSE_FROM tests_precompiled)
   if(ARG_END_TO_END)
     gtest_discover_tests(test_${FOLDER} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 600 LABELS end_to_end
                          FIXTURES_REQUIRED recordings)

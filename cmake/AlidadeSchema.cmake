@@ -1,8 +1,8 @@
-# alidade_schema(NAME FILE): compiles src/alidade/NAME/FILE.fbs to the header "alidade/NAME/FILE_generated.h" for
-# alidade_NAME alone. FlatBuffers is header-only for us; its compiler runs on the build machine.
+# alidade_schema(NAME FILE): compiles src/alidade/NAME/FILE.fbs to the header "alidade/NAME/FILE_generated.h", for
+# alidade_NAME only. FlatBuffers is used header-only; its compiler runs on the build machine.
 find_program(FLATC_PROGRAM flatc REQUIRED)
 find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h PATHS /usr/include REQUIRED NO_CMAKE_FIND_ROOT_PATH)
-# Only these headers, not all of /usr/include: a cross-compiler must not see its neighbours.
+# Only these headers, because a cross-compiler must not see others of /usr/include.
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/generated)
 file(CREATE_LINK ${FLATBUFFERS_INCLUDE_DIR}/flatbuffers ${CMAKE_BINARY_DIR}/generated/flatbuffers SYMBOLIC)
 

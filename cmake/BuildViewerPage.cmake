@@ -1,7 +1,7 @@
-# cmake -DWEB=web -DNPM=npm -DMODE=ON -DOUT=page_files.cc -P: builds the viewer's page and makes it part of a C++ file. What fails
-# costs the page, not the build.
+# cmake -DWEB=web -DNPM=npm -DMODE=ON -DOUT=page_files.cc -P: builds the web pages and embeds them in a C++ file. On
+# failure the build continues without the pages.
 set(PROBLEM "")
-set(MARK ${WEB}/node_modules/.alidade-lock)  # the lock file that node_modules was made from
+set(MARK ${WEB}/node_modules/.alidade-lock)  # the lock file for which node_modules was installed
 
 function(run)
   if(PROBLEM)
@@ -42,8 +42,8 @@ if(PROBLEM)
   message("warning: built without the viewer's page: ${PROBLEM}; touch web/package.json to try again")
 endif()
 
-# The files, copied: those in web/ are of another build the next time. Assembled, not compiled: an array of a million
-# numbers takes seconds.
+# Copies the files, because those in web/ change with the next build. Embeds them by assembler, because compiling an
+# array of a million numbers takes seconds.
 get_filename_component(FOLDER ${OUT} DIRECTORY)
 set(FOLDER ${FOLDER}/page)
 file(REMOVE_RECURSE ${FOLDER})

@@ -1,4 +1,4 @@
-# Of ALIDADE_SOURCES/alidade, the headers that are the API, to ALIDADE_INCLUDES.
+# Installs the API headers of ALIDADE_SOURCES/alidade to ALIDADE_INCLUDES.
 file(GLOB_RECURSE HEADERS RELATIVE ${ALIDADE_SOURCES} ${ALIDADE_SOURCES}/alidade/*.h)
 foreach(HEADER ${HEADERS})
   file(STRINGS ${ALIDADE_SOURCES}/${HEADER} MARK REGEX "^namespace ALIDADE_API ")

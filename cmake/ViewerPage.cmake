@@ -1,6 +1,6 @@
-# alidade_viewer_page(OUT): makes the C++ file OUT that holds the files of the pages (web/viewer/dist, web/phone/dist), which npm
-# builds when Node.js is there; without, a plain page stands for it. Built again only when something in web/ has changed.
-# PREBUILT takes the pages as they are in web/: where packages are built there is no network (scripts/package/build).
+# alidade_viewer_page(OUT): generates the C++ file OUT with the files of the pages (web/viewer/dist, web/phone/dist).
+# They are built with npm if Node.js is available, else replaced by a plain page, and rebuilt when files in web/ change.
+# PREBUILT uses existing pages in web/, for package builds without network access (scripts/package/build).
 set(ALIDADE_WEB ON CACHE STRING "ON: build the pages with npm; PREBUILT: take those in web/*/dist; OFF: none")
 
 function(alidade_viewer_page OUT)
@@ -17,9 +17,9 @@ function(alidade_viewer_page OUT)
       endif()
     endif()
   endif()
-  # Not what npm puts there itself: node_modules, dist, generated.
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/viewer/src/*
-       ${WEB}/phone/src/* ${WEB}/core/src/*)
+  # Without the folders created by npm: node_modules, dist, generated.
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/shared/src/*
+       ${WEB}/viewer/src/* ${WEB}/phone/src/* ${WEB}/core/src/*)
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/BuildViewerPage.cmake)
   add_custom_command(
     OUTPUT ${OUT}

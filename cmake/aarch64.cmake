@@ -1,4 +1,4 @@
-# Debian's cross-compiler for 64-bit ARM, against the libraries that scripts/android/arm64-sysroot unpacks: what phones' processors compute, run by
+# Debian's cross-compiler for 64-bit ARM with the libraries unpacked by scripts/android/arm64-sysroot. The programs run in
 # qemu-aarch64-static. -DCMAKE_TOOLCHAIN_FILE=cmake/aarch64.cmake -DALIDADE_SYSROOT=FOLDER (preset aarch64)
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
@@ -13,7 +13,7 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 
-# Nobody configured the packages: LAPACK and BLAS are where their alternatives would point to.
+# The packages are not configured, so the alternatives of LAPACK and BLAS are missing: use their actual folders.
 set(LIBRARIES ${ALIDADE_SYSROOT}/usr/lib/aarch64-linux-gnu)
 set(ALIDADE_SYSROOT_PATHS ${LIBRARIES}:${LIBRARIES}/lapack:${LIBRARIES}/blas)
 set(FLAGS "-Wl,-rpath-link,${ALIDADE_SYSROOT_PATHS} -Wl,--allow-shlib-undefined")

@@ -1,6 +1,7 @@
-// A detector's file in a page, but for running its network, which onnxruntime does: what goes in,
-// and what its outputs mean. A module of its own, loaded only where people are left out. Called by
-// web/phone/src/detector_module.ts; no exception leaves it: alidade_detector_error() says why.
+// The part of a detector that runs in a web page besides the network itself (onnxruntime):
+// preparing the input and decoding the outputs. A separate module, loaded only when moving objects
+// are excluded. Called by web/phone/src/detector_module.ts. No exception leaves it;
+// alidade_detector_error() returns the reason of a failure.
 #include <emscripten.h>
 
 #include <exception>
@@ -14,7 +15,7 @@
 
 namespace {
 
-// The file that was opened last, and what was told of it.
+// The current model with its input and outputs.
 struct Opened {
   explicit Opened(std::string_view bytes) : model(bytes) {}
   alidade::YoloModel model;
@@ -53,7 +54,7 @@ extern "C" {
 
 EMSCRIPTEN_KEEPALIVE const char* alidade_detector_error() { return last_error.c_str(); }
 
-// Of the file's bytes, which may go afterwards. Below 0: it is no detector.
+// Parses an ONNX file's bytes, which need not outlive the call. Negative: not a detector.
 EMSCRIPTEN_KEEPALIVE int alidade_detector_open(const char* bytes, int size) {
   return Tried([&] {
     opened.reset();
@@ -63,12 +64,13 @@ EMSCRIPTEN_KEEPALIVE int alidade_detector_open(const char* bytes, int size) {
   });
 }
 
-// The network's input, 1 x 3 x height x width floats: a trial picture after open.
+// The network's input, 1 x 3 x height x width floats; after alidade_detector_open() that of the
+// trial run.
 EMSCRIPTEN_KEEPALIVE const float* alidade_detector_input() { return opened->input.ptr<float>(); }
 EMSCRIPTEN_KEEPALIVE int alidade_detector_width() { return opened->model.input().width; }
 EMSCRIPTEN_KEEPALIVE int alidade_detector_height() { return opened->model.input().height; }
 
-// Room for the network's output numbered `index`, of that shape; they are given in order.
+// Returns the buffer for output number `index` with the given shape. Call in order of `index`.
 EMSCRIPTEN_KEEPALIVE float* alidade_detector_output(int index, const int* shape, int sides) {
   size_t total = 1;
   for (int i = 0; i < sides; ++i) total *= static_cast<size_t>(shape[i]);
@@ -78,8 +80,8 @@ EMSCRIPTEN_KEEPALIVE float* alidade_detector_output(int index, const int* shape,
   return opened->outputs.emplace_back(total).data();
 }
 
-// By the outputs for the trial picture. Returns the number of the output that alidade_detector_read
-// takes; below 0: no detector that is known.
+// Detects the network's family from the outputs of the trial run. Returns the index of the output
+// that alidade_detector_read() expects; negative: unknown family.
 EMSCRIPTEN_KEEPALIVE int alidade_detector_recognise() {
   return Tried([&] {
     opened->model.Recognise(Outputs());
@@ -89,7 +91,7 @@ EMSCRIPTEN_KEEPALIVE int alidade_detector_recognise() {
   });
 }
 
-// Names of the classes, a line each.
+// Class names, one per line.
 EMSCRIPTEN_KEEPALIVE const char* alidade_detector_names() { return opened->names.c_str(); }
 
 // `pixels`: red green blue alpha.
@@ -103,8 +105,8 @@ EMSCRIPTEN_KEEPALIVE int alidade_detector_prepare(const uint8_t* pixels, int wid
   });
 }
 
-// Of the output given last (as number 0), for a picture of that size: class, score, x, y, width,
-// height (pixels of the picture) of each thing. Returns how many, at `*at`.
+// Decodes output 0 for an image of this size. Each detection has 6 floats at `*at`: class, score,
+// x, y, width, height (pixels of the image). Returns the number of detections.
 EMSCRIPTEN_KEEPALIVE int alidade_detector_read(int width, int height, const float** at) {
   return Tried([&] {
     opened->found.clear();

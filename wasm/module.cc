@@ -1,6 +1,6 @@
-// What JavaScript calls (web/core). Plain numbers and pointers into the module's memory; what is
-// told is read before the next call. No exception leaves it: calls that fail say so, and
-// alidade_error() why.
+// The functions that JavaScript calls (web/core). They pass numbers and pointers into the module's
+// memory; results must be read before the next call. No exception leaves the module: a failed call
+// returns an error value, and alidade_error() the reason.
 #include <emscripten.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 using alidade::PhoneFrame;
 using alidade::PhoneSlam;
 
-// One session, with what it told last.
+// One SLAM session with the buffers of its last results.
 struct Session {
   Session(std::unique_ptr<PhoneSlam> of, int width, int height)
       : slam(std::move(of)), pixels(static_cast<size_t>(width) * height * 4) {}
@@ -45,7 +45,7 @@ auto Guarded(Call&& call, decltype(call()) failed) -> decltype(call()) {
   return failed;
 }
 
-// [bytes of the first, those bytes, bytes of the second, …], lengths as 32 bits little endian.
+// Concatenated messages, each after its length as 32-bit little endian.
 std::string Joined(const std::vector<std::string>& messages) {
   std::string all;
   for (const std::string& message : messages) {
@@ -80,8 +80,9 @@ extern "C" {
 
 EMSCRIPTEN_KEEPALIVE const char* alidade_error() { return last_error.c_str(); }
 
-// `fov`: horizontal, degrees; 0: nothing is known. `settings`: lines of name=value, as after --set.
-// `classes`: of a detector whose answers will come (alidade_detected), a line each; empty: none.
+// `fov`: horizontal field of view, degrees; 0: unknown. `settings`: lines of name=value, as after
+// --set. `classes`: class names of an external detector (alidade_detected), one per line; empty:
+// none. Returns null on failure.
 EMSCRIPTEN_KEEPALIVE Session* alidade_new(int width, int height, double fov, int threads,
                                           const char* settings, const char* classes) {
   return Guarded(
@@ -114,17 +115,18 @@ EMSCRIPTEN_KEEPALIVE Session* alidade_new_calibrated(int width, int height, cons
 
 EMSCRIPTEN_KEEPALIVE void alidade_delete(Session* session) { delete session; }
 
-// Where the next picture is put: 4 bytes a pixel at most.
+// Buffer for the next image, up to 4 bytes per pixel.
 EMSCRIPTEN_KEEPALIVE uint8_t* alidade_pixels(Session* session) { return session->pixels.data(); }
 
-// The numbers of web/core's Frame, in order; null: alidade_error().
+// Returns the numbers of web/core's Frame, in order; null on failure.
 EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels, double time) {
   return Guarded(
       [&]() -> const double* {
         const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
-        session->reason = frame.result.reason;
-        const Eigen::Vector3d& t = frame.result.T_world_camera.t;
-        const Eigen::Quaterniond q(frame.result.T_world_camera.R);
+        session->reason = frame.result.reason();
+        const alidade::Se3 pose = frame.result.predicted.value_or(frame.result.T_world_camera);
+        const Eigen::Vector3d& t = pose.t;
+        const Eigen::Quaterniond q(pose.R);
         const bool placed =
             frame.result.state == alidade::TrackState::kTracking || frame.result.predicted;
         session->numbers = {static_cast<double>(frame.result.state),
@@ -156,7 +158,8 @@ EMSCRIPTEN_KEEPALIVE const char* alidade_reason(Session* session) {
   return session->reason.c_str();
 }
 
-// Of the last frame: x, y (pixels), 1 where it shows a landmark, for each. Returns how many.
+// Features of the last frame: x, y (pixels) and 1 if matched to a landmark, at `*at`. Returns their
+// number.
 EMSCRIPTEN_KEEPALIVE int alidade_features(Session* session, const float** at) {
   session->features.clear();
   for (const alidade::FeatureUse& use : session->slam->slam().Features()) {
@@ -168,7 +171,8 @@ EMSCRIPTEN_KEEPALIVE int alidade_features(Session* session, const float** at) {
   return static_cast<int>(session->features.size() / 3);
 }
 
-// What a detector found in the picture of that number: class, score, x, y, width, height of each.
+// Passes the detections in image `number`, 6 floats each: class, score, x, y, width, height.
+// Negative on failure.
 EMSCRIPTEN_KEEPALIVE int alidade_detected(Session* session, int number, const float* found,
                                           int count) {
   return Guarded(
@@ -184,7 +188,7 @@ EMSCRIPTEN_KEEPALIVE int alidade_detected(Session* session, int number, const fl
 
 enum Bytes { kMessages = 0, kTrajectory = 1, kMap = 2, kCloud = 3 };
 
-// Returns how many there are, at `*at`; below 0: alidade_error().
+// Sets `*at` to the requested bytes and returns their number; negative on failure.
 EMSCRIPTEN_KEEPALIVE int alidade_bytes(Session* session, int what, const char** at) {
   return Guarded(
       [&] {

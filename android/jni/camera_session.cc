@@ -12,7 +12,8 @@
 namespace alidade {
 namespace {
 
-// Phones have two to four fast cores; a loop that is shared with the slow ones waits for them.
+// Phones have two to four fast cores; a parallel loop on slow cores as well would wait for the
+// slowest.
 constexpr int kMostThreads = 4;
 constexpr int kMostSide = 4096;  // pixels
 

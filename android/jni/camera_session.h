@@ -1,5 +1,5 @@
-// What the app does, without Java: pictures come from the camera's thread, are worked on in one of
-// the session's own, and what is known is drawn by the screen's.
+// The app's session without Java. Images arrive in the camera's thread, are processed in the
+// session's thread, and the result is drawn in the screen's thread.
 #pragma once
 
 #include <condition_variable>
@@ -17,62 +17,62 @@
 
 namespace alidade {
 
-// A call that makes no sense as things stand: a picture while the camera is gone.
+// An invalid call in the current state: an image while the camera is gone.
 class StateError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
 
-// What the phone tells of its lens: nothing (empty: assumed, and found on the way), the horizontal
-// field of view in degrees (1 number), or fx fy cx cy k1 k2 p1 p2 k3 (9).
+// Lens parameters reported by the phone: empty (unknown, self-calibrated), the horizontal field of
+// view in degrees (1 number), or fx fy cx cy k1 k2 p1 p2 k3 (9 numbers).
 using LensNumbers = std::vector<double>;
 
-// What is known after the last frame that was worked on.
+// Status after the last processed frame.
 struct SessionNumbers {
   PhoneFrame frame;
-  int frames = 0;   // worked on
-  int skipped = 0;  // pictures that came while another one still waited: the newer one won
-  int failed = 0;   // pictures that the core refused or failed at: Words() says why
+  int frames = 0;   // processed images
+  int skipped = 0;  // waiting images that were replaced by a newer one
+  int failed = 0;   // images that were rejected or failed; Words() returns the reason
 };
 
 class CameraSession {
  public:
-  // `settings`: lines of name=value, as after --set, over the phone profile. `detector`: an ONNX
-  // file for people (docs/detectors.md), "" for none; it is opened by the session's thread, since
-  // that takes seconds. Throws Error on what cannot be.
+  // `settings`: lines of name=value, as after --set, on top of the phone profile. `detector`: ONNX
+  // file of a network that detects people (docs/guides/detectors.md), "" for none; opened in the session's
+  // thread, because that takes seconds. Throws Error for invalid arguments.
   CameraSession(int width, int height, const LensNumbers& lens, const std::string& settings,
                 const std::string& detector);
-  ~CameraSession();  // when no other call is under way
+  ~CameraSession();  // requires that no other call is running
   CameraSession(const CameraSession&) = delete;
   CameraSession& operator=(const CameraSession&) = delete;
 
-  // The camera's thread. The luma plane of one picture: rows `row_stride` bytes apart, `bytes` in
-  // all; `time` in seconds, the sensor's. It is copied (once) and waits for its turn, instead of
-  // one that still waits. Throws Error (input) when the plane is too small for the size of the
-  // session, StateError between CameraGone() and CameraBack().
+  // Camera's thread. Passes the luma plane of one image: rows `row_stride` bytes apart, `bytes` in
+  // total; `time` in seconds of the sensor's clock. Copies the plane and replaces an image that is
+  // still waiting. Throws Error (input) when the plane is too small for the session's image size,
+  // and StateError between CameraGone() and CameraBack().
   void Offer(const uint8_t* plane, size_t bytes, int row_stride, double time);
-  // The camera is another app's, the activity was paused, the device failed.
+  // Call when the camera is lost: used by another app, activity paused, or device failed.
   void CameraGone();
-  // It is there again: the next picture begins a new recording, in the same map.
+  // The camera is available again: the next image starts a new recording in the same map.
   void CameraBack();
 
-  // The screen's thread, with its GL context current.
-  void SurfaceCreated();  // the context is new: what was made in the one before is gone
-  void SurfaceGone();     // before the session ends, where the context outlives it
-  // The map: a finger moved so many pixels, or two of them went apart (above 1) or together.
+  // Screen's thread, with its GL context current.
+  void SurfaceCreated();  // the context is new; objects of the previous one are lost
+  void SurfaceGone();     // before the session ends, if the context lives longer
+  // Gestures on the map: a drag in pixels, and a pinch (above 1: apart).
   void Turn(double right, double down) { view_->Turn(right, down); }
   void Zoom(double factor) { view_->Zoom(factor); }
   void SurfaceChanged(int width, int height);
-  // `rotation`: degrees, clockwise, that the picture is turned by to stand upright on the screen:
-  // 0, 90, 180 or 270. Returns whether there was a picture.
+  // `rotation`: clockwise degrees that make the image upright on the screen: 0, 90, 180 or 270.
+  // Returns whether there was an image.
   bool Draw(int rotation);
 
   // Any thread.
   SessionNumbers Numbers() const;
-  std::string Words() const;       // what went wrong last; "" when all is well
-  std::string Map() const;         // map.alidade; waits for the frame in work, as does the next
+  std::string Words() const;       // last problem; "" if none
+  std::string Map() const;         // map.alidade; waits for the current frame, as Trajectory() does
   std::string Trajectory() const;  // TUM format
-  void WaitUntilIdle() const;      // until no picture waits or is in work
+  void WaitUntilIdle() const;      // until no image is waiting or being processed
 
  private:
   using Pixels = std::vector<uint8_t>;
@@ -87,30 +87,30 @@ class CameraSession {
   const std::string detector_;
   PhoneSettings settings_;
 
-  mutable std::mutex slam_mutex_;  // held while a frame is worked on, and by who saves
+  mutable std::mutex slam_mutex_;  // held while a frame is processed or results are saved
   std::unique_ptr<PhoneSlam> slam_;
-  // The session's thread alone.
+  // Session's thread only.
   Pixels working_;
 
-  // Held to copy a picture or to move a few pointers.
+  // Held briefly, to copy an image or move pointers.
   mutable std::mutex mutex_;
   mutable std::condition_variable changed_;
   Pixels waiting_, shown_;
   double waiting_time_ = 0;
   bool waits_ = false, in_work_ = false, end_ = false;
   bool gone_ = false, cut_ = false;
-  bool wanted_ = false;                // somebody draws: messages are taken
-  bool fresh_ = false;                 // shown_ was not drawn yet
-  std::vector<std::string> messages_;  // for the scene
+  bool wanted_ = false;                // drawing is active, so messages are collected
+  bool fresh_ = false;                 // shown_ has not been drawn yet
+  std::vector<std::string> messages_;  // to be applied to scene_
   SessionNumbers numbers_;
   std::string words_;
 
-  // The screen's thread alone.
+  // Screen's thread only.
   std::unique_ptr<SceneView> view_;
   StreamScene scene_;
   Pixels drawn_;
   bool surface_ = false;
-  int rotation_ = 0;  // as drawn last
+  int rotation_ = 0;  // of the last drawing
 
   std::thread thread_;
 };

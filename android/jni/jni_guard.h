@@ -1,4 +1,4 @@
-// Between C++ and Java: what is thrown here becomes the exception Java's users expect.
+// Translates C++ exceptions to Java exceptions.
 #pragma once
 
 #include <jni.h>
@@ -17,8 +17,8 @@ inline void ThrowJava(JNIEnv* env, const char* type, const char* what) {
   if (exception != nullptr) env->ThrowNew(exception, what);
 }
 
-// Calls; an Error (input that cannot be) is an IllegalArgumentException, anything else but lacking
-// memory an IllegalStateException. `failed` is what Java never sees then.
+// Runs `call`. Error becomes IllegalArgumentException, std::bad_alloc OutOfMemoryError, any other
+// exception IllegalStateException. `failed` is returned then and ignored by Java.
 template <typename Result, typename Call>
 Result Guarded(JNIEnv* env, Result failed, Call&& call) {
   try {
@@ -43,7 +43,8 @@ void Guarded(JNIEnv* env, Call&& call) {
   });
 }
 
-// Java's modified UTF-8 differs from the usual one in characters no file of ours is named by.
+// Java's modified UTF-8 differs from UTF-8 only for U+0000 and characters outside the BMP, which
+// file names here do not use.
 inline std::string TextOf(JNIEnv* env, jstring text) {
   if (text == nullptr) return "";
   const char* bytes = env->GetStringUTFChars(text, nullptr);

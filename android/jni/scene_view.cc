@@ -24,7 +24,7 @@ class GlesView : public SceneView {
                                  static_cast<size_t>(frame.width), frame.rotation);
     }
     renderer_.Show(*frame.scene);
-    // All of the map stays in sight until a finger has chosen something else.
+    // Keeps the whole map in view until the user moves the view.
     const size_t keyframes = frame.scene->keyframes.size();
     if (!led_ && keyframes != fitted_) {
       orbit_.Fit(*frame.scene, frame.rotation);
@@ -53,8 +53,8 @@ class GlesView : public SceneView {
   gles::Renderer renderer_;
   gles::Orbit orbit_;
   int width_ = 1, height_ = 1;
-  bool led_ = false;   // by fingers
-  size_t fitted_ = 0;  // keyframes there were when the eye was placed last
+  bool led_ = false;   // moved by the user
+  size_t fitted_ = 0;  // number of keyframes when the view was last fitted
 };
 
 #else

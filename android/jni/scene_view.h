@@ -1,4 +1,5 @@
-// What is drawn with: the OpenGL ES renderer (src/alidade/gles), or nothing where it was not built.
+// Interface of the drawing code: the OpenGL ES renderer (src/alidade/gles), or a dummy when it was
+// not built.
 #pragma once
 
 #include <cstdint>
@@ -10,22 +11,22 @@ namespace alidade {
 
 struct ViewFrame {
   const StreamScene* scene = nullptr;
-  const uint8_t* luma = nullptr;  // a picture that was not drawn yet, rows without gaps; or null
-  int width = 0, height = 0;      // of it, pixels
-  int rotation = 0;               // degrees clockwise by which pictures are turned to stand upright
+  const uint8_t* luma = nullptr;  // an image not drawn yet, rows without padding; or null
+  int width = 0, height = 0;      // of the image, pixels
+  int rotation = 0;               // clockwise degrees that make images upright
 };
 
-// The screen's thread alone. Draw() and Release() need the GL context to be current.
+// Screen's thread only. Draw() and Release() require a current GL context.
 class SceneView {
  public:
   virtual ~SceneView() = default;
   virtual void Resize(int width, int height) = 0;
-  // Picture and map side by side, along the longer side of the surface.
+  // Draws image and map side by side along the longer side of the surface.
   virtual void Draw(const ViewFrame& frame) = 0;
-  // A finger moved so many pixels; fingers went apart (above 1) or together.
+  // A drag in pixels; a pinch (above 1: apart).
   virtual void Turn(double right, double down) = 0;
   virtual void Zoom(double factor) = 0;
-  // The context is new, and what was made in the one before is gone.
+  // The context is new; objects of the previous one are lost.
   virtual void ContextLost() = 0;
   virtual void Release() = 0;  // before the context is left
 };

@@ -1,5 +1,5 @@
-// The native methods of org.alidade.phone.SlamConnector. `handle` is a CameraSession*: Java's side
-// sees to it that it is not closed while another call uses it, and is never 0 here.
+// Native methods of org.alidade.phone.SlamConnector. `handle` is a CameraSession*, never 0; the
+// Java side ensures that it is not closed during a call.
 #include <jni.h>
 
 #include <array>
@@ -133,7 +133,7 @@ ALIDADE_NATIVE(void, nativeNumbers)(JNIEnv* env, jclass, jlong handle, jdoubleAr
 
 ALIDADE_NATIVE(jstring, nativeReason)(JNIEnv* env, jclass, jlong handle) {
   return Guarded(env, jstring{nullptr}, [&] {
-    return env->NewStringUTF(SessionOf(handle).Numbers().frame.result.reason);
+    return env->NewStringUTF(SessionOf(handle).Numbers().frame.result.reason());
   });
 }
 

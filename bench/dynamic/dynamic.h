@@ -1,4 +1,4 @@
-// SLAM among moving people: the tables of docs/benchmarks.md, "dynamic".
+// SLAM among moving people: the tables of docs/benchmarks/dynamic.md, "dynamic".
 #pragma once
 
 #include <optional>

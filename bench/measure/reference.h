@@ -1,5 +1,5 @@
 // Times beside U: the median time of OpenCV's ORB on the same frames, on the same machine, in the
-// same run (docs/benchmarks.md).
+// same run (docs/benchmarks/index.md).
 #pragma once
 
 #include <functional>

@@ -1,4 +1,4 @@
-// A result as a JSON file: what docs/benchmarks.md is made from (bench/README.md has the fields).
+// A result as a JSON file: what docs/benchmarks/index.md is made from (bench/README.md has the fields).
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
 // What the phone's parameters and threads are worth: the tables of the paper the phone profile
-// comes from, with the error and the coverage they cost beside each time (docs/benchmarks.md).
+// comes from, with the error and the coverage they cost beside each time
+// (docs/benchmarks/speed.md).
 #pragma once
 
 #include <optional>

@@ -52,7 +52,7 @@ DenseMap MakeDenseMap(const std::string& source, int count, const SlamSettings& 
     const int number = dense.frames++;
     dense.rendered = !frame->true_depth.empty();
     const TrackResult result = slam.Track({frame->time, frame->image, frame->right, frame->depth});
-    const bool starting = result.state == TrackState::kInitialising;
+    const bool starting = result.state == TrackState::kInitializing;
     if (result.keyframe || starting)
       kept.push_back({number, Keep(*frame, given, slam.camera(), settings)});
     if (starting) waiting = true;

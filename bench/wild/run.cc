@@ -135,7 +135,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
     clock = Stopwatch();
     const TrackResult result = slam.Track(InputOf(*frame));
     milliseconds += clock.Milliseconds();
-    if (result.state != TrackState::kTracking) ++reasons[result.reason];
+    if (result.state != TrackState::kTracking) ++reasons[result.reason()];
     progress(++record.frames);
   }
   slam.Finish();

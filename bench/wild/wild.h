@@ -1,4 +1,5 @@
-// Rendered recordings like the videos users have: the table "In the wild" of docs/benchmarks.md.
+// Rendered recordings like the videos users have: the table "In the wild" of
+// docs/benchmarks/robustness.md.
 #pragma once
 
 #include <string>

@@ -1,10 +1,10 @@
-"""Alidade: from what a moving camera sees to where it is and what the place looks like.
+"""Alidade: visual SLAM. Estimates a moving camera's trajectory and a map of its surroundings.
 
-Three levels, from one call to the parts:
+Three levels of use:
 
-1. A whole recording: ``result = alidade.run("desk")``. The same work, settings and files as the
-   program ``alidade run``; ``result.trajectory``, ``result.map`` and ``result.stats`` are what came
-   out. ``alidade.localize`` finds the poses of a recording in a map that is there.
+1. A whole recording: ``result = alidade.run("desk")``. The same processing, settings and files as the
+   program ``alidade run``, with the results in ``result.trajectory``, ``result.map`` and
+   ``result.stats``. ``alidade.localize`` estimates the poses of a recording in an existing map.
 
 2. Frame by frame, from NumPy arrays::
 
@@ -14,20 +14,20 @@ Three levels, from one call to the parts:
                result = slam.track(time, image, depth=depth)
                print(result.pose if result.pose is not None else result.reason)
 
-   ``alidade.open`` gives the frames of any recording as arrays.
+   ``alidade.open`` returns the frames of any recording as arrays.
 
-3. The map as arrays: ``slam.map()`` or ``alidade.Map.load("map.alidade")`` has keyframes, points,
-   covisibility and the semi-dense cloud; it can be saved, localised in and exported.
+3. The map as arrays: ``slam.map()`` or ``alidade.Map.load("map.alidade")`` contains keyframes, points,
+   covisibility and the semi-dense cloud. Maps can be saved, exported and used for localization.
 
-``alidade.ate``, ``rpe`` and ``depth_errors`` compare with the truth.
+``alidade.ate``, ``rpe`` and ``depth_errors`` evaluate results against ground truth.
 
-Units and frames, everywhere: metres, seconds, pixels (the centre of the top-left one is 0, 0). A
-pose is a (4, 4) array ``T_world_camera``, which takes points of the camera's frame into the world;
-``world`` is the first keyframe's (left) camera: x right, y down, z forward. One camera alone knows
-no metres: its maps have a unit of their own. A trajectory is (n, 8): timestamp tx ty tz qx qy qz qw.
+Units and frames, everywhere: meters, seconds, pixels (0, 0 is the center of the top-left pixel). A
+pose is a (4, 4) array ``T_world_camera``, which maps points of the camera's frame to the world;
+``world`` is the first keyframe's (left) camera: x right, y down, z forward. The scale of a monocular
+map is unknown: it has a unit of its own. A trajectory is (n, 8): timestamp tx ty tz qx qy qz qw.
 
-Errors are ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``) and say what to do.
-Warnings go to the logger ``alidade``. See docs/python.md.
+Errors are raised as ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``); the message
+says what to do. Warnings go to the logger ``alidade``. See docs/guides/python.md.
 """
 
 from . import _core
@@ -45,14 +45,17 @@ __version__: str = _core.version
 
 
 def set_threads(threads: int) -> None:
-    """How many threads parallel loops of all Slams use; 0: one for each core. Results are the same."""
+    """Sets the number of threads for parallel loops of all Slams; 0: one per core. Does not change results.
+
+    Raises UsageError outside 0 to 256.
+    """
     if not 0 <= threads <= 256:
         raise UsageError(f"threads must be from 0 (one for each core) to 256, not {threads}")
     _core.set_threads(threads)
 
 
 def settings() -> "dict[str, str]":
-    """Every setting with its default: the names ``settings=`` and the program's ``--set`` take."""
+    """All settings with their defaults, by the names used in ``settings=`` and the program's ``--set``."""
     return _core.setting_names()
 
 

@@ -1,4 +1,4 @@
-"""Hands the library's warnings to `logging`, between two calls."""
+"""Passes the library's warnings to `logging`, between two calls."""
 
 import logging
 

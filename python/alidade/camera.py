@@ -15,9 +15,9 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 @dataclasses.dataclass(frozen=True)
 class Camera:
-    """A pinhole camera with radial-tangential distortion, and what measures depth beside it.
+    """A pinhole camera with radial-tangential distortion, and the parameters of its depth sensor or stereo pair.
 
-    Lengths in pixels; the centre of the top-left pixel is 0, 0 (as in OpenCV).
+    Raises InputError for invalid values. Pixels as in OpenCV: 0, 0 is the center of the top-left pixel.
     """
 
     width: int
@@ -30,16 +30,16 @@ class Camera:
     """principal point, pixels"""
     cy: float
     distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    """k1 k2 p1 p2 [k3], as OpenCV has them"""
+    """k1 k2 p1 p2 [k3], as in OpenCV"""
     baseline: float = 0.0
-    """metres between the left and the right camera; 0: there is none"""
+    """distance of the right camera from the left one, meters; 0: no right camera"""
     depth_factor: float = 0.0
-    """value of a uint16 depth image per metre; 0: there is none. float32 images are metres, but any
-    factor must be given for ``sensor="rgbd"``"""
+    """value of a uint16 depth image per meter; 0: no depth. float32 depth images are in meters, but
+    ``sensor="rgbd"`` requires a factor nevertheless"""
     fps: float = 30.0
-    """frames per second, where time stamps don't say"""
+    """frames per second, for sources without time stamps"""
     readout: Optional[Tuple[float, float]] = None
-    """rolling shutter: seconds from the first to the last column and row; None: to be found"""
+    """rolling-shutter readout time, seconds from the first to the last column and row; None: estimated"""
 
     def __post_init__(self) -> None:
         values = tuple(float(value) for value in self.distortion)
@@ -48,29 +48,29 @@ class Camera:
 
     @property
     def matrix(self) -> numpy.ndarray:
-        """K, (3, 3)."""
+        """The matrix K, (3, 3)."""
         return numpy.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1]], dtype=float)
 
     @classmethod
     def from_fov(cls, width: int, height: int, degrees: float) -> Camera:
-        """A plain pinhole of a horizontal field of view."""
+        """A pinhole camera without distortion, with this horizontal field of view in degrees."""
         return _core.camera_from_fov(width, height, degrees)
 
     @classmethod
     def from_yaml(cls, path: PathLike, sensor: str = "mono") -> Camera:
-        """Reads a camera.yaml (docs/formats.md). ``sensor``: what it is to be used as, "mono",
-        "stereo" or "rgbd". Fisheyes, and stereo pairs that are not rectified yet, need a Rectifier."""
+        """Reads a camera.yaml (docs/reference/camera.md). ``sensor``: its use, "mono", "stereo" or "rgbd".
+        Fisheye cameras and unrectified stereo pairs require a Rectifier. Raises InputError."""
         return _core.read_camera(os.fspath(path), sensor)
 
     def to_yaml(self, path: PathLike) -> None:
-        """Writes a camera.yaml, which from_yaml() and the program's ``--camera`` read."""
+        """Writes a camera.yaml for from_yaml() and the program's ``--camera``."""
         _core.write_camera(os.fspath(path), self)
 
 
 class Rectifier:
-    """Turns images as taken (fisheye, a stereo pair as mounted) into those of a plain camera.
+    """Converts raw images (of a fisheye camera or an unrectified stereo pair) to those of a Camera.
 
-    ``path``: a camera.yaml; ``sensor``: "mono", "stereo" or "rgbd".
+    ``path``: a camera.yaml; ``sensor``: "mono", "stereo" or "rgbd". Raises InputError.
     """
 
     def __init__(self, path: PathLike, sensor: str = "mono") -> None:
@@ -78,17 +78,18 @@ class Rectifier:
 
     @property
     def camera(self) -> Camera:
-        """That of the images it gives: for Slam."""
+        """The camera of the converted images, for Slam."""
         return self._core.camera
 
     def left(self, image: numpy.ndarray) -> numpy.ndarray:
-        """(h, w) or (h, w, 3) uint8 of the (left) camera. The same array when there is nothing to do."""
+        """Converts an (h, w) or (h, w, 3) uint8 image of the (left) camera. Returns the same array if no conversion is
+        needed."""
         return self._core.left(image)
 
     def right(self, image: numpy.ndarray) -> numpy.ndarray:
-        """The same of the right camera."""
+        """The same for the right camera."""
         return self._core.right(image)
 
     def depth(self, depth: numpy.ndarray) -> numpy.ndarray:
-        """(h, w) uint16 or float32: nearest pixels, values as they are."""
+        """Converts an (h, w) uint16 or float32 depth image by nearest-neighbor sampling."""
         return self._core.depth(depth)

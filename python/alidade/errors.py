@@ -1,16 +1,16 @@
-"""What can go wrong. The message says what, where, and what to do about it."""
+"""Exceptions. Each message says what is wrong, where, and what to do."""
 
 
 class Error(RuntimeError):
-    """Anything the library refuses. ``kind``: "usage", "input", "nothing mapped" or "stopped"."""
+    """Base class of all errors. ``kind``: "usage", "input", "nothing mapped" or "stopped"."""
 
     kind = "error"
     status = 70
-    """Exit status of the program for the same."""
+    """Exit status of the program for this error."""
 
 
 class UsageError(Error, ValueError):
-    """An argument or setting that cannot be."""
+    """An invalid argument or setting."""
 
     kind = "usage"
     status = 2
@@ -24,13 +24,13 @@ class InputError(Error):
 
 
 class NothingMapped(Error):
-    """Good input in which nothing could be tracked."""
+    """Valid input in which no frame could be tracked."""
 
     kind = "nothing mapped"
     status = 4
 
 
 class RunStopped(Error):
-    """A part of the system stopped by no fault of the recording's; what could be done without it is written."""
+    """A part of the system failed, for a reason other than the recording. Results obtained without it are written."""
 
     kind = "stopped"

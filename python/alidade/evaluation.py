@@ -1,4 +1,4 @@
-"""Errors against the truth, as ``alidade evaluate`` gives them."""
+"""Evaluation against ground truth, with the same results as ``alidade evaluate``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Span = Optional[Tuple[float, float]]
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class ErrorStatistics:
-    """Of a list of errors, all in their unit."""
+    """Statistics of a list of errors, in their unit."""
 
     n: int
     rmse: float
@@ -28,21 +28,25 @@ class ErrorStatistics:
     min: float
     max: float
     scale: float
-    """the estimate's lengths were multiplied by"""
+    """factor applied to the estimate's lengths"""
     coverage: float
-    """share of the true poses within the recording that have an estimate, 0 to 1"""
+    """share of the true poses within the recording that were matched, 0 to 1"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class TrajectoryError(ErrorStatistics):
-    """Absolute trajectory error, metres."""
+    """Absolute trajectory error, meters."""
 
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """the reason: monocular, depth or stereo, unknown sensor, or requested"""
     transform: numpy.ndarray
-    """(4, 4): lays the estimate on the truth; with its scale in it"""
+    """(4, 4): aligns the estimate to the ground truth; includes the scale"""
     pairs: numpy.ndarray
-    """(n, 2): rows of truth and estimate that were compared"""
+    """(n, 2): indices of matched rows of truth and estimate"""
     errors: numpy.ndarray
-    """(n,) metres, of each"""
+    """(n,) error of each pair, meters"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -50,17 +54,21 @@ class RelativePoseError:
     """Drift over a fixed step."""
 
     trans: ErrorStatistics
-    """metres"""
+    """meters"""
     rot: ErrorStatistics
     """degrees"""
+    align: str
+    """how the estimate was aligned: "se3", "sim3" or "none""""
+    align_why: str
+    """the reason: monocular, depth or stereo, unknown sensor, or requested"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class DepthScore:
-    """Of depth: errors are |scale · estimate - truth| / truth at each pixel that has both."""
+    """Scores of depth images. Errors are |scale · estimate - truth| / truth at each pixel that has both."""
 
     n: int
-    """pixels with both"""
+    """pixels that have both"""
     median_rel: float
     p90_rel: float
     within_2: float
@@ -70,65 +78,73 @@ class DepthScore:
     rmse_inv: float
     """of inverse depth, 1/m"""
     density: float
-    """share of all pixels that carry depth"""
+    """share of all pixels that have depth"""
     density_gradient: float
-    """the same of those with a gradient"""
+    """share of the pixels with a strong gradient that have depth"""
     edge_coverage: float
-    """share of edge pixels that carry depth, or a neighbour does"""
+    """share of edge pixels that have depth themselves or at a neighbor"""
     scale: float
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class DepthErrors:
-    """Of all frames together, and of each."""
+    """Scores of all frames together and of each frame."""
 
     all: DepthScore
     """at all pixels"""
     continuous: DepthScore
-    """where the truth is continuous: for a sensor's, which reads badly beside depth steps"""
+    """only where the true depth is continuous, because depth sensors are unreliable at discontinuities"""
     frames: List[Tuple[DepthScore, DepthScore]]
     scales: numpy.ndarray
-    """of each map, metres per unit"""
+    """of each map, meters per unit"""
 
 
-def _estimate(estimate: Any, span: Span) -> Tuple[Any, Span]:
+def _estimate(estimate: Any, span: Span) -> Tuple[Any, str, Span]:
+    """Returns poses, sensor ("" if unknown) and span."""
     if not isinstance(estimate, Result):
-        return estimate, span
-    known = estimate.stats["span"]
-    return estimate.trajectory, span or ((known[0], known[1]) if known else None)
+        return estimate, "", span
+    stats = estimate.stats
+    known = stats["span"]
+    return estimate.trajectory, stats["sensor"], span or ((known[0], known[1]) if known else None)
 
 
-def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "se3",
+def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: str = "auto",
         association: str = "tum", max_dt: float = 0.02, span: Span = None) -> TrajectoryError:
-    """Absolute trajectory error: distance to the truth after alignment.
+    """Absolute trajectory error: distance to the ground truth after alignment (Sturm et al. 2012).
 
     truth, estimate: (n, 8) timestamp tx ty tz qx qy qz qw, in any order; estimate may be a Result.
-    align: "se3" (rotate and shift), "sim3" (scale as well: one camera) or "none".
-    association: "tum" (one-to-one, best first) or "evo"; max_dt: seconds between matched stamps.
-    span: first and last frame of the recording in seconds, which coverage is judged over; None: the Result's, or the
+    align: "se3" (rotation and translation), "sim3" (also scale), "none", or "auto": "sim3" for a monocular Result,
+        whose scale is unknown, otherwise "se3". The returned `align` says which was used.
+    association: "tum" (one-to-one, closest first) or "evo"; max_dt: largest difference of matched stamps, seconds.
+    span: times of the first and last frame of the recording, seconds, used for coverage; None: the Result's, or the
     estimate's own.
+
+    Raises InputError for values that are not finite, and for fewer than 3 matched poses.
     """
-    poses, span = _estimate(estimate, span)
-    return TrajectoryError(**_core.ate(truth, poses, align, association, max_dt, span))
+    poses, sensor, span = _estimate(estimate, span)
+    return TrajectoryError(**_core.ate(truth, poses, align, sensor, association, max_dt, span))
 
 
 def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: float = 1.0, unit: str = "s",
-        pairs: str = "all", align: str = "se3", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
-    """Relative pose error: drift over a fixed step. delta: in seconds (unit "s") or poses ("frames"). pairs: "all",
-    from every pose, as TUM's tool; "consecutive": without overlap. All else as for ate()."""
-    poses, span = _estimate(estimate, span)
-    trans, rot = _core.rpe(truth, poses, delta, unit, pairs, align, max_dt, span)
-    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot))
+        pairs: str = "all", align: str = "auto", max_dt: float = 0.02, span: Span = None) -> RelativePoseError:
+    """Relative pose error: drift over a fixed step (Sturm et al. 2012). delta: seconds (unit "s") or poses ("frames").
+    pairs: "all", one from every pose as in TUM's tool; "consecutive": without overlap. Other arguments and errors as
+    for ate()."""
+    poses, sensor, span = _estimate(estimate, span)
+    trans, rot, aligned, why = _core.rpe(truth, poses, delta, unit, pairs, align, sensor, max_dt, span)
+    return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot), aligned, why)
 
 
 def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndarray],
                  images: Sequence[numpy.ndarray], *, maps: Optional[Sequence[int]] = None,
                  fit_scale: bool = False) -> DepthErrors:
-    """Depth of frames against the truth.
+    """Errors of depth images relative to true depth.
 
-    estimates: (h, w) float32 along z in the map's unit, 0 = none; may be smaller than the truth.
-    truths: (h, w) float32 metres, 0 = unknown. images: (h, w) uint8, whose edges should carry depth.
-    maps: the map each is of, from 0; fit_scale: fit each map's unit (one camera).
+    estimates: (h, w) float32 depth along z in the map's unit, 0 = none; may be smaller than the truth.
+    truths: (h, w) float32, meters, 0 = unknown. images: (h, w) uint8, for the gradients and edges.
+    maps: index of each frame's map, from 0; fit_scale: estimate each map's unit (monocular).
+
+    Raises UsageError when the lists differ in length, InputError for invalid images.
     """
     numbers = [0] * len(estimates) if maps is None else list(maps)
     if not len(estimates) == len(truths) == len(images) == len(numbers):
@@ -142,12 +158,13 @@ def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndar
 
 
 def read_trajectory(path: PathLike) -> numpy.ndarray:
-    """(n, 8) from a file of TUM's, EuRoC's or KITTI's format, or the truth beside a recording (a folder)."""
+    """Reads a trajectory, (n, 8), from a file in TUM, EuRoC or KITTI format, or the ground truth in a recording's
+    folder. Raises InputError."""
     return _core.read_trajectory(os.fspath(path))
 
 
 def write_trajectory(path: PathLike, trajectory: numpy.ndarray) -> None:
-    """(n, 8) as a file of TUM's format."""
+    """Writes a trajectory, (n, 8), in TUM format."""
     text = _core.format_trajectory(trajectory)
     with open(path, "w", encoding="ascii", newline="\n") as file:
         file.write(text)

@@ -15,7 +15,7 @@ from .errors import UsageError
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class KeyFrames:
-    """Frames the map remembers, n of them, by id."""
+    """Keyframes, n of them, sorted by id."""
 
     ids: numpy.ndarray
     """(n,) uint32"""
@@ -24,39 +24,39 @@ class KeyFrames:
     poses: numpy.ndarray
     """(n, 4, 4) T_world_camera"""
     numbers: numpy.ndarray
-    """(n,) frame numbers: calls of track() so far, those of a loaded map included"""
+    """(n,) frame numbers: previous calls of track(), including those of a loaded map"""
     parents: numpy.ndarray
-    """(n,) ids in the spanning tree; -1: none"""
+    """(n,) ids of the parents in the spanning tree; -1: none"""
     scales: numpy.ndarray
-    """(n,) what loops of a monocular map multiplied lengths around it by"""
+    """(n,) local scale: the factor by which loop closures of a monocular map changed lengths"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Points:
-    """Landmarks, m of them, by id."""
+    """Landmarks, m of them, sorted by id."""
 
     ids: numpy.ndarray
     """(m,) uint32"""
     positions: numpy.ndarray
-    """(m, 3) in the world, metres (one camera: map units)"""
+    """(m, 3) in the world, meters (monocular: map units)"""
     normals: numpy.ndarray
-    """(m, 3) mean viewing direction, from the cameras to the point; unit"""
+    """(m, 3) mean viewing direction from the cameras to the point, unit vectors"""
     static_probability: numpy.ndarray
-    """(m,) how likely it stands still, 0 to 1"""
+    """(m,) probability of being static, 0 to 1"""
     seen_by: numpy.ndarray
-    """(m,) keyframes that see it"""
+    """(m,) number of keyframes that observe it"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Observations:
-    """Which keyframe sees which point where, k rows."""
+    """Observations of points in keyframes, k rows."""
 
     keyframes: numpy.ndarray
     """(k,) keyframe ids"""
     points: numpy.ndarray
     """(k,) point ids"""
     pixels: numpy.ndarray
-    """(k, 2) x y in the image as taken, lens distortion and all"""
+    """(k, 2) x y in the raw (distorted) image"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -68,11 +68,11 @@ class Cloud:
     colors: numpy.ndarray
     """(p, 3) uint8, red green blue"""
     sigmas: numpy.ndarray
-    """(p,) standard deviation along the ray it was seen by, in the map's unit"""
+    """(p,) standard deviation along the viewing ray, in the map's unit"""
 
 
 class MapPart:
-    """One of the maps in a Map, with a world of its own. Arrays are made when they are asked for."""
+    """One of the unconnected maps in a Map, with its own world frame. Arrays are created on access."""
 
     def __init__(self, core: _core.MapPart) -> None:
         self._core = core
@@ -91,29 +91,29 @@ class MapPart:
 
     @property
     def covisibility(self) -> numpy.ndarray:
-        """(e, 3): ids of two keyframes, the smaller first, and how many points both saw when that was last counted."""
+        """(e, 3): ids of two keyframes, the smaller first, and their number of common points when last counted."""
         return self._core.covisibility()
 
     @property
     def loops(self) -> numpy.ndarray:
-        """(l, 2): ids of keyframes that closed loops tie together."""
+        """(l, 2): ids of keyframes connected by loop closures."""
         return self._core.loops()
 
     def cloud(self, voxel: float = 0.0) -> Cloud:
-        """The semi-dense cloud (``semidense=True``); of a map read from a file it is empty: files don't hold it.
+        """The semi-dense cloud (``semidense=True``). Empty for a map read from a file, because files do not contain it.
 
-        voxel: edge of the cubes whose points become one, in the map's unit; 0: every pixel is a point.
+        voxel: edge length of the cubes within which points are merged, in the map's unit; 0: no merging.
         """
         return Cloud(**self._core.cloud(voxel))
 
     def depth(self, keyframe: int) -> Optional[Tuple[numpy.ndarray, numpy.ndarray]]:
-        """Semi-dense depth of a keyframe (an id), and its standard deviation: two (h, w) float32 along z, 0 where
-        nothing is known; of the undistorted image. None: it has none."""
+        """Semi-dense depth of a keyframe (by id) and its standard deviation, as two (h, w) float32 arrays along z of
+        the undistorted image, 0 = unknown. None if the keyframe has no depth."""
         return self._core.depth(int(keyframe))
 
 
 def _by_ending(path: str) -> str:
-    """What the ending of a file's name says is to be written."""
+    """The export format for a file name's ending."""
     to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum", ".mcap": "mcap"}.get(os.path.splitext(path)[1])
     if to is None:
         raise UsageError(f'{path}: its ending does not say what to write; give to="ply", "pcd", "tum", "colmap" '
@@ -122,10 +122,11 @@ def _by_ending(path: str) -> str:
 
 
 class Map:
-    """A map: a value that never changes. From Slam.map(), Result.map or Map.load().
+    """An immutable map, from Slam.map(), Result.map or Map.load().
 
-    What was never joined lies in several worlds: ``parts``, the one with the most keyframes first. The properties
-    ``keyframes``, ``points``, ``observations``, ``covisibility``, ``loops`` and ``cloud()`` are of that one.
+    Maps that were never connected have separate world frames: ``parts``, sorted by descending number of keyframes.
+    The properties ``keyframes``, ``points``, ``observations``, ``covisibility``, ``loops`` and ``cloud()`` refer to
+    the first part.
     """
 
     def __init__(self, core: _core.Map) -> None:
@@ -133,30 +134,30 @@ class Map:
 
     @classmethod
     def load(cls, path: PathLike) -> Map:
-        """Reads a map.alidade, or the one in the folder a run left."""
+        """Reads a map.alidade, or the one in the folder of a run. Raises InputError."""
         return cls(_core.read_map(os.fspath(path)))
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Map:
-        """What to_bytes() gave."""
+        """Decodes the result of to_bytes(). Raises InputError."""
         return cls(_core.decode_map(data))
 
     def to_bytes(self) -> bytes:
-        """As the file has it. Equal maps give equal bytes."""
+        """The content of map.alidade. Equal maps give equal bytes."""
         return self._core.encode()
 
     def save(self, path: PathLike) -> None:
-        """Writes a map.alidade: whole, or not at all."""
+        """Writes a map.alidade; the file is complete or absent."""
         self._core.save(os.fspath(path))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
                min_observations: int = 1) -> str:
-        """Writes what other programs read, as ``alidade export`` does; returns what it was, in words.
+        """Exports to another format, as ``alidade export`` does. Returns a description of what was written.
 
-        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a model of both, a folder), "mcap"
-            (both as ROS 2 messages). None: by the ending of the path.
-        format: "text", "binary", "both" (colmap) or "default".
-        min_observations: points that fewer keyframes see are left out.
+        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a folder with both), "mcap" (both
+            as ROS 2 messages). None: by the ending of the path.
+        format: "text", "binary", "both" (colmap) or "default". part: index into ``parts``.
+        min_observations: omits points observed by fewer keyframes.
         """
         where = os.fspath(path)
         return self._core.export(where, to or _by_ending(where), format, part, min_observations)
@@ -185,12 +186,12 @@ class Map:
 
     @property
     def covisibility(self) -> numpy.ndarray:
-        """(e, 3): ids of two keyframes, the smaller first, and how many points both saw when that was last counted."""
+        """(e, 3): ids of two keyframes, the smaller first, and their number of common points when last counted."""
         return self._main().covisibility
 
     @property
     def loops(self) -> numpy.ndarray:
-        """(l, 2): ids of keyframes that closed loops tie together."""
+        """(l, 2): ids of keyframes connected by loop closures."""
         return self._main().loops
 
     def cloud(self, voxel: float = 0.0) -> Cloud:
@@ -199,7 +200,7 @@ class Map:
 
     @property
     def camera(self) -> Camera:
-        """That of its keyframes' pixels."""
+        """The camera of the keyframes."""
         return self._core.camera
 
     @property
@@ -208,7 +209,7 @@ class Map:
 
     @property
     def settings(self) -> Dict[str, str]:
-        """Those it was made with, by name."""
+        """The settings the map was made with, by name."""
         return self._core.settings
 
     def __repr__(self) -> str:

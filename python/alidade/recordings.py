@@ -22,25 +22,25 @@ class Frame:
     stamp: str
     """the time as written in the recording"""
     number: int
-    """in the recording, from 0"""
+    """index in the recording, from 0"""
     image: Optional[numpy.ndarray]
-    """(h, w) uint8, grey; None when it could not be read: see ``problem``"""
+    """(h, w) uint8, gray; None when it could not be read (see ``problem``)"""
     right: Optional[numpy.ndarray] = None
     """stereo: the right image, rectified"""
     depth: Optional[numpy.ndarray] = None
-    """RGB-D: (h, w) uint16 in camera.depth_factor per metre, or float32 metres"""
+    """RGB-D: (h, w) uint16 with camera.depth_factor per meter, or float32 in meters"""
     color: Optional[numpy.ndarray] = None
-    """(h, w, 3) uint8, blue green red; when it was asked for and there is any"""
+    """(h, w, 3) uint8, blue green red; only if requested and available"""
     problem: str = ""
-    """why it could not be read; empty: it could"""
+    """why the frame could not be read; empty: no problem"""
     true_pose: Optional[numpy.ndarray] = None
-    """rendered recordings: (4, 4) T_world_camera, in a world of its own"""
+    """rendered recordings: true pose, (4, 4) T_world_camera, in the scene's world frame"""
     true_depth: Optional[numpy.ndarray] = None
-    """rendered recordings: (h, w) float32, metres along z, 0 = nothing there"""
+    """rendered recordings: true depth, (h, w) float32, meters along z, 0 = no surface"""
 
 
 class Recording:
-    """Frames of a recording, in order: ``for frame in recording``. Made by alidade.open()."""
+    """Iterates over the frames of a recording: ``for frame in recording``. Created by alidade.open()."""
 
     def __init__(self, core: _core.Source) -> None:
         self._core = core
@@ -51,13 +51,13 @@ class Recording:
         self.sensor: str = info["sensor"]
         """mono, stereo or rgbd"""
         self.camera: Camera = info["camera"]
-        """after any rectification: for Slam"""
+        """after rectification, for Slam"""
         self.camera_guessed: bool = info["camera_guessed"]
-        """nothing certain is known of it"""
+        """no calibration is known: the field of view is assumed"""
         self.frames: Optional[int] = info["frames"] if info["frames"] >= 0 else None
-        """how many there are; None: unknown"""
+        """number of frames; None: unknown"""
         self.mounting: numpy.ndarray = info["mounting"]
-        """(4, 4), from the rectified camera's frame to the camera's as mounted: for Slam"""
+        """(4, 4), from the rectified camera's frame to that of the camera as mounted, for Slam"""
 
     def __iter__(self) -> Iterator[Frame]:
         return self
@@ -81,14 +81,16 @@ class Recording:
 
 def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[PathLike] = None,
          fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False) -> Recording:
-    """Opens what ``alidade run`` can open, to be read frame by frame as arrays.
+    """Opens any source of ``alidade run`` for reading frame by frame as arrays.
 
     source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
-    sensor: "mono", "stereo" or "rgbd"; None: the best it has.
-    camera: a camera.yaml instead of the recording's own calibration.
-    fov: horizontal field of view in degrees instead of a calibration.
+    sensor: "mono", "stereo" or "rgbd"; None: depth or stereo if available.
+    camera: a camera.yaml to use instead of the recording's calibration.
+    fov: horizontal field of view in degrees, used instead of a calibration.
     first, last: frame numbers from 0, both included; -1: to the end.
-    color: frames have their colours as well, where there are any.
+    color: also read the frames' colors, if available.
+
+    Raises InputError or UsageError.
     """
     options = {"source": os.fspath(source), "sensor": sensor, "fov": fov, "first": first, "last": last,
                "camera_file": None if camera is None else os.fspath(camera)}

@@ -1,4 +1,4 @@
-"""What a run leaves."""
+"""Results of a run."""
 
 from __future__ import annotations
 
@@ -22,48 +22,48 @@ def _poses(path: str) -> numpy.ndarray:
 
 
 class Result:
-    """A finished run: the folder ``alidade run`` leaves (docs/formats.md), as arrays.
+    """The results of a run: the files of ``alidade run`` (docs/reference/run-folder.md) as arrays.
 
-    ``Result("alidade-out/desk")`` opens one that is there, whoever made it.
+    ``Result("alidade-out/desk")`` opens an existing folder of results. Raises InputError for any other folder.
     """
 
     def __init__(self, folder: PathLike, *, _map: Optional[Map] = None, _keeper: Any = None) -> None:
         self.folder = os.fspath(folder)
-        """Where its files are. Without ``out=`` a temporary folder that goes with this object."""
+        """Folder of the files. Without ``out=`` a temporary folder that is deleted with this object."""
         if not os.path.isfile(self.file("stats.json")):
             raise InputError(f"{self.folder} holds no stats.json: it is not what a run leaves")
         self._map = _map
         self._keeper = _keeper
 
     def file(self, name: str) -> str:
-        """Path of one of its files: "report.html", "landmarks.ply", ..."""
+        """Path of a file by name: "report.html", "landmarks.ply", ..."""
         return os.path.join(self.folder, name)
 
     def save(self, folder: PathLike) -> None:
-        """Copies all files to a folder that is not there yet."""
+        """Copies all files to a new folder."""
         shutil.copytree(self.folder, os.fspath(folder))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
                min_observations: int = 1) -> str:
-        """Writes what other programs read, as ``alidade export`` does of the folder; returns what it was, in words.
+        """Exports to another format, as ``alidade export`` does. Returns a description of what was written.
 
-        to: "mcap": the run frame by frame as it was (if it was recorded, ``record=True``; else its poses), with path
-            and points as they are in the end, as ROS 2 messages (docs/mcap.md). Others: its map, as Map.export().
-            None: by the ending of the path.
-        format, part, min_observations: as of Map.export(), not for "mcap".
+        to: "mcap": the run frame by frame (if recorded with ``record=True``; else its poses) and the final path and
+            points, as ROS 2 messages (docs/reference/mcap.md). Other formats: the map, as Map.export(). None: by the ending of
+            the path.
+        format, part, min_observations: as in Map.export(), not for "mcap".
         """
         where = os.fspath(path)
         return _core.export_path(self.folder, where, to or _by_ending(where), format, part, min_observations)
 
     @property
     def trajectory(self) -> numpy.ndarray:
-        """(n, 8): timestamp tx ty tz qx qy qz qw, T_world_camera of all frames placed in the largest map, corrected
-        by all that was learnt until the end. The numbers of trajectory.txt."""
+        """(n, 8): timestamp tx ty tz qx qy qz qw, T_world_camera of all frames in the largest map, with all later
+        corrections. The content of trajectory.txt."""
         return _poses(self.file("trajectory.txt"))
 
     @property
     def trajectory_live(self) -> numpy.ndarray:
-        """(n, 8): the same as it was known when each frame was done."""
+        """(n, 8): the poses as estimated when each frame was processed."""
         return _poses(self.file("trajectory_live.txt"))
 
     @property
@@ -73,20 +73,20 @@ class Result:
 
     @property
     def groundtruth(self) -> Optional[numpy.ndarray]:
-        """(n, 8): the true poses where the recording was rendered, in a world of their own; else None."""
+        """(n, 8): true poses of a rendered recording, in the scene's world frame; else None."""
         path = self.file("groundtruth.txt")
         return _poses(path) if os.path.isfile(path) else None
 
     @property
     def stats(self) -> Dict[str, Any]:
-        """stats.json."""
+        """The content of stats.json."""
         with open(self.file("stats.json"), encoding="utf-8") as file:
             stats: Dict[str, Any] = json.load(file)
         return stats
 
     @property
     def map(self) -> Map:
-        """The map; of a run of this process with its semi-dense cloud."""
+        """The map; for a run of this process including its semi-dense cloud."""
         if self._map is None:
             self._map = Map.load(self.folder)
         return self._map

@@ -19,12 +19,12 @@ Detector = Callable[[Any], Iterable[Detection]]
 
 @dataclasses.dataclass(frozen=True)
 class Progress:
-    """How far a run is."""
+    """Progress of a run."""
 
     stage: str
-    """opening, calibrating (an unknown camera is looked for), running, finishing"""
+    """opening, calibrating (self-calibration before the run), running, finishing"""
     frames: int
-    """done"""
+    """processed frames"""
     total: Optional[int]
     """None: unknown"""
     state: str
@@ -32,7 +32,7 @@ class Progress:
     keyframes: int
     points: int
     viewer: Optional[str] = None
-    """address, with ``viewer=``"""
+    """URL of the viewer, with ``viewer=``"""
 
 
 def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = False, dynamics: Optional[str] = None,
@@ -42,41 +42,46 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         load: Union[None, PathLike, Map] = None, out: Optional[PathLike] = None, schedule: Optional[str] = None,
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
         first: int = 0, last: int = -1, record: Union[None, bool, PathLike] = None,
-        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False,
+        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
         progress: Optional[Callable[[Progress], None]] = None) -> Result:
-    """Tracks a recording, video or camera and maps what it sees, as ``alidade run`` does: the same options by the
-    same names, the same bytes in every file.
+    """Runs SLAM on a recording, video or live camera, as ``alidade run`` does: with the same options and names, and
+    the same bytes in every file.
 
     source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
-    sensor: "mono", "stereo" or "rgbd"; None: what the recording has.
-    semidense: map shape too: depth at every pixel with structure.
-    dynamics: "auto" (as "off" until much of the picture moves), "off", "geometry" (leave out what moves) or
-        "full" (and what a detector knows to).
-    detector: a YOLO network (.onnx), or a function of an image that gives (class, score, x, y, width, height) of
-        each thing; see Slam. Implies dynamics="full".
-    camera: a camera.yaml, or a Camera, instead of the recording's own; fov: horizontal field of view in degrees
-        (70, or "~70" for a guess). calibrate_first: find a camera that nothing is known of by playing beforehand.
-    profile: "desktop" or "phone"; config: a YAML file of settings; settings: {"tracker.extractor.features": 1500}:
-        by the names of ``--set`` (alidade.settings() has them all).
-    load: a map to go on in (a Map, or its path).
-    out: folder for the results. None: a temporary one, which goes with the Result.
-    schedule: "inline" (the same result every time) or "threaded" (as live); rate: "realtime", "max" or frames per
-        second. repeat: forth and back so many times. threads: for parallel loops, 0 = all cores; results are the same.
+    sensor: "mono", "stereo" or "rgbd"; None: depth or stereo if the recording has it.
+    semidense: also estimate semi-dense depth at pixels with texture.
+    dynamics: "auto" (as "off" until a large part of the image moves), "off", "geometry" (exclude moving objects) or
+        "full" (also exclude objects the detector classifies as movable).
+    detector: a YOLO network (.onnx), or a function of an image that returns (class, score, x, y, width, height) for
+        each detection; see Slam. Implies dynamics="full".
+    camera: a camera.yaml or a Camera, used instead of the recording's calibration; fov: horizontal field of view in
+        degrees (70, or "~70" if approximate). calibrate_first: calibrate an unknown camera by playing the recording
+        beforehand.
+    profile: "desktop" or "phone"; config: a YAML file of settings; settings: {"tracker.extractor.features": 1500},
+        with the names of ``--set`` (alidade.settings() lists them all).
+    load: a map to continue (a Map, or its path).
+    out: folder for the results. None: a temporary folder, which is deleted with the Result. Results of another source
+        in it are refused. Earlier results of the same source are kept when the run fails, is interrupted or has fewer
+        frames; its own are then in the folder's last-attempt. overwrite: replace whatever results are there.
+    schedule: "inline" (reproducible) or "threaded" (as live); rate: "realtime", "max" or frames per second.
+        repeat: number of times to play forwards and backwards. threads: for parallel loops, 0 = all cores; does not
+        change results.
     first, last: frame numbers, both included.
-    record: keep the stream for `alidade view` (True: run.stream in the folder; or a path; one that ends in .mcap: as
-        MCAP). viewer: show the run in a browser while it goes on (True, or a port; Progress.viewer is its address);
-        host: the address it listens on. write_masks: pictures of what was left out as moving.
-    progress: called with a Progress when there is news, 20 times a second at most, from this thread; what it raises
-        ends the run.
+    record: record the stream for `alidade view` (True: run.stream in the results folder; or a path; as MCAP if it
+        ends in .mcap). viewer: show the run in a browser (True, or a port; Progress.viewer is the URL); host: the
+        address it listens on. write_masks: write images of the excluded moving parts.
+    progress: called in this thread with a Progress when it changed, at most 20 times per second; an exception it
+        raises ends the run.
 
-    Raises Error. Ctrl-C ends the run early: what was done by then is written, then KeyboardInterrupt is raised (as
-    is what `progress` raised), with the Result as its attribute ``result`` where there is one. One run at a time;
-    others wait their turn.
+    Raises Error. Ctrl-C, or an exception of `progress`, ends the run early: the results so far are written, and the
+    exception is raised with the Result, if there is one, in its attribute ``result``. Only one run executes at a
+    time; others wait.
     """
     return _run(dict(
         source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks,
+        overwrite=overwrite),
         detector, camera, config, load, out, record, viewer, progress)
 
 
@@ -88,21 +93,21 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
              record: Union[None, bool, PathLike] = None, viewer: Union[None, bool, int] = None,
-             host: Optional[str] = None, write_masks: bool = False,
+             host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
-    """Finds the poses of a recording in a map, which stays as it is, as ``alidade localize`` does. Poses are in the
-    map's world. map: a Map, or the path of one; all else as for run()."""
+    """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
+    are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
         first=first, last=last, host=host,
-        write_masks=write_masks, localise=True),
+        write_masks=write_masks, overwrite=overwrite, localise=True),
         detector, camera, config, map, out, record, viewer, progress)
 
 
 def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any, record: Any,
          viewer: Any, progress: Optional[Callable[[Progress], None]]) -> Result:
-    scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # goes with the last who holds it
+    scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # deleted with its last reference
     options["detector"] = detector if detector is None or callable(detector) else os.fspath(detector)
     if isinstance(camera, Camera):
         options["camera_file"] = os.path.join(scratch.name, "camera.yaml")
@@ -141,7 +146,7 @@ def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load:
     try:
         _core.run(options, told, outcome)
     except BaseException as error:
-        if os.path.isfile(os.path.join(outcome.get("folder", ""), "stats.json")):
+        if "folder" in outcome:
             error.result = result()  # type: ignore[attr-defined]
         raise
     finally:

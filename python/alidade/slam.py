@@ -1,4 +1,4 @@
-"""Frame by frame."""
+"""SLAM frame by frame."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from .running import Detector
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class TrackResult:
-    """What became of one frame."""
+    """Result of one frame."""
 
     frame: int
-    """how many came before it"""
+    """number of previous frames"""
     time: float
     """seconds"""
     state: str
@@ -33,50 +33,50 @@ class TrackResult:
     reason: str
     """why there is no pose"""
     matches: int
-    """landmarks the pose agrees with"""
+    """number of landmarks matched consistently with the pose"""
     covariance: Optional[numpy.ndarray]
-    """(6, 6) of the pose's error in the camera's own frame, translation then rotation: m², m rad, rad² (one camera:
-    map units), against the map as it stands around the camera; None: not known"""
+    """(6, 6) of the pose error in the camera's frame, translation then rotation: m², m rad, rad² (monocular: map
+    units), relative to the map around the camera; None: unknown"""
     keyframe: bool
-    """the map remembers this frame"""
+    """the frame became a keyframe"""
     predicted: Optional[numpy.ndarray]
-    """(4, 4): lost for a moment only, this is where the camera's motion would have led; a guess"""
+    """(4, 4), if recently lost: pose extrapolated from the camera's motion"""
     cut: str
-    """why the frame does not go on where the one before was; empty: it does"""
+    """why the frame does not continue the previous one; empty: it does"""
     expected: int
-    """landmarks that should be in view"""
+    """number of landmarks expected in view"""
     inliers: int
-    """of these, found where the pose says"""
+    """of these, the number found consistent with the pose"""
     found_share: float
     """inliers / expected; a third is usual"""
     warning: str
-    """what has stopped working, with every frame since; empty: nothing"""
+    """which part of the system has failed, repeated with every frame; empty: none"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class FramePose:
-    """Where a frame was, as it is known by now."""
+    """Current estimate of a frame's pose."""
 
     frame: int
     time: float
     pose: Optional[numpy.ndarray]
-    """(4, 4) T_world_camera; None: it was not tracked"""
+    """(4, 4) T_world_camera; None: not tracked"""
     map: Optional[int]
-    """in whose world"""
+    """the map whose world the pose refers to"""
     late: bool
-    """it got its pose later"""
+    """the pose was estimated later (deferred localization)"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
 class Features:
-    """Of the last frame, f of them."""
+    """Features of the last frame, f of them."""
 
     pixels: numpy.ndarray
     """(f, 2) x y"""
     matched: numpy.ndarray
-    """(f,) bool: the pose agrees with the landmark it shows"""
+    """(f,) bool: matched to a landmark consistently with the pose"""
     static_probability: numpy.ndarray
-    """(f,) how likely it stands still"""
+    """(f,) probability of being static, 0 to 1"""
 
 
 _open: "weakref.WeakSet[Slam]" = weakref.WeakSet()
@@ -85,25 +85,26 @@ _open: "weakref.WeakSet[Slam]" = weakref.WeakSet()
 class Slam:
     """Visual SLAM: images in, poses and a map out.
 
-    camera: of the images; or a camera.yaml. sensor: "mono", "stereo" (camera.baseline) or "rgbd" (camera.depth_factor).
-    semidense: map shape too. dynamics: "auto", "off", "geometry" or "full". profile: "desktop" or "phone". seed: of every
-    random choice. localise: only find poses in the map that is loaded, and leave it as it is.
-    schedule: "inline" (default: each frame's work is done when track() returns; the same result every time) or
-    "threaded" (track() never waits for mapping).
-    config: a YAML file of settings. settings: {"tracker.extractor.features": 1500}, by the names of the program's
-    ``--set``; alidade.settings() has them all. They may be given as keywords, too: **{"semidense.voxel": 0.02}.
-    mounting: Recording.mounting of recordings that are rectified: trajectory() is of the camera as mounted then.
-    calibrate: the camera is only a guess, such as Camera.from_fov(640, 480, 66). One camera alone finds its focal
-    length, distortion and rolling shutter while the map grows, which is changed to it as it stands: see ``camera``.
+    camera: of the images; a Camera or a camera.yaml. sensor: "mono", "stereo" (camera.baseline) or "rgbd"
+    (camera.depth_factor). semidense: also estimate semi-dense depth. dynamics: "auto", "off", "geometry" or "full".
+    profile: "desktop" or "phone". seed: for all random numbers. localise: only estimate poses in the loaded map,
+    without changing it.
+    schedule: "inline" (default: all work of a frame is done when track() returns; reproducible) or "threaded"
+    (track() never waits for mapping).
+    config: a YAML file of settings. settings: {"tracker.extractor.features": 1500}, with the names of the program's
+    ``--set``; alidade.settings() lists them all. Settings may also be passed as keywords: **{"semidense.voxel": 0.02}.
+    mounting: Recording.mounting of a rectified recording; trajectory() then refers to the camera as mounted.
+    calibrate: the camera is only approximate, such as Camera.from_fov(640, 480, 66). A monocular Slam then estimates
+    focal length, distortion and rolling-shutter readout online and adapts the map; see ``camera``.
 
-    detector: a YOLO network (.onnx), or a function of an image, (h, w, 3) blue green red or (h, w) grey of uint8,
-    that gives a list of (class, score, x, y, width, height): class a name ("person"; other names in its attribute
-    ``class_names``) or its number, x y the box's top-left corner in pixels. With schedule "threaded" it is called
-    from a thread of its own, with the newest frame whenever it is free. What it raises is a warning, see health();
-    SLAM goes on without it. Implies dynamics="full".
+    detector: a YOLO network (.onnx), or a function of an image, (h, w, 3) blue green red or (h, w) gray, uint8, that
+    returns a list of (class, score, x, y, width, height). class: a name ("person"; for other names set the function's
+    attribute ``class_names``) or its number; x y: the box's top-left corner in pixels. With schedule "threaded" it is
+    called in a separate thread with the newest frame whenever it is idle. If it raises, SLAM continues without it and
+    logs a warning; see health(). Implies dynamics="full".
 
-    Any thread may call anything. track(), load(), reset() and finish() take turns; the others don't wait for them.
-    No image is copied on the way in when its pixels lie side by side, and none is kept.
+    All methods may be called from any thread. track(), load(), reset() and finish() are serialized; the others do not
+    wait for them. Input images are copied only if their pixels are not contiguous within rows; none is kept.
     """
 
     def __init__(self, camera: Union[Camera, PathLike], *, sensor: str = "mono", semidense: bool = False,
@@ -122,20 +123,20 @@ class Slam:
         self._core = _core.Slam(camera, options, mounting, calibrate)
         _open.add(self)
 
-    # Driving.
+    # Processing; calls are serialized.
 
     def track(self, t: float, image: numpy.ndarray, depth: Optional[numpy.ndarray] = None,
               right: Optional[numpy.ndarray] = None, *, color: Optional[numpy.ndarray] = None,
               stamp: str = "") -> TrackResult:
-        """One frame, in order of time.
+        """Processes one frame. Call in order of time.
 
-        t: seconds. image: (h, w) grey or (h, w, 3) blue green red, uint8, of the camera's size (for red green blue
-        pass image[..., ::-1], which costs a copy). depth: RGB-D: (h, w), uint16 in camera.depth_factor per metre or
-        float32 metres, registered to the image; 0 or NaN = unknown. right: stereo: the rectified right image.
-        color: (h, w, 3) blue green red, for clouds, when image is grey. stamp: the time as it is to be written in
+        t: seconds. image: (h, w) gray or (h, w, 3) blue green red, uint8, of the camera's size (for red green blue
+        pass image[..., ::-1], which costs a copy). depth: RGB-D: (h, w), uint16 with camera.depth_factor per meter or
+        float32 in meters, registered to the image; 0 or NaN = unknown. right: stereo: the rectified right image.
+        color: (h, w, 3) blue green red, for clouds, when image is gray. stamp: the time as text for
         save_trajectory().
 
-        Raises InputError for an image that cannot be, or a time that does not grow; nothing has changed then.
+        Raises InputError for an invalid image or a time that does not increase; the state is unchanged then.
         """
         try:
             return TrackResult(**self._core.track(t, image, depth, right, color, stamp))
@@ -143,23 +144,23 @@ class Slam:
             tell_warnings()
 
     def load(self, map: Union[Map, PathLike]) -> None:
-        """Goes on in a map (a Map, or its path), before the first frame."""
+        """Loads a map to continue (a Map, or its path). Call before the first frame."""
         self._core.load((map if isinstance(map, Map) else Map.load(map))._core)
 
     def reset(self) -> None:
-        """The next frame begins a new recording, its time may be any; the maps are kept."""
+        """Starts a new recording with the next frame, which may have any time; keeps the maps."""
         self._core.reset()
 
     def finish(self, limit: float = math.inf) -> None:
-        """Waits until the map is as good as it gets, `limit` seconds at most; Ctrl-C cuts it short. More frames may
-        follow."""
+        """Completes pending work and adjusts the map, for at most `limit` seconds; Ctrl-C stops it early. More frames
+        may follow."""
         try:
             self._core.finish(limit)
         finally:
             tell_warnings()
 
     def close(self) -> None:
-        """Ends all threads and lets go of everything."""
+        """Ends all threads and frees all memory."""
         self._core.close()
         _open.discard(self)
 
@@ -167,87 +168,89 @@ class Slam:
         return self
 
     def __exit__(self, kind: Any, *_: object) -> None:
-        """Calls finish(), unless there was an error. Results can still be asked for."""
+        """Calls finish(), unless there was an error. Results remain available."""
         if kind is None and not self._core.closed:
             self.finish()
 
     # Results.
 
     def trajectory(self, part: int = 0, *, live: bool = False) -> numpy.ndarray:
-        """(n, 8): timestamp tx ty tz qx qy qz qw, T_world_camera of all frames so far that are placed in the map with
-        the most of them (part 1: in the next), corrected by what was learnt since; live: as it was at the time."""
+        """(n, 8): timestamp tx ty tz qx qy qz qw, T_world_camera of all frames so far in the map with the most frames
+        (part 1: the next one), with later corrections; live: as estimated when each frame was processed."""
         return self._core.trajectory(part, live)
 
     def save_trajectory(self, path: PathLike, part: int = 0) -> None:
-        """The same as text, in TUM's format; with the stamps that track() was given it has the same bytes as
+        """Writes the trajectory in TUM format. With the `stamp` arguments of track() it has the same bytes as
         trajectory.txt of ``alidade run``."""
         text = self._core.trajectory_text(part)
         with open(path, "w", encoding="ascii", newline="\n") as file:
             file.write(text)
 
     def frame_poses(self, since: int = 0) -> List[FramePose]:
-        """Every frame so far, from the `since`th on, lost ones too. Of the camera as rectified."""
+        """All frames from number `since` on, including lost ones. Poses of the rectified camera."""
         return [FramePose(*row) for row in self._core.frame_poses(since)]
 
     def map(self) -> Map:
-        """The map as it is now: cheap, and never changes afterwards."""
+        """An immutable snapshot of the current map; cheap."""
         return Map(self._core.map())
 
     def save(self, path: PathLike) -> None:
-        """Writes the map: a map.alidade."""
+        """Writes the map as a map.alidade."""
         self.map().save(path)
 
-    # Questions.
+    # Queries; any thread at any time.
 
     @property
     def camera(self) -> Camera:
-        """As used: scaled by the profile, with what was found of its rolling shutter; with ``calibrate`` of its lens."""
+        """The camera in use: scaled by the profile, with the estimated rolling-shutter readout; with ``calibrate`` also
+        the estimated focal length and distortion."""
         return self._core.camera()
 
     @property
     def focal_sigma(self) -> Optional[float]:
-        """With ``calibrate``: standard deviation of camera.fx as a share of it; None: nothing is found so far."""
+        """With ``calibrate``: relative standard deviation of camera.fx; None: not estimated yet."""
         return self._core.focal_sigma()
 
     @property
     def settings(self) -> Dict[str, str]:
-        """As used, by name."""
+        """The settings in use, by name."""
         return self._core.settings()
 
     @property
     def frames(self) -> int:
-        """How many track() has counted: all but those it refused."""
+        """Number of frames accepted by track()."""
         return self._core.frames()
 
     def features(self) -> Features:
-        """Of the last frame."""
+        """The features of the last frame."""
         return Features(*self._core.features())
 
     def mover_mask(self) -> Optional[numpy.ndarray]:
-        """(h, w) uint8, 255 where something was left out of the last frame as moving; None without dynamics
-        and while "auto" has seen nothing to leave out."""
+        """(h, w) uint8, 255 at excluded moving parts of the last frame; None without dynamics, and while "auto" is not
+        active."""
         return self._core.mover_mask()
 
     def detections(self) -> Optional[List[Tuple[Union[str, int], float, float, float, float, float]]]:
-        """The detector's newest answer; None: none so far."""
+        """The newest detections; None: none yet."""
         return self._core.detections()
 
     def health(self) -> Dict[str, Optional[str]]:
-        """The parts beside the tracker ("mapping", "loop closing", "detector", ...): None when it runs, else why it
-        has stopped."""
+        """Status of the parts besides the tracker ("mapping", "loop closing", "detector", ...): None if running, else
+        why it failed."""
         return self._core.health()
 
     def counts(self) -> Dict[str, int]:
-        """relocalisations, loops, merges, cuts, predicted, so far."""
+        """Number of relocalisations, loops, merges, cuts and predicted frames so far, by these names."""
         return self._core.counts()
 
     def times(self) -> Dict[str, numpy.ndarray]:
-        """Milliseconds, one sample per frame (map, loop, semidense: per keyframe): frame, extract, track, map, ..."""
+        """Processing times in milliseconds by stage (frame, extract, track, map, ...): one sample per frame; for map,
+        loop and semidense per keyframe."""
         return self._core.times()
 
 
 @atexit.register
 def _close_all() -> None:
-    # Threads of a detector would wait for the interpreter that has gone.
+    # A detector's thread would wait for ever for the terminated interpreter.
     for slam in list(_open):
         slam.close()

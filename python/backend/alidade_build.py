@@ -1,7 +1,7 @@
-"""What `pip install .` calls (PEP 517): builds the package with CMake and packs it. Needs nothing but Python itself, so
-that no build requirement is looked for in a network.
+"""PEP 517 backend of `pip install .`: builds the package with CMake and packs it. Depends on the standard library only,
+so that pip does not download build requirements.
 
-ALIDADE_BUILD names the build folder to use; else build/ when it is there for the same Python, else build/python-TAG.
+Build folder: ALIDADE_BUILD if set, else build/ if it was configured for the same Python, else build/python-TAG.
 """
 
 import base64
@@ -30,7 +30,7 @@ def _metadata():
             "Summary: Visual SLAM: where the camera is, and what the place looks like\n"
             "License: Apache-2.0\nRequires-Python: >=3.9\nRequires-Dist: numpy\n"
             "Classifier: Programming Language :: Python :: 3\nClassifier: Typing :: Typed\n"
-            "Description-Content-Type: text/markdown\n\n" + (ROOT / "docs/python.md").read_text(encoding="utf-8"))
+            "Description-Content-Type: text/markdown\n\n" + (ROOT / "docs/guides/python.md").read_text(encoding="utf-8"))
 
 
 def _tag():
@@ -39,7 +39,7 @@ def _tag():
 
 
 def _is_for_this_python(build):
-    """Whether a build folder was configured for a Python that loads the same modules."""
+    """True when a build folder was configured for a Python with the same extension suffix."""
     cache = build / "CMakeCache.txt"
     found = re.search(r"^Python_EXECUTABLE:\w+=(.+)$", cache.read_text(), re.M) if cache.is_file() else None
     if found is None:
@@ -50,7 +50,7 @@ def _is_for_this_python(build):
 
 
 def _package():
-    """Builds; the folder of the package."""
+    """Builds the package and returns its folder."""
     if os.environ.get("ALIDADE_BUILD"):
         build = pathlib.Path(os.environ["ALIDADE_BUILD"])
     else:
@@ -58,7 +58,7 @@ def _package():
         if not _is_for_this_python(build):
             build = ROOT / "build" / f"python-{sys.implementation.cache_tag}"
     environment = dict(os.environ)
-    environment.pop("PYTHONPATH", None)  # pip's own
+    environment.pop("PYTHONPATH", None)  # set by pip
     if not _is_for_this_python(build):
         subprocess.run(["cmake", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release", "-DALIDADE_BUILD_APPS=OFF",
                         "-DALIDADE_BUILD_TESTS=OFF", f"-DPython_EXECUTABLE={sys.executable}"],
@@ -71,7 +71,7 @@ def _package():
 
 
 def _pack(wheel_directory, files):
-    """`files`: name in the wheel → bytes. Returns the wheel's name."""
+    """Writes a wheel. `files`: name in the wheel → bytes. Returns the wheel's file name."""
     info = f"alidade-{_version()}.dist-info"
     files = dict(files)
     files[f"{info}/METADATA"] = _metadata().encode()
@@ -87,7 +87,7 @@ def _pack(wheel_directory, files):
     name = f"alidade-{_version()}-{_tag()}.whl"
     with zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
         for path, content in files.items():
-            entry = zipfile.ZipInfo(path, (1980, 1, 1, 0, 0, 0))  # the same bytes each time
+            entry = zipfile.ZipInfo(path, (1980, 1, 1, 0, 0, 0))  # for reproducible wheels
             entry.external_attr = 0o644 << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             wheel.writestr(entry, content)
@@ -115,7 +115,7 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_editable(wheel_directory, config_settings=None, metadata_directory=None):
-    """Points at the build: `scripts/build python` brings it up to date."""
+    """An editable install that refers to the build folder; `scripts/build python` updates it."""
     del config_settings, metadata_directory
     return _pack(wheel_directory, {"alidade.pth": f"{_package().parent}\n".encode()})
 

@@ -13,7 +13,7 @@ std::string ShapeOf(const py::array& array) {
          py::str(array.dtype()).cast<std::string>();
 }
 
-// Pixels side by side, rows below each other.
+// Pixels are contiguous within rows, and rows are in ascending order.
 bool HasRows(const py::array& array, py::ssize_t pixel_bytes) {
   const bool pixels = array.shape(1) < 2 || array.strides(1) == pixel_bytes;
   const bool channels = array.ndim() < 3 || array.shape(2) < 2 || array.strides(2) == 1;
@@ -80,7 +80,7 @@ WrappedImage WrapDepth(const py::handle& value, const std::string& name) {
 
 py::object ArrayOf(const cv::Mat& image) {
   if (image.empty()) return py::none();
-  // Without a count of holders the memory is somebody else's, and may go.
+  // An OpenCV image without reference count does not own its memory: copy it.
   auto* held = new cv::Mat(image.u != nullptr ? image : image.clone());
   const py::capsule keeper(held, [](void* mat) { delete static_cast<cv::Mat*>(mat); });
   std::vector<py::ssize_t> shape = {held->rows, held->cols};
@@ -134,7 +134,7 @@ Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
     const double* row = array.data(i, 0);
     const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
-    if (!(std::abs(q.norm() - 1) < 0.05))  // as in files
+    if (!(std::abs(q.norm() - 1) < 0.05))  // the same tolerance as for files
       ThrowInput(name + ": row " + std::to_string(i) + " has no unit quaternion");
     trajectory.push_back({row[0], Se3::FromQuaternion(q, {row[1], row[2], row[3]}), {}});
   }

@@ -11,7 +11,7 @@
 namespace alidade::python {
 namespace {
 
-// Images as taken by a camera of a file, turned into those of a pinhole or a rectified pair.
+// Converts raw images to those of a pinhole camera or a rectified pair, by a camera file.
 class Rectifier {
  public:
   Rectifier(const std::string& path, const std::string& sensor)

@@ -8,6 +8,7 @@
 #include "alidade/evaluation/depth_error.h"
 #include "alidade/evaluation/rpe.h"
 #include "alidade/run/choice.h"
+#include "alidade/run/truth.h"
 #include "arrays.h"
 
 namespace alidade::python {
@@ -21,12 +22,6 @@ std::optional<TimeSpan> SpanFrom(const Span& span) {
   return TimeSpan{span->first, span->second};
 }
 
-Alignment AlignmentNamed(const std::string& word) {
-  return Choice<Alignment>(
-      "align", word,
-      {{"se3", Alignment::kSe3}, {"sim3", Alignment::kSim3}, {"none", Alignment::kNone}});
-}
-
 py::dict ToDict(const ErrorStatistics& s, double scale, double coverage) {
   return py::dict("n"_a = s.n, "rmse"_a = s.rmse, "mean"_a = s.mean, "median"_a = s.median,
                   "std"_a = s.std, "min"_a = s.min, "max"_a = s.max, "scale"_a = scale,
@@ -34,9 +29,11 @@ py::dict ToDict(const ErrorStatistics& s, double scale, double coverage) {
 }
 
 py::dict Ate(const py::object& truth, const py::object& estimate, const std::string& align,
-             const std::string& association, double max_dt, const Span& span) {
+             const std::string& sensor, const std::string& association, double max_dt,
+             const Span& span) {
   AteSettings settings;
-  settings.align = AlignmentNamed(align);
+  const ChosenAlignment chosen = AlignmentNamed("align", align, sensor);
+  settings.align = chosen.align;
   settings.association = Choice<Association>(
       "association", association, {{"tum", Association::kTum}, {"evo", Association::kEvo}});
   settings.max_dt = max_dt;
@@ -56,6 +53,8 @@ py::dict Ate(const py::object& truth, const py::object& estimate, const std::str
     pairs.push_back(pair.estimate);
   }
   py::dict all = ToDict(result.error, T.s, result.coverage);
+  all["align"] = NameOf(chosen.align);
+  all["align_why"] = chosen.why;
   all["transform"] = PoseArray(Se3{T.s * T.R, T.t});
   all["pairs"] = Table(pairs, 2);
   all["errors"] = Table(result.distances);
@@ -64,14 +63,15 @@ py::dict Ate(const py::object& truth, const py::object& estimate, const std::str
 
 py::tuple Rpe(const py::object& truth, const py::object& estimate, double delta,
               const std::string& unit, const std::string& pairs, const std::string& align,
-              double max_dt, const Span& span) {
+              const std::string& sensor, double max_dt, const Span& span) {
   RpeSettings settings;
   settings.delta = delta;
   settings.unit =
       Choice<DeltaUnit>("unit", unit, {{"s", DeltaUnit::kSeconds}, {"frames", DeltaUnit::kFrames}});
   settings.pairs = Choice<PairSelection>(
       "pairs", pairs, {{"all", PairSelection::kAll}, {"consecutive", PairSelection::kConsecutive}});
-  settings.align = AlignmentNamed(align);
+  const ChosenAlignment chosen = AlignmentNamed("align", align, sensor);
+  settings.align = chosen.align;
   settings.max_dt = max_dt;
   settings.source_span = SpanFrom(span);
   settings.Check();
@@ -83,7 +83,8 @@ py::tuple Rpe(const py::object& truth, const py::object& estimate, double delta,
     result = EvaluateRpe(true_poses, poses, settings);
   }
   return py::make_tuple(ToDict(result.trans, result.scale, result.coverage),
-                        ToDict(result.rot, result.scale, result.coverage));
+                        ToDict(result.rot, result.scale, result.coverage),
+                        NameOf(chosen.align), chosen.why);
 }
 
 py::dict ToDict(const DepthScore& s) {
@@ -130,9 +131,10 @@ class DepthErrors {
 }  // namespace
 
 void BindEvaluate(py::module_& core) {
-  core.def("ate", &Ate, "truth"_a, "estimate"_a, "align"_a, "association"_a, "max_dt"_a, "span"_a);
-  core.def("rpe", &Rpe, "truth"_a, "estimate"_a, "delta"_a, "unit"_a, "pairs"_a, "align"_a,
+  core.def("ate", &Ate, "truth"_a, "estimate"_a, "align"_a, "sensor"_a, "association"_a,
            "max_dt"_a, "span"_a);
+  core.def("rpe", &Rpe, "truth"_a, "estimate"_a, "delta"_a, "unit"_a, "pairs"_a, "align"_a,
+           "sensor"_a, "max_dt"_a, "span"_a);
   py::class_<DepthErrors>(core, "DepthErrors")
       .def(py::init<bool>(), "fit_scale"_a)
       .def("add", &DepthErrors::Add, "estimate"_a, "truth"_a, "image"_a, "map"_a)

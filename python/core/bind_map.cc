@@ -19,7 +19,7 @@ namespace {
 
 using py::literals::operator""_a;
 
-// One of the maps of a file; it holds on to all of it.
+// One of the unconnected maps of a SavedMap; keeps the SavedMap alive.
 struct Part {
   MapHolder saved;
   MapPart ids;

@@ -26,7 +26,7 @@ namespace {
 
 using py::literals::operator""_a;
 
-// How far a run is; keeps its map.
+// Collects the progress of a run, and keeps its map.
 class Onlooker : public RunWatcher {
  public:
   void Calibrating(const CalibrateProgress& progress) override {
@@ -34,13 +34,12 @@ class Onlooker : public RunWatcher {
     stage_ = "calibrating";
     frames_ = progress.frames;
   }
-  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override {
+  void Begin(const Slam& slam, const RunRecord& record, const std::string&) override {
     const std::lock_guard<std::mutex> lock(mutex_);
     slam_ = &slam;
     total_ = record.source.frames;
     frames_ = 0;
     stage_ = "running";
-    folder_ = folder;
   }
   void Frame(const SourceFrame& frame, const TrackResult& result) override {
     (void)frame;
@@ -60,6 +59,7 @@ class Onlooker : public RunWatcher {
     const std::lock_guard<std::mutex> lock(mutex_);
     map_ = std::move(saved);
   }
+  void Placed(const std::string& folder) override { folder_ = folder; }
   void ShownAt(const std::string& address) {
     const std::lock_guard<std::mutex> lock(mutex_);
     viewer_ = address;
@@ -81,7 +81,7 @@ class Onlooker : public RunWatcher {
   const Slam* slam_ = nullptr;
   std::string stage_ = "opening", folder_, viewer_;
   int frames_ = 0, total_ = -1, keyframes_ = 0, points_ = 0;
-  TrackState state_ = TrackState::kInitialising;
+  TrackState state_ = TrackState::kInitializing;
   MapHolder map_;
 };
 
@@ -96,7 +96,7 @@ ServeSettings ViewerSettings(const RunOptions& options) {
   return settings;
 }
 
-// One run, which may be asked to end before its turn has come.
+// A run that can be stopped while it waits for its turn.
 class OneOfMany {
  public:
   void Run(const RunOptions& options, Onlooker& onlooker);
@@ -110,7 +110,8 @@ class OneOfMany {
 };
 
 void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
-  // Warnings, threads and the request to stop are the program's: one run at a time.
+  // Warnings, thread counts and interrupts are global to the process, so only one run executes at a
+  // time.
   static auto* one_run = new std::timed_mutex;
   std::unique_lock<std::timed_mutex> alone(*one_run, std::defer_lock);
   while (!asked_ && !alone.try_lock_for(std::chrono::milliseconds(50))) {
@@ -147,7 +148,7 @@ void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
   leave();
 }
 
-// Fills `outcome`, which a caller has even when this raises: `folder` once there is one, `map`.
+// Sets `outcome` ("folder" once known, "map"), also when it raises.
 void RunFor(const py::dict& values, const py::object& progress, py::dict outcome) {
   const RunOptions options = OptionsFrom(values);
   Onlooker onlooker;

@@ -18,7 +18,7 @@ py::object PoseOf(const TrackedFrame& frame) {
 }
 
 py::object PredictedOf(const TrackedFrame& frame) {
-  return frame.result.predicted ? py::object(PoseArray(frame.result.T_world_camera))
+  return frame.result.predicted ? py::object(PoseArray(*frame.result.predicted))
                                 : py::object(py::none());
 }
 
@@ -33,11 +33,11 @@ py::object CovarianceOf(const TrackedFrame& frame) {
   return array;
 }
 
-// As keyword arguments of alidade.TrackResult.
+// Keyword arguments of alidade.TrackResult.
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
   return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
-                  "pose"_a = PoseOf(frame), "reason"_a = result.reason,
+                  "pose"_a = PoseOf(frame), "reason"_a = result.reason(),
                   "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
                   "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
                   "cut"_a = result.cut, "expected"_a = result.quality.expected,

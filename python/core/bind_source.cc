@@ -11,7 +11,7 @@
 namespace alidade::python {
 namespace {
 
-// A recording, frame by frame. From any thread, one at a time.
+// Reads a recording frame by frame. May be used from any thread; calls are serialized.
 class Source {
  public:
   explicit Source(std::unique_ptr<FrameSource> source)
@@ -33,7 +33,7 @@ class Source {
 
  private:
   std::mutex mutex_;
-  std::unique_ptr<ReadAhead> source_;  // null once it is closed
+  std::unique_ptr<ReadAhead> source_;  // null after Close()
   SourceInfo info_;
 };
 
@@ -45,7 +45,7 @@ std::unique_ptr<Source> Open(const py::dict& values, bool color) {
   return std::make_unique<Source>(OpenAnySource(options.source, wanted));
 }
 
-// As keyword arguments of alidade.Frame; None at the end.
+// Keyword arguments of alidade.Frame; None at the end.
 py::object NextFrame(Source& source) {
   const std::optional<SourceFrame> frame = source.Next();
   if (!frame) return py::none();

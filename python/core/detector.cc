@@ -35,8 +35,9 @@ class CallableDetector : public Detector {
       std::stable_sort(found.begin(), found.end(),
                        [](const Detection& a, const Detection& b) { return a.score > b.score; });
       return found;
-    } catch (const py::error_already_set& error) {   // must not leave without the GIL
-      if (error.matches(PyExc_KeyboardInterrupt)) {  // is not the detector's: raised again, later
+    } catch (const py::error_already_set& error) {  // its destructor requires the GIL
+      // Not an error of the detector: raise it again later.
+      if (error.matches(PyExc_KeyboardInterrupt)) {
         PyErr_SetInterrupt();
         return {};
       }
@@ -63,7 +64,7 @@ class CallableDetector : public Detector {
     return detection;
   }
 
-  // -1 for a name that is not among them: things of no class we know stay where they are.
+  // -1 for an unknown name: objects of unknown classes are not excluded.
   int ClassOf(const py::object& value) const {
     if (!py::isinstance<py::str>(value)) return py::int_(value).cast<int>();
     const auto at = std::find(names_.begin(), names_.end(), value.cast<std::string>());

@@ -1,4 +1,4 @@
-// A Python function as the detector.
+// A Python function as a detector.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace alidade::python {
 
-// `callable(image)` gives (class, score, x, y, width, height) of each thing; class: a name, or its
-// number in COCO or in the callable's own `class_names`. It is called from the thread that has the
-// image, with the GIL; what it raises becomes an Error, with which it is done without. Made and
-// destroyed with or without the GIL.
+// `callable(image)` returns (class, score, x, y, width, height) for each detection; class: a name,
+// or its number in COCO or in the callable's `class_names`. It is called in the detector's thread
+// with the GIL. An exception becomes an Error, and SLAM continues without the detector.
+// Construction and destruction do not require the GIL.
 std::shared_ptr<Detector> DetectorOf(py::object callable);
 
 }  // namespace alidade::python

@@ -14,9 +14,9 @@
 namespace alidade::python {
 namespace {
 
-constexpr size_t kMostWarnings = 1000;  // that nobody takes; older ones go first
+constexpr size_t kMostWarnings = 1000;  // limit of collected warnings; the oldest are dropped
 
-// Never destroyed: threads may warn until the process ends.
+// Never destroyed, because threads may log warnings until the process ends.
 struct Waiting {
   std::mutex mutex;
   std::deque<std::string> warnings;
@@ -34,7 +34,7 @@ std::deque<std::string> TakeWarnings() {
 
 void Raise(const char* name, const char* message) {
   const py::object type = py::module_::import("alidade.errors").attr(name);
-  // Paths in messages may be in any encoding.
+  // paths in messages may have any encoding
   const py::object text = py::reinterpret_steal<py::object>(
       PyUnicode_DecodeUTF8(message, static_cast<Py_ssize_t>(std::strlen(message)), "replace"));
   PyErr_SetObject(type.ptr(), text.ptr());

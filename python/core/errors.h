@@ -1,13 +1,13 @@
-// What goes wrong in C++, for Python.
+// Passes the library's errors and warnings to Python.
 #pragma once
 
 #include <string>
 
 namespace alidade::python {
 
-// From now on the library's warnings wait in a list, which the package hands to `logging` between
-// two calls. They come from any thread; to take the GIL for each would let a thread that holds a
-// lock wait for one that wants it. Called anew after a run, which listens for itself.
+// Collects the library's warnings in a list, which the package passes to `logging` between two
+// calls. Warnings come from any thread; acquiring the GIL for each could deadlock with a thread
+// that holds a lock. Must be called again after a run, which installs its own listener.
 void CollectWarnings();
 void KeepWarning(const std::string& message);  // any thread
 

@@ -39,7 +39,7 @@ void WorkInterruptibly(const std::function<void()>& work, const std::function<vo
         if (PyErr_CheckSignals() != 0) throw py::error_already_set();
         if (meanwhile && !raised) meanwhile();
       } catch (...) {
-        if (!raised) raised = std::current_exception();  // the first one is told
+        if (!raised) raised = std::current_exception();  // keep the first one
         interrupt();
       }
     }

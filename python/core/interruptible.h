@@ -1,15 +1,15 @@
-// Long work that Ctrl-C ends.
+// Runs long work that Ctrl-C can interrupt.
 #pragma once
 
 #include <functional>
 
 namespace alidade::python {
 
-// Does `work` in a thread of its own and returns when it is done; what it throws is thrown here.
-// Called with the GIL, which is given up meanwhile: it is taken 20 times a second for Python's
-// signal handlers, and for `meanwhile`, which may be empty. What these raise (KeyboardInterrupt)
-// calls `interrupt`, again the second time, and is thrown once `work` has come to its end. `work`
-// itself must take the GIL for whatever it does with Python.
+// Runs `work` in a separate thread and returns when it is done; rethrows its exception. Must be
+// called with the GIL, which is released meanwhile and acquired 20 times per second for Python's
+// signal handlers and for `meanwhile`, which may be empty. When these raise (KeyboardInterrupt),
+// calls `interrupt`, each time, and rethrows the first exception after `work` has ended. `work`
+// must acquire the GIL to use Python.
 void WorkInterruptibly(const std::function<void()>& work, const std::function<void()>& interrupt,
                        const std::function<void()>& meanwhile = {});
 

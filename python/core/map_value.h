@@ -1,4 +1,4 @@
-// A map as Python holds it.
+// A map as held by Python objects.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,7 @@
 
 namespace alidade::python {
 
-// Never changes. Its bytes are made when they are asked for.
+// Immutable. Encoded on demand.
 using MapValue = SavedMap;
 using MapHolder = std::shared_ptr<MapValue>;
 

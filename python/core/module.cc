@@ -1,5 +1,5 @@
-// The module alidade._core: the library's classes and functions as the Python files beside it use
-// them. No algorithms here, and nothing that users should call: see python/alidade.
+// The module alidade._core: the library's classes and functions for the Python files in
+// python/alidade. Contains no algorithms and is not part of the public interface.
 #include "alidade/base/parallel.h"
 #include "alidade/version.h"
 #include "python.h"

@@ -1,4 +1,4 @@
-// What the parts of the Python module share: pybind11, and who binds what.
+// Common declarations of the Python module: pybind11, and the binding functions.
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -10,7 +10,7 @@ namespace alidade::python {
 namespace py = pybind11;
 
 void BindErrors(py::module_& core);    // alidade::Error as exceptions, warnings as text
-void BindCamera(py::module_& core);    // Camera, and as files
+void BindCamera(py::module_& core);    // Camera, and camera files
 void BindSource(py::module_& core);    // recordings as arrays
 void BindRun(py::module_& core);       // whole runs
 void BindMap(py::module_& core);       // maps as arrays

@@ -33,7 +33,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   const RunOptions wanted = OptionsFrom(options);
   const Camera given = CameraFrom(camera);
   const Eigen::Matrix3d R = RotationFrom(mounting);
-  // The last holder may have the GIL, or not.
+  // the last reference may be dropped with or without the GIL
   const auto without_gil = [](Held* held) {
     if (PyGILState_Check() != 0) {
       const py::gil_scoped_release release;
@@ -79,7 +79,8 @@ TrackedFrame SlamObject::Track(double time, const py::object& image, const py::o
     return {held->slam.Track({time, seen.image, beside.image, far.image, colored.image}), number,
             time};
   } catch (...) {
-    record.stamps.resize(static_cast<size_t>(held->slam.frames()));  // of those that count
+    // Drop those of the rejected frame.
+    record.stamps.resize(static_cast<size_t>(held->slam.frames()));
     record.numbers.resize(record.stamps.size());
     throw;
   }
@@ -137,7 +138,7 @@ std::string SlamObject::TrajectoryText(size_t number) const {
   return FormatTumTrajectory(ResultsOfMap(number).trajectory);
 }
 
-// Of each frame: (time, pose or None, its map or None, late).
+// For each frame: (time, pose or None, its map or None, late).
 py::list SlamObject::Frames(int since) const {
   const std::shared_ptr<Held> held = Get();
   std::vector<FramePose> frames;

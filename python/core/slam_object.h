@@ -1,4 +1,4 @@
-// Slam as Python holds it.
+// Slam as held by Python objects.
 #pragma once
 
 #include <memory>
@@ -15,16 +15,16 @@ namespace alidade::python {
 
 struct TrackedFrame {
   TrackResult result;
-  int frame = 0;    // how many came before it
+  int frame = 0;    // number of previous frames
   double time = 0;  // seconds
 };
 
-// Any method from any thread. Driving calls take turns; while the library works the GIL is given
-// up. Calls after Close() throw Error (usage); Close() waits for nobody: what is under way ends as
-// it would, and the last of them takes the threads down.
+// All methods may be called from any thread. Calls that change the state are serialized; the GIL is
+// released while the library works. Calls after Close() throw Error (usage). Close() does not wait:
+// running calls end normally, and the last one ends the threads.
 class SlamObject {
  public:
-  // `options`: those of a run. `mounting`: R_camera_rectified of the source, (4, 4) or None.
+  // `options`: those of a run. `mounting`: R_camera_rectified of the source as (4, 4), or None.
   SlamObject(const py::object& camera, const py::dict& options, const py::object& mounting,
              bool calibrate);
 
@@ -52,15 +52,15 @@ class SlamObject {
   py::object Detections() const;
 
  private:
-  // Destroyed without the GIL, since a detector's thread may wait for it.
+  // Destroyed without the GIL, because a detector's thread may wait for it.
   struct Held {
     Held(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)
         : slam(camera, settings, std::move(detector)) {}
-    std::mutex turn;   // of Track(), so that stamps and frames stay together
+    std::mutex turn;   // serializes Track(), so that stamps and frames correspond
     RunRecord record;  // stamps, numbers and mounting, for ResultsOf()
     Slam slam;
   };
-  std::shared_ptr<Held> Get() const;  // throws Error (usage) once closed
+  std::shared_ptr<Held> Get() const;  // throws Error (usage) after Close()
   MapResults ResultsOfMap(size_t number) const;
 
   std::shared_ptr<Held> held_;

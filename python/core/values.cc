@@ -19,7 +19,7 @@ T Value(const std::string& name, const py::handle& value) {
   }
 }
 
-// Of numbers and truth values, too: as typed on the command line.
+// Numbers and bools as they are written on the command line.
 std::string Word(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "1" : "0";
   return py::str(value).cast<std::string>();
@@ -40,6 +40,7 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"viewer", &options.viewer},     {"host", &options.host}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
                                                  {"localise", &options.localise},
+                                                 {"overwrite", &options.overwrite},
                                                  {"semidense", &options.semidense},
                                                  {"write_masks", &options.write_masks}};
   const std::map<std::string, int*> numbers = {{"threads", &options.threads},

@@ -1,4 +1,5 @@
-// Plain values between Python and the library: cameras, options of a run. All need the GIL.
+// Conversion of plain values between Python and the library: cameras, options of a run. All
+// functions require the GIL.
 #pragma once
 
 #include <string>
@@ -9,12 +10,12 @@
 
 namespace alidade::python {
 
-// From and to alidade.Camera. From: throws Error (input) naming the field that cannot be.
+// Convert alidade.Camera. CameraFrom() throws Error (input) naming an invalid field.
 Camera CameraFrom(const py::handle& value);
 py::object CameraObject(const Camera& camera);
 
-// By the names RunOptions has them; what is None stays as it is by default. Throws Error (usage)
-// for a name there is not, or a value of another type.
+// Options by RunOptions' field names; None keeps the default. Throws Error (usage) for an unknown
+// name or a value of the wrong type.
 RunOptions OptionsFrom(const py::dict& values);
 
 }  // namespace alidade::python

@@ -1,4 +1,4 @@
-"""What the tests share: short rendered recordings, small enough to be mapped in a second."""
+"""Shared fixtures: short rendered recordings that are mapped within a second."""
 
 import os
 import subprocess
@@ -12,7 +12,7 @@ DESK = "synth:desk?frames=40&width=320&height=240&seed=3"
 
 @pytest.fixture(scope="session")
 def desk():
-    """Frames of a rendered desk, RGB-D."""
+    """RGB-D frames of a rendered desk."""
     with alidade.open(DESK, sensor="rgbd") as recording:
         frames = list(recording)
     return recording, frames
@@ -20,7 +20,7 @@ def desk():
 
 @pytest.fixture(scope="session")
 def program():
-    """Runs the program; returns what it printed."""
+    """A function that runs the program and returns its output."""
     binary = os.environ.get("ALIDADE_BINARY", "")
     if not os.path.isfile(binary):
         pytest.skip("the program is not built (ALIDADE_BINARY)")

@@ -1,4 +1,4 @@
-"""Maps as arrays, saved, localised in, exported."""
+"""Maps as arrays; saving, localization and export."""
 
 import numpy
 import pytest
@@ -39,7 +39,7 @@ def test_covisibility_is_of_keyframes_that_share_points(slam):
     for a in made.keyframes.ids:
         for b in made.keyframes.ids[made.keyframes.ids > a]:
             shared = len(of[a] & of[b])
-            if shared > 50:  # counted when either was last worked on: a fifth may have gone or come since
+            if shared > 50:  # a stored count, which may be outdated by a fifth
                 assert shared / edges[a, b] == pytest.approx(1, abs=0.3)
     assert made.loops.shape[1] == 2
 
@@ -105,4 +105,4 @@ def test_an_empty_map_says_so():
     slam = alidade.Slam(alidade.Camera.from_fov(160, 120, 60))
     assert slam.map().parts == [] and slam.trajectory().shape == (0, 8)
     with pytest.raises(alidade.UsageError, match="empty"):
-        slam.map().points  # pylint: disable=expression-not-assigned
+        _ = slam.map().points

@@ -1,4 +1,4 @@
-"""The package itself: what it tells, its types, its documentation, the wheel."""
+"""The package itself: warnings, types, documentation, the wheel."""
 
 import ast
 import inspect
@@ -7,7 +7,6 @@ import os
 import pathlib
 import pydoc
 import re
-import shutil
 import subprocess
 import sys
 
@@ -41,7 +40,7 @@ def test_the_stubs_are_of_this_module():
             methods = {part.name for part in node.body if isinstance(part, ast.FunctionDef)} - {"__init__"}
             assert methods == {name for name in vars(getattr(_core, name)) if not name.startswith("_")}, name
     assert (PACKAGE / "py.typed").exists()
-    # Everything users are shown has types.
+    # The whole public interface has types.
     for name in ("Slam", "Map", "MapPart", "Result", "Recording"):
         for method, function in inspect.getmembers(getattr(alidade, name), inspect.isfunction):
             assert method.startswith("_") or "return" in function.__annotations__, (name, method)
@@ -86,7 +85,7 @@ def test_a_camera_goes_through_its_file(tmp_path):
 
 
 def test_images_that_other_formats_hold_are_read_through_the_module(tmp_path):
-    # BMP goes through libalidade_media, which must be found from Python.
+    # BMP is read by libalidade_media, which must be found from Python.
     width, height = 64, 48
     rows = bytes(range(192)) * height
     head = b"BM" + (54 + len(rows)).to_bytes(4, "little") + bytes(4) + (54).to_bytes(4, "little")
@@ -102,12 +101,12 @@ def test_images_that_other_formats_hold_are_read_through_the_module(tmp_path):
 
 def test_the_examples_of_the_documentation_work(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    text = (ROOT / "docs" / "python.md").read_text()
+    text = (ROOT / "docs" / "guides" / "python.md").read_text()
     examples = re.findall(r"```python\n(.*?)```", text, re.S)
     assert len(examples) >= 8
     names = {}
     for example in examples:
-        exec(compile(example, "docs/python.md", "exec"), names)  # pylint: disable=exec-used
+        exec(compile(example, "docs/guides/python.md", "exec"), names)  # pylint: disable=exec-used
 
 
 def test_a_wheel_is_made_without_a_network(tmp_path):

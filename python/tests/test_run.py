@@ -1,4 +1,4 @@
-"""Whole runs: the same as the program's, and stopped in the middle."""
+"""Whole runs: the same results as the program, and interrupted runs."""
 
 import inspect
 import os
@@ -13,7 +13,7 @@ import numpy
 import pytest
 
 import alidade
-from conftest import DESK, play, read
+from conftest import DESK, read
 
 
 @pytest.mark.parametrize("sensor", ["mono", "rgbd"])
@@ -34,7 +34,7 @@ def test_all_levels_give_the_bytes_of_the_program(tmp_path, program, sensor):
     assert read(tmp_path, "slam.txt") == read(tmp_path / "program", "trajectory.txt")
     slam.save(tmp_path / "slam.alidade")
     assert read(tmp_path, "slam.alidade") == read(tmp_path / "program", "map.alidade")
-    numpy.testing.assert_allclose(slam.trajectory(), result.trajectory, rtol=0, atol=1e-6)  # files round
+    numpy.testing.assert_allclose(slam.trajectory(), result.trajectory, rtol=0, atol=1e-6)  # files have rounded numbers
 
     saved = alidade.Map.load(tmp_path / "program")
     assert saved.to_bytes() == read(tmp_path / "program", "map.alidade")
@@ -51,7 +51,8 @@ def test_a_result_has_what_the_run_left(tmp_path):
     assert result.trajectory.shape == (40, 8) and result.trajectory_live.shape == (40, 8)
     assert result.stats["tracked"] == 40 and result.stats["sensor"] == "rgbd"
     assert result.groundtruth.shape == (40, 8)
-    assert alidade.ate(result.groundtruth, result).rmse < 0.02
+    error = alidade.ate(result.groundtruth, result)
+    assert error.rmse < 0.02 and (error.align, error.align_why) == ("se3", "depth or stereo")
     assert result.keyframes.shape[0] == len(result.map.keyframes.ids)
     assert told[-1].frames == 40 and told[-1].total == 40 and told[-1].stage == "finishing"
     assert "40 of 40 frames" in repr(result)
@@ -73,13 +74,35 @@ def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
 
     recorded = alidade.run(DESK, sensor="rgbd", semidense=True, record=True)
     recorded.export(tmp_path / "stream.mcap")
-    assert len(read(tmp_path, "stream.mcap")) > 1.5 * len(read(tmp_path, "result.mcap"))  # pictures, each frame's news
+    assert len(read(tmp_path, "stream.mcap")) > 1.5 * len(read(tmp_path, "result.mcap"))  # images, frames
     with pytest.raises(alidade.UsageError, match="to="):
         result.export(tmp_path / "model")
     with pytest.raises(alidade.UsageError, match="min-observations"):
         result.export(tmp_path / "other.mcap", min_observations=3)
     with pytest.raises(alidade.InputError):
         result.export(tmp_path / "nowhere" / "run.mcap")
+
+
+def test_one_cameras_result_is_scaled_unless_it_is_said_otherwise(tmp_path):
+    result = alidade.run(DESK, sensor="mono")
+    error, drift = alidade.ate(result.groundtruth, result), alidade.rpe(result.groundtruth, result)
+    assert (error.align, error.align_why) == (drift.align, drift.align_why) == ("sim3", "one camera")
+    assert error.rmse == alidade.ate(result.groundtruth, result, align="sim3").rmse
+    assert error.rmse < alidade.ate(result.groundtruth, result, align="se3").rmse
+    assert alidade.ate(result.groundtruth, result.trajectory).align == "se3"  # numbers alone do not say
+
+
+def test_a_result_is_not_replaced_by_less(tmp_path):
+    out = tmp_path / "out"
+    whole = alidade.run(DESK, sensor="rgbd", out=out).map.to_bytes()
+    with pytest.raises(alidade.InputError, match="last-attempt") as less:
+        alidade.run(DESK, sensor="rgbd", last=9, out=out)
+    assert less.value.result.folder == str(out / "last-attempt")
+    assert less.value.result.stats["frames"] == 10
+    with pytest.raises(alidade.InputError, match="overwrite"):
+        alidade.run(DESK + "&light=0.9", sensor="rgbd", out=out)
+    assert read(out, "map.alidade") == whole
+    assert alidade.run(DESK, sensor="rgbd", last=9, out=out, overwrite=True).stats["frames"] == 10
 
 
 def test_errors_are_pythons(tmp_path):
@@ -119,7 +142,7 @@ def test_what_progress_raises_ends_the_run():
     with pytest.raises(Enough) as stopped:
         alidade.run("synth:desk?frames=100000&width=320&height=240", sensor="rgbd", progress=stop)
     assert 5 < stopped.value.result.stats["frames"] < 100000
-    assert alidade.run(DESK, sensor="rgbd", last=4).stats["frames"] == 5  # the next one is not stopped
+    assert alidade.run(DESK, sensor="rgbd", last=4).stats["frames"] == 5  # the next run is not interrupted
 
 
 def test_ctrl_c_leaves_the_results(tmp_path):
@@ -149,7 +172,7 @@ def test_a_detector_that_is_a_function(tmp_path):
 
     result = alidade.run(DESK, sensor="rgbd", detector=detect, last=9)
     assert result.stats["settings"]["dynamics.mode"] == "full" and result.stats["tracked"] == 10
-    assert set(shapes) == {(240, 320)}  # rendered recordings are grey
+    assert set(shapes) == {(240, 320)}  # rendered recordings are gray
 
 
 def test_the_stream_is_recorded(tmp_path):
@@ -172,7 +195,7 @@ def test_the_viewer_serves_while_it_runs():
 
 
 @pytest.mark.skipif("ALIDADE_DATA" not in os.environ, reason="ALIDADE_DATA names no real recordings")
-@pytest.mark.parametrize("name", ["kitchen", "euroc_micro"])  # depth; a stereo pair to be rectified
+@pytest.mark.parametrize("name", ["kitchen", "euroc_micro"])  # RGB-D; an unrectified stereo pair
 def test_a_real_recording_gives_the_bytes_of_the_program(tmp_path, program, name):
     source = os.path.join(os.environ["ALIDADE_DATA"], name)
     if not os.path.isdir(source):

@@ -1,4 +1,4 @@
-"""Frame by frame: arrays in, poses out, threads, memory."""
+"""SLAM frame by frame: arrays in, poses out, threads, memory."""
 
 import gc
 import os
@@ -74,7 +74,7 @@ def test_arrays_of_any_layout_are_taken_and_none_is_kept(desk, more):
         expected = plain.track(frame.time, image, depth=depth)
         part = wide[:, 40:360] if frame.number % 2 else flipped
         result = odd.track(frame.time, part, depth=numpy.asfortranarray(depth))
-        for array in (image, wide, flipped, depth):  # whoever kept them would see this
+        for array in (image, wide, flipped, depth):  # would change results if an array were kept
             array[:] = 7
         assert not part.flags.c_contiguous
         numpy.testing.assert_array_equal(result.pose, expected.pose)
@@ -120,7 +120,7 @@ def test_track_from_two_threads_takes_turns(desk):
         for frame in some:
             try:
                 tracked.append(slam.track(frame.time, frame.image, depth=frame.depth).frame)
-            except alidade.InputError as error:  # the other was ahead of it
+            except alidade.InputError as error:  # the other thread's frame was later
                 refused.append(str(error))
             except BaseException as error:  # pylint: disable=broad-except
                 failed.append(error)
@@ -147,13 +147,13 @@ def test_other_threads_run_while_it_works(desk):
     def count():
         while not stop.is_set():
             counted[0] += 1
-            time.sleep(0)  # gives the interpreter up whenever somebody waits for it
+            time.sleep(0)  # releases the GIL if another thread waits for it
 
     thread = threading.Thread(target=count)
     before = sys.getswitchinterval()
     thread.start()
     try:
-        sys.setswitchinterval(1000)  # nobody is made to give it up
+        sys.setswitchinterval(1000)  # disables forced switches
         ran = 0
         for frame in frames[:10]:
             start = counted[0]
@@ -206,7 +206,7 @@ def test_a_detector_is_heard(desk):
     slam = made(recording, detector=detect, settings={"dynamics.detector_every_frames": 1,
                                                       "dynamics.detector_latency_frames": 0})
     play(slam, [frames[0]])
-    assert slam.detections()[1] == ("person", 0.5, 0.0, 100.0, 50.0, 50.0)  # what is in the picture
+    assert slam.detections()[1] == ("person", 0.5, 0.0, 100.0, 50.0, 50.0)  # clipped to the image
     assert slam.detections()[0][:1] == (-1,)
     numpy.testing.assert_array_equal(kept[0], frames[0].image)
     color = numpy.dstack([frames[1].image] * 3)
@@ -242,7 +242,7 @@ def test_a_thousand_come_and_go():
             schedule = "threaded" if i % 4 == 0 else "inline"
             slam = alidade.Slam(camera, sensor="rgbd", schedule=schedule, detector=lambda seen: [])
             slam.track(0.0, image, depth=depth)
-            slam.map().points  # pylint: disable=expression-not-assigned
+            _ = slam.map().points
         del slam
         gc.collect()
 
@@ -253,7 +253,7 @@ def test_a_thousand_come_and_go():
     come_and_go(300)
     before = megabytes()
     come_and_go(1000)
-    assert megabytes() - before < 8  # 8 kB each
+    assert megabytes() - before < 8  # 8 kB per session
     assert len(os.listdir("/proc/self/task")) < 32
 
 

@@ -1,16 +1,16 @@
 // Learns the descriptor's sampling pattern and prints it as src/alidade/features/orb_pattern.inc.
 //
-// The procedure of Rublee et al. 2011, §4.3: run all candidate tests on many patches, sort them by
-// how far their mean is from 0.5, then take them greedily unless they correlate with one already
-// taken by more than a threshold; raise the threshold until 256 are found. Ours differs in two
-// ways. Candidates are pairs of single pixels of the smoothed level (the paper: pairs of 5x5
-// boxes). And the order also looks at how often a test changes its answer between two views of the
-// same corner: sorted by 2 p (1 - p) - 1.2 flips, the chance that it tells two different corners
-// apart less (a little more than) the chance that it tells a corner apart from itself.
+// Rublee et al. 2011, §4.3: evaluates all candidate tests on many patches, sorts them by the
+// distance of their mean from 0.5, and selects them greedily unless they correlate with a selected
+// one above a threshold, which is raised until 256 are found. There are two differences. Candidates
+// are pairs of single pixels of the smoothed level (the paper: pairs of 5x5 boxes). The order also
+// considers how often a test's result changes between two views of the same corner: tests are
+// sorted by 2 p (1 - p) - 1.2 flips, where 2 p (1 - p) is the probability that two different
+// corners give different results, and flips the probability that two views of one corner do.
 //
-// Patches come from generated pictures only: "dead leaves", opaque shapes of power-law sizes
-// falling on each other, whose edges, corners and spectra are like those of photographs (Lee,
-// Mumford & Huang 2001).
+// Patches come from generated images only, by the "dead leaves" model: opaque shapes with power-law
+// sizes occlude each other. Their edges, corners and spectra are similar to those of photographs
+// (Lee, Mumford & Huang 2001).
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -36,8 +36,8 @@ constexpr int kPictures = 80;
 constexpr int kWidth = 640, kHeight = 480;
 constexpr size_t kCandidates = 20000;
 constexpr int kBits = 256;
-constexpr double kShortest = 5;     // pixels, the smoothing's width: closer ones hardly differ
-constexpr double kStability = 1.2;  // weight of flips in a test's worth
+constexpr double kShortest = 5;  // pixels, the width of the smoothing: closer pixels hardly differ
+constexpr double kStability = 1.2;  // weight of flips in a test's score
 
 constexpr int kReach = kPatternReach, kSide = 2 * kReach + 1;
 
@@ -49,7 +49,7 @@ cv::Mat DeadLeaves(Random& random) {
   cv::Mat picture(kHeight, kWidth, CV_8UC1, cv::Scalar(128));
   const int shapes = 1500;
   for (int i = 0; i < shapes; ++i) {
-    // Sizes with density ~ r^-3 between 4 and 150 pixels: the same picture at every scale.
+    // Sizes with density ~ r^-3 between 4 and 150 pixels, for scale invariance.
     const double u = random.Uniform(), low = 4, high = 150;
     const double r = 1 / std::sqrt((1 - u) / (low * low) + u / (high * high));
     const cv::Point2d centre(random.Uniform(0, kWidth), random.Uniform(0, kHeight));
@@ -74,7 +74,7 @@ cv::Mat DeadLeaves(Random& random) {
     cv::fillPoly(picture, std::vector<std::vector<cv::Point>>{outline}, cv::Scalar(shade),
                  cv::LINE_AA, kSubpixels);
   }
-  // Light that falls off to one side, and fine grain on the surfaces.
+  // Illumination gradient, and fine texture.
   cv::Mat grain(kHeight / 2, kWidth / 2, CV_32FC1);
   for (int y = 0; y < grain.rows; ++y) {
     for (int x = 0; x < grain.cols; ++x)
@@ -94,7 +94,7 @@ cv::Mat DeadLeaves(Random& random) {
   return picture;
 }
 
-// What a camera makes of it: lens blur and noise.
+// Simulates the camera: lens blur and noise.
 cv::Mat Photograph(const cv::Mat& picture, Random& random) {
   cv::Mat photo;
   const double sigma = random.Uniform(0.5, 1.3), noise = random.Uniform(1, 5);
@@ -140,12 +140,12 @@ std::vector<Patch> FindPatches(const cv::Mat& photo) {
   return patches;
 }
 
-// Answers of all tests, one bit per patch: answers[test][patch / 64].
+// Results of all tests, one bit per patch: answers[test][patch / 64].
 class Answers {
  public:
   explicit Answers(size_t tests) : words_(tests) {}
   void Add(const std::vector<Test>& tests, const Patch& patch) {
-    // The turned patch first, then the tests on it.
+    // Rotates the patch, then evaluates the tests.
     const double turn = 2 * std::numbers::pi / SteeredPattern::kTurns;
     const double angle = std::round(patch.angle / turn) * turn;
     const double c = std::cos(angle), s = std::sin(angle);
@@ -181,7 +181,7 @@ class Answers {
   int count_ = 0;
 };
 
-// Share of patches on which the two differ.
+// Share of patches on which two tests differ.
 double Differ(const std::vector<uint64_t>& a, const std::vector<uint64_t>& b, int count) {
   int64_t ones = 0;
   for (size_t i = 0; i < a.size(); ++i) ones += std::popcount(a[i] ^ b[i]);
@@ -204,7 +204,7 @@ int Run() {
     if (std::hypot(t.x0 - t.x1, t.y0 - t.y1) >= kShortest) tests.push_back(t);
   }
 
-  // Two views of each picture: patches of the first, and beside them the same corner in the second.
+  // Two views of each image: patches of the first, each paired with the same corner in the second.
   Answers first(tests.size()), second(tests.size());
   for (int i = 0; i < kPictures; ++i) {
     const cv::Mat picture = DeadLeaves(random);
@@ -226,7 +226,7 @@ int Run() {
       const Patch* nearest = nullptr;
       double best = 1.5 * ScaleOfLevel(p.level);
       for (const Patch& q : b) {
-        // The level it should be seen on, or a neighbour.
+        // The level at which the corner should appear, or a neighboring one.
         if (std::abs(q.level - p.level - std::log(zoom) / std::log(kPyramidScale)) > 1) continue;
         const double d = std::hypot(q.place_x - x, q.place_y - y);
         if (d < best) {
@@ -256,7 +256,7 @@ int Run() {
     taken.clear();
     for (int t : order) {
       const bool independent = std::all_of(taken.begin(), taken.end(), [&](int other) {
-        // Phi coefficient of the two answers.
+        // Phi coefficient of two results.
         const double p = mean[t], q = mean[other];
         const double d = Differ(first.words(t), first.words(other), first.count());
         const double both = (p + q - d) / 2;

@@ -3,15 +3,20 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "bags/bag_bytes.h"
+#include "bags/message_bytes.h"
 #include "support/program.h"
 #include "support/rendered.h"
+#include "support/sliding_recording.h"
 
 namespace alidade::batch_command_test {
 namespace {
@@ -69,6 +74,63 @@ TEST(BatchCommand, RunsAllCountsFailuresAndGoesOn) {
   EXPECT_EQ(Batch({list, "--out", out}).status, 0);
   EXPECT_EQ(Lines(ReadText(out + "/batch.log"), " begun a\n"), 1);
   EXPECT_EQ(Lines(ReadText(out + "/batch.log"), " begun c\n"), 2);
+}
+
+// A recording along a wall as a ROS bag, with its calibration beside it.
+void WriteBag(const std::string& folder, const SlidingRecording& options) {
+  const TempFolder pictures;
+  WriteSlidingTum(pictures, options);
+  std::vector<WrittenMessage> messages;
+  for (int i = 0; i < options.frames; ++i) {
+    const std::string name = SlidingStamp(i) + ".png";
+    const int64_t time = std::llround(1e9 * std::stod(SlidingStamp(i)));
+    for (const bool depth : {false, true}) {
+      const std::string format = depth ? "16UC1; compressedDepth png" : "png";
+      messages.push_back({depth ? "/depth/compressedDepth" : "/cam/compressed",
+                          "sensor_msgs/CompressedImage", time,
+                          CompressedMessage({true}, time, "camera", format,
+                                            (depth ? std::string(12, '\0') : "") +
+                                                ReadText(pictures / (depth ? "depth/" : "rgb/") +
+                                                         name))});
+    }
+  }
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder + "/w.mcap", std::ios::binary) << McapBytes({"zstd"}, false).Of(messages);
+  std::ofstream(folder + "/camera.yaml") << ReadText(pictures / "camera.yaml");
+}
+
+TEST(BatchCommand, ARecordingOrCalibrationThatWasReplacedIsRunAgain) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out", bags = folder / "bags";
+  WriteBag(bags, {});
+  WriteLines(list, {bags + "/w.mcap?image=/cam/compressed&depth=/depth/compressedDepth"});
+  int begun = 0;
+  const auto expect_begun = [&](int more) {
+    const ProgramResult result = Batch({list, "--out", out});
+    EXPECT_EQ(result.status, 0) << result.out << result.err;
+    begun += more;
+    EXPECT_EQ(Lines(ReadText(out + "/batch.log"), " begun w\n"), begun) << result.out;
+  };
+  expect_begun(1);
+  expect_begun(0);
+  WriteBag(bags, {.frames = 13});
+  expect_begun(1);
+  expect_begun(0);
+  std::ofstream(bags + "/camera.yaml", std::ios::app) << "# measured once more\n";
+  expect_begun(1);
+  expect_begun(0);
+  // Someone else's results are in its place.
+  ASSERT_EQ(RunAlidade({"run", kRoom + "15", "--sensor", "rgbd", "--out", out + "/w",
+                        "--overwrite"})
+                .status,
+            0);
+  const ProgramResult taken = Batch({list, "--out", out});
+  EXPECT_EQ(taken.status, 1);
+  EXPECT_THAT(taken.out, HasSubstr("--overwrite"));
+  ++begun;
+  EXPECT_EQ(Batch({list, "--out", out, "--", "--overwrite"}).status, 0);
+  begun += 1;
+  expect_begun(0);
 }
 
 TEST(BatchCommand, SameBytesAsRun) {
@@ -162,7 +224,7 @@ TEST(BatchCommand, CtrlCLeavesWhatIsDone) {
   EXPECT_EQ(json["recordings"][0]["state"], "ok");
   EXPECT_EQ(json["recordings"][1]["state"], "interrupted");
   WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "16&seed=2 --out b --sensor rgbd"});
-  const ProgramResult rest = Batch({list, "--out", out, "--merge"});
+  const ProgramResult rest = Batch({list, "--out", out, "--merge", "--", "--overwrite"});
   EXPECT_EQ(rest.status, 0) << rest.out << rest.err;
   EXPECT_THAT(rest.out, HasSubstr("1 of 2 recordings are done already"));
   EXPECT_TRUE(std::filesystem::exists(out + "/merged/map.alidade"));

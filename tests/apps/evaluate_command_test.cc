@@ -74,6 +74,43 @@ TEST_F(EvaluateCommand, CoverageKnowsTheRecordingBesideTheTruth) {
   EXPECT_EQ(Json({"ate", truth_, half})["coverage"], 1);
 }
 
+// What `run` notes of its sensor says whether the estimate has a scale of its own.
+TEST_F(EvaluateCommand, OneCamerasResultIsScaledUnlessItIsSaidOtherwise) {
+  const std::string mono = folder_.Write("mono/trajectory.txt", Circle(60, 2));
+  const std::string deep = folder_.Write("deep/trajectory.txt", Circle(60, 2));
+  folder_.Write("mono/stats.json", R"({"sensor": "mono", "span": [0, 5.9]})");
+  folder_.Write("deep/stats.json", R"({"sensor": "rgbd", "span": [0, 5.9]})");
+  for (const std::string& estimate : {mono, folder_ / "mono"}) {
+    const json ate = Json({"ate", truth_, estimate});
+    EXPECT_LT(ate["rmse"].get<double>(), 1e-6);
+    EXPECT_NEAR(ate["scale"].get<double>(), 0.5, 1e-6);
+    EXPECT_EQ(ate["align"], "sim3");
+    const json rpe = Json({"rpe", truth_, estimate, "--delta", "10f"});
+    EXPECT_LT(rpe["trans"]["rmse"].get<double>(), 1e-6);
+    EXPECT_EQ(rpe["align"], "sim3");
+  }
+  for (const std::string& estimate : {deep, twice_}) {  // of the latter nobody says what it is
+    EXPECT_GT(Json({"ate", truth_, estimate})["rmse"].get<double>(), 0.5);
+    EXPECT_EQ(Json({"ate", truth_, estimate})["align"], "se3");
+    EXPECT_EQ(Json({"rpe", truth_, estimate})["align"], "se3");
+  }
+  EXPECT_GT(Json({"ate", truth_, mono, "--align", "se3"})["rmse"].get<double>(), 0.5);
+  // And the table says what was done, why, and which scale there would be.
+  const auto table = [&](const std::string& command, const std::string& estimate) {
+    return RunAlidade({"evaluate", command, truth_, estimate}).out;
+  };
+  for (const char* command : {"ate", "rpe"}) {
+    EXPECT_THAT(table(command, mono), HasSubstr("aligned by Sim(3) (one camera), scale 0.500000"));
+    EXPECT_THAT(table(command, deep),
+                HasSubstr("aligned by SE(3) (depth or stereo); Sim(3) would scale by 0.500000"));
+    EXPECT_THAT(table(command, twice_),
+                HasSubstr("aligned by SE(3) (sensor not known; sim3 is for one camera); Sim(3) would "
+                          "scale by 0.500000"));
+  }
+  EXPECT_THAT(RunAlidade({"evaluate", "ate", truth_, twice_, "--align", "sim3"}).out,
+              HasSubstr("aligned by Sim(3) (--align), scale 0.500000"));
+}
+
 TEST_F(EvaluateCommand, TableIsForPeople) {
   const ProgramResult result = RunAlidade({"evaluate", "ate", truth_, twice_});
   EXPECT_EQ(result.status, 0);

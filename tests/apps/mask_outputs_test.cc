@@ -57,77 +57,76 @@ class MaskOutputs : public testing::Test {
 };
 
 TEST_F(MaskOutputs, HaveTheSizeOfTheFramesAndAList) {
-  OutputFolder folder(out_);
+  OutputFolder folder({out_});
   WriteTwo(folder);
-  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png"));
-  EXPECT_EQ(ReadText(out_ + "/mask.txt"),
+  const std::string draft = folder.draft();
+  EXPECT_THAT(FilesUnder(draft), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png"));
+  EXPECT_EQ(ReadText(draft + "/mask.txt"),
             std::string(kMaskListHeader) + "1.50 mask/1.50.png\n2.50 mask/2.50.png\n");
-  const cv::Mat first = ReadImageGray(out_ + "/mask/1.50.png");
+  const cv::Mat first = ReadImageGray(draft + "/mask/1.50.png");
   ASSERT_EQ(first.size(), cv::Size(8, 6));
   EXPECT_EQ(cv::countNonZero(first), 24);
   EXPECT_EQ(cv::countNonZero(first.colRange(0, 4) == 255), 24);
-  EXPECT_EQ(cv::countNonZero(ReadImageGray(out_ + "/mask/2.50.png")), 0);
+  EXPECT_EQ(cv::countNonZero(ReadImageGray(draft + "/mask/2.50.png")), 0);
 }
 
 TEST_F(MaskOutputs, AreNotThereUntilTheyAreComplete) {
-  OutputFolder folder(out_);
+  OutputFolder folder({out_});
   {
     MaskWriter masks(folder);
     masks.Write(Frame("1.50"), LeftHalf());
-    EXPECT_FALSE(fs::exists(out_ + "/mask"));
-    EXPECT_FALSE(fs::exists(out_ + "/mask.txt"));
+    EXPECT_FALSE(fs::exists(folder.draft() + "/mask"));
+    EXPECT_FALSE(fs::exists(folder.draft() + "/mask.txt"));
   }
-  EXPECT_TRUE(FilesUnder(out_).empty());  // never finished
+  EXPECT_TRUE(FilesUnder(folder.draft()).empty());  // never finished
 }
 
 TEST_F(MaskOutputs, ThatCannotBeListedDoNotStay) {
-  OutputFolder folder(out_);
-  temp_.Folder("out/mask.txt");  // in the way
+  OutputFolder folder({out_});
+  fs::create_directory(folder.draft() + "/mask.txt");  // in the way
   EXPECT_THROW(WriteTwo(folder), Error);
-  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask.txt"));
+  EXPECT_THAT(FilesUnder(folder.draft()), ElementsAre("mask.txt"));
 }
 
 TEST_F(MaskOutputs, OfAnEarlierRunGoAndNobodyElses) {
-  {
-    OutputFolder folder(out_);
-    WriteTwo(folder);
-  }
-  temp_.Write("out/stats.json", kStats);
+  const auto run = [&](bool masks) {
+    OutputFolder folder({out_});
+    folder.Write("stats.json", kStats);
+    if (masks) WriteTwo(folder);
+    folder.Place(true);
+  };
+  run(true);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png",
+                                            "stats.json"));
   temp_.Write("out/mask/mine.png", "a picture of my own");
-  {
-    OutputFolder again(out_);
-    EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask/mine.png"));
-    WriteTwo(again);  // beside it
-    EXPECT_THAT(FilesUnder(out_),
-                ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png", "mask/mine.png"));
-  }
+  run(true);  // beside it
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png",
+                                            "mask/mine.png", "stats.json"));
+  run(false);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask/mine.png", "stats.json"));
   fs::remove(out_ + "/mask/mine.png");
-  temp_.Write("out/stats.json", kStats);
-  OutputFolder third(out_);
-  EXPECT_TRUE(FilesUnder(out_).empty());
+  run(true);
+  run(false);
+  EXPECT_THAT(FilesUnder(out_), ElementsAre("stats.json"));
 }
 
 TEST_F(MaskOutputs, SomeoneElsesListStays) {
   temp_.Write("out/stats.json", kStats);
   temp_.Write("out/mask.txt", "# person masks\n1.50 mask/1.50.png\n");
   temp_.Write("out/mask/1.50.png", "a person's");
-  OutputFolder folder(out_);
-  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png"));
+  OutputFolder folder({out_});
+  folder.Write("stats.json", kStats);
+  WriteTwo(folder);
+  folder.Place(true);
+  EXPECT_EQ(ReadText(out_ + "/mask.txt"), "# person masks\n1.50 mask/1.50.png\n");
+  EXPECT_EQ(ReadText(out_ + "/mask/1.50.png"), "a person's");
+  EXPECT_FALSE(fs::exists(out_ + "/mask/2.50.png"));  // not half of ours
 }
 
 TEST_F(MaskOutputs, OfARunThatWasKilledAreNoHindrance) {
   temp_.Write("out/mask.tmp123-0/1.50.png", "ours");
-  OutputFolder folder(out_);
-  EXPECT_TRUE(FilesUnder(out_).empty());
-}
-
-TEST_F(MaskOutputs, ARunOfAnotherProgramIsLeftAlone) {
-  OutputFolder folder(out_);
-  MaskWriter busy(folder);
-  busy.Write(Frame("1.50"), LeftHalf());
-  EXPECT_THROW(OutputFolder{out_}, Error);
-  busy.Finish();
-  EXPECT_TRUE(fs::exists(out_ + "/mask/1.50.png"));
+  OutputFolder folder({out_});
+  EXPECT_FALSE(fs::exists(out_ + "/mask.tmp123-0"));
 }
 
 class MaskRun : public testing::Test {
@@ -163,7 +162,7 @@ TEST_F(MaskRun, LeavesAMaskForEveryFrame) {
     EXPECT_EQ(ReadImageSize(out_ + "/" + names[i]), cv::Size(640, 480));
   }
   // A run without masks clears them.
-  ASSERT_EQ(Run({"--last", "3"}).status, 0);
+  ASSERT_EQ(Run({"--last", "3", "--overwrite"}).status, 0);
   EXPECT_FALSE(fs::exists(out_ + "/mask.txt"));
   EXPECT_FALSE(fs::exists(out_ + "/mask"));
 }

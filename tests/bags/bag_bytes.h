@@ -1,5 +1,5 @@
-// Containers of messages as bytes: ROS bag 2.0, MCAP, rosbag2's database. Written by what the
-// formats say, apart from what reads them.
+// Writers of message containers: ROS bag 2.0, MCAP, rosbag2's database. Implemented from the
+// formats' specifications, independently of the readers.
 #pragma once
 
 #include <bzlib.h>
@@ -56,10 +56,10 @@ inline std::string Sized32(const std::string& bytes) {
 
 struct BagForm {
   std::string packing;  // none, bz2, lz4, zstd
-  bool closed = true;   // with what a recorder writes at the end
-  bool chunks = true;   // MCAP alone
+  bool closed = true;   // with the index that a recorder writes at the end
+  bool chunks = true;   // MCAP only
   size_t chunk_messages = 4;
-  bool padded = true;  // bag alone: its first record takes 4 KB
+  bool padded = true;  // bag only: its first record takes 4 KB
 };
 
 class BagBytes {
@@ -154,7 +154,7 @@ class BagBytes {
   std::map<std::string, Connection> connections_;
 };
 
-// "sensor_msgs/Image" as ROS 2 has it.
+// The ROS 2 spelling of "sensor_msgs/Image".
 inline std::string Ros2Type(const std::string& type) {
   return type.substr(0, type.find('/')) + "/msg/" + type.substr(type.find('/') + 1);
 }
@@ -253,7 +253,7 @@ class McapBytes {
   std::map<std::string, Channel> channels_;
 };
 
-// With `packing` zstd each message is packed by itself.
+// With `packing` zstd every message is compressed separately.
 inline void WriteDatabase(const std::string& path, const std::vector<WrittenMessage>& messages,
                           const std::string& packing = "") {
   sqlite3* database = nullptr;

@@ -1,4 +1,4 @@
-// CameraInfo as cameras, against OpenCV's own projection.
+// CameraInfo converted to cameras, compared with OpenCV's projection.
 #include <gmock/gmock.h>
 
 #include <opencv2/calib3d.hpp>
@@ -31,7 +31,7 @@ InfoFields Wide() {
   return info;
 }
 
-// Pixels between what we and OpenCV say of points seen all over the picture.
+// Largest distance in pixels between Alidade's and OpenCV's projections over the image.
 double FarthestFromOpenCv(const InfoFields& info, const RawCamera& camera) {
   double farthest = 0;
   const cv::Mat K(3, 3, CV_64F, const_cast<double*>(info.K.data()));
@@ -129,8 +129,8 @@ TEST(CameraInfo, OfNoCalibrationIsNone) {
   EXPECT_FALSE(CameraOfInfo(Read(info), false));
 }
 
-// A pair as stereo_calibration leaves it: the same point, through each raw camera and through the
-// rectified pair's P.
+// A pair as calibrated by stereo_calibration: the same point, projected by each raw camera and by
+// the rectified pair's P.
 TEST(CameraInfo, OfAPairTellsWhereTheRightCameraIs) {
   const Eigen::Matrix3d turn_left = ExpSo3({0.01, -0.02, 0.005}),
                         turn_right = ExpSo3({-0.004, 0.015, 0.002});

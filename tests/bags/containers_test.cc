@@ -1,4 +1,4 @@
-// One recording in every container: the same frames come out of all, whole, cut short and damaged.
+// One recording in every container gives the same frames: complete, truncated and damaged.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -78,15 +78,15 @@ TEST_P(Containers, AreReadAsFarAsTheyGoWhenCutShort) {
     }
   }
   EXPECT_EQ(read + refused, 9);
-  if (path.ends_with(".db3")) return;  // SQLite takes none whose pages are missing
+  if (path.ends_with(".db3")) return;  // SQLite rejects a file with missing pages
   EXPECT_GT(read, 0);
   EXPECT_GT(most, 2u);
-  if (told == 0) {  // else the frames themselves say so
+  if (told == 0) {  // otherwise the frames themselves report it
     EXPECT_THAT(warnings_.text(), HasSubstr("walk"));
   }
 }
 
-// Some bytes turned: whatever is read is no crash, and no more than there was.
+// Some bytes inverted: reading does not crash and returns no more frames than there were.
 TEST_P(Containers, SurviveDamage) {
   const std::string path = GetParam().write(folder_);
   if (path == folder_ / "walk") GTEST_SKIP() << "a folder";
@@ -138,7 +138,7 @@ TEST(ContainerErrors, AFolderOfSeveralRecordingsIsRefused) {
               HasSubstr("several recordings"));
 }
 
-// A chunk whose bytes were turned costs the frames in it, and no others.
+// A chunk with inverted bytes loses its own frames and no others.
 TEST(ContainerErrors, ADamagedChunkCostsItsFrames) {
   const TempFolder folder;
   const WarningCatcher warnings;

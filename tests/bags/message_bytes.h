@@ -1,5 +1,5 @@
-// Messages of sensor_msgs as bytes, for ROS 1 or as CDR: written by what the formats say, apart
-// from what reads them.
+// Writers of sensor_msgs messages for ROS 1 and as CDR, implemented from the formats'
+// specifications, independently of the readers.
 #pragma once
 
 #include <array>
@@ -69,7 +69,7 @@ inline std::string BytesOf(const cv::Mat& image) {
   return bytes;
 }
 
-// `rows` are as many bytes each.
+// `rows`: rows of equal length in bytes.
 inline std::string ImageMessage(Dialect dialect, int64_t stamp, const std::string& frame,
                                 const std::string& encoding, cv::Size size,
                                 const std::string& rows) {

@@ -1,4 +1,4 @@
-// Encodings of pictures and depth, against pictures converted by hand.
+// Encodings of images and depth, compared with explicit conversions.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ int Farthest(const cv::Mat& a, const cv::Mat& b) {
              : 999;
 }
 
-// Blue, green and red each grow another way: what is exchanged shows.
+// The three channels have different gradients, so that a swap is detected.
 cv::Mat Slopes() {
   cv::Mat image(48, 64, CV_8UC3);
   for (int y = 0; y < image.rows; ++y) {
@@ -71,7 +71,7 @@ TEST(RosPictures, OfEightBitsAChannelComeOutExactly) {
   EXPECT_TRUE(Decoded("mono8", gray).color.empty());
 }
 
-// The pixels by the pattern's definition: its letters are the first two of the first two rows.
+// Pixels by the pattern's definition: its letters are the first two pixels of the first two rows.
 TEST(RosPictures, OfBayerPatternsHaveTheirColours) {
   const cv::Mat color = Slopes();
   for (const std::string pattern : {"rggb", "bggr", "gbrg", "grbg"}) {
@@ -83,7 +83,7 @@ TEST(RosPictures, OfBayerPatternsHaveTheirColours) {
       }
     }
     const DecodedImage decoded = Decoded("bayer_" + pattern + "8", raw);
-    const cv::Rect inside(4, 4, 56, 40);  // slopes are interpolated exactly, but for rounding
+    const cv::Rect inside(4, 4, 56, 40);  // gradients are interpolated exactly except for rounding
     EXPECT_LE(Farthest(decoded.color(inside), color(inside)), 2) << pattern;
     EXPECT_LE(Farthest(decoded.image(inside), GreyOf(color)(inside)), 3) << pattern;
   }
@@ -123,7 +123,7 @@ TEST(RosPictures, HaveRowsWithPaddingAndBigEndianDepth) {
   const std::string rows("\1\2xx\3\4xx", 8);
   const RosPicture picture = {{5, "c"}, false, "mono8", 2, 2, 4, false, rows};
   EXPECT_EQ(PictureOf(picture, ImageUse::kGray).image.at<uchar>(1, 1), 4);
-  // The last row may end with its pixels.
+  // The padding of the last row may be missing.
   const RosPicture exact = {{5, "c"}, false, "mono8", 2,
                             2,        4,     false,   std::string_view(rows).substr(0, 6)};
   EXPECT_EQ(PictureOf(exact, ImageUse::kGray).image.at<uchar>(1, 0), 3);
@@ -148,7 +148,7 @@ TEST(RosPictures, OfCompressedDepthAreUnpacked) {
   EXPECT_EQ(
       Farthest(decode("16UC1; compressedDepth png", std::string(12, '\0') + png), TinyDepth(0)), 0);
   EXPECT_EQ(Farthest(decode("16UC1; png compressed ", png), TinyDepth(0)), 0);
-  // v = a / z + b, a = 2000, b = 200: 1000 stands for 2.5 m.
+  // v = a / z + b with a = 2000, b = 200: 1000 means 2.5 m.
   const float quantization[] = {2000, 200};
   std::string head(4, '\0');
   head.append(reinterpret_cast<const char*>(quantization), sizeof quantization);

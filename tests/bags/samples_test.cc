@@ -1,5 +1,5 @@
-// Recordings by public writers (tests/bags/make_samples): rosbag itself, and npm's @mcap/core with
-// Foxglove's CDR.
+// Recordings written by public libraries (tests/bags/make_samples): rosbag, and npm's @mcap/core
+// with Foxglove's CDR.
 #include <gmock/gmock.h>
 
 #include "alidade/io/files/open_source.h"
@@ -12,7 +12,8 @@ std::string Sample(const std::string& name) {
   return std::string(ALIDADE_BAG_SAMPLES) + "/" + name;
 }
 
-// ROS 1 messages packed by rosbag's lz4, ROS 2 messages packed by Zstandard: the same picture.
+// ROS 1 messages compressed by rosbag with lz4 and ROS 2 messages compressed with zstd: the same
+// image.
 TEST(Samples, OfPublicWritersAreOneRecording) {
   const auto bag = OpenSource(Sample("desk-lz4.bag")), mcap = OpenSource(Sample("desk-zstd.mcap"));
   for (const auto* source : {&bag, &mcap}) {
@@ -31,9 +32,9 @@ TEST(Samples, OfPublicWritersAreOneRecording) {
   EXPECT_EQ(cv::norm(a->depth, b->depth, cv::NORM_INF), 0);
   double least = 0, most = 0;
   cv::minMaxLoc(a->image, &least, &most);
-  EXPECT_GT(most - least, 50);  // a picture, not a surface
+  EXPECT_GT(most - least, 50);  // the image has contrast
   cv::minMaxLoc(a->depth, &least, &most);
-  EXPECT_GT(most, 300);  // millimetres
+  EXPECT_GT(most, 300);  // millimeters
   EXPECT_LT(most, 20000);
 }
 

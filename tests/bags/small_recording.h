@@ -22,7 +22,7 @@ constexpr int kSmallFrames = 5;
 
 inline int64_t StampOf(int frame) { return kStart + kGap * frame; }
 
-// A picture packed without loss, depth as it is; depth is written down 30 ms late.
+// Losslessly compressed images and raw depth; depth is recorded 30 ms late.
 inline std::vector<WrittenMessage> SmallRecording(Dialect dialect) {
   std::vector<WrittenMessage> messages;
   for (int i = 0; i < kSmallFrames; ++i) {
@@ -44,14 +44,14 @@ inline std::string ReadBytes(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// Each container in each of its forms, written into a folder: name, and what writes it and returns
+// Every container in every form: its name, and a function that writes it into a folder and returns
 // its path.
 struct Container {
   std::string name;
   std::function<std::string(const TempFolder&)> write;
 };
 
-// For the names of tests, which otherwise show the addresses in it.
+// Names for parameterized tests; the default would print addresses.
 inline void PrintTo(const Container& container, std::ostream* out) { *out << container.name; }
 
 inline std::vector<Container> AllContainers() {

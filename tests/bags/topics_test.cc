@@ -1,4 +1,4 @@
-// Which topics are taken, which messages belong together, and what is said of it.
+// Choice of topics, association of messages, and the description of the choice.
 #include <gmock/gmock.h>
 
 #include "alidade/io/files/open_source.h"
@@ -13,7 +13,7 @@ using testing::Not;
 
 constexpr Dialect kRos2{true};
 
-// A picture all of one grey level, which tells whose it is.
+// An image of one gray level, which identifies it.
 cv::Mat Grey(int level) { return {48, 64, CV_8UC1, cv::Scalar(level)}; }
 
 WrittenMessage Picture(const std::string& topic, int64_t stamp, int level, int64_t delay = 0) {
@@ -47,7 +47,7 @@ std::vector<WrittenMessage> Pair() {
   std::vector<WrittenMessage> messages = {Info("/cam0/camera_info", {}),
                                           Info("/cam1/camera_info", RightInfo())};
   for (int i = 0; i < 6; ++i) {
-    // The right one is stamped 1 ms later and written down before the left; the third is missing.
+    // The right image is stamped 1 ms later and recorded before the left one; the third is missing.
     messages.push_back(Picture("/cam0/image_raw", StampOf(i), 10 + i, 8'000'000));
     if (i != 2)
       messages.push_back(Picture("/cam1/image_raw", StampOf(i) + 1'000'000, 100 + i, -4'000'000));
@@ -72,7 +72,7 @@ TEST_F(Topics, PairsBelongTogetherByTheirStamps) {
   }
 }
 
-// Zeros would end an error, line ends and escapes make it more than a line.
+// A zero byte would end a message; line ends and escapes would break it.
 TEST_F(Topics, NamesAreShownInOneLine) {
   using namespace std::string_literals;
   const std::string name = "/\0cam\n\x1b[31m"s;
@@ -145,7 +145,7 @@ TEST_F(Topics, WithoutStampsTheTimeOfWritingCounts) {
     messages.push_back(message);
   }
   const auto source = Open(messages);
-  EXPECT_TRUE(source->Info().camera_guessed);  // nothing tells the camera
+  EXPECT_TRUE(source->Info().camera_guessed);  // no calibration
   EXPECT_EQ(source->Next()->stamp, "5.000000");
   EXPECT_EQ(source->Next()->time, 6);
   EXPECT_EQ(source->Info().camera.fps, 1);

@@ -16,7 +16,7 @@ TEST(IdMap, DoesWhatStdMapDoes) {
   std::map<uint32_t, int> expected;
   for (int i = 0; i < 20000; ++i) {
     const uint32_t id =
-        random.Below(3000) * 1000003u;  // far apart, with multiples of powers of two
+        random.Below(3000) * 1000003u;  // widely spaced, including multiples of powers of two
     ++tally[{id}];
     ++expected[id];
     if (i % 5000 == 4999) {

@@ -8,7 +8,7 @@ namespace {
 TEST(LogOdds, AreZeroForEvenChances) {
   EXPECT_EQ(ProbabilityOf(0), 0.5f);
   EXPECT_EQ(LogOddsOf(0.5f), 0);
-  EXPECT_FLOAT_EQ(LogOddsOf(0.75f), std::log(3.0f));  // three to one
+  EXPECT_FLOAT_EQ(LogOddsOf(0.75f), std::log(3.0f));  // odds of three to one
   EXPECT_FLOAT_EQ(ProbabilityOf(-std::log(3.0f)), 0.25f);
 }
 

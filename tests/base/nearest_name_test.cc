@@ -15,7 +15,7 @@ TEST(EditDistance, CountsInsertionsDeletionsReplacementsAndSwaps) {
   EXPECT_EQ(EditDistance("THREADS", "threads"), 0);
 }
 
-// A file's text where a name belongs: compared letter by letter it would take minutes.
+// A whole file's text instead of a name: computing its edit distance would take minutes.
 TEST(NearestName, ComparesNoBooks) {
   const std::vector<std::string> known(200, "tracker.extractor.features");
   EXPECT_EQ(NearestName(std::string(1 << 20, 'a'), known), "");

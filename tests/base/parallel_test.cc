@@ -79,7 +79,7 @@ TEST_P(ParallelForTest, ServesSeveralThreadsAtOnce) {
 TEST_P(ParallelForTest, UsesAsManyThreadsAsItWasTold) {
   std::mutex mutex;
   std::set<std::thread::id> seen;
-  // Bodies that sleep leave every worker the time to turn up.
+  // Bodies that sleep give every worker time to join.
   ParallelFor(16, [&](int) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     std::lock_guard<std::mutex> lock(mutex);

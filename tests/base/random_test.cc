@@ -11,7 +11,7 @@ namespace alidade::random_test {
 namespace {
 
 TEST(Random, IsPcg32) {
-  // The numbers the reference implementation's demo prints for seed 42, stream 54.
+  // Output of the reference implementation's demo for seed 42, stream 54.
   Random random(42, 54);
   for (const uint32_t expected :
        {0xa15c02b7u, 0x7b47f409u, 0xba1d3330u, 0x83d2f293u, 0xbfa4784bu, 0xcbed606eu}) {
@@ -93,7 +93,7 @@ TEST(Random, SamplesWithoutRepetition) {
       ++counts[i];
     }
   }
-  // Binomial with p = 0.4: four standard deviations.
+  // Binomial with p = 0.4; bound of four standard deviations.
   for (const int count : counts) EXPECT_NEAR(count, 2000, 4 * std::sqrt(5000 * 0.4 * 0.6));
   std::vector<int> all = random.Sample(20, 20);
   std::sort(all.begin(), all.end());

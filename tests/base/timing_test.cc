@@ -45,20 +45,20 @@ TEST(SampleLog, KeepsAllUpToItsBoundAndThenAPartThatIsSpreadEvenly) {
   }
   kept = log.All();
   EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
-  // Each of the 2048 samples that one stands for is as likely: neighbours are less than two such
-  // stretches apart, and the median is that of all, to within one.
+  // Each sample is drawn uniformly from an interval of 2048: neighbors are less than two intervals
+  // apart, and the median differs from that of all samples by at most that.
   for (size_t i = 1; i < kept.size(); ++i) EXPECT_LT(kept[i] - kept[i - 1], 2 * 2048);
   EXPECT_NEAR(Summarise(kept).median, 50000, 2 * 2048);
 }
 
-// Every fourth sample is another, as where a detector is at work.
+// Periodic input, e.g. a detector that runs on every fourth frame.
 TEST(SampleLog, DoesNotFallInStepWithWhatRepeats) {
   SampleLog log(256);
   for (int i = 0; i < 40000; ++i) log.Add(i % 4 == 0 ? 100 : 1);
   const std::vector<double> kept = log.All();
   const auto share = static_cast<double>(std::count(kept.begin(), kept.end(), 100.0)) /
                      static_cast<double>(kept.size());
-  EXPECT_NEAR(share, 0.25, 0.12);  // four standard deviations of at least 128
+  EXPECT_NEAR(share, 0.25, 0.12);  // four standard deviations for at least 128 samples
 }
 
 TEST(Stopwatch, DoesNotRunBackwards) {

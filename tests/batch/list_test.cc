@@ -42,9 +42,10 @@ TEST(ParseBatchList, NamesFoldersAfterSourcesUnlessTold) {
       "/data/kitchen --first 300 --out=evening\n"
       "/other/kitchen\n"
       "walk.mp4 --fov 70\n"
-      "synth:room?frames=30&seed=2\n",
+      "synth:room?frames=30&seed=2\n"
+      "/bags/walk.bag?image=/cam0/image\n",
       "list.txt", {"--seed", "3"});
-  ASSERT_EQ(items.size(), 5u);
+  ASSERT_EQ(items.size(), 6u);
   EXPECT_EQ(items[0].name, "kitchen");
   EXPECT_EQ(items[0].line, 2);
   EXPECT_THAT(items[0].words, ElementsAre("/data/kitchen/", "--last", "299", "--seed", "3"));
@@ -53,6 +54,22 @@ TEST(ParseBatchList, NamesFoldersAfterSourcesUnlessTold) {
   EXPECT_EQ(items[2].name, "kitchen-2");
   EXPECT_EQ(items[3].name, "walk");
   EXPECT_EQ(items[4].name, "room_frames_30_seed_2");
+  EXPECT_EQ(items[5].name, "walk-2");
+}
+
+TEST(ParseBatchList, ALineKeepsItsFolderWhenOthersComeAndGo) {
+  const auto names = [](const std::string& text) {
+    const auto is_others = [](const std::string& name, const std::string& source) {
+      return (name == "walk" && source != "a/walk") || (name == "walk-2" && source != "b/walk");
+    };
+    std::vector<std::string> all;
+    for (const BatchItem& item : ParseBatchList(text, "list.txt", {}, is_others))
+      all.push_back(item.name);
+    return all;
+  };
+  EXPECT_THAT(names("a/walk\nb/walk\n"), ElementsAre("walk", "walk-2"));
+  EXPECT_THAT(names("b/walk\na/walk\n"), ElementsAre("walk-2", "walk"));
+  EXPECT_THAT(names("c/walk\nb/walk\n"), ElementsAre("walk-3", "walk-2"));
 }
 
 TEST(ParseBatchList, ALineComesBackAsItWas) {

@@ -1,5 +1,5 @@
 // `alidade-bench phone`: that its figures say what was run. How fast that was is for
-// docs/benchmarks.md.
+// docs/benchmarks/index.md.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // `alidade-bench wild`: that its rows say what happened. How good that was is for
-// docs/benchmarks.md.
+// docs/benchmarks/index.md.
 #include <gtest/gtest.h>
 
 #include <cmath>

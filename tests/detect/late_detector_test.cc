@@ -1,4 +1,4 @@
-// A detector whose answers are brought from elsewhere.
+// A detector whose results are delivered later from elsewhere.
 #include "alidade/detect/late_detector.h"
 
 #include <gmock/gmock.h>
@@ -18,13 +18,13 @@ TEST(LateDetector, GivesTheNewestAnswerOnce) {
   EXPECT_FALSE(detector.TakeAnswer().has_value());
   detector.Bring({3, {{0, 0.5f, {1, 2, 3, 4}}}});
   detector.Bring({7, {{1, 0.6f, {1, 2, 3, 4}}}});
-  detector.Bring({5, {}});  // overtaken on its way
+  detector.Bring({5, {}});  // out of order
   const auto answer = detector.TakeAnswer();
   ASSERT_TRUE(answer.has_value());
   EXPECT_EQ(answer->number, 7);
   EXPECT_EQ(answer->detections.at(0).class_id, 1);
   EXPECT_FALSE(detector.TakeAnswer().has_value());
-  detector.Bring({7, {}});  // brought twice
+  detector.Bring({7, {}});  // delivered twice
   EXPECT_FALSE(detector.TakeAnswer().has_value());
 }
 

@@ -31,7 +31,8 @@ TEST(Letterbox, KeepsTheShapeAndFillsBothSidesEqually) {
   EXPECT_EQ(wide.inner, cv::Size(640, 480));
   EXPECT_EQ(wide.pad_left, 0);
   EXPECT_EQ(wide.pad_top, 80);
-  const Letterbox tall = FitInto({480, 960}, {640, 480});  // halved: 240 × 480, 200 columns
+  // Halved: 240 × 480, 200 columns on each side.
+  const Letterbox tall = FitInto({480, 960}, {640, 480});
   EXPECT_EQ(tall.inner, cv::Size(240, 480));
   EXPECT_EQ(tall.pad_left, 200);
   EXPECT_EQ(tall.pad_top, 0);
@@ -66,8 +67,8 @@ TEST(Letterbox, BringsBoxesBackClippedToTheImage) {
 
 TEST(Letterbox, DropsBoxesOfNoSize) {
   const Letterbox letterbox = FitInto({640, 480}, {640, 640});
-  EXPECT_FALSE(ToImage(letterbox, {10, 10, 30, 60}));     // all in the margin
-  EXPECT_FALSE(ToImage(letterbox, {10, 100, 1.5f, 60}));  // under two pixels wide
+  EXPECT_FALSE(ToImage(letterbox, {10, 10, 30, 60}));     // completely in the margin
+  EXPECT_FALSE(ToImage(letterbox, {10, 100, 1.5f, 60}));  // less than 2 pixels wide
   EXPECT_FALSE(ToImage(letterbox, {10, 100, -20, 60}));
   EXPECT_FALSE(ToImage(letterbox, {700, 100, 20, 60}));
   EXPECT_TRUE(ToImage(letterbox, {10, 78.5f, 30, 4}));  // 2.5 of its rows are in the image

@@ -75,7 +75,8 @@ TEST(OnnxModel, RefusesConstantsThatAreTooShortOrTooLong) {
   }
 }
 
-// Two bytes of a file must not take a hundred of memory without end.
+// Memory must not grow without limit for a crafted file, in which a part of 2 bytes takes about 100
+// bytes of memory.
 TEST(OnnxModel, RefusesMoreThanANetworkCanHave) {
   const auto bytes = [](const std::string& graph) {
     return ProtobufWriter().Integer(1, 7).Bytes(7, graph).text();
@@ -104,8 +105,8 @@ TEST(OnnxModel, RefusesMoreThanANetworkCanHave) {
   }
 }
 
-// Whatever a file holds: read, or an Error, and nothing outside of it is touched (the sanitizers'
-// builds look for that).
+// Damaged files are read or throw an Error, without invalid memory accesses (checked by the
+// sanitizers).
 TEST(OnnxModel, SurvivesDamagedFiles) {
   const std::string good = Tiny().Bytes();
   Random random(11);
@@ -123,7 +124,7 @@ TEST(OnnxModel, SurvivesDamagedFiles) {
     std::string bytes = good;
     const uint32_t changes = 1 + random.Below(8);
     for (uint32_t i = 0; i < changes; ++i) {
-      // Half of them in the first kilobyte, where lengths and names are.
+      // Half of the changes hit the first kilobyte, which contains lengths and names.
       const auto reach = static_cast<uint32_t>(random.Below(2) == 0 ? 1024 : bytes.size());
       const uint32_t at = random.Below(reach);
       bytes[at] = static_cast<char>(random.Below(256));

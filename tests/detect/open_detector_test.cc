@@ -1,4 +1,4 @@
-// The way from a file to detections: networks written by the test itself, run by OpenCV.
+// From a file to detections: networks written by the test, run by OpenCV.
 #include "alidade/detect/onnx/open_detector.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ class OpenDetectorTest : public testing::Test {
   std::unique_ptr<Detector> Open(const std::string& bytes) const {
     return OpenDetector(folder_.Write("net.onnx", bytes));
   }
-  // What opening these bytes says; it must name the file, and nothing else may be printed.
+  // The error of opening these bytes; it must name the file, and nothing else may be printed.
   std::string Complaint(const std::string& bytes) const {
     const std::string path = folder_.Write("net.onnx", bytes);
     testing::internal::CaptureStderr();
@@ -37,7 +37,7 @@ class OpenDetectorTest : public testing::Test {
   TempFolder folder_;
 };
 
-// YOLOv5's layout: nothing anywhere but a thing of class 1 in the middle.
+// YOLOv5's layout: a single detection of class 1 in the middle.
 TinyNetwork WithOneThing() {
   TinyNetwork network({1, 3 * kTinyCells, 7}, 0);
   const float row[7] = {16, 14, 8, 20, 0.9f, 0.1f, 0.8f};
@@ -62,7 +62,7 @@ TEST_F(OpenDetectorTest, AnswersInPixelsOfTheImageGiven) {
   const cv::Mat wide(32, 64, CV_8UC3, cv::Scalar::all(0));  // 8 rows of margin above and below
   const std::vector<Detection> found = detector->Detect(wide);
   ASSERT_EQ(found.size(), 1u);
-  EXPECT_EQ(found[0].box, cv::Rect2f(24, 0, 16, 32));  // 4…24 less 8, twice: clipped
+  EXPECT_EQ(found[0].box, cv::Rect2f(24, 0, 16, 32));  // 4…24 minus 8, times 2: clipped
 }
 
 TEST_F(OpenDetectorTest, SuppressesWhatIsFoundTwice) {
@@ -88,7 +88,7 @@ TEST_F(OpenDetectorTest, TakesTheNamesInTheFile) {
             (std::vector<std::string>{"robot", "robot's cat"}));
 }
 
-// What the network is given, read off a score that is the mean of one input plane.
+// Reads an input value of the network from a score that is the mean of one input plane.
 float ScoreOfPlane(TinyNetwork network, int plane, float factor, const std::string& path,
                    const cv::Mat& image) {
   const int score = network.shape[1] < network.shape[2] ? 4 * kTinyCells + 3  // transposed
@@ -142,15 +142,15 @@ TEST_F(OpenDetectorTest, GivesYolov6RedGreenBlueFrom0To1) {
   EXPECT_NEAR(ScoreOfPlane(network, 0, 1, "a", kPicture), 200.0 / 255, 1e-5);
 }
 
-// The last layers of YOLOv8 as its exporter writes them when it simplifies: each side of a box is a
-// distribution over 16 distances from the cell's centre, in strides (Li et al. 2020). It writes the
-// strides once; `stride_rows` 4 repeats them for each number of the box.
+// The last layers of YOLOv8 as written by its exporter with simplification: each side of a box is a
+// distribution over 16 distances from the cell's center, in strides (Li et al. 2020). The exporter
+// writes the strides once; `stride_rows` 4 repeats them for each side.
 std::string LastLayersOfYolov8(int stride_rows) {
   constexpr int kBins = 16, kSides = 4, kClasses = 2, kRows = kSides * kBins + kClasses;
   TinyNetwork network({1, kRows, kTinyCells}, 0);
   const int cell = 5, distances[kSides] = {1, 0, 2, 1};  // left, top, right, bottom
   for (int side = 0; side < kSides; ++side)
-    network.At(kBins * side + distances[side], cell) = 60;  // all but certain
+    network.At(kBins * side + distances[side], cell) = 60;  // nearly certain
   for (int i = 0; i < kTinyCells; ++i) {
     network.At(kRows - 2, i) = -9;
     network.At(kRows - 1, i) = i == cell ? 9 : -9;
@@ -201,7 +201,7 @@ std::string LastLayersOfYolov8(int stride_rows) {
 TEST_F(OpenDetectorTest, RunsTheLastLayersOfYolov8) {
   const auto detector = Open(LastLayersOfYolov8(4));
   const std::vector<Detection> found = detector->Detect(kPicture);
-  ASSERT_EQ(found.size(), 1u);  // cell centre (1.5, 1.5) · 8: from (4, 12) to (28, 20)
+  ASSERT_EQ(found.size(), 1u);  // cell center (1.5, 1.5) · 8: from (4, 12) to (28, 20)
   EXPECT_EQ(found[0].class_id, 1);
   EXPECT_NEAR(found[0].box.x, 4, 1e-3);
   EXPECT_NEAR(found[0].box.y, 12, 1e-3);
@@ -222,7 +222,8 @@ TEST_F(OpenDetectorTest, RunsNetworksThatSuppressThemselves) {
   const std::vector<Detection> found = detector->Detect(kPicture);
   ASSERT_EQ(found.size(), 1u);
   EXPECT_EQ(found[0].box, cv::Rect2f(2, 4, 18, 26));
-  EXPECT_EQ(detector->ClassNames().at(static_cast<size_t>(found[0].class_id)), "truck");  // COCO's
+  // From COCO.
+  EXPECT_EQ(detector->ClassNames().at(static_cast<size_t>(found[0].class_id)), "truck");
   network.names = "['only one']";
   const auto other = Open(network.Bytes());
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { other->Detect(kPicture); }),
@@ -245,7 +246,7 @@ TEST_F(OpenDetectorTest, SaysWhatIsWrongWithAFile) {
   }
 }
 
-// OpenCV believes what files say of themselves and crashes over many of these when it gets them.
+// OpenCV does not validate files and crashes on many of these.
 TEST_F(OpenDetectorTest, SurvivesDamagedFiles) {
   TinyNetwork network = WithOneThing();
   network.scales_input = true;
@@ -256,7 +257,7 @@ TEST_F(OpenDetectorTest, SurvivesDamagedFiles) {
     std::string bytes = good;
     const uint32_t changes = 1 + random.Below(3);
     for (uint32_t i = 0; i < changes; ++i) {
-      // Half of them near the ends, where names, lengths and shapes are.
+      // Half of the changes are near either end, where names, lengths and shapes are.
       const auto near = static_cast<uint32_t>(random.Below(2) == 0 ? 300 : bytes.size());
       const uint32_t at = random.Below(near);
       const bool from_end = random.Below(2) == 0;
@@ -282,7 +283,7 @@ TEST_F(OpenDetectorTest, SaysWhyAFileCannotBeRead) {
   EXPECT_EQ(message("/dev/null"), "/dev/null: is not a file");
 }
 
-// Sparse files take no place on the disk, but all memory once they are read.
+// Sparse files take no disk space but would take all memory when read.
 TEST_F(OpenDetectorTest, FilesTooLongOrOfZerosAreRefusedUnread) {
   const std::string path = folder_.Write("net.onnx", WithOneThing().Bytes());
   const auto message = [&] { return MessageOf(ErrorKind::kInput, [&] { OpenDetector(path); }); };
@@ -318,7 +319,7 @@ TEST_F(OpenDetectorTest, SaysThatOutputsAreNotFiniteOrNoScores) {
   EXPECT_THAT(Complaint(network.Bytes()), HasSubstr("-4.5"));
 }
 
-// On grey all is well: the first white picture makes the number overflow.
+// A gray image works; the first white image makes the value overflow.
 TEST_F(OpenDetectorTest, SaysThatOutputsBecameNotFiniteLater) {
   TinyNetwork network = WithOneThing();
   network.dependences = {{network.Index(0, 0), 0, 3e38f}, {network.Index(0, 0), 1, 3e38f}};
@@ -350,7 +351,8 @@ TEST_F(OpenDetectorTest, SaysWhichInputsItTakes) {
   EXPECT_THAT(Complaint(integers.Bytes()), HasSubstr("float32"));
 }
 
-// The batch may be open; open sides are taken for 640 pixels, where there are 8400 cells.
+// The batch size may be variable. A variable image size is set to 640 pixels, which gives 8400
+// cells.
 TEST_F(OpenDetectorTest, ChoosesASizeWhenTheFileLeavesItOpen) {
   TinyNetwork network({1, 8400, 6}, 0);
   network.input = {-1, 3, -1, -1};
@@ -358,7 +360,7 @@ TEST_F(OpenDetectorTest, ChoosesASizeWhenTheFileLeavesItOpen) {
   const auto detector = Open(network.Bytes());
   const cv::Mat image(640, 640, CV_8UC3, cv::Scalar::all(0));
   const std::vector<Detection> found = detector->Detect(image);
-  ASSERT_EQ(found.size(), 1u);  // undecoded: at the cell's corner, 32 pixels wide
+  ASSERT_EQ(found.size(), 1u);  // not decoded: at the cell's corner, 32 pixels wide
   EXPECT_EQ(found[0].box, cv::Rect2f(592, 592, 32, 32));
 }
 

@@ -1,5 +1,5 @@
-// Networks with real weights on real pictures: what is found against where the people are. The
-// files are the user's: recordings under ALIDADE_DATA, networks in the folder models beside it.
+// Networks with real weights on real images, compared with labeled people. Uses the user's files:
+// recordings under ALIDADE_DATA, networks in the folder models beside it.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -16,13 +16,13 @@
 namespace alidade::real_models_test {
 namespace {
 
-constexpr float kSameThing = 0.5f;  // overlap that counts as found
-constexpr float kLeastArea =
-    0.01f * 640 * 480;  // smaller people don't count, as in the data's README
+constexpr float kSameThing = 0.5f;  // overlap of a match
+// Smaller people are ignored, as in the data's README.
+constexpr float kLeastArea = 0.01f * 640 * 480;
 
 std::string ModelPath(const std::string& name) { return DataFolder() + "/../models/" + name; }
 
-// The visible boxes of people, by the time stamp as it is written.
+// Visible boxes of people, by time stamp as written.
 std::map<std::string, std::vector<cv::Rect2f>> ReadPeople(const std::string& recording) {
   std::map<std::string, std::vector<cv::Rect2f>> people;
   std::ifstream file(DataFolder() + "/" + recording + "/people.txt");
@@ -42,7 +42,7 @@ struct Recall {
   double share() const { return all > 0 ? static_cast<double>(found) / all : 0; }
 };
 
-// Over every `step`-th frame.
+// Evaluates every `step`-th frame.
 Recall RecallOfPeople(const std::string& model, const std::string& recording, int step) {
   const auto detector = OpenDetector(ModelPath(model));
   Recall recall;
@@ -72,8 +72,9 @@ class RealModels : public testing::Test {
   }
 };
 
-// All frames, by another program: 0.898 of 939 and 0.773 of 449. A share of n people strays by
-// sqrt(p (1 - p) / n), here .05 and .08: less by two of those is an error.
+// Reference recall on all frames, by another program: 0.898 of 939 people, and 0.773 of 449. The
+// standard deviation of a share of n people is sqrt(p (1 - p) / n), here 0.05 and 0.08; the bounds
+// are two of these below.
 TEST_F(RealModels, Yolov5sFindsWalkingPeople) {
   EXPECT_GT(RecallOfPeople("yolov5s_640x480.onnx", "kitchen_walk", 20).share(), 0.79);
 }
@@ -81,8 +82,8 @@ TEST_F(RealModels, Yolov5sFindsPeopleWhoStay) {
   EXPECT_GT(RecallOfPeople("yolov5s_640x480.onnx", "kitchen_sit", 15).share(), 0.61);
 }
 
-// No figures to hold them to: most people are found, nearly none would be with colours, sizes or
-// coordinates taken wrongly.
+// Without reference values: most people are found, whereas wrong colors, sizes or coordinates would
+// give nearly none.
 TEST_F(RealModels, Yolov5nFindsMostPeople) {
   EXPECT_GT(RecallOfPeople("yolov5n_640x480.onnx", "kitchen_walk", 30).share(), 0.6);
 }

@@ -23,7 +23,7 @@ TEST(SuppressOverlaps, KeepsTheBestOfEachClass) {
   EXPECT_EQ(kept[2].score, 0.3f);  // elsewhere
 }
 
-// a covers b, b covers c, a does not cover c: c stays, since b is gone.
+// a covers b and b covers c, but a does not cover c: c remains, because b is removed.
 TEST(SuppressOverlaps, LeavesOutOnlyWhatAKeptOneCovers) {
   const std::vector<Detection> kept = SuppressOverlaps(
       {{0, 0.9f, {0, 0, 10, 10}}, {0, 0.8f, {3, 0, 10, 10}}, {0, 0.7f, {6, 0, 10, 10}}}, 0.45f);

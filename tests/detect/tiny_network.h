@@ -1,5 +1,5 @@
-// A network of a few hundred numbers whose answers a test knows: each output value is a constant
-// plus a multiple of the mean of the input's red, green or blue plane.
+// A small network with known outputs: each output value is a constant plus a multiple of the mean
+// of the input's red, green or blue plane.
 #pragma once
 
 #include <string>
@@ -16,15 +16,15 @@ inline constexpr int kTinySide = 32, kTinyCells = 21;
 struct TinyNetwork {
   std::vector<int64_t> input = {1, 3, kTinySide, kTinySide};
   std::vector<int64_t> shape;  // of the output
-  std::vector<float> values;   // of the output, for a black picture
-  // Output value `index` grows by `factor` times the mean of input plane `plane`.
+  std::vector<float> values;   // of the output, for a black image
+  // Adds `factor` times the mean of input plane `plane` to output value `index`.
   struct Dependence {
     size_t index;
     int plane;
     float factor;
   };
   std::vector<Dependence> dependences;
-  bool scales_input = false;  // by 1, in its first layer
+  bool scales_input = false;  // multiplies by 1 in its first layer
   std::string names;          // metadata
 
   TinyNetwork(std::vector<int64_t> output_shape, float fill) : shape(std::move(output_shape)) {
@@ -35,10 +35,10 @@ struct TinyNetwork {
   float& At(int row, int column) { return values[static_cast<size_t>(row * shape[2] + column)]; }
   size_t Index(int row, int column) const { return static_cast<size_t>(row * shape[2] + column); }
 
-  // With its output called `last`, for more layers to work on.
+  // A file whose output is called `last`, to append layers.
   OnnxFile File(const std::string& last) const {
     const auto count = static_cast<int64_t>(values.size());
-    std::vector<float> weights(3 * values.size(), 0);  // one row for each value
+    std::vector<float> weights(3 * values.size(), 0);  // one row per value
     for (const Dependence& d : dependences)
       weights[3 * d.index + static_cast<size_t>(d.plane)] = d.factor;
     OnnxFile file;

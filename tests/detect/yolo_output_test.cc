@@ -1,5 +1,4 @@
-// Outputs written down by hand, for an input of 64 × 32: 32 cells of 8 pixels (8 in a row), 8 of
-// 16, 2 of 32.
+// Handwritten outputs for an input of 64 × 32: 32 cells of 8 pixels (8 per row), 8 of 16, 2 of 32.
 #include "alidade/detect/yolo_output.h"
 
 #include <gtest/gtest.h>
@@ -51,7 +50,7 @@ std::string Complaint(const Output& output) {
 TEST(YoloOutput, WithThreeAnchorsACellIsYolov5s) {
   Output output({1, 3 * kCells, 5 + 3});
   output.SetRow(7, {20, 16, 10, 6, 0.8f, 0.1f, 0.9f, 0.5f});
-  output.SetRow(8, {20, 16, 10, 6, 0.3f, 0.1f, 0.8f, 0.5f});  // .24: too little
+  output.SetRow(8, {20, 16, 10, 6, 0.3f, 0.1f, 0.8f, 0.5f});  // 0.24: too low
   EXPECT_EQ(Recognise(output).family, YoloFamily::kAnchors);
   EXPECT_EQ(Recognise(output).classes, 3);
   const auto found = Decode(output);
@@ -100,7 +99,7 @@ TEST(YoloOutput, SixNumbersARowAreCornersScoreAndClass) {
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { Decode(output); }), HasSubstr("class -1"));
 }
 
-// The cell of each row of an anchor-free output: column, row, pixels.
+// Cell of a row of an anchor-free output: column, row, size in pixels.
 struct Cell {
   int x, y, stride;
 };
@@ -116,20 +115,20 @@ std::vector<Cell> AllCells() {
 
 TEST(YoloOutput, UndecodedYoloxIsOffsetsAndLogarithms) {
   Output output({1, kCells, 6});
-  const int row = 32 + 4 + 2;  // of the 16-pixel cells the one at column 2, row 1
+  const int row = 32 + 4 + 2;  // of the 16-pixel cells, the one at column 2, row 1
   output.SetRow(row, {0.25f, 0.5f, std::log(2.0f), std::log(0.5f), 0.9f, 1});
   EXPECT_FALSE(Recognise(output).decoded);
   const auto found = Decode(output);
   ASSERT_EQ(found.size(), 1u);
-  // Centre (2.25, 1.5) · 16 = (36, 24), size (32, 8).
+  // Center (2.25, 1.5) · 16 = (36, 24), size (32, 8).
   EXPECT_NEAR(found[0].box.x, 20, 1e-4);
   EXPECT_NEAR(found[0].box.y, 20, 1e-4);
   EXPECT_NEAR(found[0].box.width, 32, 1e-4);
   EXPECT_NEAR(found[0].box.height, 8, 1e-4);
 }
 
-// The same boxes, written both ways: told apart, and decoded to the same. Regressions of any spread
-// a network may have.
+// The same boxes in both forms are distinguished and decoded to the same result, for regressions of
+// various spreads.
 TEST(YoloOutput, DecodedAndUndecodedYoloxAreToldApart) {
   Random random(3);
   for (const double spread : {0.0, 0.3, 1.0, 2.0}) {
@@ -166,7 +165,7 @@ TEST(YoloOutput, DecodedAndUndecodedYoloxAreToldApart) {
 
 TEST(YoloOutput, OfSegmentingNetworksTheMasksAreLeftOut) {
   Output boxes({1, 4 + 2 + 32, kCells}, 0), prototypes({1, 32, 8, 16});
-  for (int i = 6; i < 38; ++i) boxes(i, 3) = -7;  // coefficients are no scores
+  for (int i = 6; i < 38; ++i) boxes(i, 3) = -7;  // mask coefficients are not scores
   boxes(5, 3) = 0.5f;
   const NetworkOutput both[] = {prototypes.view(), boxes.view()};
   const YoloLayout layout = RecogniseYolo(both, kInput);
@@ -176,7 +175,7 @@ TEST(YoloOutput, OfSegmentingNetworksTheMasksAreLeftOut) {
 }
 
 TEST(YoloOutput, OfSeveralTheOneThatIsKnownCounts) {
-  const Output head({1, 3, 4, 8}), boxes({1, 3 * kCells, 7});  // as older YOLOv5 exports give
+  const Output head({1, 3, 4, 8}), boxes({1, 3 * kCells, 7});  // as in older YOLOv5 exports
   const NetworkOutput both[] = {head.view(), boxes.view()};
   EXPECT_EQ(RecogniseYolo(both, kInput).output, 1);
 }

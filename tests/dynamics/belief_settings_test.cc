@@ -1,4 +1,4 @@
-// Thresholds: those that cannot be are named, and each part heeds its own.
+// Thresholds: invalid values are reported by name, and each part uses its own thresholds.
 #include "alidade/dynamics/belief_settings.h"
 
 #include <gtest/gtest.h>
@@ -66,7 +66,7 @@ TEST(BeliefSettings, ACellNeedsSoManyReadings) {
   const Cells cells(camera);
   cv::Mat depth(camera.height, camera.width, CV_32F, cv::Scalar(2));
   depth.colRange(320, 640) = 0;
-  for (int y = 0; y < depth.rows; ++y) {  // a third of the readings of cells on the right
+  for (int y = 0; y < depth.rows; ++y) {  // a third of the readings in cells on the right
     for (int x = 320; x < depth.cols; ++x) {
       if (std::abs(cells.Centre(cells.At(static_cast<float>(x), 0)).x - static_cast<float>(x)) < 1)
         depth.at<float>(y, x) = 3;
@@ -92,7 +92,7 @@ TEST(BeliefSettings, HistoryKeepsWhatItIsTold) {
   EXPECT_EQ(history.Older(2), nullptr);
 }
 
-// Some tracks side by side, all on one cell's surface.
+// Several adjacent tracks on the surface of one cell.
 class WithTracks : public testing::Test {
  protected:
   WithTracks() {
@@ -157,7 +157,7 @@ TEST_F(WithTracks, ObjectsRestByAsMuchAsTheyAreTold) {
   EXPECT_FLOAT_EQ(person.static_log_odds, kObjectStatic + 0.5f);
   tracks_.pop_back();
   objects.JudgeRest(tracks_, std::vector<int8_t>(9, 1), cells_);
-  EXPECT_FLOAT_EQ(person.static_log_odds, kObjectStatic + 0.5f);  // too few to tell
+  EXPECT_FLOAT_EQ(person.static_log_odds, kObjectStatic + 0.5f);  // too few to decide
 }
 
 TEST(BeliefSettings, TheOvalOfABoxHasTheExponentItIsTold) {
@@ -169,7 +169,7 @@ TEST(BeliefSettings, TheOvalOfABoxHasTheExponentItIsTold) {
   };
   EXPECT_NEAR(area(1), 0.5, 0.05);       // a rhombus
   EXPECT_NEAR(area(2), 0.785, 0.05);     // an ellipse: π / 4
-  EXPECT_NEAR(area(100), 0.95, 0.0501);  // the box, but for its outermost cells
+  EXPECT_NEAR(area(100), 0.95, 0.0501);  // the box except its outermost cells
 }
 
 }  // namespace

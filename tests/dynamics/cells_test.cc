@@ -1,4 +1,4 @@
-// The picture in cells: where they are, what they show, and how far away it is.
+// Cells of the image: positions, projection and depth.
 #include "alidade/dynamics/cells.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +53,7 @@ TEST_P(CellsOfAnySize, EveryPixelIsHalfACellOrLessFromTheCentreOfItsCell) {
       const auto u = static_cast<float>(x), v = static_cast<float>(y);
       const cv::Point2f off = cells_.Centre(cells_.At(u, v)) - cv::Point2f(u, v);
       ASSERT_LE(std::abs(off.x), cells_.size() / 2 + 1e-3f) << x;
-      // Rows need not fill the picture: at its foot up to half a cell is left for the last.
+      // Rows need not divide the image exactly: up to half a cell remains at the bottom.
       ASSERT_LE(std::abs(off.y), cells_.size() + 1e-3f) << y;
     }
   }
@@ -121,7 +121,7 @@ TEST(ApartInDepth, AreCellsWithAStepBetweenThem) {
   }
 }
 
-// The same reading all over, and a few that are not.
+// The same reading everywhere.
 TEST(DepthOfCells, IsTheSameFromBothKindsOfImagesInMetres) {
   const Camera camera = MakeCamera(401, 303, false);
   const Cells cells(camera);
@@ -136,7 +136,8 @@ TEST(DepthOfCells, IsNotMovedByAFewWrongReadings) {
   const Camera camera = MakeCamera(640, 480, false);
   const Cells cells(camera);
   cv::Mat depth(camera.height, camera.width, CV_32F, cv::Scalar(2));
-  for (int y = 0; y < depth.rows; ++y) {  // every third column, a cell's nine readings are in three
+  // Every third column, as the nine readings of a cell are in three columns.
+  for (int y = 0; y < depth.rows; ++y) {
     for (int x = y % 2; x < depth.cols; x += 8) depth.at<float>(y, x) = 9;
   }
   for (float z : DepthOfCells(cells, camera, depth)) ASSERT_EQ(z, 2);
@@ -188,10 +189,10 @@ TEST(StereoDepthOfCells, IsThatOfTheRenderedRoom) {
       errors.push_back(std::abs(found[i] / truth[i] - 1));
       wrong += errors.back() > 0.25;
     }
-    // Half of the room's picture has texture to match.
+    // Half of the room's image has texture for matching.
     ASSERT_GT(errors.size(), cells.count() * 0.4) << number;
     std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    // At 3 m the disparity is 19 pixels of the full picture; half a pixel is 2.6 % of it.
+    // At 3 m the disparity is 19 pixels of the full-size image; half a pixel is 2.6 % of it.
     EXPECT_LT(errors[errors.size() / 2], 0.03) << number;
     EXPECT_LT(wrong, 0.08 * static_cast<double>(errors.size())) << number;
   }

@@ -1,5 +1,5 @@
-// The whole of it on rendered rooms: exact poses go in, and what is left out is held against who is
-// truly there.
+// The complete filter on rendered rooms with exact poses; the excluded parts are compared with the
+// true masks of people.
 #include "alidade/dynamics/dynamic_filter.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ struct Senses {
   bool depth = true, right = false, pose = true;
 };
 
-// One filter and what goes into it.
+// One filter with its inputs.
 class Watcher {
  public:
   Watcher(const Camera& camera, const DynamicsSettings& settings, const Senses& senses = {})
@@ -46,7 +46,7 @@ class Watcher {
   const DynamicFilter& filter() const { return filter_; }
 
  private:
-  // Corners by OpenCV, with the depth there is.
+  // OpenCV's corners, with the depth of the image.
   Frame FeaturesOf(const RenderedFrame& seen) const {
     Frame frame;
     std::vector<cv::Point2f> corners;
@@ -81,11 +81,11 @@ const WalkedRoom& Walked() {
   return room;
 }
 
-// Of the true people's and of the room's features, the share that is left in use; over frames.
+// Share of the features on the true people and on the room that remain in use, over all frames.
 struct InUse {
   double people = 0, room = 0, all_people = 0, all_room = 0;
   void Add(const Frame& frame, const cv::Mat& truth) {
-    cv::Mat wide, narrow;  // on the outline nobody can tell
+    cv::Mat wide, narrow;  // ignores features on the outline
     cv::dilate(truth, wide, cv::Mat::ones(5, 5, CV_8U));
     cv::erode(truth, narrow, cv::Mat::ones(5, 5, CV_8U));
     for (size_t k = 0; k < frame.keypoints.size(); ++k) {
@@ -105,7 +105,7 @@ struct InUse {
 
 class FilterOfAWalkedRoom : public testing::Test {
  protected:
-  // Plays the room; looks from frame `begin` on.
+  // Plays the room; evaluates from frame `begin` on.
   void Play(Watcher& watcher, const WalkedRoom& room, int begin = 30) {
     for (int i = 0; i < static_cast<int>(room.frames.size()); ++i) {
       watcher.See(i, room.frames[i], room.T_camera_world[i]);
@@ -127,7 +127,7 @@ class FilterOfAWalkedRoom : public testing::Test {
 TEST_F(FilterOfAWalkedRoom, FindsThePeopleByDepthAfterASecond) {
   Watcher watcher(Walked().camera, Geometry());
   Play(watcher, Walked());
-  // Cells are 4 pixels wide and people some 40: outlines alone cost a fifth.
+  // Cells are 4 pixels wide and people about 40, so the outlines alone cost a fifth.
   EXPECT_GT(overlap_, 0.65);
   EXPECT_LT(wrong_, 0.03);
   EXPECT_LT(in_use_.people, 0.15 * in_use_.all_people);
@@ -140,7 +140,7 @@ TEST_F(FilterOfAWalkedRoom, FindsThePeopleWithTwoCameras) {
   Play(watcher, room);
   EXPECT_GT(overlap_, 0.3);  // block matching widens them
   EXPECT_LT(in_use_.people, 0.4 * in_use_.all_people);
-  EXPECT_GT(in_use_.room, 0.85 * in_use_.all_room);  // the share beside people is lost
+  EXPECT_GT(in_use_.room, 0.85 * in_use_.all_room);  // the part beside people is lost
 }
 
 TEST_F(FilterOfAWalkedRoom, LeavesTheRoomAloneWithOneCamera) {
@@ -199,7 +199,7 @@ TEST_F(FilterOfAWalkedRoom, GoesOnAfterFramesWithoutAPoseAndAfterTheMapWasCorrec
     filter.Advance({i, seen.time, seen.image, seen.depth, {}}, {});
     Frame frame;
     const bool lost = i >= 20 && i < 25;
-    // From frame 10 on the world is another.
+    // From frame 10 on the world changes.
     Se3 pose = Walked().T_camera_world[i];
     if (i >= 10) pose = pose * Se3{Eigen::Matrix3d::Identity(), {5, -3, 1}};
     const WorldId world{{}, i >= 10 ? 1u : 0u};
@@ -211,13 +211,13 @@ TEST_F(FilterOfAWalkedRoom, GoesOnAfterFramesWithoutAPoseAndAfterTheMapWasCorrec
   EXPECT_GT(overlap, 0.6);
 }
 
-// One room and a standing camera, before which someone is put in.
+// One room and a stationary camera, in front of which a person is inserted.
 class FilterOfAStandingCamera : public testing::Test {
  protected:
   FilterOfAStandingCamera() : room_(WalkRoom({.actors = 0, .frames = 1, .seed = 4})) {
     board_ = MakeTexture(where_.width, where_.height, 12);
   }
-  // Slats before the lower part of the board, with gaps too narrow for a cell to show.
+  // Slats in front of the lower part of the board, with gaps narrower than a cell.
   void PutUpFence(RenderedFrame& seen) const {
     const cv::Mat slats = MakeTexture(where_.width, 4, 5);
     for (int y = where_.y + 85; y + 6 <= where_.br().y; y += 6) {
@@ -285,7 +285,7 @@ TEST_F(FilterOfAStandingCamera, WhatGoesAcrossIsLeftOutWithOneCamera) {
     if (i >= 25) in_use.Add(watcher.frame(), Seen(0, true).mask);
   }
   EXPECT_LT(in_use.people, 0.35 * in_use.all_people);
-  EXPECT_GT(in_use.room, 0.85 * in_use.all_room);  // what is beside it is believed less
+  EXPECT_GT(in_use.room, 0.85 * in_use.all_room);  // features beside the object get less weight
 }
 
 TEST_F(FilterOfAStandingCamera, WhatADetectorKnowsToMoveIsLeftOutThoughItRests) {
@@ -301,7 +301,7 @@ TEST_F(FilterOfAStandingCamera, WhatADetectorKnowsToMoveIsLeftOutThoughItRests) 
   See(watcher, 300, true, person);
   EXPECT_GT(Overlap(watcher), 0.7);
   ASSERT_EQ(watcher.filter().objects().size(), 1u);
-  // It leaves: in time it is no longer expected.
+  // It disappears, and after some time it is no longer expected.
   See(watcher, 60, false);
   EXPECT_TRUE(watcher.filter().objects().empty());
   EXPECT_LT(ShareOfMask(watcher.Mask()), 0.03);

@@ -1,4 +1,4 @@
-// What geometry says about what moves, held against planes and points worked out here.
+// Geometric evidence of motion, compared with planes and points computed here.
 #include "alidade/dynamics/evidence.h"
 
 #include <gtest/gtest.h>
@@ -21,11 +21,11 @@ Se3 Motion(const Eigen::Vector3d& t, const Eigen::Vector3d& turn) {
   return pose;
 }
 
-// --- Where a point may be now ---
+// --- Epipolar segments ---
 
 class SegmentTest : public testing::Test {
  protected:
-  // Pixel now of what was on the ray at that depth.
+  // Current pixel of the point on the ray at this depth.
   Eigen::Vector2d Now(double depth) const {
     const Eigen::Vector3d p = T_now_then_.R * (depth * ray_) + T_now_then_.t;
     return {camera_.fx * p.x() / p.z() + camera_.cx, camera_.fy * p.y() / p.z() + camera_.cy};
@@ -47,7 +47,7 @@ TEST_F(SegmentTest, EndsAreWhereTheFarthestAndTheNearestPointAreSeen) {
   ASSERT_TRUE(segment.in_front);
   EXPECT_LT((segment.from - Now(5)).norm(), 1e-9);
   EXPECT_LT((segment.to - Now(0.8)).norm(), 1e-9);
-  // What is infinitely far only turns.
+  // An infinitely distant point is only rotated.
   EXPECT_LT((Segment(0.8, kInfinity).from - Now(1e9)).norm(), 1e-4);
 }
 
@@ -83,13 +83,13 @@ TEST_F(SegmentTest, IsAPointWhenTheCameraOnlyTurned) {
 TEST_F(SegmentTest, CouldNotBeSeenWhereTheCameraLooksAwayOrHasPassedIt) {
   T_now_then_ = Motion(Eigen::Vector3d::Zero(), {0, 3.1, 0});
   EXPECT_FALSE(Segment(0.5, kInfinity).in_front);
-  T_now_then_ = {Eigen::Matrix3d::Identity(), {0, 0, -3}};  // 3 m ahead of where it was
+  T_now_then_ = {Eigen::Matrix3d::Identity(), {0, 0, -3}};  // 3 m forward
   EXPECT_FALSE(Segment(0.5, 2).in_front);
   EXPECT_TRUE(Segment(0.5, 4).in_front);
 }
 
 TEST_F(SegmentTest, WhatTheCameraPassesIsCutOffButTheRestStays) {
-  T_now_then_ = {Eigen::Matrix3d::Identity(), {0.1, 0, -1}};  // passes all that was nearer than 1 m
+  T_now_then_ = {Eigen::Matrix3d::Identity(), {0.1, 0, -1}};  // passes all points nearer than 1 m
   const EpipolarSegment segment = Segment(0.5, kInfinity);
   ASSERT_TRUE(segment.in_front);
   ASSERT_TRUE(segment.from.allFinite() && segment.to.allFinite());
@@ -98,12 +98,11 @@ TEST_F(SegmentTest, WhatTheCameraPassesIsCutOffButTheRestStays) {
   EXPECT_GT(DistanceTo(segment, Now(3) + Eigen::Vector2d(0, 60)), 20);
 }
 
-// --- Depth against an earlier view ---
+// --- Comparison with an earlier view ---
 
 class CompareDepthTest : public testing::Test {
  protected:
-  // Depth of what is seen of walls across the view: `depth_of` (x, y of the world) is asked for the
-  // ray's wall. Worlds are that of the camera then.
+  // Depth of a wall across the view at world z. The world is the frame of the earlier camera.
   std::vector<float> Plane(const Se3& T_camera_world, double world_z) const {
     const Se3 T_world_camera = T_camera_world.Inverse();
     std::vector<float> depth(cells_.count(), 0);
@@ -114,7 +113,7 @@ class CompareDepthTest : public testing::Test {
     }
     return depth;
   }
-  // Puts a board of that depth into a part of the picture.
+  // Places a board of this depth in a part of the image.
   void Put(std::vector<float>& depth, const cv::Rect2f& where, float z) const {
     for (int i = 0; i < cells_.count(); ++i) {
       if (where.contains(cells_.Centre(i))) depth[i] = z;
@@ -144,7 +143,7 @@ TEST_F(CompareDepthTest, AWallIsTheSameFromWhereverItIsSeen) {
     const DepthComparison comparison = CompareDepth(cells_, depth, pose, past);
     EXPECT_EQ(Share(comparison, Comparison::kFree), 0);
     EXPECT_GT(Share(comparison, Comparison::kSame, {120, 100, 400, 280}), 0.999);
-    // What was met is where it was then.
+    // The matching cell is where the point was in the earlier view.
     for (int i = 0; i < cells_.count(); ++i) {
       if (comparison.result[i] != Comparison::kSame) continue;
       const Eigen::Vector3d world = pose.Inverse() * (depth[i] * cells_.Ray(i));
@@ -189,7 +188,7 @@ TEST_F(CompareDepthTest, WhatHasNoReadingNowOrThenIsUnknown) {
   depth = Plane({}, 3);
   Put(past.depth, board_, 0);
   EXPECT_EQ(Share(CompareDepth(cells_, depth, {}, past), Comparison::kUnknown, inside_), 1);
-  // A hole is no place one has looked through, even for something nearer.
+  // A hole is not a place that was seen through, even for a nearer surface.
   Put(depth, board_, 1.5f);
   EXPECT_EQ(Share(CompareDepth(cells_, depth, {}, past), Comparison::kFree, inside_), 0);
 }
@@ -197,7 +196,7 @@ TEST_F(CompareDepthTest, WhatHasNoReadingNowOrThenIsUnknown) {
 TEST_F(CompareDepthTest, WhatWasOutOfThePictureIsUnknown) {
   PastView past;
   past.depth = Plane(past.T_camera_world, 3);
-  const Se3 pose = Motion(Eigen::Vector3d::Zero(), {0, 1.4, 0});  // radians: beyond the view
+  const Se3 pose = Motion(Eigen::Vector3d::Zero(), {0, 1.4, 0});  // radians: outside the view
   const std::vector<float> depth(cells_.count(), 2.0f);
   EXPECT_EQ(Share(CompareDepth(cells_, depth, pose, past), Comparison::kUnknown), 1);
 }
@@ -216,7 +215,8 @@ TEST_F(CompareDepthTest, NoiseOfTheSensorAndThePoseIsNoMotion) {
 }
 
 TEST_F(CompareDepthTest, OutlinesOfWhatStandsStillAreNoMotion) {
-  // A board 1.5 m before the wall, seen 10 cm to the side: it stands before another part of it.
+  // A board 1.5 m in front of the wall, seen from 10 cm to the side: it covers another part of the
+  // wall.
   const auto look = [&](const Se3& pose) {
     const Se3 T_world_camera = pose.Inverse();
     std::vector<float> depth = Plane(pose, 3);
@@ -236,7 +236,7 @@ TEST_F(CompareDepthTest, OutlinesOfWhatStandsStillAreNoMotion) {
   EXPECT_GT(Share(comparison, Comparison::kSame, {100, 60, 440, 360}), 0.85);
 }
 
-// --- Spreading over surfaces ---
+// --- Propagation over surfaces ---
 
 class SpreadTest : public testing::Test {
  protected:
@@ -263,7 +263,7 @@ TEST_F(SpreadTest, WhatIsKnownOfOneCellReachesItsSurfaceAndFades) {
   values_[At(40, 30)] = -3;
   weights_[At(40, 30)] = 1;
   SpreadOverSurfaces(cells_, depth, 0.7f, values_, weights_);
-  EXPECT_NEAR(values_[At(46, 33)], -3, 1e-3);  // the only one that says anything
+  EXPECT_NEAR(values_[At(46, 33)], -3, 1e-3);  // the only evidence
   for (int off = 1; off < 12; ++off) {
     EXPECT_LT(weights_[At(40 + off, 30)], weights_[At(39 + off, 30)]);
     EXPECT_LT(weights_[At(40 - off, 30)], weights_[At(41 - off, 30)]);
@@ -288,7 +288,7 @@ TEST_F(SpreadTest, AStepOfDepthIsNotCrossed) {
     EXPECT_NEAR(values_[At(39, row)], -4, 1e-3);
     EXPECT_NEAR(values_[At(40, row)], 4, 1e-3);
   }
-  // Without depth nobody knows of a step.
+  // Without depth the discontinuity is unknown.
   std::vector<float> again(cells_.count(), 0), weights(cells_.count(), 0);
   again[At(37, 30)] = -4;
   weights[At(37, 30)] = 1;
@@ -298,7 +298,7 @@ TEST_F(SpreadTest, AStepOfDepthIsNotCrossed) {
 
 TEST_F(SpreadTest, ASurfaceThatLeansIsOneSurface) {
   std::vector<float> depth(cells_.count());
-  for (int i = 0; i < cells_.count(); ++i)  // from 2 m to 4 m across the picture: 1 % a cell or so
+  for (int i = 0; i < cells_.count(); ++i)  // from 2 m to 4 m across the image: about 1 % per cell
     depth[i] = 2 + 2 * static_cast<float>(i % cells_.columns()) / 79;
   values_[At(30, 30)] = -3;
   weights_[At(30, 30)] = 1;

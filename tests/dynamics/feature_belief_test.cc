@@ -1,4 +1,4 @@
-// What features and landmarks are worth by what is believed of the cells around them.
+// Probabilities of features and evidence for landmarks, from the belief of the cells around them.
 #include "alidade/dynamics/feature_belief.h"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,7 @@
 namespace alidade::feature_belief_test {
 namespace {
 
-// A wall at 4 m that is believed to stand, the right half of the picture hidden by something at 2 m
-// that is believed to move.
+// A static wall at 4 m; the right half of the image is covered by a moving object at 2 m.
 class BeliefOfAFrame : public testing::Test {
  protected:
   BeliefOfAFrame() {
@@ -37,7 +36,7 @@ class BeliefOfAFrame : public testing::Test {
   std::vector<float> Of(const std::vector<Keypoint>& keypoints) const {
     return StaticProbabilities(cells_, belief_, DepthImage(image_, camera_), keypoints, settings_);
   }
-  // Of one among many that stand.
+  // Probability of one keypoint among many static ones.
   float Of(const Keypoint& keypoint) const {
     std::vector<Keypoint> keypoints(300, At(50, 4));
     keypoints[0] = keypoint;
@@ -64,14 +63,14 @@ TEST_F(BeliefOfAFrame, AFeatureTakesAfterTheSurfaceAtItsDepth) {
     EXPECT_EQ(Of(At(x, 4)), 1) << x;
     EXPECT_FLOAT_EQ(Of(At(x, 2)), moves) << x;
   }
-  // Its surface is four cells away: found, but when only nearer ones are looked at.
+  // The surface is four cells away: found, unless the search is limited to nearer cells.
   EXPECT_EQ(Of(At(348, 4)), 1);
   settings_.features.far_cells = 2;
   EXPECT_FLOAT_EQ(Of(At(348, 4)), moves);
 }
 
 TEST_F(BeliefOfAFrame, AFeatureWithoutDepthHasThatOfTheNextReading) {
-  EXPECT_FLOAT_EQ(Of(At(317, 0)), ProbabilityOf(-3));  // the worst around
+  EXPECT_FLOAT_EQ(Of(At(317, 0)), ProbabilityOf(-3));  // the lowest around it
   image_ = cv::Mat(480, 640, CV_32F, cv::Scalar(0));
   image_.at<float>(240, 319) = 4;
   EXPECT_EQ(Of(At(317, 0)), 1);
@@ -88,14 +87,14 @@ TEST_F(BeliefOfAFrame, FromSureOnItCountsFully) {
 }
 
 TEST_F(BeliefOfAFrame, TheUncertainHaveASayOnlyWhereFewAreCertain) {
-  // All of an object that geometry has nothing against, but for some on the wall.
+  // Many features on an object that geometry does not consider moving, and some on the wall.
   for (int i = 0; i < cells_.count(); ++i) {
     if (cells_.Centre(i).x >= 480) belief_.geometry[i] = 1.5f;
   }
   std::vector<Keypoint> keypoints(400, At(560, 2));
   for (int k = 0; k < 130; ++k) keypoints[k] = At(50, 4);
   EXPECT_FLOAT_EQ(Of(keypoints)[399], ProbabilityOf(-3));
-  for (int k = 100; k < 130; ++k) keypoints[k] = At(400, 2);  // geometry sees these move
+  for (int k = 100; k < 130; ++k) keypoints[k] = At(400, 2);  // geometry considers these moving
   EXPECT_FLOAT_EQ(Of(keypoints)[399], settings_.features.uncertain_weight);
   EXPECT_FLOAT_EQ(Of(keypoints)[110], ProbabilityOf(-3));
   settings_.features.enough_count = 90;
@@ -109,8 +108,8 @@ TEST_F(BeliefOfAFrame, ALandmarkIsSeenHiddenOnAMoverOrGone) {
   EXPECT_EQ(Look(500, 2), Sight::kOnMover);
   EXPECT_EQ(Look(500, 4), Sight::kHidden);
   EXPECT_EQ(Look(100, 2), Sight::kGone);
-  EXPECT_EQ(Look(-50, 2), Sight::kClear);  // out of the picture
-  // At the tolerance's ends: 0.04 + 0.02 × 2 + 0.004 × 4 = 0.096 m.
+  EXPECT_EQ(Look(-50, 2), Sight::kClear);  // outside the image
+  // At the limits of the tolerance: 0.04 + 0.02 × 2 + 0.004 × 4 = 0.096 m.
   EXPECT_EQ(Look(500, 2.09f), Sight::kOnMover);
   EXPECT_EQ(Look(500, 2.15f), Sight::kHidden);
   settings_.depth.tolerance = 0.2f;

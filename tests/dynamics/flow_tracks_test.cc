@@ -1,4 +1,4 @@
-// Points followed through pictures whose motion is known.
+// Tracks through images with known motion.
 #include "alidade/dynamics/flow_tracks.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ const cv::Mat& World() {
   return world;
 }
 
-// What is seen when the world has moved by `shift` pixels.
+// The image after the world has moved by `shift` pixels.
 cv::Mat Seen(cv::Point2f shift, double noise = 2, uint64_t seed = 1) {
   const cv::Matx23d map(1, 0, shift.x - 150, 0, 1, shift.y - 150);
   cv::Mat image;
@@ -30,7 +30,7 @@ cv::Mat Seen(cv::Point2f shift, double noise = 2, uint64_t seed = 1) {
   return image;
 }
 
-// Corners of a picture, by OpenCV.
+// OpenCV's corners.
 std::vector<Keypoint> CornersOf(const cv::Mat& image) {
   std::vector<cv::Point2f> corners;
   cv::goodFeaturesToTrack(image, corners, 800, 0.01, 8);
@@ -68,7 +68,7 @@ TEST_F(FlowTracksTest, FollowAMotionOfPartsOfAPixel) {
       ASSERT_EQ(track.length(), 6);
       errors.push_back(Length(track.at() - track.Before(5) - 5 * step));
     }
-    // Those near the border leave the picture.
+    // Tracks near the border leave the image.
     ASSERT_GT(static_cast<double>(errors.size()), 0.75 * static_cast<double>(begun)) << step;
     std::sort(errors.begin(), errors.end());
     EXPECT_LT(errors[errors.size() / 2], 0.2) << step;
@@ -96,7 +96,7 @@ TEST_F(FlowTracksTest, NoneAreLeftAfterACut) {
   const size_t begun = tracks_.tracks().size();
   cv::Mat other = MakeTexture(kSize.width, kSize.height, 77);
   tracks_.Advance(other);
-  // A few corners find something that looks alike there and back.
+  // A few corners match something similar by chance.
   EXPECT_LT(static_cast<double>(tracks_.tracks().size()), 0.1 * static_cast<double>(begun));
 }
 
@@ -104,7 +104,7 @@ TEST_F(FlowTracksTest, NoneAreLeftWhereThePictureIsPlain) {
   Begin(Seen({}));
   tracks_.Advance(cv::Mat(kSize, CV_8U, cv::Scalar(90)));
   EXPECT_LT(tracks_.tracks().size(), 10u);
-  tracks_.Advance(Seen({}));  // and it goes on
+  tracks_.Advance(Seen({}));  // and it recovers
   tracks_.Seed(CornersOf(Seen({})), kSize);
   EXPECT_GT(tracks_.tracks().size(), 200u);
 }

@@ -1,4 +1,4 @@
-// Which of the points that are followed move, where that is known.
+// Classification of tracks with known motion.
 #include "alidade/dynamics/flow_votes.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace alidade::flow_votes_test {
 namespace {
 
-constexpr double kNearest = 0.5;  // metres
+constexpr double kNearest = 0.5;  // meters
 
 std::vector<int8_t> ByPose(const FollowedPoints& made) {
   return VoteByPose(made.camera, Cells(made.camera), made.tracks, made.T_camera_world, made.history,
@@ -23,14 +23,14 @@ Se3 Turned(double angle) {
   return Se3::Exp(xi);
 }
 
-class VotesByPose : public testing::TestWithParam<bool> {  // with depth?
+class VotesByPose : public testing::TestWithParam<bool> {  // parameter: with depth
  protected:
   VotesByPose() { settings_.depth = GetParam(); }
   FollowedSettings settings_;
 };
 
 TEST_P(VotesByPose, FindWhatMovesAcrossAndNothingElse) {
-  // The camera goes to the right, the board downwards: across its epipolar lines.
+  // The camera moves right and the board down: across its epipolar lines.
   settings_.board = [](int frame) { return Eigen::Vector3d(0, -0.2 + 0.02 * frame, 2); };
   const FollowedPoints made = FollowPoints(settings_);
   const std::vector<int8_t> votes = ByPose(made);
@@ -40,7 +40,7 @@ TEST_P(VotesByPose, FindWhatMovesAcrossAndNothingElse) {
 }
 
 TEST_P(VotesByPose, FindWhatOvertakesTheCamera) {
-  // Along the epipolar lines, but against the way all that stands still goes in the picture.
+  // Along the epipolar lines, but opposite to the static points' motion in the image.
   settings_.board = [](int frame) { return Eigen::Vector3d(-0.2 + 0.03 * frame, 0, 2); };
   const FollowedPoints made = FollowPoints(settings_);
   const std::vector<int8_t> votes = ByPose(made);
@@ -108,12 +108,12 @@ INSTANTIATE_TEST_SUITE_P(Depth, VotesByPose, testing::Bool(),
                          [](const auto& which) { return which.param ? "WithDepth" : "Without"; });
 
 TEST(VotesByPoseAndDepth, FindWhatMovesAlongTheEpipolarLineAsSomethingNearerWould) {
-  // The camera goes to the right and a little up; what goes to the left and a little down is seen
-  // as something nearer that stands.
+  // The camera moves right and slightly up; an object moving left and slightly down looks like a
+  // nearer static one.
   FollowedSettings settings;
   settings.board = [](int frame) { return Eigen::Vector3d(0.2 - 0.02 * frame, 0.004 * frame, 2); };
   const FollowedPoints without = FollowPoints(settings);
-  EXPECT_EQ(ShareOf(without, ByPose(without), true, -1), 0);  // it might well stand
+  EXPECT_EQ(ShareOf(without, ByPose(without), true, -1), 0);  // it may be static
   settings.depth = true;
   const FollowedPoints made = FollowPoints(settings);
   const std::vector<int8_t> votes = ByPose(made);
@@ -124,7 +124,7 @@ TEST(VotesByPoseAndDepth, FindWhatMovesAlongTheEpipolarLineAsSomethingNearerWoul
 TEST(VotesByPoseAndDepth, FindWhatComesTowardsTheCamera) {
   FollowedSettings settings;
   settings.depth = true;
-  settings.T_camera_world = [](int frame) {  // forwards
+  settings.T_camera_world = [](int frame) {  // forward motion
     return Se3{Eigen::Matrix3d::Identity(), {0, 0, -0.01 * frame}};
   };
   settings.board = [](int frame) { return Eigen::Vector3d(-0.5, 0.3, 2 - 0.05 * frame); };
@@ -144,7 +144,7 @@ class RivalMotion : public testing::Test {
   double Share(const FollowedPoints& made) const {
     return ShareOfRivalMotion(made.camera, Cells(made.camera), made.tracks, ByPose(made), 3);
   }
-  // The same with poses that take the board for the world.
+  // The same with poses relative to the board instead of the world.
   FollowedPoints Following() const {
     FollowedPoints made = FollowPoints(settings_);
     const auto pose = [&](int frame) {
@@ -220,7 +220,7 @@ TEST_F(VotesByAgreement, ACameraThatOnlyTurnsMakesNothingMove) {
   settings_.moving = 0;
   const FollowedPoints still = FollowPoints(settings_);
   EXPECT_LT(ShareOf(still, Vote(still), false, -1), 0.05);
-  settings_.moving = 12;  // many, and it might as well be parallax
+  settings_.moving = 12;  // more might be explained by parallax
   left_out_.clear();
   const FollowedPoints made = FollowPoints(settings_);
   const std::vector<int8_t> votes = Vote(made);
@@ -292,7 +292,7 @@ TEST(Consensus, KeepsWhatAGroupSays) {
 }
 
 TEST(Consensus, SurfacesAtOtherDepthsAreNotAsked) {
-  // Tracks lie side by side, every other one 1 m before the rest; only those move.
+  // Adjacent tracks; every other one is 1 m nearer, and only those move.
   Camera camera = FollowPoints({}).camera;
   const Cells cells(camera);
   std::vector<float> depth(cells.count(), 3);
@@ -307,7 +307,7 @@ TEST(Consensus, SurfacesAtOtherDepthsAreNotAsked) {
     votes.push_back(near ? -1 : 1);
   }
   EXPECT_EQ(Consensus(cells, depth, tracks, votes), votes);
-  // Without depth they are one surface of which nobody can tell.
+  // Without depth they form one undecidable surface.
   for (int8_t vote : Consensus(cells, {}, tracks, votes)) EXPECT_EQ(vote, 0);
 }
 

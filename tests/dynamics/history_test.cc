@@ -1,4 +1,4 @@
-// Earlier frames, found by how long ago they were.
+// Past views, addressed by their age in frames.
 #include "alidade/dynamics/history.h"
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(History, OlderOnesAreSomeFramesApartAndBounded) {
     ++count;
   }
   EXPECT_GE(count, 5u);
-  EXPECT_LE(count, 30u);  // each holds the whole picture's cells
+  EXPECT_LE(count, 30u);  // each holds all cells of an image
 }
 
 TEST(History, ForgetsEarlierPosesButGoesOnCountingFrames) {

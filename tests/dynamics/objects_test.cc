@@ -1,4 +1,4 @@
-// Things carried from frame to frame while the detector's answers are late, or missing.
+// Objects tracked from frame to frame while detector results are late or missing.
 #include "alidade/dynamics/objects.h"
 
 #include <gtest/gtest.h>
@@ -24,13 +24,13 @@ float Apart(const cv::Rect2f& a, const cv::Rect2f& b) {
                    std::abs(a.br().y - b.br().y)});
 }
 
-// A thing that goes through the picture at `step` pixels a frame over a background that goes at
-// `background`, and the flow of both.
+// An object that moves at `step` pixels per frame over a background that moves at `background`, and
+// the flow of both.
 class ObjectTracksTest : public testing::Test {
  protected:
   cv::Rect2f BoxAt(int frame) const { return begin_ + static_cast<float>(frame) * step_; }
 
-  // Tracks as they are in frame `now_`.
+  // Tracks in frame `now_`.
   std::vector<FlowTrack> Flow() const {
     std::vector<FlowTrack> tracks;
     uint32_t id = 0;
@@ -182,20 +182,20 @@ TEST_F(ObjectTracksTest, WhatIsSeenToRestIsBelievedALittleUntilItMoves) {
     for (int i = 0; i < frames; ++i) objects_.JudgeRest(tracks, votes, cells_);
     return person.static_log_odds;
   };
-  EXPECT_FLOAT_EQ(judge(0, 100), kObjectStatic);  // nobody can tell
+  EXPECT_FLOAT_EQ(judge(0, 100), kObjectStatic);  // undecided
   EXPECT_LT(judge(1, 10), kRestingStatic);
   EXPECT_FLOAT_EQ(judge(1, 100), kRestingStatic);
   EXPECT_FLOAT_EQ(judge(-1, 4), kObjectStatic);
 }
 
-// --- What of a box is the thing ---
+// --- Segmentation of a box ---
 
 class ForegroundTest : public testing::Test {
  protected:
   // A room: a wall at 4 m, a person at 2 m in an oval that does not fill its box.
   ForegroundTest() : depth_(cells_.count(), 4), static_(cells_.count(), 1.5f) {
     person_ = CellsWhere([&](cv::Point2f p) { return InPerson(p); });
-    for (int i : person_) depth_[i] = 2 + 0.002f * (cells_.Centre(i).x - 320);  // it leans
+    for (int i : person_) depth_[i] = 2 + 0.002f * (cells_.Centre(i).x - 320);  // inclined
   }
   bool InPerson(cv::Point2f p) const {
     const float u = (p.x - 320) / 60, v = (p.y - 260) / 150;
@@ -230,7 +230,7 @@ TEST_F(ForegroundTest, IsThePersonAndNotTheWallBehind) {
 }
 
 TEST_F(ForegroundTest, IsNotWhatIsKnownToStandInFront) {
-  // A chair hides the legs, and some of the wall.
+  // A chair hides the legs and a part of the wall.
   const auto chair = CellsWhere([](cv::Point2f p) { return p.y > 300 && p.x > 200 && p.x < 460; });
   for (int i : chair) {
     depth_[i] = 1.8f;
@@ -304,7 +304,7 @@ TEST_F(ForegroundTest, AnOvalIsMostOfItsBoxButNotItsCorners) {
   EXPECT_FALSE(has(240, 260));
   const double share = static_cast<double>(found.size()) * cells_.size() * cells_.size() /
                        static_cast<double>(box_.area());
-  EXPECT_GT(share, 0.7);  // an ellipse has 0.785, the cells on its rim come and go
+  EXPECT_GT(share, 0.7);  // an ellipse has 0.785; the cells on its rim vary
   EXPECT_LT(share, 1.0);
 }
 

@@ -1,4 +1,4 @@
-// Names of modes, and settings that cannot be.
+// Names of modes, and invalid settings.
 #include "alidade/dynamics/settings.h"
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What is believed of surfaces: a wall before which a board comes, stays and goes.
+// Belief of surfaces: a wall in front of which a board appears, stays and disappears.
 #include "alidade/dynamics/surface_belief.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,8 @@ namespace {
 
 class SurfaceBeliefTest : public testing::Test {
  protected:
-  // A wall at 4 m, and a board of 0.8 m at 2 m, in metres to the right of the middle of the world.
+  // A wall at 4 m and a board of 0.8 m at 2 m, at board_x_ meters to the right of the world's
+  // center.
   std::vector<float> Look(const Se3& T_camera_world) const {
     const Se3 T_world_camera = T_camera_world.Inverse();
     std::vector<float> depth(cells_.count());
@@ -29,7 +30,7 @@ class SurfaceBeliefTest : public testing::Test {
     return depth;
   }
   void Frame() {
-    // The camera goes to and fro a little.
+    // The camera sways slightly.
     Se3 pose;
     pose.t.x() = 0.05 * std::sin(0.1 * number_);
     const std::vector<float> depth = Look(pose);
@@ -54,7 +55,7 @@ class SurfaceBeliefTest : public testing::Test {
     for (int i = 0; i < count; ++i) Frame();
   }
   static constexpr float kBlindTo = 325;  // pixels
-  // Share of the board's cells, or of the wall's, that are believed to move.
+  // Share of moving cells on the board or on the wall.
   double Moving(bool board) const {
     int all = 0, moving = 0;
     for (int i = 0; i < cells_.count(); ++i) {
@@ -69,9 +70,9 @@ class SurfaceBeliefTest : public testing::Test {
   SurfaceBelief belief_{cells_};
   History history_;
   std::vector<uint8_t> resting_ = std::vector<uint8_t>(cells_.count(), 0), on_board_;
-  std::vector<uint8_t> suspect_ = resting_;  // cells in a box of the detector
-  bool board_ = false, blind_ = false;       // blind: on the left nothing is measured
-  double board_x_ = 0, board_step_ = 0;      // metres, metres per frame
+  std::vector<uint8_t> suspect_ = resting_;  // cells in a detection's box
+  bool board_ = false, blind_ = false;       // no depth is measured on the left
+  double board_x_ = 0, board_step_ = 0;      // meters, meters per frame
   int number_ = 0;
 };
 
@@ -97,7 +98,7 @@ TEST_F(SurfaceBeliefTest, WhatGoesAboutIsFoundWhereverItIs) {
   Frames(60);
   board_ = true;
   board_x_ = -1;
-  board_step_ = 0.03;  // 0.9 metres per second
+  board_step_ = 0.03;  // 0.9 meters per second
   Frames(15);
   for (int i = 0; i < 40; ++i) {
     Frame();
@@ -117,14 +118,15 @@ TEST_F(SurfaceBeliefTest, WhatComesAndStaysIsPartOfTheRoomInTime) {
     ++frames;
   }
   EXPECT_LT(frames, 600);  // 20 seconds
-  EXPECT_GT(frames, 45);   // not while it is only standing a moment
+  EXPECT_GT(frames, 45);   // not after a short stop
   EXPECT_LT(Moving(false), 0.03);
 }
 
-// A board comes; nobody knows whether its left part has always been there.
+// A board appears; whether its left part was always there is unknown.
 class SurfaceBeliefByHearsay : public SurfaceBeliefTest {
  protected:
-  // Of the part that is only heard of: those doubted, and the lowest log-odds, over 25 frames.
+  // Counts doubted cells and finds the lowest log-odds in the part without evidence of its own,
+  // over 25 frames.
   void Come() {
     blind_ = true;
     Frames(60);

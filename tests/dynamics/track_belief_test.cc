@@ -1,4 +1,4 @@
-// What is believed of tracks, vote by vote.
+// Belief of tracks, vote by vote.
 #include "alidade/dynamics/track_belief.h"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST_F(TrackBeliefTest, WhatHasComeToRestIsTrustedAgainInTime) {
     ++frames;
   }
   EXPECT_LT(frames, 300);  // ten seconds
-  EXPECT_GT(frames, 5);    // but not at once
+  EXPECT_GT(frames, 5);    // but not immediately
 }
 
 TEST_F(TrackBeliefTest, BeliefStaysWithItsTrackWhileOthersComeAndGo) {

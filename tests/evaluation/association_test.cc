@@ -8,8 +8,8 @@ namespace alidade::association_test {
 namespace {
 
 TEST(TumAssociation, GivesTheClosestPairItsWayFirst) {
-  // 0.010 is nearest to both estimates; the second is closer and gets it, the first must make do
-  // with 0.
+  // 0.010 is the nearest for both estimates; the second estimate is closer and gets it, the first
+  // gets 0.
   const std::vector<double> truth = {0.000, 0.010};
   const std::vector<double> estimate = {0.006, 0.011};
   const auto pairs = AssociateStamps(truth, estimate, 0.02, Association::kTum);
@@ -40,7 +40,7 @@ TEST(EvoAssociation, GivesEachStampOfTheShorterListItsNearest) {
   const std::vector<double> estimate = {0.006, 0.011};
   const auto pairs = AssociateStamps(truth, estimate, 0.02, Association::kEvo);
   ASSERT_EQ(pairs.size(), 2u);
-  EXPECT_EQ(pairs[0].truth, 1);  // taken twice: evo does not mind
+  EXPECT_EQ(pairs[0].truth, 1);  // evo may use a stamp twice
   EXPECT_EQ(pairs[1].truth, 1);
 }
 

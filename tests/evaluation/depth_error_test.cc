@@ -1,4 +1,4 @@
-// Scores of depth against figures worked out by hand.
+// Depth scores compared with values computed by hand.
 #include "alidade/evaluation/depth_error.h"
 
 #include <gmock/gmock.h>
@@ -29,7 +29,7 @@ cv::Mat1b Grey(uint8_t level, int width = kWidth, int height = kHeight) {
   return cv::Mat1b(height, width, level);
 }
 
-// A plane that leans back, 2 m to 2.95 m away: continuous everywhere.
+// An inclined plane, 2 m to 2.95 m away: continuous everywhere.
 cv::Mat1f Leaning() {
   cv::Mat1f depth = Depth(0);
   for (int y = 0; y < kHeight; ++y) {
@@ -60,7 +60,7 @@ TEST(DepthError, IsThreePercentWhereEverythingIsThreePercentTooFar) {
 }
 
 TEST(DepthError, SharesAndQuantilesAreCountedExactly) {
-  // Of ten rows, errors of 1, 1, 1, 1, 4, 4, 4, 8, 8 and 30 %.
+  // Ten rows with errors of 1, 1, 1, 1, 4, 4, 4, 8, 8 and 30 %.
   const cv::Mat1f truth = Depth(2, 10, 10);
   cv::Mat1f estimate = truth.clone();
   const double errors[] = {30, 1, 8, 4, 1, -4, -1, 8, 4, -1};
@@ -80,7 +80,7 @@ TEST(DepthError, MedianOfAnEvenNumberIsTheMeanOfTheMiddleTwo) {
 }
 
 TEST(DepthError, OneScaleIsFittedToAllFramesOfAMap) {
-  // The unit is 2.5 m; in a third of the first frame the depth is far off, which a median forgives.
+  // The unit is 2.5 m; a third of the first frame has large errors, to which the median is robust.
   const cv::Mat1f truth = Leaning();
   cv::Mat1f first = truth / 2.5f, second = Depth(3) / 2.5f;
   first.rowRange(0, kHeight / 3) *= 1.7f;
@@ -109,8 +109,8 @@ TEST(DepthError, EachMapHasAScaleOfItsOwn) {
 }
 
 TEST(DepthError, PixelsNearDepthStepsAndOutliersOfTheTruthAreNoContinuousOnes) {
-  // Two planes meet at column 32. The window reaches 7 pixels to each side: columns 25 to 38 see
-  // the step. The estimate is wrong there and nowhere else.
+  // Two planes meet at column 32. The window reaches 7 pixels to each side, so columns 25 to 38
+  // contain the step. The estimate is wrong only there.
   cv::Mat1f truth = Depth(2);
   truth.colRange(32, kWidth) = 3;
   cv::Mat1f estimate = truth.clone();
@@ -119,7 +119,7 @@ TEST(DepthError, PixelsNearDepthStepsAndOutliersOfTheTruthAreNoContinuousOnes) {
   EXPECT_EQ(step.continuous.n, (kWidth - 14) * kHeight);
   EXPECT_EQ(step.continuous.within_2, 1);
   EXPECT_NEAR(step.all.within_2, 1 - 14.0 / kWidth, 1e-9);
-  EXPECT_EQ(step.continuous.density, 1);  // how much there is has nothing to do with the truth
+  EXPECT_EQ(step.continuous.density, 1);  // density does not depend on the truth
 
   cv::Mat1f spot = Depth(2);
   spot(24, 32) = 2.2f;
@@ -140,7 +140,7 @@ TEST(DepthError, UnknownTruthIsNotScoredAndDisturbsNoNeighbour) {
   EXPECT_EQ(scores.all.density, 1);
 }
 
-// Everything once more, as slowly as it can be written down.
+// The same, computed by plain loops.
 TEST(DepthError, AgreesWithPlainLoopsOnRandomDepth) {
   Random random(11);
   cv::Mat1f truth = Leaning(), estimate = Depth(0);
@@ -153,7 +153,7 @@ TEST(DepthError, AgreesWithPlainLoopsOnRandomDepth) {
     }
   }
   std::vector<double> ratios, all, continuous;
-  for (const bool errors : {false, true}) {  // the scale first
+  for (const bool errors : {false, true}) {  // first the scale
     std::sort(ratios.begin(), ratios.end());
     const size_t half = ratios.size() / 2;
     const double scale = !errors                  ? 0
@@ -191,8 +191,8 @@ TEST(DepthError, AgreesWithPlainLoopsOnRandomDepth) {
 }
 
 TEST(DepthError, DensityIsOfAllPixelsAndOfThoseWithStructure) {
-  // Dark and bright halves: Scharr sees columns 31 and 32. Depth on one of them, and on a quarter
-  // of the rest.
+  // A dark and a bright half: Scharr detects columns 31 and 32. One of them has depth, and a
+  // quarter of the other pixels.
   cv::Mat1b image = Grey(50);
   image.colRange(32, kWidth) = 150;
   cv::Mat1f estimate = Depth(0);
@@ -202,7 +202,7 @@ TEST(DepthError, DensityIsOfAllPixelsAndOfThoseWithStructure) {
   EXPECT_NEAR(score.density, 17.0 / kWidth, 1e-9);
   EXPECT_NEAR(score.density_gradient, 0.5, 1e-9);
   EXPECT_NEAR(score.edge_coverage, 1, 1e-9);
-  // A step of 15 grey levels is 7.5 per pixel on each side of it, under the threshold.
+  // A step of 15 gray levels has a gradient of 7.5 per pixel on each side, below the threshold.
   image.colRange(32, kWidth) = 65;
   EXPECT_TRUE(std::isnan(ScoreOne(estimate, Depth(2), image).all.density_gradient));
   const DepthScore faint = ScoreOne(estimate, Depth(2), image, {.min_gradient = 7}).all;
@@ -214,13 +214,13 @@ TEST(DepthError, AnEdgeIsCoveredByDepthOnItOrBesideIt) {
   image.colRange(32, kWidth) = 150;
   cv::GaussianBlur(image, image, {5, 5}, 1);
   const ImageEdges edges = FindImageEdges(image, 8);
-  EXPECT_EQ(cv::countNonZero(edges.edge), kHeight - 2);  // one pixel for each row
+  EXPECT_EQ(cv::countNonZero(edges.edge), kHeight - 2);  // one pixel per row
   const int column = edges.edge(20, 31) != 0 ? 31 : 32;
   for (const int distance : {-2, -1, 0, 1, 2}) {
     cv::Mat1f estimate = Depth(0);
     estimate.col(column + distance).rowRange(0, kHeight / 2) = 2;
     const double covered = ScoreOne(estimate, Depth(2), image).all.edge_coverage;
-    // Rows 1 to 24 of 1 to 46: the last of them is covered by the pixel above it.
+    // Of rows 1 to 46, rows 1 to 24 are covered, the last one by the pixel above it.
     EXPECT_NEAR(covered, std::abs(distance) <= 1 ? 24.0 / 46 : 0, 1e-9) << distance;
   }
 }
@@ -239,16 +239,16 @@ TEST(DepthError, ThinnedEdgesFollowADiscInEveryDirection) {
     seen[static_cast<size_t>((std::atan2(dy, dx) + CV_PI) / (2 * CV_PI) * 71.999)] = true;
   }
   EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 72);
-  // A line of pixels, not a band: a chain round a circle has 8 r / √2 when it steps diagonally
-  // where it can, 8 r when it never does.
+  // A line, not a band: a chain around a circle has 8 r / √2 pixels with diagonal steps where
+  // possible, 8 r without any.
   EXPECT_GT(static_cast<double>(points.size()), 0.95 * 8 * 60 / std::sqrt(2));
   EXPECT_LT(static_cast<double>(points.size()), 8 * 60);
   EXPECT_GT(cv::countNonZero(edges.gradient), 3 * static_cast<int>(points.size()));
 }
 
 TEST(DepthError, ASmallerEstimateIsJudgedAtItsOwnResolution) {
-  // Truth that names its column: pixel x of the half-size estimate lies between columns 2x and
-  // 2x + 1, and is given the latter.
+  // Each column has its own true depth. Pixel x of the half-size estimate lies between columns 2x
+  // and 2x + 1 and gets the latter.
   cv::Mat1f truth = Depth(0);
   for (int x = 0; x < kWidth; ++x) truth.col(x) = 1.f + 0.001f * x;
   cv::Mat1f half = Depth(0, kWidth / 2, kHeight / 2);
@@ -260,7 +260,7 @@ TEST(DepthError, ASmallerEstimateIsJudgedAtItsOwnResolution) {
   EXPECT_LT(score.p90_rel, 1e-6);
   EXPECT_EQ(score.density, 1);
   EXPECT_EQ(score.density_gradient, 1);
-  // 2.5 to 1: pixel x has its centre at 2.5 x + 0.75, nearest to column 2.5 x + 0.75 rounded.
+  // Ratio 2.5: pixel x has its center at 2.5 x + 0.75, which is rounded to the nearest column.
   cv::Mat1f coarse = Depth(0, 26, 19);
   for (int x = 0; x < coarse.cols; ++x) {
     coarse.col(x) = 1.f + 0.001f * std::round((x + 0.5f) * kWidth / 26 - 0.5f);

@@ -1,4 +1,4 @@
-// Errors of trajectories whose answer is known in closed form.
+// Trajectory errors with closed-form results.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::Property;
 using testing::Throws;
 
-// A camera that swings around a helix, 30 poses per second.
+// A camera on a helix, 30 poses per second.
 Trajectory Helix(int poses) {
   Trajectory trajectory;
   for (int i = 0; i < poses; ++i) {
@@ -76,7 +76,8 @@ TEST(Ate, OfNoisyPositionsIsTheNoise) {
     pose.T_world_camera.t +=
         0.01 * Eigen::Vector3d(random.Gaussian(), random.Gaussian(), random.Gaussian());
   }
-  // RMSE of 3 × 3000 samples of sigma = 1 cm: relative error 1 / sqrt(2 × 9000) = 0.75 %; 4 sigma.
+  // RMSE of 3 × 3000 samples with sigma = 1 cm has the relative error 1 / sqrt(2 × 9000) = 0.75 %;
+  // bound of 4 sigma.
   EXPECT_NEAR(EvaluateAte(truth, estimate).error.rmse, 0.01 * std::sqrt(3.0), 0.03 * 0.0173);
 }
 
@@ -111,7 +112,7 @@ TEST(Statistics, AreThoseOfTheTextbook) {
   EXPECT_EQ(DescribeErrors({}).n, 0);
 }
 
-// Drifts by `step` (in the camera's frame) with each pose.
+// Adds the drift `step` (in the camera's frame) with each pose.
 Trajectory Drifting(const Trajectory& truth, const Se3& step) {
   Trajectory estimate = {truth.front()};
   for (size_t i = 1; i < truth.size(); ++i) {
@@ -146,7 +147,7 @@ TEST(Rpe, ConsecutivePairsDoNotOverlap) {
 
 TEST(Rpe, OfEveryTwoPosesGrowsWithTheTimeBetween) {
   constexpr int kPoses = 40;
-  constexpr double kDrift = 0.01;  // metres per pose, along x
+  constexpr double kDrift = 0.01;  // meters per pose, along x
   Trajectory truth, estimate;
   for (int i = 0; i < kPoses; ++i) {
     truth.push_back({i / 30.0, {Eigen::Matrix3d::Identity(), {0, 0.1 * i, 0}}, ""});
@@ -155,7 +156,7 @@ TEST(Rpe, OfEveryTwoPosesGrowsWithTheTimeBetween) {
   }
   const RpeResult result = EvaluateRpe(truth, estimate, {.pairs = PairSelection::kEvery});
   EXPECT_EQ(result.trans.n, kPoses * kPoses);
-  // Two numbers drawn evenly from n have a mean squared difference of (n² - 1) / 6.
+  // Two numbers drawn uniformly from n have a mean squared difference of (n² - 1) / 6.
   EXPECT_NEAR(result.trans.rmse, kDrift * std::sqrt((kPoses * kPoses - 1) / 6.0), 1e-12);
   EXPECT_NEAR(result.trans.max, kDrift * (kPoses - 1), 1e-12);
   EXPECT_EQ(result.trans.min, 0);

@@ -1,4 +1,4 @@
-// What is called a false pose, on trajectories made up for it.
+// Detection of wrong poses on synthetic trajectories.
 #include "alidade/evaluation/false_poses.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Half a circle of 2 m, 6.28 m long, in 200 poses that look along it.
+// A half circle of 2 m radius, 6.28 m long, with 200 poses that look along it.
 Trajectory HalfCircle() {
   Trajectory trajectory;
   for (int i = 0; i < 200; ++i) {
@@ -32,7 +32,7 @@ Trajectory StraightOn() {
   return trajectory;
 }
 
-// In another world, with another scale, as one camera has it.
+// Transforms to another world with another scale, as in a monocular result.
 Trajectory Elsewhere(Trajectory trajectory) {
   const Se3 T = {ExpSo3({0.3, -1.2, 0.7}), {5, -3, 1}};
   for (StampedPose& pose : trajectory) {
@@ -56,7 +56,7 @@ TEST(FalsePoses, ThereAreNoneInTheSameWayAtAnotherScale) {
 TEST(FalsePoses, AreThoseFurtherAwayThanATenthOfThePath) {
   const Trajectory truth = HalfCircle();
   Trajectory estimate = truth;
-  for (int i = 50; i < 55; ++i) estimate[i].T_world_camera.t.y() += 0.5;  // 8 %: right
+  for (int i = 50; i < 55; ++i) estimate[i].T_world_camera.t.y() += 0.5;  // 8 %: correct
   EXPECT_TRUE(FindFalsePoses(truth, Elsewhere(estimate), Alignment::kSim3).wrong.empty());
   for (int i = 50; i < 55; ++i) estimate[i].T_world_camera.t.y() += 0.5;  // 16 %
   EXPECT_EQ(FindFalsePoses(truth, Elsewhere(estimate), Alignment::kSim3).wrong,
@@ -80,7 +80,7 @@ TEST(FalsePoses, ARollAboutAStraightWayIsNotTakenFromItsPositions) {
   const Trajectory truth = StraightOn();
   Random random(3);
   Trajectory estimate = truth;
-  for (StampedPose& pose : estimate)  // which alone would turn the alignment about the way
+  for (StampedPose& pose : estimate)  // positions alone would rotate the alignment about the path
     pose.T_world_camera.t += Eigen::Vector3d(random.Uniform(), random.Uniform(), 0) * 1e-3;
   const FalsePoses found = FindFalsePoses(truth, Elsewhere(estimate), Alignment::kSim3);
   EXPECT_TRUE(found.wrong.empty());
@@ -94,8 +94,8 @@ TEST(FalsePoses, TremblingIsNoPath) {
     const Eigen::Vector3d p(random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1));
     truth.push_back({i / 30.0, {Eigen::Matrix3d::Identity(), 0.02 * p}, ""});
   }
-  // A walk of its own: laid on the tremble it shrinks to next to nothing, and is wrong by more than
-  // a tenth of what little way there was.
+  // An unrelated estimate: aligned to the jitter it shrinks to nearly nothing, and is wrong by more
+  // than a tenth of the short path.
   const FalsePoses found = FindFalsePoses(truth, StraightOn(), Alignment::kSim3, {.max_dt = 0.05});
   EXPECT_LT(found.path, 0.08);
   EXPECT_GT(found.wrong.size(), 70u);
@@ -111,7 +111,7 @@ TEST(FalsePoses, ScaleThatShrinksOnTheWayIsTold) {
   }
   const FalsePoses found = FindFalsePoses(truth, Elsewhere(estimate), Alignment::kSim3);
   EXPECT_NEAR(found.scale_drift, 2, 0.01);
-  // Laid on the truth it is off by less than a tenth of the way: bad, but not false.
+  // After alignment its error is below a tenth of the path: inaccurate but not wrong.
   EXPECT_TRUE(found.wrong.empty());
 }
 

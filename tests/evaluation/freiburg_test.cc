@@ -1,4 +1,4 @@
-// The published numbers: TUM's own tools and evo on fr1/xyz (under ALIDADE_DATA).
+// Published results of TUM's tools and evo on fr1/xyz (under ALIDADE_DATA).
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -41,7 +41,7 @@ class Freiburg1Xyz : public testing::Test {
   Trajectory truth_, rgbdslam_;
 };
 
-constexpr double kDigits = 0.6e-6;  // the numbers are given to six decimals
+constexpr double kDigits = 0.6e-6;  // the published values have six decimals
 
 TEST_F(Freiburg1Xyz, AteOfRgbdSlamIsThatOfTumsTool) {
   const ErrorStatistics error = EvaluateAte(truth_, rgbdslam_).error;
@@ -80,7 +80,7 @@ TEST_F(Freiburg1Xyz, RpeOverOneSecondIsThatOfTumsTool) {
 }
 
 TEST_F(Freiburg1Xyz, CoverageCountsTheTruthOfTheRecordingsSpan) {
-  // The truth is measured at 100 Hz, the estimate at 30 Hz.
+  // The ground truth is recorded at 100 Hz, the estimate at 30 Hz.
   EXPECT_NEAR(EvaluateAte(truth_, rgbdslam_).coverage, 0.3, 0.05);
   const AteResult whole = EvaluateAte(
       truth_, rgbdslam_, {.source_span = TimeSpan{truth_.front().time, truth_.back().time}});

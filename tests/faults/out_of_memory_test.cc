@@ -66,7 +66,7 @@ struct Outcome {
   std::string warning;   // of the last frame
   std::string stopped;   // in the end
   int tracked = 0;       // frames
-  TrackState last = TrackState::kInitialising;
+  TrackState last = TrackState::kInitializing;
 };
 
 // Plays the recording with memory that runs out. What must always hold is checked here.

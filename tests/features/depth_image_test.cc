@@ -36,7 +36,7 @@ TEST(DepthImage, IsZeroWhereThereIsNoReading) {
   const cv::Mat_<float> metres = (cv::Mat_<float>(1, 4) << 0, -1, kNaN, kInfinity);
   const DepthImage floats(metres, camera);
   for (int x = 0; x < 4; ++x) EXPECT_EQ(floats.At(x, 0), 0) << x;
-  // Integers say nothing where nobody knows their unit.
+  // Integers without a known unit are invalid.
   const cv::Mat_<uint16_t> unknown = (cv::Mat_<uint16_t>(1, 2) << 0, 700);
   const Camera without = CameraWith(0);
   EXPECT_EQ(DepthImage(unknown, without).At(0, 0), 0);

@@ -52,12 +52,11 @@ TEST(AttachDepth, WhatLiesBeyondTheSensorsRangeIsNoReading) {
   EXPECT_FLOAT_EQ(frame.keypoints[0].depth, 7.9f);
   EXPECT_FALSE(frame.keypoints[1].has_depth());
   EXPECT_EQ(frame.keypoints[1].right_x, Keypoint::kNoDepth);
-  AttachDepth(depth, camera, frame);  // no range: all of it
+  AttachDepth(depth, camera, frame);  // no range limit
   EXPECT_FLOAT_EQ(frame.keypoints[1].depth, 8.1f);
 }
 
-// Metres taken for something else: their column in a right image would lie farther out than a saved
-// map may have it.
+// Depths in a wrong unit: the column in the right image would exceed what a map file accepts.
 TEST(AttachDepth, WhatLiesInTheLensIsNoReading) {
   const Camera camera = DepthCamera();
   for (const float metres : {1e-30f, 1e-7f}) {
@@ -72,7 +71,7 @@ TEST(AttachDepth, WhatLiesInTheLensIsNoReading) {
 TEST(AttachDepth, LeavesOutEdgesHolesAndNonsense) {
   const Camera camera = DepthCamera();
   cv::Mat depth(48, 64, CV_32FC1, cv::Scalar(2.f));
-  depth.at<float>(10, 10) = 2.12f;  // 6 % farther: an edge
+  depth.at<float>(10, 10) = 2.12f;  // 6 % farther: a depth discontinuity
   depth.at<float>(10, 20) = 2.08f;  // 4 %: a slanted surface
   depth.at<float>(10, 30) = 0;      // a hole
   depth.at<float>(10, 40) = std::numeric_limits<float>::quiet_NaN();

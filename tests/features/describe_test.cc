@@ -32,7 +32,8 @@ TEST(PatchAngle, TurnsWithTheImage) {
   const cv::Mat image = MakeTexture(61, 61, 7);
   cv::Mat turned;
   cv::rotate(image, turned,
-             cv::ROTATE_90_CLOCKWISE);  // x to y: a quarter turn on, the y axis points down
+             // The y axis points down, so this rotates x towards y by +90 degrees.
+             cv::ROTATE_90_CLOCKWISE);
   const double turn = PatchAngle(turned, 30, 30) - PatchAngle(image, 30, 30);
   EXPECT_NEAR(std::remainder(turn - std::numbers::pi / 2, 2 * std::numbers::pi), 0, 1e-5);
 }
@@ -45,7 +46,7 @@ TEST(Describe, ReadsTheSameBitsFromATurnedPatch) {
   const Descriptor a = pattern.Describe(image.ptr(30) + 30, 0);
   const Descriptor b =
       pattern.Describe(turned.ptr(30) + 30, static_cast<float>(std::numbers::pi / 2));
-  // The same pixels, but for places that round to the other side.
+  // The same pixels, except where the pattern rounds differently.
   EXPECT_LE(HammingDistance(a, b), 4);
   const Descriptor c = pattern.Describe(turned.ptr(30) + 30, 0);
   EXPECT_GE(HammingDistance(a, c), 64);
@@ -59,7 +60,7 @@ TEST(Describe, TakesAnglesOfAllTheCircle) {
 }
 
 TEST(Describe, HasNoTwoBitsAlikeAndBalancedOnes) {
-  // On many patches: each test answers yes and no, and no two always agree or always differ.
+  // Over many patches every bit is balanced, and no two bits are always equal or always different.
   std::vector<Descriptor> descriptors;
   for (uint64_t seed = 1; seed <= 6; ++seed) {
     cv::Mat image = MakeTexture(400, 300, seed);

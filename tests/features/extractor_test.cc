@@ -53,7 +53,7 @@ TEST(Extractor, GivesTheSameFromAPartOfALargerImageAndTheSecondTime) {
   const cv::Mat part = large(cv::Rect(31, 17, 320, 240));
   Extractor extractor;
   const Frame first = extractor.Extract(part, CameraOf(part), 0, 0);
-  // Another size in between: buffers are made anew.
+  // Another image size in between, so that the buffers are reallocated.
   extractor.Extract(large, CameraOf(large), 0, 0);
   ExpectSame(first, extractor.Extract(part.clone(), CameraOf(part), 0, 0));
   EXPECT_EQ(cv::norm(first.image, part, cv::NORM_INF), 0);
@@ -76,7 +76,7 @@ TEST(Extractor, SortsByLevelThenRowThenColumn) {
     ASSERT_LE(p.level, q.level);
     if (p.level != q.level) continue;
     const double scale = ScaleOfLevel(p.level);
-    // Positions between pixels may stand back by up to 2 x 0.6.
+    // Sub-pixel refinement may move each position by up to 0.6 pixels.
     EXPECT_LE(FromLevelZero(p.y, scale), FromLevelZero(q.y, scale) + 1.25);
   }
 }
@@ -111,7 +111,7 @@ TEST(Extractor, TakesSmallImages) {
 }
 
 TEST(Extractor, FindsCornersInAWeaklyTexturedRegionBesideAStrongOne) {
-  // The right half has a fifth of the contrast: its steps are mostly below the first threshold.
+  // The right half has a fifth of the contrast: most of its steps are below the first threshold.
   cv::Mat image = MakeTexture(640, 480, 3);
   cv::Mat right = image.colRange(320, 640);
   right.convertTo(right, CV_8U, 0.2, 100);
@@ -127,7 +127,7 @@ TEST(Extractor, FindsCornersInAWeaklyTexturedRegionBesideAStrongOne) {
 }
 
 TEST(Extractor, LeavesPixelNoiseAlone) {
-  // Noise of 4 grey levels on a plain wall: the light smoothing leaves 1.5, four times below the
+  // Noise of 4 gray levels on a uniform wall: after the light smoothing 1.5, four times below the
   // threshold.
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(120));
   AddNoise(image, 4, 3);
@@ -135,8 +135,8 @@ TEST(Extractor, LeavesPixelNoiseAlone) {
 }
 
 TEST(Extractor, PutsThePlaceOfACornerOnTheSameSpotFromAllLevels) {
-  // A blob is found at its centre on every level, so a wrong pixel centre convention shows as a
-  // drift.
+  // A blob is found at its center on every level, so a wrong pixel center convention shows as a
+  // drift over levels.
   cv::Mat image(480, 640, CV_8UC1, cv::Scalar(90));
   std::vector<cv::Point2d> centres;
   Random random(4);
@@ -168,7 +168,7 @@ TEST(Extractor, PutsThePlaceOfACornerOnTheSameSpotFromAllLevels) {
     Eigen::Vector2d mean = Eigen::Vector2d::Zero();
     for (const Eigen::Vector2d& d : all) mean += d / static_cast<double>(all.size());
     if (all.size() < 15) continue;
-    // Half a pixel of the level would be (scale - 1) / 2 = 1.3 pixels at the top.
+    // An error of half a pixel of the level would be (scale - 1) / 2 = 1.3 pixels at the top level.
     EXPECT_LT(mean.norm(), 0.1 * ScaleOfLevel(level))
         << "level " << level << ": " << mean.transpose();
   }
@@ -217,7 +217,7 @@ TEST(Extractor, RecognisesATurnedImage) {
       const Keypoint& q = b.keypoints[m.b];
       right += (map(a.keypoints[m.a]) - q.pixel()).norm() < 2 * ScaleOfLevel(q.level);
     }
-    // cv::ORB finds a third to a half of its keypoints again under such turns.
+    // cv::ORB repeats a third to a half of its keypoints under such rotations.
     EXPECT_GT(right, 0.35 * inside) << degrees << " degrees, " << matches.size() << " matches";
     EXPECT_GT(right, 0.95 * static_cast<double>(matches.size())) << degrees << " degrees";
   }

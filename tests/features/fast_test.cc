@@ -46,7 +46,7 @@ TEST(FastCorners, AreOpenCvsWithTheSameScoresAndOneOfEachTie) {
       ASSERT_TRUE(ours.count(place)) << place.first << ", " << place.second;
       EXPECT_EQ(ours.at(place), score);
     }
-    // OpenCV drops both of two equal neighbours; we keep the first.
+    // OpenCV drops both of two equal neighbors; FastCorners() keeps the first.
     for (const auto& [place, score] : ours) {
       ASSERT_TRUE(unsuppressed.count(place));
       if (theirs.count(place)) continue;
@@ -55,7 +55,7 @@ TEST(FastCorners, AreOpenCvsWithTheSameScoresAndOneOfEachTie) {
         for (int dx = -1; dx <= 1; ++dx) {
           const std::pair<int, int> beside{place.first + dy, place.second + dx};
           if (beside == place || !unsuppressed.count(beside)) continue;
-          // Its score, by asking for corners at every threshold.
+          // Verify its score by detecting with both thresholds.
           const cv::Mat around = image(cv::Rect(beside.second - 4, beside.first - 4, 9, 9));
           std::vector<cv::KeyPoint> at_score, above;
           cv::FAST(around, at_score, score, false);
@@ -95,8 +95,7 @@ TEST(FastCorners, AreNotLookedForWhereThereIsNoRoom) {
   }
 }
 
-// A bright square corner whose tip lies between the pixels, with exact coverage of each pixel,
-// blurred as a lens does.
+// A bright square corner with its tip between pixels, with exact pixel coverage and lens blur.
 cv::Mat CornerAt(double x, double y, double turn) {
   constexpr int kSide = 48, kFine = 8;
   cv::Mat fine(kSide * kFine, kSide * kFine, CV_8UC1);
@@ -115,8 +114,8 @@ cv::Mat CornerAt(double x, double y, double turn) {
 }
 
 TEST(RefineCorner, FollowsACornerBetweenThePixels) {
-  // A corner's strongest point is not its tip but a fixed way off, so look at how the found place
-  // moves.
+  // The strongest point of a corner has a constant offset from its tip, so the test compares
+  // displacements.
   Random random(9);
   double whole = 0, refined = 0;
   int count = 0;

@@ -27,7 +27,7 @@ TEST(ScaleOfLevel, IsAPowerOfThePyramidsScale) {
 }
 
 TEST(KeypointGrid, FindsWhatALookAtAllOfThemFinds) {
-  // 400 pixels outside: beyond the grid's own margin, where the cells at the rim take them.
+  // 400 pixels outside the image, beyond the grid's margin: assigned to the border cells.
   for (double outside : {0.0, 40.0, 400.0}) {
     const std::vector<Keypoint> keypoints = RandomKeypoints(500, 320, 200, outside);
     const KeypointGrid grid(keypoints, 320, 200);

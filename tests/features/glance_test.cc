@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kWidth = 480, kHeight = 360;
 
-// Frames of doors and shelves, shifted by `shift`; something textured in front at `thing`.
+// Outlines of doors and shelves, shifted by `shift`, with a textured object in front at `thing`.
 cv::Mat Room(cv::Point shift, cv::Point thing, double gain = 1) {
   cv::Mat image(kHeight, kWidth, CV_8UC1, cv::Scalar(120));
   for (int i = -1; i < 6; ++i) {

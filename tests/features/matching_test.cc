@@ -14,10 +14,10 @@
 namespace alidade::matching_test {
 namespace {
 
-// b has noisy copies of a's descriptors in another order, and some of its own.
+// b has noisy copies of a's descriptors in another order, and some additional ones.
 struct Pair {
   Frame a, b;
-  std::vector<int> partner;  // of each of a, in b
+  std::vector<int> partner;  // index in b of each keypoint of a
 };
 
 Pair MakePair(int count, double flip, uint64_t seed) {
@@ -150,7 +150,7 @@ TEST(ConsistentTurns, KeepsThePeaksAlsoAcrossTheEndsOfTheCircle) {
   Random random(7);
   std::vector<float> turns;
   for (int i = 0; i < 200; ++i) {
-    // Around half a turn, told as +pi and as -pi, and once around the circle.
+    // Rotations around half a turn, given as +π and -π, and around the full circle.
     const double turn = std::numbers::pi + random.Uniform(-0.1, 0.1);
     turns.push_back(static_cast<float>(i % 3 == 0 ? turn - 2 * std::numbers::pi : turn));
   }

@@ -1,4 +1,4 @@
-// Keypoints of a shutter that rolls, put where they would be seen at once.
+// Rolling-shutter correction of keypoints.
 #include "alidade/features/rolling_shutter.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace alidade::rolling_shutter_test {
 namespace {
 
-// Seconds and pixels such that rows lie up to 8 pixels from where they would be at once.
+// Chosen so that keypoints are displaced by up to 8 pixels.
 const Vector6d kMotion = (Vector6d() << 0.3, -0.2, 0.4, 0.5, -0.6, 0.3).finished();
 
 Camera Rolling(std::array<double, 2> readout) {
@@ -22,11 +22,12 @@ Camera Rolling(std::array<double, 2> readout) {
 
 struct View {
   Frame frame;
-  std::vector<Eigen::Vector2d> at_once;  // undistorted
+  std::vector<Eigen::Vector2d> at_once;  // undistorted positions for a global shutter
   std::vector<float> inverse_depths;
 };
 
-// Where a point is seen depends on when its row is read, which depends on where it is seen.
+// Fixed-point iteration: the position depends on the readout time of its row, which depends on the
+// position.
 View Take(const Camera& camera, bool far) {
   View view;
   Random random(5);
@@ -67,10 +68,11 @@ TEST(RollingShutter, IsUndoneForPointsOfKnownDepthInEitherDirection) {
     View view = Take(camera, false);
     ASSERT_GT(WorstShift(view), 3);
     UndoRollingShutter(camera, kMotion, view.inverse_depths, 0, view.frame);
-    EXPECT_LT(WorstShift(view), 0.1);  // depth when read, not at the middle
+    // The depth at the row's readout time differs slightly from that at the middle.
+    EXPECT_LT(WorstShift(view), 0.1);
     EXPECT_EQ(view.frame.motion, kMotion);
     for (const Keypoint& k : view.frame.keypoints) EXPECT_NEAR(k.x - k.right_x, 20, 1e-3);
-    // Again, and from other places than the raw ones, is the same.
+    // The correction is idempotent, because it starts from the raw positions.
     const std::vector<Keypoint> once = view.frame.keypoints;
     UndoRollingShutter(camera, kMotion, view.inverse_depths, 0, view.frame);
     for (size_t i = 0; i < once.size(); ++i) EXPECT_EQ(once[i].x, view.frame.keypoints[i].x);
@@ -83,7 +85,8 @@ TEST(RollingShutter, WhatIsNotKnownIsTakenToBeAsFarAsTheRest) {
   const double before = WorstShift(near);
   UndoRollingShutter(camera, kMotion, {}, 1 / 3.5, near.frame);
   EXPECT_LT(WorstShift(near), 0.5 * before);
-  UndoRollingShutter(camera, kMotion, {}, 0, far.frame);  // only turning shifts what is far
+  // Distant points are displaced by rotation only.
+  UndoRollingShutter(camera, kMotion, {}, 0, far.frame);
   EXPECT_LT(WorstShift(far), 0.01);
 }
 

@@ -35,7 +35,8 @@ TEST(SmoothBox, IsOpenCvsMeanOver5x5) {
     image.convertTo(image_float, CV_32F, 250.0 / 256);
     cv::blur(image_float, theirs, cv::Size(5, 5), cv::Point(-1, -1), cv::BORDER_REPLICATE);
     ours.convertTo(ours_float, CV_32F);
-    EXPECT_LE(cv::norm(ours_float, theirs, cv::NORM_INF), 1.001) << size;  // rounded down
+    // SmoothBox() rounds down
+    EXPECT_LE(cv::norm(ours_float, theirs, cv::NORM_INF), 1.001) << size;
   }
 }
 

@@ -10,7 +10,7 @@
 namespace alidade::spread_test {
 namespace {
 
-// Strong corners crowd at the left; everywhere else they are weak.
+// Strong corners are concentrated at the left; all others are weak.
 std::vector<Corner> Crowd(cv::Size level) {
   Random random(2);
   std::set<std::pair<int, int>> places;
@@ -78,8 +78,8 @@ TEST(SpreadCorners, LeavesADistanceBetweenThoseItKeeps) {
           closest, std::max(std::abs(kept[i].x - kept[j].x), std::abs(kept[i].y - kept[j].y)));
     }
   }
-  // A square lattice of 150 in 600 x 440 has 42 pixels between neighbours; a greedy choice over
-  // random places, about half.
+  // A square lattice of 150 points in 600 x 440 has a spacing of 42 pixels; a greedy selection from
+  // random positions reaches about half.
   EXPECT_GT(closest, 15);
 }
 

@@ -12,11 +12,11 @@
 namespace alidade::stereo_test {
 namespace {
 
-// A surface whose disparity varies across the picture, seen by both cameras of a rectified pair.
+// A surface with varying disparity, rendered for both cameras of a rectified pair.
 struct StereoPair {
   Camera camera = Camera::FromFieldOfView(640, 480, 70);
   cv::Mat left, right;
-  // Disparity at a pixel of the left image: the surface is given by it.
+  // Disparity at a pixel of the left image; it defines the surface.
   static double Disparity(double x, double y) {
     return 20 + 8 * std::sin(x / 120) + 6 * std::cos(y / 90) + 0.01 * x;
   }
@@ -26,7 +26,7 @@ StereoPair MakeStereoPair(double noise, double right_gain = 1, double right_offs
   StereoPair pair;
   pair.camera.baseline = 0.12;
   pair.left = MakeTexture(640, 480, 21);
-  // right(u) = left(x) where x - disparity(x) = u: solved by fixed-point iteration (disparity
+  // right(u) = left(x) where x - disparity(x) = u, solved by fixed-point iteration (the disparity
   // varies slowly).
   cv::Mat map_x(480, 640, CV_32FC1), map_y(480, 640, CV_32FC1);
   for (int y = 0; y < 480; ++y) {
@@ -44,7 +44,7 @@ StereoPair MakeStereoPair(double noise, double right_gain = 1, double right_offs
   return pair;
 }
 
-// Made once: rendering is what takes the time.
+// Rendered once, because rendering is slow.
 const StereoPair& Plain() {
   static const StereoPair kPair = MakeStereoPair(2);
   return kPair;

@@ -1,4 +1,4 @@
-// A frame with some of its keypoints only.
+// Copy of a frame with a subset of its keypoints.
 #include "alidade/features/subset.h"
 
 #include <gtest/gtest.h>

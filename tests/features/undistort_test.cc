@@ -13,14 +13,14 @@ TEST(UndistortKeypoints, PutsThemWhereTheCameraSeesThem) {
     Keypoint k;
     k.raw_x = static_cast<float>(20 + 30 * i);
     k.raw_y = static_cast<float>(280 - 20 * i);
-    k.x = k.y = -1;  // what another camera made of it
+    k.x = k.y = -1;  // result of a previous camera model
     frame.keypoints.push_back(k);
   }
   UndistortKeypoints(camera, frame);
   for (const Keypoint& k : frame.keypoints) {
     const Eigen::Vector2d ideal = camera.Undistort({k.raw_x, k.raw_y});
     EXPECT_NEAR((k.pixel() - ideal).norm(), 0, 1e-4);
-    int near = 0;  // the grid is of the new places
+    int near = 0;  // the grid contains the new positions
     frame.grid.VisitNear(k.x, k.y, 1, [&](int i) { near += frame.keypoints[i].x == k.x; });
     EXPECT_EQ(near, 1);
   }

@@ -14,7 +14,7 @@ void Database(std::string_view bytes) {
   UseBag(*OpenRosbag2DatabaseOf(std::string(bytes)), bytes.size());
 }
 
-// The first byte says how the rest is laid out.
+// The first byte selects the serialization of the rest.
 void RosMessage(std::string_view bytes) {
   if (bytes.empty()) return UseMessage(bytes, Serialization::kOther);
   UseMessage(bytes.substr(1), bytes[0] == 'c' ? Serialization::kCdr : Serialization::kRos1);

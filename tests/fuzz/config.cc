@@ -4,7 +4,7 @@
 
 namespace alidade::fuzz {
 
-// Settings that can be are written into maps and stats.json, and can be set to what is written.
+// Valid settings are written into maps and stats.json, and must be readable from there.
 void Config(std::string_view bytes) {
   RunSettings settings;
   ApplySettingsText(std::string(bytes), "settings.yaml", settings);

@@ -1,5 +1,5 @@
-// Plays what the fuzzer starts from, and what it ever found (scripts/check/fuzz), to the readers:
-// every file is read or refused, as its name has it, in every build and without libFuzzer.
+// Runs the fuzz targets on the seed corpus and on all inputs that ever failed (scripts/check/fuzz): every
+// file must be read or rejected as its name states, in every build and without libFuzzer.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 
 namespace alidade::fuzz {
 
-// A pair of it and of the same camera 0.1 m to its right.
+// Uses the camera as a pair with the same camera 0.1 m to its right.
 void EurocCamera(std::string_view bytes) {
   const alidade::EurocCamera camera = ParseEurocCamera(std::string(bytes), "sensor.yaml");
   Expect(camera.T_body_camera.R.allFinite() && camera.T_body_camera.t.allFinite(),

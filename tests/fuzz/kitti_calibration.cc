@@ -6,7 +6,7 @@
 
 namespace alidade::fuzz {
 
-// The grey pair and the coloured one.
+// The gray pair and the color pair.
 void KittiCalibration(std::string_view bytes) {
   const std::string text(bytes);
   try {

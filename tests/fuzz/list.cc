@@ -8,7 +8,7 @@
 namespace alidade::fuzz {
 namespace {
 
-// Frames of the whole list, each with what the list has within 0.02 s of it.
+// Frames of the whole list, each associated with an entry of the list within 0.02 s.
 void Use(const std::vector<StampedName>& list) {
   std::vector<RecordedFrame> frames = FramesOf(list, "rgb");
   Expect(frames.size() == list.size(), "frames were lost or made up");

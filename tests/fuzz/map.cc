@@ -5,7 +5,8 @@
 
 namespace alidade::fuzz {
 
-// As it is, and with a checksum that fits, without which little would be looked at.
+// Tries the bytes unchanged and with a matching checksum, because a wrong checksum ends reading
+// early.
 void Map(std::string_view bytes) {
   std::string sealed(bytes);
   if (RepairChecksum(sealed) && sealed != bytes) {

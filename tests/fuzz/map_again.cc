@@ -5,7 +5,7 @@
 
 namespace alidade::fuzz {
 
-// What was read once is good: nothing may be refused any more.
+// A map that was read once is valid, so nothing may be rejected any more.
 void MapAgain(std::string_view bytes) {
   std::string sealed(bytes);
   RepairChecksum(sealed);

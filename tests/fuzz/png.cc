@@ -13,8 +13,8 @@ uint32_t BigEndian(std::string_view bytes) {
   return value;
 }
 
-// Each chunk is its length, a name, that many bytes, and a CRC of name and bytes: libpng looks no
-// further where that does not fit.
+// A chunk is a length, a name, that many bytes, and a CRC of name and bytes; libpng stops at a
+// wrong CRC.
 std::string WithCrcsThatFit(std::string_view bytes) {
   std::string repaired(bytes);
   for (size_t at = 8; at + 12 <= bytes.size();) {

@@ -3,7 +3,7 @@
 
 namespace alidade::fuzz {
 
-// One message, taken twice: what is told may refer to what was told.
+// Applies the message twice, because a message may refer to earlier content.
 void Stream(std::string_view bytes) {
   StreamScene scene;
   scene.Take(bytes);

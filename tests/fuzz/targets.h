@@ -1,5 +1,5 @@
-// What reads bytes that somebody else wrote. The fuzzer (scripts/check/fuzz) feeds each of these
-// with millions of inputs; corpus_test.cc with those worth keeping.
+// Readers of untrusted bytes. The fuzzer (scripts/check/fuzz) runs each with millions of inputs,
+// corpus_test.cc with a selection.
 #pragma once
 
 #include <string>
@@ -8,39 +8,39 @@
 
 namespace alidade::fuzz {
 
-// Hands `bytes` to the functions the program reads such a file with. Throws Error when they refuse
-// it. Whatever else is thrown is a bug, std::logic_error by Expect() among it.
+// Passes `bytes` to the functions with which the program reads such a file. Throws Error when they
+// reject it. Any other exception, including std::logic_error from Expect(), is a bug.
 using TargetFunction = void(std::string_view bytes);
 
-TargetFunction Map;               // map.alidade: read
-TargetFunction MapAgain;          // read, used, written and read again
-TargetFunction CameraFile;        // camera.yaml, and frames prepared by it
+TargetFunction Map;               // map.alidade: reading
+TargetFunction MapAgain;          // reading, using, writing and reading again
+TargetFunction CameraFile;        // camera.yaml, and preparing frames with it
 TargetFunction EurocCamera;       // EuRoC's sensor.yaml
 TargetFunction KittiCalibration;  // KITTI's calib.txt
 TargetFunction Config;            // --config
 TargetFunction Png;
 TargetFunction Jpeg;
 TargetFunction List;        // rgb.txt, data.csv, times.txt
-TargetFunction Trajectory;  // groundtruth.txt and its kin
-TargetFunction Onnx;        // what is read of a detector's file before OpenCV sees it
-TargetFunction ClassNames;  // of a detector's metadata
+TargetFunction Trajectory;  // groundtruth.txt and other formats
+TargetFunction Onnx;        // the checks of a detector's file before OpenCV reads it
+TargetFunction ClassNames;  // class names in a detector's metadata
 TargetFunction Stream;      // a message of run.stream
-TargetFunction Bag;         // ROS bag 2.0, and the messages in it
-TargetFunction Mcap;        // the same of MCAP
-TargetFunction Database;    // and of rosbag2's databases
-TargetFunction RosMessage;  // pictures and calibrations as messages
+TargetFunction Bag;         // ROS bag 2.0, with its messages
+TargetFunction Mcap;        // the same for MCAP
+TargetFunction Database;    // the same for rosbag2's databases
+TargetFunction RosMessage;  // images and calibrations as messages
 
 struct Target {
-  std::string name;  // its folder in tests/fuzz/corpus
+  std::string name;  // name of its folder in tests/fuzz/corpus
   TargetFunction* run;
 };
 const std::vector<Target>& Targets();
 
-// Runs it on a copy of `bytes` that ends where its memory does, as sanitizers want it. False when
-// they were refused (Error); lets everything else through.
+// Runs the target on a copy of `bytes` in exactly sized memory, so that sanitizers detect reads
+// past the end. Returns false when the target threw Error; other exceptions pass through.
 bool Accepts(const Target& target, std::string_view bytes);
 
-// Throws std::logic_error saying `what`: a bug.
+// Throws std::logic_error with the text `what`: a bug.
 void Expect(bool holds, const std::string& what);
 
 }  // namespace alidade::fuzz

@@ -28,7 +28,7 @@ void Trajectory(std::string_view bytes) {
   const std::function<alidade::Trajectory()> formats[] = {
       [&] { return ParseTumTrajectory(bytes, "groundtruth.txt"); },
       [&] { return ParseEurocTrajectory(bytes, "data.csv", {}); },
-      // The first number of a pose is a time, as good as any.
+      // The first number of a pose serves as a time.
       [&] { return ParseKittiTrajectory(bytes, "poses.txt", bytes, "times.txt"); }};
   bool any = false;
   std::string problem;

@@ -14,7 +14,7 @@
 namespace alidade::fuzz {
 namespace {
 
-constexpr size_t kMostUsed = 20;  // messages of a topic: decoding them is what takes time
+constexpr size_t kMostUsed = 20;  // messages per topic; limits the time spent decoding
 
 void UseCameraInfo(std::string_view message, Serialization serialization) {
   const RosCameraInfo info = ParseRosCameraInfo(message, serialization);
@@ -32,7 +32,7 @@ void UseCameraInfo(std::string_view message, Serialization serialization) {
 
 void UsePicture(std::string_view message, Serialization serialization, bool compressed) {
   const RosPicture picture = ParseRosPicture(message, serialization, compressed);
-  // What else OpenCV reads is not ours to try.
+  // OpenCV's other formats are not tested here.
   if (compressed && !LooksLikeJpeg(picture.data) && !LooksLikePng(picture.data) &&
       picture.encoding.find("compressedDepth") == std::string::npos)
     ThrowInput("neither JPEG nor PNG");
@@ -84,7 +84,7 @@ void UseBag(BagFile& bag, size_t size) {
       if (!bag.Read(messages[i], bytes).empty()) continue;
       try {
         UseMessage(bytes, bag.Topics()[topic].serialization);
-      } catch (const Error&) {  // it is not the only message
+      } catch (const Error&) {  // other messages may be valid
       }
     }
   }

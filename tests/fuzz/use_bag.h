@@ -1,4 +1,4 @@
-// What a run does with a ROS recording: topics chosen, stamps read, pictures taken out of messages.
+// Uses a ROS recording as a run does: chooses topics, reads stamps, decodes images.
 #pragma once
 
 #include <string_view>
@@ -7,10 +7,10 @@
 
 namespace alidade::fuzz {
 
-// `size`: bytes of the file, which bounds how much there can be in it.
+// `size`: size of the file in bytes, which bounds its content.
 void UseBag(BagFile& bag, size_t size);
 
-// One message as each of the types that are read. Throws Error when it is none of them.
+// Reads one message as each supported type. Throws Error when it is none of them.
 void UseMessage(std::string_view message, Serialization serialization);
 
 }  // namespace alidade::fuzz

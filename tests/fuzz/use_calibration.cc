@@ -42,7 +42,7 @@ void PlaceKeypoints(const Camera& camera) {
   Expect(found >= keypoints.size(), "the grid has lost a keypoint");
 }
 
-// What can be mapped with can be saved.
+// A camera that is accepted for mapping must be accepted for saving.
 void Save(const Camera& camera, Sensor sensor) {
   SavedMap saved;
   saved.camera = camera;
@@ -76,7 +76,7 @@ void UseCalibration(Calibration calibration) {
            "a picture has not the camera's size");
     Expect(preparation->R_camera_rectified().allFinite(), "a rotation is not finite");
     PlaceKeypoints(camera);
-    if (sensor == Sensor::kRgbd) continue;  // as a single camera
+    if (sensor == Sensor::kRgbd) continue;  // treated as a monocular camera
     try {
       Save(camera, sensor);
     } catch (const Error& error) {

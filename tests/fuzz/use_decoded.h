@@ -1,4 +1,4 @@
-// What holds of a decoded picture, whatever its file.
+// Properties of every decoded image.
 #pragma once
 
 #include <string_view>
@@ -9,7 +9,7 @@ namespace alidade::fuzz {
 
 using Decode = DecodedImage(std::string_view bytes, ImageUse use);
 
-// Decodes for each use. Throws Error when there is no picture for any of them.
+// Decodes for each use. Throws Error when no use gives an image.
 void UseDecoded(std::string_view bytes, Decode* decode, cv::Size claimed);
 
 }  // namespace alidade::fuzz

@@ -117,7 +117,8 @@ TEST(AlignPoints, HandlesPlanesAndLines) {
 TEST(AlignPoints, KeepsItsAccuracyFarFromTheOrigin) {
   Random random(7);
   const Points source = RandomPoints(random, 30);
-  const Sim3 far{1, RandomRotation(random), {6e5, -5e6, 100}};  // as in map coordinates
+  // Large offsets, as in map coordinates.
+  const Sim3 far{1, RandomRotation(random), {6e5, -5e6, 100}};
   const Points target = Moved(far, source);
   EXPECT_LT(std::sqrt(SquaredError(AlignPoints(target, source, false), target, source) / 30), 1e-7);
 }

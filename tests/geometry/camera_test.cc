@@ -27,7 +27,7 @@ Camera Make(int width, int height, double fx, double fy, double cx, double cy,
   return camera;
 }
 
-// As published with TUM RGB-D (freiburg1 and 2) and EuRoC, and one that is hardly distorted.
+// Published calibrations of TUM RGB-D (freiburg1 and 2) and EuRoC, and one with little distortion.
 std::vector<Camera> RealCameras() {
   return {Make(640, 480, 517.3, 516.5, 318.6, 255.3, {0.2624, -0.9531, -0.0054, 0.0026, 1.1633}),
           Make(640, 480, 520.9, 521.0, 325.1, 249.7, {0.2312, -0.7849, -0.0033, -0.0001, 0.9172}),
@@ -78,7 +78,7 @@ TEST(Camera, ScalesWithItsImage) {
   const Camera camera = RealCameras()[3];
   const Camera half = camera.ScaledToWidth(640);
   EXPECT_EQ(half.height, 360);
-  // A pixel of the small image covers two by two of the large: its centre lies between theirs.
+  // A pixel of the small image covers 2 x 2 pixels of the large one; its center is between theirs.
   const Eigen::Vector3d p(0.3, -0.2, 1.5);
   const Eigen::Vector2d large = camera.Project(p), small = half.Project(p);
   EXPECT_NEAR(small.x(), (large.x() - 0.5) / 2, 1e-9);
@@ -130,7 +130,7 @@ TEST(Camera, CheckNamesTheFieldThatCannotBe) {
     EXPECT_NE(message(change).find("number that cannot be"), std::string::npos);
 }
 
-// A lens that no picture of this size is seen through: what Newton's method leaves is no place.
+// Distortion that is not invertible within the image: Newton's method does not converge.
 TEST(Camera, UndistortedPixelsAreSomewhereWhateverTheLens) {
   Random random(3);
   for (int round = 0; round < 2000; ++round) {

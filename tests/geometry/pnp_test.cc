@@ -52,7 +52,7 @@ TEST(SolveP3p, HasTheTruthAmongItsPoses) {
       }
     }
   }
-  EXPECT_GE(found, 1998);  // two solutions may merge: there no solver is exact
+  EXPECT_GE(found, 1998);  // two solutions may merge, where no solver is exact
 }
 
 TEST(SolveP3p, CopesWithSymmetry) {
@@ -96,7 +96,7 @@ TEST(SolveP3p, FindsWhatOpenCvFinds) {
           {rotations[k].at<double>(0), rotations[k].at<double>(1), rotations[k].at<double>(2)});
       pose.t = {translations[k].at<double>(0), translations[k].at<double>(1),
                 translations[k].at<double>(2)};
-      bool valid = true;  // some of OpenCV's do not see the points where they are
+      bool valid = true;  // some of OpenCV's solutions do not satisfy the constraints
       for (int i = 0; i < 3; ++i) {
         valid = valid && ((pose * three.p_world[i]).normalized() - three.rays[i]).norm() < 1e-4;
       }
@@ -168,10 +168,10 @@ TEST(SolvePnpRansac, IsAsCloseAsOpenCvsRansacBeforeRefinement) {
   EXPECT_GT(ours, 0.95 * theirs);
 }
 
-// As where the camera has turned on during a gap: most matches lie in a corner of the picture, and
-// a few beside it say where the camera is. A sample of the corner alone has nearly all as inliers.
+// Most matches lie in one corner of the image, as after a rotation during a gap; few others
+// constrain the pose. A sample from the corner alone has nearly all matches as inliers.
 TEST(SolvePnpRansac, IsNotContentWithTheFirstSampleThatNearlyAllAgreeWith) {
-  double worst = 0;  // metres, some 3 m from what is seen
+  double worst = 0;  // meters, at about 3 m from the points
   for (uint64_t seed = 1; seed <= 100; ++seed) {
     PnpProblem problem =
         MakePnpProblem({.matches = 2000, .noise_px = 0.7, .planar = true, .seed = seed});
@@ -199,7 +199,7 @@ TEST(SolvePnpRansac, AllowsCoarseKeypointsTheirError) {
   std::vector<double> scale(100, 1.0);
   for (int i = 0; i < 100; i += 2) {
     scale[i] = 4;
-    problem.pixels[i].x() += 8;  // beyond 3, within 12
+    problem.pixels[i].x() += 8;  // above max_error of 3 pixels, below 4 × 3 pixels
   }
   const PnpResult with = SolvePnpRansac(problem.camera, problem.p_world, problem.pixels, scale,
                                         {.confidence = 0.999999});

@@ -19,7 +19,7 @@ RawCamera EurocRight() {
   return {Lens::kPinhole, 752,     480,     457.587,
           456.134,        379.999, 255.238, {-0.28368365, 0.07451284, -0.00010473, -3.6e-05, 0}};
 }
-// A pair that is a little crooked: 2 degrees and 2 cm off the ideal.
+// A slightly misaligned stereo pair: 2 degrees and 2 cm off the ideal.
 Se3 CrookedPair() { return {ExpSo3({0.01, -0.03, 0.02}), {0.11, 0.005, -0.02}}; }
 
 RawCamera Fisheye() {
@@ -28,10 +28,10 @@ RawCamera Fisheye() {
 
 cv::Matx33d K(const RawCamera& c) { return {c.fx, 0, c.cx, 0, c.fy, c.cy, 0, 0, 1}; }
 
-// Where the maps say pixel u, v of the rectified image comes from.
+// Raw position of pixel (u, v) of the rectified image according to the maps.
 Eigen::Vector2d SourceOf(const RectifyMap& map, int u, int v) {
   const cv::Vec2s whole = map.coarse.at<cv::Vec2s>(v, u);
-  const int fraction = map.fine.at<ushort>(v, u);  // 5 bits each way
+  const int fraction = map.fine.at<ushort>(v, u);  // 5 bits per axis
   return {whole[0] + (fraction & 31) / 32.0, whole[1] + (fraction >> 5) / 32.0};
 }
 
@@ -104,20 +104,20 @@ TEST(RectifyStereo, TurnsTheCamerasAsOpencvDoes) {
   cv::stereoRectify(K(EurocLeft()), EurocLeft().distortion, K(EurocRight()),
                     EurocRight().distortion, {752, 480}, R, t, R1, R2, P1, P2, Q,
                     cv::CALIB_ZERO_DISPARITY, 0);
-  // Both turn the rows onto the baseline; about it, OpenCV averages the rotations, we the viewing
-  // directions.
+  // Both align the rows with the baseline. About the baseline, OpenCV averages the rotations,
+  // RectifyStereo() the viewing directions.
   Eigen::Matrix3d R_opencv;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) R_opencv(r, c) = R1.at<double>(c, r);
   }
   EXPECT_LT((R_opencv.col(0) - pair.R_left_rectified.col(0)).norm(), 1e-9);
   EXPECT_LT(RotationAngle({R_opencv, {}}, {pair.R_left_rectified, {}}),
-            0.005);  // half the pair's pitch
+            0.005);  // half of the pair's relative pitch
   EXPECT_NEAR(pair.camera.fx, P1.at<double>(0, 0), 0.05 * pair.camera.fx);
   EXPECT_NEAR(pair.camera.bf(), -P2.at<double>(0, 3), 0.05 * pair.camera.bf());
 }
 
-// Independent of how it is done: points in space, seen by both, land on equal rows with disparity
+// Independent of the implementation: 3D points project to equal rows in both images, with disparity
 // bf / z.
 void ExpectRowsAndDisparities(const RawCamera& left, const RawCamera& right,
                               const Se3& T_left_right) {
@@ -133,7 +133,7 @@ void ExpectRowsAndDisparities(const RawCamera& left, const RawCamera& right,
       const int near = static_cast<int>(std::lround(u_right));
       if (near < 1 || near + 1 >= pair.camera.width) continue;
       const Eigen::Vector2d in_right = right.Project(T_left_right.Inverse() * p_left);
-      // The map between the pixels beside u_right, interpolated.
+      // Interpolates the map between the pixels next to u_right.
       const int floor = static_cast<int>(std::floor(u_right));
       const double part = u_right - floor;
       const Eigen::Vector2d mapped =
@@ -175,7 +175,7 @@ TEST(RectifyOne, MakesAPinholeOfAFisheye) {
   }
   const cv::Mat white(400, 512, CV_8UC1, cv::Scalar(255));
   EXPECT_EQ(cv::countNonZero(one.map.Apply(white) != 255), 0);
-  // Half the width spans at most half of 110 degrees.
+  // Half of the width spans at most half of 110 degrees.
   EXPECT_GE(one.camera.fx * std::tan(55 * M_PI / 180) + 1, one.camera.width / 2.0);
 }
 

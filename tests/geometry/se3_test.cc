@@ -12,7 +12,7 @@
 namespace alidade::se3_test {
 namespace {
 
-// The exponential by its power series, of a matrix scaled down and squared up again.
+// Matrix exponential by power series with scaling and squaring.
 template <int N>
 Eigen::Matrix<double, N, N> PowerSeries(Eigen::Matrix<double, N, N> m) {
   m /= 1024;

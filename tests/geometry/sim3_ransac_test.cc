@@ -22,7 +22,7 @@ TEST(SolveSim3Ransac, FindsTheSimilarityAmongHalfToSeventyPercentWrongMatches) {
       const Sim3RansacResult result =
           SolveSim3Ransac(problem.camera, problem.matches, {.seed = seed});
       ASSERT_TRUE(result.success) << outliers << " " << seed;
-      // 36 points with depths known to a hundredth: a few thousandths of the scale and a few mrad.
+      // 36 points with 1 % depth error: scale within a few thousandths, rotation within a few mrad.
       EXPECT_NEAR(result.T_a_b.s / problem.truth.s, 1, 0.03) << outliers << " " << seed;
       EXPECT_LT(Angle(result.T_a_b, problem.truth), 0.02) << outliers << " " << seed;
       EXPECT_LT((result.T_a_b.t - problem.truth.t).norm(), 0.1) << outliers << " " << seed;
@@ -62,10 +62,10 @@ TEST(SolveSim3Ransac, DegeneratePointsGiveNoAnswer) {
   const Sim3Problem good = MakeSim3Problem({.matches = 40, .seed = 3});
   std::vector<Sim3Match> matches = good.matches;
   for (Sim3Match& m : matches) m = good.matches[0];
-  EXPECT_FALSE(SolveSim3Ransac(good.camera, matches).success);  // all the same
+  EXPECT_FALSE(SolveSim3Ransac(good.camera, matches).success);  // all points identical
 
   const Sim3 T_b_a = good.truth.Inverse();
-  for (size_t i = 0; i < matches.size(); ++i) {  // on one line
+  for (size_t i = 0; i < matches.size(); ++i) {  // collinear points
     Sim3Match& m = matches[i];
     m.p_a = Eigen::Vector3d(-0.5, 0.1, 3) +
             0.02 * static_cast<double>(i) * Eigen::Vector3d(1, 0.2, 0.4);
@@ -91,7 +91,7 @@ TEST(SolveSim3Ransac, LooksPastMatchesThatAreNotNumbers) {
   problem.matches[3].pixel_b.y() = -inf;
   problem.matches[4].sigma_a = nan;
   problem.matches[5].sigma_b = 0;
-  problem.matches[6].p_a = -problem.matches[6].p_a;  // behind
+  problem.matches[6].p_a = -problem.matches[6].p_a;  // behind the camera
   const Sim3RansacResult result = SolveSim3Ransac(problem.camera, problem.matches);
   EXPECT_TRUE(result.success);
   for (int i = 0; i < 7; ++i) EXPECT_FALSE(result.inlier[i]) << i;

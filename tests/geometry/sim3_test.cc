@@ -25,7 +25,7 @@ Eigen::Matrix4d Generator(const Vector7d& xi) {
   return m;
 }
 
-// What multiplies a tangent vector in the commutator with xi.
+// Matrix of the commutator with xi.
 Matrix7d SmallAdjoint(const Vector7d& xi) {
   Matrix7d ad = Matrix7d::Zero();
   for (int j = 0; j < 7; ++j) {
@@ -95,7 +95,7 @@ TEST(Sim3, AdjointCarriesAnIncrementAcross) {
   });
 }
 
-// The integral of Exp(τ ad) over τ, as a corner of the exponential of a matrix twice as large.
+// The integral of Exp(τ ad) over τ, as a block of the exponential of a matrix of twice the size.
 TEST(Sim3, LeftJacobianIsTheIntegralOfTheAdjoint) {
   ForTangents([](const Vector7d& xi) {
     Eigen::Matrix<double, 14, 14> large = Eigen::Matrix<double, 14, 14>::Zero();
@@ -110,7 +110,7 @@ TEST(Sim3, LeftJacobianIsTheIntegralOfTheAdjoint) {
 
 TEST(Sim3, InverseJacobianIsTheDerivativeOfTheLogarithm) {
   ForTangents([](const Vector7d& xi) {
-    if (xi.segment<3>(3).norm() > 3.1) return;  // differences would step over the half turn
+    if (xi.segment<3>(3).norm() > 3.1) return;  // finite differences would cross the half turn
     const Matrix7d J = LeftJacobianInverseSim3(xi);
     Matrix7d numeric;
     const double h = 1e-5;

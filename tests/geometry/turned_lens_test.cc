@@ -11,10 +11,10 @@
 namespace alidade::turned_lens_test {
 namespace {
 
-constexpr double kFocal = 370;  // assumed, pixels
+constexpr double kFocal = 370;  // assumed focal length, pixels
 
-// What a camera that turns by `degrees` sees through a lens of `g` times the focal length assumed,
-// in a picture 480 pixels wide, with 0.4 pixels of noise.
+// Matches of a camera that rotates by `degrees` with a focal length `g` times the assumed one, in
+// images 480 pixels wide with 0.4 pixels of noise.
 RayPairs Turned(double degrees, double g, std::mt19937& random) {
   std::uniform_real_distribution<double> across(-240, 240), down(-180, 180);
   std::normal_distribution<double> noise(0, 0.4);
@@ -38,14 +38,14 @@ RayPairs Turned(double degrees, double g, std::mt19937& random) {
   return rays;
 }
 
-// From wherever the search begins: a radial term can stand for part of a wrong focal length.
+// For any starting point: a radial coefficient can compensate part of a wrong focal length.
 TEST(TurnedLens, IsFoundWithLargeTurnsAndALensFarOff) {
   std::mt19937 random(3);
   for (const double g : {0.7, 0.8, 1.0, 1.2}) {
     for (const double degrees : {5.0, 15.0, 30.0, 45.0}) {
       for (int trial = 0; trial < 20; ++trial) {
         const RayPairs rays = Turned(degrees, g, random);
-        // The rotation a wrong lens leads to, beside a translation that isn't there.
+        // The rotation estimated together with a spurious translation if the lens is wrong.
         std::normal_distribution<double> off(0, 0.1);
         const Eigen::Vector3d wrong(off(random), off(random), off(random));
         const Eigen::Matrix3d R =

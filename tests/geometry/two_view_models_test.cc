@@ -27,7 +27,7 @@ Eigen::Matrix3d FromCv(const cv::Mat& m) {
   return result;
 }
 
-// Of matrices that mean the same up to scale and sign.
+// Difference of matrices that are defined up to scale and sign.
 double Difference(Eigen::Matrix3d x, Eigen::Matrix3d y) {
   x.normalize();
   y.normalize();
@@ -114,15 +114,15 @@ TEST(MotionsFromHomography, MakeTheHomographyAndIncludeTheTruthAndOpenCvs) {
     const Se3 truth = MakeTwoViewProblem({.matches = 1, .seed = seed}).T_b_a;
     const Eigen::Vector3d n(random.Uniform(-0.2, 0.2), random.Uniform(-0.2, 0.2), 0.3);
     const Eigen::Matrix3d H = truth.R + truth.t * n.transpose();
-    for (const double scale : {1.0, -3.0}) {  // a homography has neither size nor sign
+    for (const double scale : {1.0, -3.0}) {  // a homography is defined up to scale and sign
       const std::vector<Se3> motions = MotionsFromHomography(scale * H);
       ASSERT_EQ(motions.size(), 8u);
       double nearest = 10;
       for (const Se3& motion : motions) {
         EXPECT_NEAR(motion.R.determinant(), 1, 1e-9);
         EXPECT_NEAR(motion.t.norm(), 1, 1e-12);
-        // H = s R + t n' for some s and n: what is left after taking s R away, seen across t,
-        // vanishes.
+        // H = s R + t n' for some s and n: the part without s R, projected perpendicular to t, is
+        // zero.
         const Eigen::Matrix3d across =
             Eigen::Matrix3d::Identity() - motion.t * motion.t.transpose();
         const Eigen::Matrix3d x = across * H, y = across * motion.R;

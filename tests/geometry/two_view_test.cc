@@ -31,7 +31,7 @@ TEST(ReconstructTwoViews, FindsMotionAndPointsOfAGeneralScene) {
     EXPECT_NEAR(result.T_b_a.t.norm(), 1, 1e-12);
     EXPECT_LT(RotationAngle(result.T_b_a, problem.T_b_a), 0.01);
     EXPECT_LT(DirectionError(result.T_b_a, problem.T_b_a), 0.04);
-    std::vector<double> scale;  // depth against the truth; the unit of the map is the baseline
+    std::vector<double> scale;  // triangulated depth / true depth; map units are baselines
     for (size_t i = 0; i < problem.a.size(); ++i) {
       EXPECT_EQ(result.inlier[i], result.p_a[i].allFinite());
       if (!result.inlier[i] || problem.outlier[i]) continue;
@@ -40,7 +40,8 @@ TEST(ReconstructTwoViews, FindsMotionAndPointsOfAGeneralScene) {
     ASSERT_GT(scale.size(), 180u);
     std::sort(scale.begin(), scale.end());
     EXPECT_NEAR(scale[scale.size() / 2], 1, 0.1);
-    // 5 m seen from 0.5 m apart is 50 pixels of parallax: half a pixel in each image is 1.5 %.
+    // 5 m depth with a baseline of 0.5 m is 50 pixels of parallax; half a pixel of noise in each
+    // image is 1.5 %.
     EXPECT_LT(scale[scale.size() * 3 / 4] / scale[scale.size() / 4], 1.1);
   }
 }
@@ -59,8 +60,8 @@ struct Tally {
   int started = 0, wrong = 0, ambiguous = 0, low_parallax = 0;
 };
 
-// A start that is wrong costs the whole map: 5 degrees of rotation or 15 of direction make it
-// wrong.
+// A wrong start makes the whole map wrong; it counts as wrong beyond 5 degrees of rotation or 15
+// degrees of direction.
 Tally Try(TwoViewProblemSettings settings, int problems) {
   Tally tally;
   for (int seed = 1; seed <= problems; ++seed) {
@@ -92,9 +93,9 @@ TEST(ReconstructTwoViews, NeverStartsWrongFromAWall) {
     for (const double outliers : {0.0, 0.4}) {
       const Tally tally = Try({.kind = kind, .outliers = outliers, .noise_px = 0.5}, 40);
       EXPECT_EQ(tally.wrong, 0);
-      // From the exact geometry of such walls: in one of five at least a quarter of the points lies
-      // behind the cameras in the second motion the plane allows; in the others it cannot be told
-      // from the first.
+      // For the exact geometry of such walls, in one of five at least a quarter of the points is
+      // behind the cameras in the second motion of the plane; in the others the two motions are
+      // indistinguishable.
       EXPECT_GE(tally.started, 4);
       EXPECT_GE(tally.ambiguous + tally.started, 38);
     }
@@ -126,8 +127,8 @@ TEST(ReconstructTwoViews, RefusesLowParallax) {
   }
 }
 
-// What a camera of focal length `true_focal` (of the one assumed) and radial term `k` sees of a
-// scene, told in pixels of the one assumed.
+// Two views by a camera with `true_focal` times the assumed focal length and radial coefficient
+// `k`, in pixels of the assumed camera.
 void SeeThroughOtherLens(TwoViewProblem& problem, double true_focal, double k) {
   const Eigen::Vector2d centre(problem.camera.cx, problem.camera.cy);
   for (auto* pixels : {&problem.a, &problem.b}) {
@@ -151,7 +152,7 @@ TEST(ReconstructTwoViews, ATurnSeenThroughAnotherLensIsNoWalk) {
     }
     EXPECT_EQ(started, 0) << focal;
   }
-  EXPECT_GT(started_unaware, 0);  // which is why
+  EXPECT_GT(started_unaware, 0);  // without lens_uncertainty, wrong maps are started
 }
 
 TEST(ReconstructTwoViews, AWalkWithAnUnknownLensStarts) {
@@ -219,7 +220,7 @@ TEST(ReconstructTwoViews, RefusesTooFewMatches) {
 
 TEST(Triangulate, PutsExactPointsWhereTheyAre) {
   const TwoViewProblem problem = MakeTwoViewProblem({.outliers = 0, .noise_px = 0, .seed = 3});
-  const Se3 T_a_world{ExpSo3({0.3, -0.2, 0.5}), {40, -10, 25}};  // far from the world's origin
+  const Se3 T_a_world{ExpSo3({0.3, -0.2, 0.5}), {40, -10, 25}};  // far from the world origin
   const Se3 T_b_world = problem.T_b_a * T_a_world;
   for (size_t i = 0; i < problem.a.size(); ++i) {
     const auto p = Triangulate(problem.camera, T_a_world, problem.a[i], T_b_world, problem.b[i]);

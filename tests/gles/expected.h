@@ -1,4 +1,4 @@
-// Where things must be on the screen, by a projection of the test's own, and what is lit there.
+// Expected screen positions, by an independent projection, compared with the lit pixels.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,8 @@
 
 namespace alidade::gles_test {
 
-// From the upper left corner of a screen that the map fills: f * x / z right of its middle.
+// Projection from the upper left corner of a screen filled by the map: f * x / z right of the
+// center.
 struct Lens {
   Lens(const gles::ViewSettings& view, int width_, int height_)
       : T_eye_world(view.T_world_eye.Inverse()),
@@ -21,7 +22,7 @@ struct Lens {
         height(height_),
         f(height_ / 2.0 / std::tan(view.fov / 2)),
         nearest(view.nearest) {}
-  // Nothing: behind the eye, or off the screen.
+  // nullopt: behind the eye or outside the screen.
   std::optional<Eigen::Vector2d> See(const Eigen::Vector3d& p_world) const {
     const Eigen::Vector3d p = T_eye_world * p_world;
     if (p.z() <= nearest) return std::nullopt;
@@ -44,8 +45,8 @@ inline int CountLit(const Shot& shot, const gles::ViewSettings& view) {
   return lit;
 }
 
-// That the points, and nothing else, are drawn, one pixel each: each may be in the pixel beside its
-// own when it is at the edge of it (the GPU computes with 24 bits).
+// Checks that exactly the points are drawn, with one pixel each. A point near a pixel's edge may be
+// in the adjacent pixel, because the GPU computes with 24 bits.
 inline void ExpectPoints(const Shot& shot, const gles::ViewSettings& view,
                          const std::vector<Eigen::Vector3d>& points) {
   constexpr double kEdge = 0.02;  // pixels
@@ -84,7 +85,8 @@ inline void ExpectPoints(const Shot& shot, const gles::ViewSettings& view,
   EXPECT_EQ(stray, 0);
 }
 
-// That the segments, and nothing else, are drawn, in that width. All must be before the eye.
+// Checks that exactly the segments are drawn, with the given width. All must be in front of the
+// eye.
 struct Segment {
   Eigen::Vector3d from, to;
 };
@@ -98,7 +100,8 @@ inline void ExpectSegments(const Shot& shot, const gles::ViewSettings& view,
     ASSERT_TRUE(a && b) << "a test that looks away";
     lines.emplace_back(*a, *b);
     const double length = (*b - *a).norm();
-    for (double along = 1; along < length - 1; along += 1.5) {  // ends may be cut within a pixel
+    // Ends may be clipped within a pixel.
+    for (double along = 1; along < length - 1; along += 1.5) {
       const Eigen::Vector2d at = *a + along / length * (*b - *a);
       dark += !IsLit(shot, static_cast<int>(at.x()), static_cast<int>(at.y()), view);
     }

@@ -1,5 +1,4 @@
-// A context of OpenGL ES 3 without a window (EGL on Mesa's software), and pictures of what was
-// drawn.
+// An OpenGL ES 3 context without a window (EGL with Mesa's software renderer), and screenshots.
 #pragma once
 
 #include <EGL/egl.h>
@@ -79,7 +78,7 @@ class GlContext {
   EGLContext context_ = EGL_NO_CONTEXT;
 };
 
-// What is drawn into: colours and depth, as a window has them.
+// A framebuffer with color and depth, like a window's.
 class GlScreen {
  public:
   GlScreen(int width, int height) : width_(width), height_(height) {
@@ -123,7 +122,7 @@ class GlScreen {
   GLuint frame_ = 0, buffers_[2] = {};
 };
 
-// Skips where there is no such context.
+// Skips the test when no such context is available.
 class GlTest : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,4 +1,4 @@
-// Each layer of the map is where a projection of the test's own says it is, and nothing else is
+// Each layer of the map is drawn where an independent projection expects it, and no other pixel is
 // lit.
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ Eigen::Vector3d Within(Random& random, double side, double near, double far) {
   return {x, y, random.Uniform(near, far)};
 }
 
-// One layer, drawn as thin as can be told apart, from aside.
+// Draws a single layer with thin lines and small points, seen from the side.
 ViewSettings Only(bool ViewSettings::*layer) {
   ViewSettings view;
   view.landmarks = view.points = view.path = view.keyframes = view.camera = false;
@@ -82,7 +82,8 @@ TEST_F(Layers, LandmarksAreWhereTheirKeyframesHaveThem) {
     return pixel == PixelOf(view.colors.background) || Difference(pixel, ink) <= 1;
   }));
 
-  // The keyframe moves and grows: its landmarks with it, though none of them is told again.
+  // The keyframe moves and changes its scale: its landmarks follow, although they are not sent
+  // again.
   Change moved;
   moved.moves = {{9, 0, Pose(-0.4, 0.2, 0.1, 0, -0.3, 0.1), 0.8}};
   teller.Tell(moved);
@@ -100,13 +101,13 @@ TEST_F(Layers, SemiDensePointsHaveTheirPlacesAndColours) {
   change.keyframes = {{0, 0, Pose(0, 0, 0), 1}, {1, 0, Pose(0.3, 0, 0.2, 0, 0.2, 0.1), 1.7}};
   for (uint32_t k = 0; k < 2; ++k) {
     std::vector<ToldPoint> told;
-    for (int i = 0; i < 400; ++i) {  // at whole pixels, as depth maps have them
+    for (int i = 0; i < 400; ++i) {  // at whole pixels, as in depth maps
       const double x = random.Below(640), y = random.Below(480);
       ToldPoint point;
       point.p = camera.Unproject({x, y}, random.Uniform(0.8, 6));
       point.red = static_cast<int>(random.Below(256));
       point.green = static_cast<int>(random.Below(256));
-      point.blue = 255;  // never as dark as the ground
+      point.blue = 255;  // distinguishes points from the dark background
       told.push_back(point);
     }
     change.clouds.push_back({k, told});
@@ -136,11 +137,11 @@ TEST_F(Layers, SemiDensePointsHaveTheirPlacesAndColours) {
   }
   ExpectPoints(shot, view, points);
   EXPECT_GT(compared, 300);
-  EXPECT_LE(wrong, compared / 20);  // hidden by others, or beside their pixel
+  EXPECT_LE(wrong, compared / 20);  // occluded by others, or off by one pixel
 }
 
-// Frames hang on keyframes of other scales; where the camera was lost, or another map began, the
-// path is broken.
+// Frames are anchored to keyframes of different scales; the path is interrupted where the camera
+// was lost or another map began.
 TEST_F(Layers, ThePathGoesFromFrameToFrame) {
   Teller teller(Pinhole());
   Change change;
@@ -215,7 +216,7 @@ TEST_F(Layers, TheCameraIsWhereTheMapNowHasItOrWhereItsMotionLeads) {
   ExpectSegments(lost, view, FrustumOf(Pinhole(), guess, 0.4));
   EXPECT_TRUE(has(lost, view.colors.lost));
   teller.TellFrame(KeyFrameId::kNone, {});
-  EXPECT_EQ(CountLit(Draw(teller.scene, view), view), 0);  // for good
+  EXPECT_EQ(CountLit(Draw(teller.scene, view), view), 0);  // permanently lost
 }
 
 TEST_F(Layers, OtherMapsAreFaintOrHidden) {
@@ -242,7 +243,7 @@ TEST_F(Layers, OtherMapsAreFaintOrHidden) {
   EXPECT_NEAR(of(shot, 0.3)[0], (ground[0] + ink[0]) / 2.0, 2);
 }
 
-// The camera is found again in the first of two maps: nothing else is told.
+// The camera is relocalized in the first of two maps; no other change is sent.
 TEST_F(Layers, TheMapThatTheCameraComesBackToIsShown) {
   Teller teller(Pinhole());
   Change change;
@@ -262,14 +263,14 @@ TEST_F(Layers, TheMapThatTheCameraComesBackToIsShown) {
   renderer.Release();
 }
 
-// What is behind the eye does not come round to its front.
+// Parts of lines behind the eye do not appear in front of it.
 TEST_F(Layers, LinesAreCutOffBehindTheEye) {
   Teller teller(Pinhole());
   Change change;
   change.keyframes = {{0, 0, Pose(0, 0, 0), 1}};
   teller.Tell(change);
   teller.TellFrame(0, Pose(0.5, 0, 4));
-  teller.TellFrame(0, Pose(0.5, 0, -4));  // straight past the eye, on its right
+  teller.TellFrame(0, Pose(0.5, 0, -4));  // passes the eye on its right
   ViewSettings view = Only(&ViewSettings::path);
   view.T_world_eye = {};
   const Shot shot = Draw(teller.scene, view);
@@ -278,7 +279,7 @@ TEST_F(Layers, LinesAreCutOffBehindTheEye) {
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth / 2; ++x) left += IsLit(shot, x, y, view);
   EXPECT_EQ(left, 0);
-  EXPECT_TRUE(IsLit(shot, kWidth - 1, kHeight / 2, view));  // it leaves to the right
+  EXPECT_TRUE(IsLit(shot, kWidth - 1, kHeight / 2, view));  // leaves the image on the right
 }
 
 }  // namespace

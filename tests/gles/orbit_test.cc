@@ -1,4 +1,4 @@
-// An eye led by fingers.
+// The orbit camera and its gestures.
 #include "alidade/gles/orbit.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(Orbit, FollowsTheFinger) {
   Orbit orbit;
   orbit.yaw = orbit.pitch = 0.2;
   ViewSettings view;
-  // What is before the centre goes along.
+  // Points in front of the center follow the finger.
   const Eigen::Vector3d front = orbit.T_world_eye() * Eigen::Vector3d(0, 0, orbit.distance - 0.5);
   Orbit turned = orbit;
   turned.Turn(10, 0, kHeight);
@@ -68,18 +68,18 @@ TEST(Orbit, FollowsTheFinger) {
   EXPECT_DOUBLE_EQ(nearer.distance, orbit.distance / 2);
 }
 
-// A room mapped by a camera held upright, or on its side as phones do: up stays up, and the room is
-// in sight.
+// A room mapped by a camera held upright or rotated as phones are: up remains up, and the room is
+// in view.
 TEST(Orbit, FitsTheMapAndStandsUpright) {
   Random random(9);
   for (int rotation : {0, 90, 180, 270}) {
     const Eigen::Vector3d up = Eigen::Vector3d(0.3, -1, 0.2).normalized();  // in the world
     const Eigen::Vector3d ahead = up.cross(Eigen::Vector3d(1, 0, 0)).normalized();
-    Se3 upright;  // a camera that looks ahead, its picture upright as it is
+    Se3 upright;  // a camera that looks forward with an upright image
     upright.R.col(1) = -up;
     upright.R.col(2) = ahead;
     upright.R.col(0) = upright.R.col(1).cross(ahead);
-    // Its picture is turned counterclockwise when the camera is turned clockwise.
+    // A clockwise rotation of the camera rotates its image counterclockwise.
     const double angle = rotation * 3.14159265358979 / 180;
     const Se3 held{upright.R * ExpSo3({0, 0, angle}), {}};
     Teller teller(Camera::FromFieldOfView(640, 480, 60));
@@ -110,7 +110,7 @@ TEST(Orbit, FitsTheMapAndStandsUpright) {
       EXPECT_GE(See(orbit, keyframe.T_world_camera.t).x(), 0);
   }
   Orbit orbit;
-  EXPECT_NO_THROW(orbit.Fit(StreamScene(), 90));  // nothing yet
+  EXPECT_NO_THROW(orbit.Fit(StreamScene(), 90));  // no map yet
   EXPECT_TRUE(orbit.T_world_eye().R.allFinite());
 }
 

@@ -1,4 +1,4 @@
-// The camera's picture: each pixel in its place, whatever its stride, turning and size.
+// The camera image: every pixel is at its position for all strides, rotations and sizes.
 #include <gtest/gtest.h>
 
 #include <thread>
@@ -16,14 +16,14 @@ using gles::ViewSettings;
 
 uint8_t ValueAt(int x, int y) { return static_cast<uint8_t>(31 * x + 57 * y + x * y % 7); }
 
-// Rows `stride` bytes apart, filled up with what must not be seen.
+// Rows `stride` bytes apart, padded with a value that must not appear.
 struct Plane {
   Plane(int width_, int height_, size_t stride_) : width(width_), height(height_), stride(stride_) {
     bytes.assign(stride * static_cast<size_t>(height), 0xee);
     for (int y = 0; y < height; ++y)
       for (int x = 0; x < width; ++x)
         bytes[static_cast<size_t>(y) * stride + static_cast<size_t>(x)] = ValueAt(x, y);
-    // The last row ends with its last pixel: cameras map no byte beyond.
+    // The last row ends with its last pixel, because cameras map no bytes beyond it.
     bytes.resize(stride * static_cast<size_t>(height - 1) + static_cast<size_t>(width));
     bytes.shrink_to_fit();
   }
@@ -35,7 +35,7 @@ struct Plane {
   std::vector<uint8_t> bytes;
 };
 
-// Where a pixel is shown when the picture is turned clockwise, step by step.
+// Position of a pixel after rotating the image clockwise, step by step.
 std::pair<int, int> Turned(int x, int y, int width, int height, int rotation) {
   for (; rotation > 0; rotation -= 90) {
     const int before = x;
@@ -82,7 +82,7 @@ TEST_P(CameraPicture, IsShownPixelByPixel) {
   }
 }
 
-// In a window of another shape: as large as fits, in the middle, its sides as they are.
+// In an area with another aspect ratio the image is as large as possible, centered and undistorted.
 TEST_P(CameraPicture, IsFittedIntoItsArea) {
   const int rotation = GetParam();
   const Plane plane(40, 30, 43);
@@ -95,7 +95,8 @@ TEST_P(CameraPicture, IsFittedIntoItsArea) {
   renderer.Draw(view);
   const Shot shot = screen.Take();
   const bool across = rotation % 180 != 0;
-  const int left = across ? 112 : 100, right = across ? 187 : 200;  // 75 of 100 one way
+  // 75 of 100 pixels along one axis.
+  const int left = across ? 112 : 100, right = across ? 187 : 200;
   const int top = across ? 0 : 12, bottom = across ? 100 : 87;
   int outside = 0, inside = 0;
   for (int y = 0; y < 100; ++y) {
@@ -106,7 +107,7 @@ TEST_P(CameraPicture, IsFittedIntoItsArea) {
       inside += within && ground;
     }
   }
-  // An odd remainder is on one side or the other.
+  // The remainder may be on either side.
   EXPECT_LE(outside, 100);
   EXPECT_LE(inside, 100);
   renderer.Release();
@@ -128,7 +129,7 @@ TEST_P(CameraPicture, HasTheFeaturesOnTheirPixels) {
   const GlScreen screen(width, height);
   Renderer renderer;
   renderer.Resize(width, height);
-  Plane(80, 60, 81).Give(renderer, rotation);  // half as large as what the core saw
+  Plane(80, 60, 81).Give(renderer, rotation);  // half the size of the processed image
   renderer.Show(teller.scene);
   ViewSettings view = PictureOnly();
   view.feature_size = 7;
@@ -153,7 +154,7 @@ TEST_P(CameraPicture, HasTheFeaturesOnTheirPixels) {
   view.features = false;
   renderer.Draw(view);
   const Shot bare = screen.Take();
-  for (const Pixel& pixel : bare.pixels) ASSERT_EQ(pixel[0], pixel[2]);  // grey
+  for (const Pixel& pixel : bare.pixels) ASSERT_EQ(pixel[0], pixel[2]);  // gray
   renderer.Release();
 }
 
@@ -187,7 +188,7 @@ TEST_F(CameraPictures, ThatCannotBeAreRefusedWithAReason) {
   EXPECT_NO_THROW(renderer.SetCameraPicture(bytes.data(), 10, 10, 10, 270));
 }
 
-// A camera's thread gives pictures while another draws: each drawn one is a whole one.
+// One thread sets images while another draws: every drawn image is complete.
 TEST_F(CameraPictures, ComeFromAnotherThread) {
   constexpr int kSide = 64, kPictures = 400;
   const GlScreen screen(kSide, kSide);

@@ -1,4 +1,4 @@
-// The renderer as a whole: many points, changes one after another, contexts that are lost, sizes.
+// The complete renderer: many points, successive changes, lost contexts, sizes.
 #include "alidade/gles/renderer.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ ViewSettings FromAside() {
 
 class WholeRenderer : public GlTest {
  protected:
-  // What a renderer that saw nothing before makes of the scene.
+  // The image that a new renderer draws of the scene.
   Shot Anew(const StreamScene& scene, const ViewSettings& view, const GlScreen& screen, int width,
             int height) {
     Renderer renderer;
@@ -62,7 +62,7 @@ class WholeRenderer : public GlTest {
   }
 };
 
-// 25 keyframes of 8,000 points each.
+// 25 keyframes with 8,000 points each.
 TEST_F(WholeRenderer, TwoHundredThousandPointsAreUploadedOnceAndMoveForAFewBytes) {
   constexpr int kWidth = 640, kHeight = 480, kKeyFrames = 25, kPoints = 8000;
   Random random(11);
@@ -78,7 +78,7 @@ TEST_F(WholeRenderer, TwoHundredThousandPointsAreUploadedOnceAndMoveForAFewBytes
   renderer.Resize(kWidth, kHeight);
   renderer.Show(teller.scene);
   ViewSettings view = FromAside();
-  view.T_world_eye.t.z() = -15;  // all of it small, so that it does not fill the screen
+  view.T_world_eye.t.z() = -15;  // small, so that it does not fill the screen
   view.landmarks = view.path = view.keyframes = view.camera = false;
   view.point_size = 1;
   const auto points = [&] {
@@ -108,8 +108,8 @@ TEST_F(WholeRenderer, TwoHundredThousandPointsAreUploadedOnceAndMoveForAFewBytes
   renderer.Release();
 }
 
-// A map that grows, moves, is culled, loses points and begins anew: after each message the picture
-// is the one of a renderer that saw the last state only.
+// A map that grows, moves, is culled, loses points and is restarted: after each message the image
+// equals that of a renderer that saw only the last state.
 TEST_F(WholeRenderer, ShowsAfterManyChangesWhatOneSeesWhoCameLate) {
   constexpr int kWidth = 200, kHeight = 150;
   Random random(5);
@@ -152,7 +152,8 @@ TEST_F(WholeRenderer, ShowsAfterManyChangesWhatOneSeesWhoCameLate) {
       landmarks[at] = landmarks.back();
       landmarks.pop_back();
     }
-    if (step % 4 == 3 && keyframes.size() > 3) {  // its landmarks hang on another first
+    // First its landmarks are anchored to another keyframe.
+    if (step % 4 == 3 && keyframes.size() > 3) {
       ++culled;
       const uint32_t gone = keyframes[keyframes.size() / 2], follows = keyframes.front();
       for (const auto& [id, landmark] : teller.scene.landmarks) {
@@ -190,8 +191,8 @@ TEST_F(WholeRenderer, ShowsAfterManyChangesWhatOneSeesWhoCameLate) {
     EXPECT_EQ(stats.points, late_stats.points);
     EXPECT_EQ(stats.segments, late_stats.segments);
     late.Release();
-    // Soft edges that lie over each other are rounded in another order, and of two points at one
-    // depth the one drawn last is seen. A point in a wrong place would be nine pixels.
+    // Overlapping soft edges are rounded in a different order, and of two points at the same depth
+    // the last one drawn is visible. A misplaced point would change nine pixels.
     int different = 0;
     for (size_t i = 0; i < shot.pixels.size(); ++i)
       different += Difference(shot.pixels[i], expected.pixels[i]) > 3;
@@ -235,7 +236,7 @@ TEST_F(WholeRenderer, DrawsTheSameInANewContextAfterOneWasLost) {
   EXPECT_GT(CountLit(before, view), 1000);
   for (int i = 0; i < 3; ++i) {
     context.Destroy();
-    // Told while there is no context: shown when there is one.
+    // Set while there is no context, shown in the next one.
     renderer.ContextLost();
     renderer.Show(teller.scene);
     context.Make();
@@ -244,7 +245,7 @@ TEST_F(WholeRenderer, DrawsTheSameInANewContextAfterOneWasLost) {
     EXPECT_GT(renderer.Draw(view).uploaded, 20000u);
     EXPECT_TRUE(screen.Take() == before) << i;
   }
-  // Left by its user, and taken up again.
+  // Released by the user and used again.
   const GlScreen screen(kWidth, kHeight);
   renderer.Release();
   renderer.Draw(view);
@@ -282,7 +283,7 @@ TEST_F(WholeRenderer, DrawsOnScreensOfAnySize) {
       ExpectPoints(screen.Take(), points, expected);
     }
   }
-  // More than the context can do: cut to what it can.
+  // Larger than the context supports: limited to its maximum.
   const GlScreen screen(16, 16);
   renderer.Resize(1000000, 1000000);
   EXPECT_NO_THROW(renderer.Draw(FromAside()));
@@ -299,7 +300,7 @@ TEST_F(WholeRenderer, DrawsNothingOfAnEmptySceneAndLeavesTheErrorsOfOthersAlone)
   renderer.Resize(50, 40);
   ViewSettings view;
   view.colors.background = {0.2f, 0.4f, 0.6f};
-  glEnable(0xdead);  // somebody's mistake
+  glEnable(0xdead);  // an error of other code
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
   EXPECT_NO_THROW(renderer.Draw(view));
   EXPECT_EQ(CountLit(screen.Take(), view), 0);
@@ -349,7 +350,7 @@ TEST(RendererWithoutAContext, TakesScenesAndPicturesAndDrawsThemInTheFirstThereI
   const std::vector<uint8_t> luma(100);
   renderer->SetCameraPicture(luma.data(), 10, 10, 10, 0);
   renderer->ContextLost();
-  EXPECT_THROW(renderer->Draw(FromAside()), Error);  // not yet
+  EXPECT_THROW(renderer->Draw(FromAside()), Error);  // no context yet
   GlContext context;
   if (!context.ok()) GTEST_SKIP() << "no OpenGL ES 3 without a window here (Mesa's EGL)";
   const GlScreen screen(10, 10);

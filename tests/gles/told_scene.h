@@ -1,4 +1,4 @@
-// Scenes as the stream tells them: messages made by hand, taken by the stream's own reader.
+// Scenes from handwritten stream messages, read by the stream's own reader.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 namespace alidade::gles_test {
 
 struct ToldPoint {
-  Eigen::Vector3d p = Eigen::Vector3d::Zero();  // in the keyframe, lengths as if its scale were 1
+  // In the keyframe, with lengths scaled as if its scale were 1.
+  Eigen::Vector3d p = Eigen::Vector3d::Zero();
   int red = 0, green = 0, blue = 0;
 };
 struct ToldFeature {
@@ -21,7 +22,7 @@ struct ToldFeature {
   stream::Use use = stream::Use::matched;
 };
 
-// What one message says of the map.
+// Content of one map message.
 struct Change {
   struct NewKeyFrame {
     uint32_t id = 0, map = 0;
@@ -49,8 +50,7 @@ struct Change {
   std::vector<NewCloud> clouds;
 };
 
-// Of the semi-dense points of a keyframe, in the world, as the stream kept them; unpacked by the
-// stream's own code.
+// The semi-dense points of a keyframe in the world, unpacked by the stream's own code.
 inline std::vector<Eigen::Vector3d> KeptPoints(const StreamScene& scene, uint32_t keyframe) {
   const SceneKeyFrame& k = scene.keyframes.at({keyframe});
   std::vector<Eigen::Vector3d> points;
@@ -117,8 +117,8 @@ class Teller {
     Take(stream::Body::MapChange, message.Finish().Union());
   }
 
-  // A frame that hangs on a keyframe, by a pose with lengths as if its scale were 1; kNone: lost,
-  // and `guess` is where the camera may be.
+  // A frame with its pose relative to a keyframe (lengths scaled as if its scale were 1). kNone:
+  // lost, with `guess` as the predicted pose.
   void TellFrame(uint32_t reference, const Se3& T_reference_camera,
                  const std::vector<ToldFeature>& features = {}, const Se3* guess = nullptr) {
     std::vector<uint8_t> packed;
@@ -147,7 +147,7 @@ class Teller {
   }
 
   StreamScene scene;
-  std::vector<std::string> messages;  // all of them
+  std::vector<std::string> messages;  // all messages so far
 
  private:
   PackedCloud Pack(const std::vector<ToldPoint>& points) const {

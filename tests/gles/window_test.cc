@@ -1,5 +1,4 @@
-// alidade-gl, as a user has it: a recorded run drawn in a window, on a screen of the test's own
-// (Xvfb).
+// The program alidade-gl: a recorded run drawn in a window on a virtual screen (Xvfb).
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -22,7 +21,7 @@ class Window : public testing::Test {
  protected:
   std::string Path(const std::string& name) const { return folder_ / name; }
 
-  // The file's format, by docs/stream.md.
+  // The file format of docs/reference/stream.md.
   void Write(const Teller& teller) const {
     std::ofstream file(Path("run.stream"), std::ios::binary);
     file << "ALIDSTR1";

@@ -41,7 +41,7 @@ int main(int count, char** arguments) {
   alidade::Slam slam(camera, settings);
   const cv::Mat black(480, 640, CV_8UC1, cv::Scalar(0));
   const alidade::TrackResult result = slam.Track({.time = 0.5, .image = black});
-  if (result.state != alidade::TrackState::kInitialising) return Fail("black is no start");
+  if (result.state != alidade::TrackState::kInitializing) return Fail("black is no start");
   try {
     slam.Track({.time = 0.5, .image = black});
     return Fail("the same time twice was taken");

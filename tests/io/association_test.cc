@@ -12,7 +12,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-// The definition, word for word: again and again the closest pair of all that are left.
+// The definition: repeatedly takes the closest remaining pair.
 Pairs AssociateSlowly(const std::vector<double>& a, const std::vector<double>& b, double max_dt) {
   std::vector<bool> taken_a(a.size()), taken_b(b.size());
   Pairs pairs;
@@ -49,7 +49,7 @@ TEST(AssociateByTime, AgreesWithItsDefinitionOnRandomLists) {
   }
 }
 
-// Times of few values: many pairs are equally close, and of those the first comes first.
+// Few distinct times, so many pairs are equally close; the first one is taken.
 TEST(AssociateByTime, AgreesWithItsDefinitionWhereTimesAreEqual) {
   Random random(4);
   for (int round = 0; round < 50; ++round) {
@@ -61,7 +61,7 @@ TEST(AssociateByTime, AgreesWithItsDefinitionWhereTimesAreEqual) {
   }
 }
 
-// Every one of the first list is near every one of the second: all pairs would be 10^11.
+// Every item of one list is near every item of the other: there are 10^11 pairs.
 TEST(AssociateByTime, ManyTimesThatLieCloseTogetherNeedNoMoreThanTheirNumber) {
   constexpr int kMany = 300000;
   std::vector<double> a(kMany), b(kMany);

@@ -112,7 +112,7 @@ TEST(CameraFile, FisheyeImagesBecomePinholes) {
   const auto frame = source->Next();
   EXPECT_EQ(frame->image.size(), cv::Size(64, 48));
   EXPECT_NE(cv::norm(frame->image, TinyImage(0), cv::NORM_INF), 0);
-  // Depth is never blended: all of it is the one value there was.
+  // Depth is never interpolated: it has a single value everywhere.
   EXPECT_EQ(cv::norm(frame->depth, TinyDepth(0), cv::NORM_INF), 0);
 }
 

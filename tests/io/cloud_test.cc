@@ -36,7 +36,7 @@ TEST(Ply, BinaryHoldsTheBytesOfTheFloats) {
   const size_t body = bytes.find("end_header\n") + 11;
   ASSERT_EQ(bytes.size(), body + 24);
   float value = 0;
-  std::memcpy(&value, bytes.data() + body + 12, 4);  // the machines we test on are little endian
+  std::memcpy(&value, bytes.data() + body + 12, 4);  // the test machines are little endian
   EXPECT_EQ(value, 1e-7f);
   EXPECT_EQ(bytes.find("red"), std::string::npos);
   EXPECT_EQ(EncodePly(kCloud, CloudFormat::kBinary)
@@ -44,7 +44,7 @@ TEST(Ply, BinaryHoldsTheBytesOfTheFloats) {
             "\1\2\3");
 }
 
-// Header and body of a PCD file, as the format's description has it.
+// Splits a PCD file into header and body.
 std::pair<std::string, std::string> SplitPcd(const std::string& bytes) {
   const size_t data = bytes.find("\nDATA ");
   EXPECT_NE(data, std::string::npos);
@@ -80,7 +80,7 @@ TEST(Pcd, BinaryHoldsTheBytesOfTheFields) {
   EXPECT_EQ(body.substr(12, 4), std::string("\7\0\377\0", 4));  // blue green red, as in memory
 }
 
-// A point's normal and sigma come behind its colour, in both formats.
+// Normal and sigma follow a point's color in both formats.
 TEST(Ply, NormalsAndSigmasFollowTheColour) {
   Cloud cloud = kCloud;
   cloud.normals = {{0, 0, -1}, {0.6f, 0.8f, 0}};
@@ -123,7 +123,7 @@ TEST(Ply, IsReadAgainAsItWasWritten) {
       EXPECT_EQ(read.colors, cloud.colors);
       EXPECT_EQ(read.normals, cloud.normals);
       EXPECT_EQ(read.sigmas, cloud.sigmas);
-      // Cut off anywhere it is refused, but in the last number of a text.
+      // Truncated anywhere it is rejected, except within the last number of a text.
       const size_t most = format == CloudFormat::kAscii ? bytes.rfind(' ') : bytes.size() - 1;
       for (size_t length = 0; length <= most; ++length)
         EXPECT_THROW(DecodePly(bytes.substr(0, length), "a.ply"), Error) << length;

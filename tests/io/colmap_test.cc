@@ -43,7 +43,7 @@ std::vector<double> Numbers(const std::string& line) {
   return numbers;
 }
 
-// As colmap.github.io/format.html has it.
+// As specified by colmap.github.io/format.html.
 TEST(Colmap, TextHoldsTheModelWithTheOriginInTheCorner) {
   const auto files = EncodeColmapText(SomeModel());
   ASSERT_EQ(files.size(), 3u);
@@ -57,7 +57,7 @@ TEST(Colmap, TextHoldsTheModelWithTheOriginInTheCorner) {
   const auto parameters = Numbers(cameras[0].substr(17));  // fx fy cx cy k1 k2 p1 p2
   ASSERT_EQ(parameters.size(), 8u);
   EXPECT_NEAR(parameters[0], 320, 1e-9);
-  EXPECT_NEAR(parameters[2], 320, 1e-9);  // the middle of 640 columns, counted from their border
+  EXPECT_NEAR(parameters[2], 320, 1e-9);  // the middle of 640 columns, measured from the border
   EXPECT_NEAR(parameters[3], 240, 1e-9);
   EXPECT_EQ(parameters[4], 0.1);
   EXPECT_EQ(parameters[7], 0.002);
@@ -77,7 +77,7 @@ TEST(Colmap, TextHoldsTheModelWithTheOriginInTheCorner) {
   const auto points = Lines(files[2].bytes);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(Numbers(points[0]),
-            (std::vector<double>{1, -1, 0.5, 1e-3, 128, 128, 128, -1}));  // grey, error not known
+            (std::vector<double>{1, -1, 0.5, 1e-3, 128, 128, 128, -1}));  // gray, error unknown
   EXPECT_EQ(Numbers(points[1]), (std::vector<double>{2, 0.1, 0.2, 4, 255, 0, 7, 0.75, 1, 0, 3, 0}));
 }
 
@@ -96,7 +96,7 @@ TEST(Colmap, TheCameraIsTheSimplestThatHoldsItsDistortion) {
   EXPECT_EQ(Numbers(plain.substr(18)).size(), 4u);
 }
 
-// Takes numbers off the front; the machines we test on are little endian.
+// Reads numbers from the beginning of a string; the test machines are little endian.
 class Reader {
  public:
   explicit Reader(const std::string& bytes) : bytes_(bytes) {}

@@ -1,4 +1,4 @@
-// Colour beside the grey picture that is tracked: it belongs to it, and changes nothing about it.
+// Color images belong to the gray images that are tracked, and do not change them.
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -36,7 +36,8 @@ cv::Mat ColorImage(int seed, int width = kTinyWidth, int height = kTinyHeight) {
 
 TEST(GrayAndColor, GrayIsTheGrayReadersBitForBit) {
   const TempFolder folder;
-  const cv::Mat color = ColorImage(1, 61, 47);  // chroma has half as many, rounded up
+  // Odd size: chroma has half as many samples, rounded up.
+  const cv::Mat color = ColorImage(1, 61, 47);
   cv::Mat alpha;
   cv::cvtColor(color, alpha, cv::COLOR_BGR2BGRA);
   ASSERT_TRUE(cv::imwrite(folder / "a.jpg", color, {cv::IMWRITE_JPEG_QUALITY, 90}));
@@ -46,7 +47,7 @@ TEST(GrayAndColor, GrayIsTheGrayReadersBitForBit) {
   for (const char* name : {"a.jpg", "b.png", "c.png", "d.bmp"}) {
     const GrayAndColor both = ReadImageGrayAndColor(folder / name);
     EXPECT_EQ(MaxDifference(both.gray, ReadImageGray(folder / name)), 0) << name;
-    // libjpeg and OpenCV round the conversion from luma and chroma differently.
+    // libjpeg and OpenCV round the color conversion differently.
     EXPECT_LE(MaxDifference(both.color, cv::imread(folder / name)), 2) << name;
   }
 }
@@ -73,7 +74,7 @@ TEST(GrayAndColor, DamageIsAnErrorAsInGray) {
 
 class ColorOfASource : public testing::Test {
  protected:
-  // Three colour JPEGs, listed as TUM does.
+  // Three color JPEGs in TUM's layout.
   ColorOfASource() {
     folder_.Folder("rgb");
     std::string list;
@@ -91,7 +92,7 @@ class ColorOfASource : public testing::Test {
                                      "\nwidth: 64\nheight: 48\nfx: 30\nfy: 30\ncx: 31\ncy: 24\n"
                                      "distortion: [0.1, 0, 0, 0]\nfps: 30\n");
   }
-  // Frame by frame the same, one with colours.
+  // Two sources return equal frames, one of them with colors.
   void ExpectTheSameAndColours(double tolerance) {
     const auto plain = OpenSource(folder_.path()), colored = OpenSource(folder_.path(), color_);
     for (int i = 0; i < 3; ++i) {
@@ -115,7 +116,8 @@ TEST_F(ColorOfASource, ComesBesideTheSameGrayOnlyWhenAskedFor) {
 TEST_F(ColorOfASource, IsRectifiedAsTheGrayIs) {
   WriteCamera("fisheye");
   const auto raw = ReadImageGray(folder_ / "rgb/0.jpg");
-  EXPECT_GT(MaxDifference(OpenSource(folder_.path())->Next()->image, raw), 6);  // it is bent
+  // Fisheye images change.
+  EXPECT_GT(MaxDifference(OpenSource(folder_.path())->Next()->image, raw), 6);
   ExpectTheSameAndColours(3);
 }
 
@@ -139,13 +141,13 @@ TEST_F(ColorOfASource, OfAVideoStandsUprightToo) {
   std::string bytes = ReadFile(path);
   SetMp4QuarterTurn(bytes);
   AtomicWriteFile(path, bytes);
-  WarningCatcher warnings;  // nothing is known of its camera
+  WarningCatcher warnings;  // the calibration is unknown
   const auto plain = OpenSource(path)->Next(), colored = OpenSource(path, color_)->Next();
   ASSERT_TRUE(plain && colored);
   EXPECT_TRUE(plain->color.empty());
   EXPECT_EQ(MaxDifference(plain->image, colored->image), 0);
   EXPECT_EQ(MaxDifference(Luma(colored->color), colored->image), 0);
-  // Clockwise by a quarter: what was left is above.
+  // Clockwise quarter turn: the left side becomes the top.
   EXPECT_NEAR(cv::mean(colored->color.rowRange(4, 56))[0], 220, 15);
   EXPECT_NEAR(cv::mean(colored->color.rowRange(70, 124))[2], 220, 15);
 }

@@ -23,7 +23,7 @@ std::string SensorYaml(double x, const std::string& more =
          more;
 }
 
-// Stamps count 50 ms from 2 s on; the right camera's are 10 µs later.
+// Stamps start at 2 s with steps of 50 ms; the right camera's are 10 µs later.
 void WriteTinyEuroc(const TempFolder& folder, int frames, bool right = true) {
   for (int cam = 0; cam < (right ? 2 : 1); ++cam) {
     const std::string root = "mav0/cam" + std::to_string(cam);
@@ -52,7 +52,7 @@ TEST(EurocSource, PairsTheImagesAndKeepsTheStamps) {
     const auto frame = source->Next();
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->stamp, i == 0 ? "2.000000000" : i == 1 ? "2.050000000" : "2.100000000");
-    // Equal ideal cameras side by side: rectifying changes nothing.
+    // Equal undistorted cameras with parallel axes: rectification changes nothing.
     EXPECT_LE(cv::norm(frame->image, TinyImage(10 * i), cv::NORM_INF), 1);
     EXPECT_LE(cv::norm(frame->right, TinyImage(10 * i + 1), cv::NORM_INF), 1);
   }
@@ -145,7 +145,7 @@ TEST(EurocSource, RowsOfTheRealPairAgree) {
   for (double& row : rows) row = std::abs(row);
   RecordProperty("median_row_difference", std::to_string(median(rows)));
   EXPECT_LT(median(rows), 0.5);
-  EXPECT_GT(median(disparities), 1);  // the scene is in front
+  EXPECT_GT(median(disparities), 1);  // the scene is in front of the camera
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST(File, ThatIsMissingIsNamed) {
 TEST(File, FailedWriteLeavesTheOldFileAndNoTemporary) {
   const TempFolder folder;
   AtomicWriteFile(folder / "a", "old");
-  // Renaming onto a folder that is not empty must fail after all bytes were written.
+  // Renaming onto a non-empty folder fails after all bytes were written.
   folder.Write("b/inside", "x");
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { AtomicWriteFile(folder / "b", "new"); }),
               testing::HasSubstr("cannot write"));
@@ -57,7 +57,7 @@ TEST(File, FailedWriteLeavesTheOldFileAndNoTemporary) {
   EXPECT_EQ(FilesIn(folder.path()), 2);
 }
 
-// A limit on the size of files fails the write in the middle, as a full disk does.
+// A limit on file sizes makes a write fail in the middle, as a full disk does.
 TEST(File, DiskThatFillsUpLeavesTheOldFileAndNoTemporary) {
   const TempFolder folder;
   AtomicWriteFile(folder / "a", "old");
@@ -82,7 +82,8 @@ TEST(File, TemporariesOfKilledProgramsAreRemovedByTheNextWrite) {
   const std::string foreign = folder.Write("a.tmp123", "not one of ours");
   const int fd = open(in_use.c_str(), O_RDONLY);
   ASSERT_TRUE(Occupy(fd));
-  AtomicWriteFile(folder / "a", "many small files", Sync::kNo);  // does not look
+  // Does not remove stale temporaries.
+  AtomicWriteFile(folder / "a", "many small files", Sync::kNo);
   EXPECT_TRUE(std::filesystem::exists(left));
   AtomicWriteFile(folder / "a", "new");
   EXPECT_FALSE(std::filesystem::exists(left));
@@ -94,7 +95,7 @@ TEST(File, TemporariesOfKilledProgramsAreRemovedByTheNextWrite) {
   EXPECT_EQ(FilesIn(folder.path()), 2);
 }
 
-// As in a container, where the next process may have the number of the killed one.
+// In a container a new process may have the id of a killed one.
 TEST(File, ATemporaryOfTheSameNameIsNoObstacle) {
   const TempFolder folder;
   for (int number = 0; number < 50; ++number) {

@@ -13,7 +13,7 @@
 namespace alidade::frame_finder_test {
 namespace {
 
-// Frames at given times; counts how many were read.
+// Frames at the given times; counts the frames read.
 class TimedSource : public FrameSource {
  public:
   explicit TimedSource(std::vector<double> times) : times_(std::move(times)) {
@@ -45,7 +45,7 @@ class TimedSource : public FrameSource {
   int next_ = 0;
 };
 
-// `frames` times since 1970 at 30 Hz, a share of them jittered, then with gaps.
+// Times since 1970 at 30 Hz, some of them jittered, followed by gaps.
 std::vector<double> UnevenTimes(int frames, uint64_t seed) {
   Random random(seed);
   std::vector<double> times;
@@ -67,7 +67,7 @@ TEST(FrameFinder, ReadsOnlyTheFramesAskedForAtAnEvenRate) {
     ASSERT_TRUE(frame.has_value());
     EXPECT_EQ(frame->number, number);
   }
-  EXPECT_EQ(source.read, 7);  // one more to know when the recording begins
+  EXPECT_EQ(source.read, 7);  // plus one frame to find the start time
 }
 
 TEST(FrameFinder, AgreesWithLookingAtEveryFrameWhateverTheStamps) {
@@ -104,13 +104,14 @@ TEST(FrameFinder, FindsUnevenStampsInAFewReads) {
 }
 
 TEST(FrameFinder, OfTwoFramesWithOneStampTheGoodOneIsFound) {
-  // A line that repeats a stamp is a frame with a problem and the time of the one before.
+  // A line that repeats a stamp becomes a frame with a problem and the time of its predecessor.
   std::vector<double> times;
   for (int i = 0; i < 50; ++i) times.push_back((i < 21 ? i : i - 1) / 30.0);
   TimedSource source(times);
   source.bad = 21;
   FrameFinder finder(source);
-  finder.Nearest(times[49], 0.02);  // now the guess for stamp 20 leans to the later frame
+  // Now the estimated index for stamp 20 is that of the later frame.
+  finder.Nearest(times[49], 0.02);
   const auto frame = finder.Nearest(times[20], 0.02);
   ASSERT_TRUE(frame.has_value());
   EXPECT_EQ(frame->number, 20);

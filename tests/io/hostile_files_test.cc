@@ -1,4 +1,4 @@
-// What lies where a file is looked for and is none, or is a file nobody should read to its end.
+// Paths that are not regular files, and files that must not be read completely.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(HostileFiles, APipeIsRefusedWithoutWaitingForItsWriter) {
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { OpenSource(pipe); }), HasSubstr("a pipe"));
 }
 
-// A shell's <(command): the pipe has its writer.
+// A shell's <(command): the pipe has a writer.
 TEST(HostileFiles, APipeThatWasHandedOverIsReadToItsEnd) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
@@ -52,7 +52,7 @@ TEST(HostileFiles, APipeThatWasHandedOverIsReadToItsEnd) {
 TEST(HostileFiles, FoldersSocketsAndDevicesAreRefused) {
   const TempFolder folder;
   EXPECT_THAT(Refusal(folder.path()), HasSubstr("a folder"));
-  EXPECT_THAT(Refusal("/dev/zero"), HasSubstr("a device"));  // it never ends
+  EXPECT_THAT(Refusal("/dev/zero"), HasSubstr("a device"));  // endless
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [] { OpenSource("/dev/zero"); }), HasSubstr("a device"));
   const int fd = socket(AF_UNIX, SOCK_STREAM, 0);
   sockaddr_un address{};
@@ -63,7 +63,7 @@ TEST(HostileFiles, FoldersSocketsAndDevicesAreRefused) {
   close(fd);
 }
 
-// A file that is written replaces what had its name: /dev/null must not be what it replaces.
+// Writing a file replaces the target; it must not replace /dev/null.
 TEST(HostileFiles, WhatIsNoFileIsNotReplacedByOne) {
   const TempFolder folder;
   const std::string pipe = folder / "pipe", link = folder / "link";
@@ -92,7 +92,7 @@ TEST(HostileFiles, LinksInACircleAndPathsTooLongAreInputErrors) {
 TEST(HostileFiles, LongerThanTheirKindIsRefusedUnread) {
   const TempFolder folder;
   const std::string path = folder.Write("camera.yaml", "model: pinhole\n");
-  ASSERT_EQ(truncate(path.c_str(), off_t{1} << 40), 0);  // a terabyte, none of it on the disk
+  ASSERT_EQ(truncate(path.c_str(), off_t{1} << 40), 0);  // 1 TB, sparse
   EXPECT_THAT(Refusal(path), HasSubstr("longer than 512 MB"));
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadCameraFile(path); }),
               HasSubstr("longer than 1 MB"));
@@ -101,7 +101,7 @@ TEST(HostileFiles, LongerThanTheirKindIsRefusedUnread) {
   Refusal(just, 99);
 }
 
-// A sparse file takes no place on the disk, but all memory once it is read.
+// A sparse file takes no disk space but would take all memory when read.
 TEST(HostileFiles, AStartThatIsRefusedIsAllThatIsRead) {
   const TempFolder folder;
   const std::string path = folder.Write("map.alidade", "not a map");
@@ -137,7 +137,7 @@ TEST(HostileFiles, TextOfTooManyLinesOrTooLongOnesIsRefused) {
 TEST(HostileFiles, WhatIsNoImageInAFolderOfImagesIsListedAndToldWhenRead) {
   const TempFolder folder;
   folder.Write("2.png", "");
-  folder.Folder("3.png");  // a folder is no image
+  folder.Folder("3.png");  // folders are skipped
   ASSERT_EQ(mkfifo((folder / "1.png").c_str(), 0600), 0);
   ASSERT_EQ(symlink("nowhere", (folder / "4.png").c_str()), 0);
   ASSERT_EQ(symlink("5.png", (folder / "5.png").c_str()), 0);

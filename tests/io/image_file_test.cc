@@ -87,7 +87,7 @@ TEST(ImageFile, PalettesAlphaAndSixteenBitsBecomeGray) {
   EXPECT_EQ(MaxDifference(ReadImageGray(folder / "binary.png"), binary), 0);
 }
 
-// Its length, its name, its bytes, and a CRC of the last two.
+// A PNG chunk: length, name, bytes, and a CRC of name and bytes.
 std::string PngChunk(const std::string& name, const std::string& bytes) {
   const auto big_endian = [](size_t value) {
     std::string text;
@@ -100,8 +100,8 @@ std::string PngChunk(const std::string& name, const std::string& bytes) {
                           static_cast<uInt>(named.size())));
 }
 
-// A palette's transparency is a chunk of its own, not a kind of pixel: such pictures came with four
-// channels, whatever was asked for.
+// The transparency of a palette is a separate chunk. Such images used to be decoded with four
+// channels.
 TEST(ImageFile, TransparentPalettesBecomeGrayAndColor) {
   const std::string corpus = ALIDADE_FUZZ_CORPUS "/png/good-palette-transparent";
   EXPECT_EQ(ReadImageGray(corpus).type(), CV_8UC1);
@@ -111,12 +111,13 @@ TEST(ImageFile, TransparentPalettesBecomeGrayAndColor) {
   EXPECT_EQ(both.color.type(), CV_8UC3);
 }
 
-// No file of a few bytes holds a picture of millions of pixels: told before there is memory for it.
+// A file of a few bytes cannot hold millions of pixels; this is detected before memory is
+// allocated.
 TEST(ImageFile, TooShortForWhatTheirHeadersClaim) {
   const TempFolder folder;
   WriteImage(folder / "a.png", TinyImage(1));
   std::string png = ReadFile(folder / "a.png");
-  const std::string huge =  // 8192 x 8192, 8 bits of grey
+  const std::string huge =  // 8192 x 8192, 8-bit gray
       PngChunk("IHDR", std::string("\0\0\x20\0\0\0\x20\0\x08\0\0\0\0", 13));
   png.replace(8, huge.size(), huge);
   EXPECT_THAT(DecodePng(png, ImageUse::kGray).problem, testing::HasSubstr("too short"));
@@ -127,8 +128,8 @@ TEST(ImageFile, TooShortForWhatTheirHeadersClaim) {
   EXPECT_THAT(DecodeJpeg(jpeg, ImageUse::kGray).problem, testing::HasSubstr("too short"));
 }
 
-// Each scan is a pass over the picture: some ten are in a JPEG that arrives step by step, in one
-// made to take minutes as many as there is room for.
+// Every scan is a pass over the image. Progressive JPEGs have about ten; a crafted file can have
+// hundreds.
 TEST(ImageFile, JpegsOfHundredsOfScansAreRefused) {
   std::vector<uchar> made;
   ASSERT_TRUE(cv::imencode(".jpg", TinyImage(1), made, {cv::IMWRITE_JPEG_PROGRESSIVE, 1}));
@@ -146,7 +147,7 @@ long PeakMegabytes() {
   return usage.ru_maxrss / 1024;
 }
 
-// Unpacked, a comment is up to a thousand times as long, and there may be a thousand comments.
+// Comments may unpack to a thousand times their size, and a file may contain a thousand of them.
 TEST(ImageFile, CommentsOfPngsAreNotUnpacked) {
   const TempFolder folder;
   WriteImage(folder / "a.png", TinyImage(1));
@@ -198,7 +199,7 @@ TEST(ImageFile, DamageInTheMiddleOfAPngIsAnError) {
   MessageOf(ErrorKind::kInput, [&] { ReadImageGray(folder / "a.png"); });
 }
 
-// Whatever the damage: an image of some size, or a text; never a crash (the sanitizers watch).
+// Damaged files give an image or an error text but never crash (checked by the sanitizers).
 TEST(ImageFile, NoDamageBringsTheReaderDown) {
   const TempFolder folder;
   Random random(11);
@@ -208,7 +209,7 @@ TEST(ImageFile, NoDamageBringsTheReaderDown) {
     int damaged = 0;
     for (int round = 0; round < 300; ++round) {
       std::string broken = bytes;
-      // Half of the rounds spare nothing, half hit the header.
+      // Even rounds damage any byte, odd rounds the header.
       const auto reach = static_cast<uint32_t>(round % 2 == 0 ? bytes.size() : 64);
       for (int i = 0; i < 3; ++i)
         broken[random.Below(reach)] = static_cast<char>(random.Below(256));

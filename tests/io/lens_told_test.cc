@@ -1,4 +1,4 @@
-// What a recording itself says of its lens: EXIF data of images, QuickTime's of videos.
+// Lens metadata of recordings: EXIF data of images, QuickTime metadata of videos.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ std::string Big(uint64_t value, int bytes) {
   return text;
 }
 
-// A TIFF directory that leads to another, which has one entry: FocalLengthIn35mmFilm (0xA405).
+// A TIFF directory that refers to another one with a single entry: FocalLengthIn35mmFilm (0xA405).
 std::string Exif(uint16_t millimetres) {
   const std::string tiff = "MM" + Big(42, 2) + Big(8, 4) + Big(1, 2) + Big(0x8769, 2) + Big(4, 2) +
                            Big(1, 4) + Big(26, 4) + Big(0, 4) + Big(1, 2) + Big(0xA405, 2) +
@@ -42,7 +42,7 @@ std::string Box(const std::string& name, const std::string& body) {
   return Big(static_cast<uint32_t>(body.size()) + 8, 4) + name + body;
 }
 
-// A video whose last box, moov, is made longer by QuickTime's metadata.
+// Writes a video and appends QuickTime metadata to its last box, moov.
 void WriteVideo(const std::string& path, const std::string& millimetres) {
   cv::VideoWriter video(path, cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 30, {64, 48});
   ASSERT_TRUE(video.isOpened());
@@ -63,7 +63,7 @@ void WriteVideo(const std::string& path, const std::string& millimetres) {
   std::ofstream(path, std::ios::binary) << bytes << meta;
 }
 
-// Of a picture with 4:3 its diagonal is 5/4 of its width.
+// For an image of 4:3 the diagonal is 5/4 of the width.
 double FovOf(double millimetres) {
   return 360 / M_PI * std::atan(43.266615 / (2 * 1.25 * millimetres));
 }

@@ -1,4 +1,4 @@
-// Pictures and cameras larger than anything that takes pictures.
+// Images and cameras that exceed the size limits.
 #include "alidade/geometry/picture_size.h"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ TEST(PictureSize, NoMapsAreMadeForACameraBeyondIt) {
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { camera.Check(); }), HasSubstr("20000x20000"));
 }
 
-// Of a real picture, the header made to claim `side` pixels each way.
+// A valid PNG whose header is changed to state `side` pixels each way.
 std::string PngThatClaims(uint32_t side) {
   std::string bytes = EncodePng(cv::Mat(8, 8, CV_8UC1, cv::Scalar(9)));
   for (size_t i = 0; i < 8; ++i)
@@ -88,14 +88,14 @@ TEST(PictureSize, ImagesThatClaimMoreAreRefusedByTheirHeader) {
     const std::string size = MessageOf(ErrorKind::kInput, [&] { ReadImageSize(path); });
     EXPECT_THAT(read, HasSubstr(path));
     EXPECT_THAT(size, HasSubstr(path));
-    if (path.find("c.png") == std::string::npos) {  // libpng's own limit is a million a side
+    if (path.find("c.png") == std::string::npos) {  // libpng's own limit is a million per side
       EXPECT_THAT(read, HasSubstr("pictures of 20000x20000 are too large"));
       EXPECT_THAT(size, HasSubstr("pictures of 20000x20000 are too large"));
     }
   }
 }
 
-// Read by OpenCV, which must not make room for it first.
+// Read by OpenCV, which must not allocate memory for it first.
 TEST(PictureSize, ImagesOfOtherKindsAreRefusedToo) {
   const TempFolder folder;
   const std::string path = folder.Write("a.ppm", "P5\n20000 20000\n255\n" + std::string(100, 'x'));

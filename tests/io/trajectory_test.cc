@@ -86,7 +86,7 @@ TEST(Trajectory, OfTheBodyIsTakenToTheLeftCamera) {
   const Trajectory t = ReadTrajectory(folder.path());
   ASSERT_EQ(t.size(), 1u);
   EXPECT_EQ(t[0].stamp, "1403715273.262142976");
-  // The body looks along y (a quarter turn about z); the camera sits 0.5 m before it and is turned
+  // The body looks along y (a quarter turn about z); the camera is 0.5 m in front of it and rotated
   // once more.
   EXPECT_LT((t[0].T_world_camera.t - Eigen::Vector3d(1, 2.5, 3)).norm(), 1e-9);
   EXPECT_NEAR(t[0].T_world_camera.R(0, 0), -1, 1e-9);

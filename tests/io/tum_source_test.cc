@@ -39,8 +39,8 @@ TEST(TumSource, GivesImagesDepthAndStampsAsRecorded) {
 TEST(TumSource, DepthIsTheNearestInTimeOneToOne) {
   const TempFolder folder;
   WriteTinyTum(folder, {.frames = 4});
-  // Frames 1 and 2 both lie near depth 1, frame 2 nearer; nothing lies near frame 3 (0.02 s away is
-  // too far).
+  // Frames 1 and 2 are both near depth 1, frame 2 nearer; no depth is near frame 3 (0.02 s is too
+  // far).
   folder.Write("rgb.txt",
                "1.000 rgb/100.500000.png\n1.030 rgb/101.500000.png\n1.041 "
                "rgb/102.500000.png\n1.100 rgb/103.500000.png\n");

@@ -13,8 +13,8 @@
 namespace alidade::video_source_test {
 namespace {
 
-// Pictures that survive compression: eight stripes say the number in binary; the top left quarter
-// is black.
+// An image that survives compression: eight stripes encode the number in binary; the top left
+// quarter is black.
 cv::Mat Picture(int number) {
   cv::Mat image(48, 128, CV_8UC3, cv::Scalar::all(128));
   image(cv::Rect(0, 0, 64, 24)) = cv::Scalar::all(0);
@@ -58,8 +58,8 @@ TEST(VideoSource, GivesThePicturesAtTheirTimes) {
   EXPECT_FALSE(source->Next());
 }
 
-// Shown for 1, 2, 3, 1, 2, 3, ... half frames: as long in all, which the file says in other places
-// too.
+// Durations of 1, 2, 3, 1, 2, 3, ... half frames, so that the total duration, which the file states
+// elsewhere too, is unchanged.
 std::vector<double> MakeVariable(const std::string& path, int frames) {
   std::string bytes = ReadFile(path);
   const size_t stts = Mp4Box(bytes, "stts");
@@ -92,7 +92,7 @@ TEST(VideoSource, TimesOfAVariableRateAreThoseOfTheFile) {
   }
 }
 
-// Half a minute of a phone's video was made a whole one by this.
+// Regression test: half a minute of a phone's video was stretched to a whole minute.
 TEST(VideoSource, ARepeatedTimeMovesNoOtherWhateverCalibrationIsGiven) {
   const TempFolder folder;
   WarningCatcher warnings;
@@ -150,9 +150,9 @@ TEST(VideoSource, StandsUprightByTheRotationFlag) {
   const auto frame = source->Next();
   ASSERT_TRUE(frame);
   ASSERT_EQ(frame->image.size(), cv::Size(48, 128));
-  // The field of view that is assumed is a phone's, along its longer side.
+  // The assumed field of view refers to the longer side.
   EXPECT_NEAR(source->Info().camera.fx, 64 / std::tan(33 * M_PI / 180), 1e-9);
-  // Clockwise by a quarter: what was top left is top right.
+  // Clockwise quarter turn: the top left corner becomes the top right one.
   EXPECT_LT(cv::mean(frame->image(cv::Rect(28, 4, 16, 56)))[0], 20);
   EXPECT_NEAR(cv::mean(frame->image(cv::Rect(28, 68, 16, 56)))[0], 128, 10);
 }
@@ -187,7 +187,7 @@ TEST(VideoSource, FilesThatAreNoVideoAndCamerasThatAreNotThereSaySo) {
 TEST(VideoSource, ThatIsCutShortWarnsOfIt) {
   const TempFolder folder;
   WarningCatcher warnings;
-  const std::string path = folder / "clip.avi";  // an MP4 cut short has lost its index
+  const std::string path = folder / "clip.avi";  // a truncated MP4 would lack its index
   {
     cv::VideoWriter writer(path, cv::CAP_FFMPEG, cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25,
                            {128, 48});

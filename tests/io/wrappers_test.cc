@@ -9,7 +9,7 @@
 namespace alidade::wrappers_test {
 namespace {
 
-// Frames at uneven times; counts what was asked of it.
+// Frames at uneven times; counts the calls.
 class ListSource : public FrameSource {
  public:
   ListSource(int frames, bool knows_length, bool seeks) : frames_(frames), seeks_(seeks) {
@@ -62,7 +62,7 @@ TEST(Clip, WorksWithAndWithoutSeeking) {
 }
 
 TEST(Repeat, PlaysForthAndBackWithTimesGoingOn) {
-  for (const int length : {2, 5, 70}) {  // 70: backwards takes more than one block
+  for (const int length : {2, 5, 70}) {  // 70: more than one block when played backwards
     for (const int times : {1, 2}) {
       const auto source = Repeat(std::make_unique<ListSource>(length, true, true), times);
       const auto frames = AllFrames(*source);

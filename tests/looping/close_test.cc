@@ -1,4 +1,4 @@
-// Loops and merges put every keyframe near the truth, and leave a sound map.
+// Loop closures and merges move every keyframe close to the truth and leave a consistent map.
 #include "alidade/looping/close.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kView = 32, kPlace = 1;
 
-// Largest distance of a keyframe's centre to the truth, metres, and of its scale.
+// Largest error of a keyframe's center (meters), rotation and scale.
 struct Errors {
   double position = 0, turn = 0, scale = 0;
 };
@@ -35,8 +35,8 @@ bool Covisible(const KeyFrame& keyframe, KeyFrameId other) {
                      [&](const Neighbour& n) { return n.id == other; });
 }
 
-// A little in each step, as odometry has it: a climb and a turn about the vertical, which add up on
-// the way round (a shift sideways would only make the ring wider).
+// Drift in each step, as of odometry: vertical translation and rotation about the vertical, which
+// accumulate around the ring (a lateral drift would only enlarge the ring).
 DriftedMapSettings DriftAllAlong(double metres, double radians, double growth = 1) {
   DriftedMapSettings settings;
   settings.drift << 0, metres / kViews, 0, 0, radians / kViews, 0;
@@ -67,9 +67,9 @@ void CloseAndCheck(OldPlace& place, double position, double scale) {
   EXPECT_EQ(here.loops, std::vector<KeyFrameId>{match->place});
   EXPECT_EQ(there.loops, std::vector<KeyFrameId>{match->keyframe});
   EXPECT_TRUE(Covisible(here, there.id));
-  // The first keyframe holds the world.
+  // The first keyframe defines the world frame.
   EXPECT_EQ(map.PoseOf(place.KeyFrameOf(0)).t, drifted.PoseOf(place.KeyFrameOf(0)).t);
-  // What was two landmarks is one: nearly all that the match found.
+  // Duplicate landmarks are merged: nearly all found by the match.
   EXPECT_GT(drifted.landmark_count() - map.landmark_count(),
             static_cast<int>(0.8 * static_cast<double>(match->found.size())));
   int wrong = 0, all = 0;
@@ -98,8 +98,8 @@ TEST(CloseLoop, WithOneCameraMendsTheScaleToo) {
   }
 }
 
-// Keyframes of the place that share a few landmarks with the one that came back (far ones, in a
-// corridor) are where it is to be brought to: they are not moved along with it.
+// Keyframes of the old place that share a few landmarks with the returning keyframe (distant ones,
+// in a corridor) must not be moved with it.
 TEST(CloseLoop, APlaceThatSharesALittleIsNotMovedAlong) {
   auto place = ComeBack({.drifted = DriftAllAlong(0.4, 0.1, 1.25)});
   ShareATenth(*place, kView, kPlace);
@@ -107,7 +107,8 @@ TEST(CloseLoop, APlaceThatSharesALittleIsNotMovedAlong) {
   ASSERT_TRUE(Covisible(*map.Find(place->KeyFrameOf(kView)), place->KeyFrameOf(kPlace)));
   const auto match = place->Verify(kView, kPlace);
   ASSERT_TRUE(match);
-  const auto moved = [&](const LoopSettings& settings) {  // of the place
+  // Number of the old place's keyframes in the window.
+  const auto moved = [&](const LoopSettings& settings) {
     const auto window = CorrectLoop(map, *match, place->world.camera, settings).window;
     return std::count_if(window.begin(), window.end(),
                          [&](KeyFrameId id) { return id < place->KeyFrameOf(kLap / 2); });
@@ -119,7 +120,7 @@ TEST(CloseLoop, APlaceThatSharesALittleIsNotMovedAlong) {
   CloseAndCheck(*place, 0.3, 0.07);
 }
 
-// A second time, over what the first left.
+// Closing a second loop after the first.
 TEST(CloseLoop, TwiceIsNoWorse) {
   auto place = ComeBack({.depth = true, .drifted = DriftAllAlong(1.2, 0.2)});
   CloseAndCheck(*place, 0.25, 1e-9);
@@ -133,7 +134,7 @@ TEST(CloseLoop, TwiceIsNoWorse) {
   EXPECT_LT(ErrorsOf(*place).position, 1.2 * once.position);
 }
 
-// What was mapped between correction and commit hangs on as it did.
+// Objects created between correction and commit follow.
 TEST(CloseLoop, WhatIsBornMeanwhileComesAlong) {
   auto place = ComeBack({.drifted = DriftAllAlong(0.4, 0.1, 1.25)});
   const auto match = place->Verify(kView, kPlace);
@@ -174,8 +175,8 @@ TEST(CloseLoop, NothingIsDoneWhenThePlaceIsGone) {
   EXPECT_EQ(place->map().landmark_count(), before.landmark_count());
 }
 
-// Two maps of the ring, the second in a world (and, for one camera, a scale) of its own, that meet
-// where the first began. `view`, `place`: in whichever map they are.
+// Two maps of the ring that overlap at the first one's start; the second has its own world frame
+// (and scale if monocular). `view` and `at` may be in either map.
 void MergeAndCheck(bool depth, int view, int at, double bound) {
   SCOPED_TRACE(std::to_string(view) + (depth ? " with depth" : ""));
   OldPlace place;

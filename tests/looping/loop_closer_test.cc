@@ -1,4 +1,4 @@
-// The loop closer as a whole: what it enters, closes and adjusts; which places it asks about.
+// The loop closer: candidates, loop closure, merging, full adjustment.
 #include "alidade/looping/loop_closer.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST(LoopCandidates, AreOldPlacesAndNothingNear) {
     const auto found = FindLoopCandidates(map, places, id, place->settings);
     ASSERT_FALSE(found.empty());
     EXPECT_LE(found.size(), 3u);
-    // The likest is the view from the same point of the ring, or one beside it.
+    // The best candidate is the view from the same position on the ring, or an adjacent one.
     EXPECT_NEAR(static_cast<int>(found[0].value), view - kLap, 1);
     const KeyFrame& keyframe = *map.Find(id);
     for (KeyFrameId candidate : found) {
@@ -35,7 +35,7 @@ TEST(LoopCandidates, AreOldPlacesAndNothingNear) {
         EXPECT_NE(candidate, n.id);
         for (const Neighbour& second : map.Find(n.id)->covisible) EXPECT_NE(candidate, second.id);
       }
-      for (KeyFrameId other : found) {  // each stands for a group
+      for (KeyFrameId other : found) {  // each candidate represents a different group
         for (const Neighbour& n : map.Find(candidate)->covisible) EXPECT_NE(n.id, other);
       }
     }
@@ -48,8 +48,8 @@ bool IsAmong(const std::vector<KeyFrameId>& found, int view) {
   });
 }
 
-// The camera sees a tenth of its landmarks again that the old place saw: far ones, in a corridor,
-// that hold neither its place nor its scale.
+// The camera shares a tenth of its landmarks with the old place: distant ones in a corridor, which
+// constrain neither its position nor its scale.
 TEST(LoopCandidates, AFewSharedLandmarksDoNotTieAPlace) {
   const auto place = ComeBack({.drifted = DriftInTheMiddle(0.4, 0.1)});
   constexpr int kView = 32, kOld = kView - kLap;
@@ -92,7 +92,7 @@ TEST(LoopCandidates, GroupsAreStoodForByTheirBest) {
   for (KeyFrameId candidate : found) {
     for (const Neighbour& n : map.Find(candidate)->covisible) {
       if (score(n.id) <= score(candidate)) continue;
-      // Liker, and yet left out: then one liker still stands for it.
+      // Left out despite a higher score: then a better keyframe of its group is a candidate.
       const bool stood_for = std::any_of(found.begin(), found.end(), [&](KeyFrameId other) {
         const auto& group = map.Find(n.id)->covisible;
         return score(other) >= score(n.id) &&
@@ -111,7 +111,7 @@ TEST(LoopCandidates, WhatIsMuchLessLikeThanTheNeighboursIsNone) {
   for (int v = 0; v < 24; ++v) {
     if (v > 6) places.Add(place->KeyFrameOf(v), place->world.views[v].frame);
   }
-  // Nothing of what 26 sees is in but its neighbours.
+  // The index contains only the keyframe's neighbors.
   EXPECT_TRUE(
       FindLoopCandidates(place->map(), places, place->KeyFrameOf(24), place->settings).empty());
 }
@@ -128,7 +128,7 @@ TEST(LoopCloser, FindsTheLoopAtTheKeyFrameThatComesBackAndClosesIt) {
     for (; view < kViews && !match; ++view) match = closer.Add(place->KeyFrameOf(view));
     ASSERT_TRUE(match);
     --view;
-    EXPECT_GE(view, kLap - 3);  // not before anything of the start is in view
+    EXPECT_GE(view, kLap - 3);  // not before the start is in view again
     EXPECT_LE(view, kLap + 2);
     EXPECT_EQ(places.size(), view + 1);
     EXPECT_EQ(match->keyframe, place->KeyFrameOf(view));
@@ -149,14 +149,14 @@ TEST(LoopCloser, FindsTheLoopAtTheKeyFrameThatComesBackAndClosesIt) {
   }
 }
 
-// A ring whose second half looks exactly like the first: a map that comes to it could be in either.
+// A ring whose second half looks exactly like the first: a second map matches either half.
 TEST(LoopCloser, TakesNoneOfTwoPlacesOfAnotherMapThatWouldDoAsWell) {
   for (bool symmetric : {false, true}) {
     SCOPED_TRACE(symmetric);
     OldPlace place;
     place.world = MakeRing({.depth = true});
     const int points = static_cast<int>(place.world.points.size()), half = kLap / 2;
-    const Se3 turn{ExpSo3({0, std::numbers::pi, 0}), {0, 0, -6}};  // about the ring's centre
+    const Se3 turn{ExpSo3({0, std::numbers::pi, 0}), {0, 0, -6}};  // about the center of the ring
     for (int i = 0; i < points; ++i) {
       const Eigen::Vector3d p = turn * place.world.points[i];
       place.world.points.push_back(p);
@@ -191,7 +191,7 @@ TEST(LoopCloser, ForgetsWhatWasCulled) {
     commit.Remove(place->KeyFrameOf(4));
     commit.Remove(place->KeyFrameOf(7));
   });
-  EXPECT_FALSE(closer.Add(place->KeyFrameOf(7)));  // culled before its turn
+  EXPECT_FALSE(closer.Add(place->KeyFrameOf(7)));  // culled before Add()
   EXPECT_EQ(places.size(), 4);
   closer.Add(place->KeyFrameOf(6));
   EXPECT_EQ(places.size(), 5);
@@ -220,7 +220,7 @@ TEST(LoopCloser, DoesNotCloseWhatIsGone) {
   EXPECT_EQ(closer.loops(), 0);
 }
 
-// A map with errors in all places, and its truth.
+// A map with errors in all poses and landmarks, and the true world.
 struct Unsettled {
   SyntheticWorld world =
       MakeSyntheticWorld({.points = 300, .cameras = 8, .flipped_bits = 10, .depth = true});
@@ -230,7 +230,7 @@ struct Unsettled {
   PlaceIndex places;
   LoopCloser closer{store, places, world.camera, {}};
 
-  double Error() const {  // metres, of keyframes on average
+  double Error() const {  // mean position error of the keyframes, meters
     double sum = 0;
     for (size_t i = 0; i < made.keyframes.size(); ++i)
       sum += Apart(store.Snapshot().PoseOf(made.keyframes[i]), world.views[i].T_camera_world);
@@ -244,7 +244,7 @@ TEST(AdjustAll, BringsTheMapToTheTruth) {
   EXPECT_GT(before, 0.015);
   const uint64_t corrections = map.store.Snapshot().corrections();
   map.closer.AdjustAll(map.made.keyframes.back(), nullptr, AtOnce);
-  EXPECT_LT(map.Error(), 2e-4);  // keypoints are exact, to the last bit of a float
+  EXPECT_LT(map.Error(), 2e-4);  // keypoints are exact up to float precision
   EXPECT_EQ(map.store.Snapshot().corrections(), corrections + 1);
   ExpectConsistent(map.store.Snapshot());
   const Se3 root = map.store.Snapshot().PoseOf(map.made.keyframes[0]);
@@ -282,7 +282,7 @@ TEST(AdjustAll, TakesAlongWhatWasMappedMeanwhile) {
   const MapSnapshot after = map.store.Snapshot();
   ExpectConsistent(after);
   EXPECT_LT(map.Error(), 2e-4);
-  // The step was the true one, and so the young one is where it truly is.
+  // The correction is exact, so the new keyframe is at its true pose.
   EXPECT_LT(Apart(after.PoseOf(young), map.world.views[7].T_camera_world), 1e-3);
   EXPECT_LT((after.PoseOf(parent) * after.Find(point)->p_world - p_parent).norm(), 1e-9);
 }

@@ -1,4 +1,4 @@
-// A camera that goes around a ring and comes back to where it began, with all it has drifted.
+// A camera that moves around a ring and returns to its start with accumulated drift.
 #pragma once
 
 #include "alidade/looping/close.h"
@@ -7,15 +7,15 @@
 
 namespace alidade {
 
-inline constexpr int kLap = 30;    // views once around
-inline constexpr int kViews = 36;  // the last six see again what the first did
+inline constexpr int kLap = 30;    // views per lap
+inline constexpr int kViews = 36;  // the last six views repeat the first six
 
 struct OldPlaceSettings {
   bool depth = false;
   DriftedMapSettings drifted = {};
   int points = 2000;
-  int changed = 0;     // of 100 points look different the second time
-  bool moved = false;  // … and those that do not have changed places
+  int changed = 0;     // percentage of points with another descriptor in the second lap
+  bool moved = false;  // the remaining descriptors are permuted
 };
 
 struct OldPlace {
@@ -42,7 +42,7 @@ inline SyntheticWorld MakeRing(const OldPlaceSettings& settings) {
                                     .lap = kLap};
   SyntheticWorld world = MakeSyntheticWorld(ring);
   if (settings.changed == 0 && !settings.moved) return world;
-  // The second time round, points are others, or have the looks of others.
+  // In the second half, change or permute the descriptors of points.
   Random random(5);
   std::vector<Descriptor> looks = world.descriptors;
   for (Descriptor& descriptor : looks) {
@@ -71,7 +71,8 @@ inline std::unique_ptr<OldPlace> ComeBack(const OldPlaceSettings& settings) {
   return place;
 }
 
-// Shift and turn of each step between the eighth keyframe and the 22nd; before and after, none.
+// Constant drift per step in translation, rotation and scale between views 8 and 22; none before
+// and after.
 inline DriftedMapSettings DriftInTheMiddle(double metres, double radians, double growth = 1) {
   DriftedMapSettings settings;
   settings.drift_first = 9;
@@ -84,7 +85,8 @@ inline DriftedMapSettings DriftInTheMiddle(double metres, double radians, double
   return settings;
 }
 
-// From now on the keyframe of a view sees a tenth of its landmarks as those the old place's saw.
+// Lets the keyframe of `view` observe a tenth of its landmarks as those of the old place's
+// keyframe.
 inline void ShareATenth(OldPlace& place, int view, int old_view) {
   place.store.Commit([&](MapCommit& commit) {
     const KeyFrameId id = place.KeyFrameOf(view), old = place.KeyFrameOf(old_view);

@@ -1,4 +1,4 @@
-// What is the same place, where the camera is in it; and what only looks like it.
+// Verification of loop candidates: same places, their poses, and places that look similar.
 #include "alidade/looping/verify.h"
 
 #include <gtest/gtest.h>
@@ -8,18 +8,18 @@
 namespace alidade::verify_test {
 namespace {
 
-constexpr int kView = 32, kPlace = 1;  // two steps of the ring lie between what they see
-constexpr double kPosition = 0.02;     // metres: 0.5 px of noise, at 5 m, over some 100 landmarks
+constexpr int kView = 32, kPlace = 1;  // their views are two steps of the ring apart
+constexpr double kPosition = 0.02;     // meters: 0.5 px of noise at 5 m with about 100 landmarks
 constexpr double kAngle = 0.004;       // radians
 
-// Where the camera truly is: what is around the place did not drift.
+// The keyframe's true pose; the surroundings of the old place have no drift.
 void ExpectTruth(const OldPlace& place, const LoopMatch& match, double position = kPosition) {
   const Se3& truth = place.world.views[kView].T_camera_world;
   EXPECT_LT(Apart(match.T_camera_world, truth), position);
   EXPECT_LT(RotationAngle(match.T_camera_world, truth), kAngle);
 }
 
-// Found landmarks are what their keypoints show.
+// Share of the found landmarks that are matched to the correct keypoint.
 double TrueShare(const OldPlace& place, const LoopMatch& match) {
   std::map<uint32_t, int> point_of;
   for (const auto& made : place.made.landmarks) point_of[made.first.value] = made.second;
@@ -67,7 +67,7 @@ TEST(VerifyLoop, GivesTheSameTwice) {
   EXPECT_EQ(one->found.size(), two->found.size());
 }
 
-// Leaves a keyframe only so many landmarks of its own, as one has that was just made.
+// Leaves a keyframe only `keep` landmarks, as for a recently created one.
 void Forget(OldPlace& place, int view, int keep) {
   place.store.Commit([&](MapCommit& commit) {
     const KeyFrameId id = place.KeyFrameOf(view);
@@ -86,11 +86,11 @@ TEST(VerifyLoop, FindsAFreshKeyFrameByThePlacesLandmarksAlone) {
     SCOPED_TRACE(depth);
     const double growth = depth ? 1 : 1.2;
     const auto place = ComeBack({.depth = depth, .drifted = DriftInTheMiddle(0.4, 0.1, growth)});
-    Forget(*place, kView, depth ? 5 : 19);  // too few to align
+    Forget(*place, kView, depth ? 5 : 19);  // too few to align 3D-3D
     const auto match = place->Verify(kView, kPlace);
     ASSERT_TRUE(match);
     ExpectTruth(*place, *match, 0.03);
-    EXPECT_NEAR(match->growth * growth, 1, 0.03);  // a median of some ten
+    EXPECT_NEAR(match->growth * growth, 1, 0.03);  // median of about ten ratios
   }
 }
 
@@ -117,7 +117,7 @@ TEST(VerifyLoop, TheSameThingsOtherwiseArrangedAreAnotherPlace) {
   }
 }
 
-// All that is seen is alike: only how far tracking can have drifted tells the two apart.
+// The places look the same; only the limit on drift distinguishes them.
 TEST(VerifyLoop, WhatTrackingCannotHaveDriftedByIsAnotherPlace) {
   const auto shifted = ComeBack({.depth = true, .drifted = DriftInTheMiddle(7, 0)});
   EXPECT_FALSE(shifted->Verify(kView, kPlace));
@@ -126,17 +126,17 @@ TEST(VerifyLoop, WhatTrackingCannotHaveDriftedByIsAnotherPlace) {
   for (double growth : {1.9, 0.5}) {
     const DriftedMapSettings grown = DriftInTheMiddle(0, 0, growth);
     EXPECT_FALSE(ComeBack({.drifted = grown, .changed = 50})->Verify(kView, kPlace));
-    // A camera whose scale broke down: believed where the place is beyond doubt.
+    // A failed monocular scale is accepted if most of the place is found.
     const auto plain = ComeBack({.drifted = grown})->Verify(kView, kPlace);
     ASSERT_TRUE(plain);
     EXPECT_NEAR(plain->growth * growth, 1, 0.005);
   }
   auto allowed = ComeBack({.depth = true, .drifted = DriftInTheMiddle(7, 0)});
-  allowed->settings.max_drift = 0.6;  // nothing else was against it
+  allowed->settings.max_drift = 0.6;  // no other check rejects it
   EXPECT_TRUE(allowed->Verify(kView, kPlace));
 }
 
-// The keyframe sees the place, those around it something else.
+// Only the keyframe itself observes the place, its neighbors do not.
 TEST(VerifyLoop, ThoseAroundMustAgree) {
   const OldPlaceSettings changed{.depth = true, .changed = 100};
   auto place = std::make_unique<OldPlace>();
@@ -151,10 +151,10 @@ TEST(VerifyLoop, ThoseAroundMustAgree) {
   EXPECT_TRUE(place->Verify(kView, kPlace));
 }
 
-// Two maps: of the ring as it was, and as it is the second time, in a world of its own.
+// Two maps: one of the first lap, one of the second with its own world frame.
 TEST(VerifyLoop, AnotherMapOfTheSameShapesThatLooksOtherwiseIsAnotherPlace) {
   for (bool depth : {true, false}) {
-    for (int changed : {0, 30, 70}) {  // of 100 points
+    for (int changed : {0, 30, 70}) {  // percent of points with another descriptor
       SCOPED_TRACE(changed);
       OldPlace place;
       place.world = MakeRing({.depth = depth, .points = 8000, .changed = changed});
@@ -167,15 +167,15 @@ TEST(VerifyLoop, AnotherMapOfTheSameShapesThatLooksOtherwiseIsAnotherPlace) {
                           place.world.camera, place.settings);
       };
       EXPECT_EQ(verify().has_value(), changed < 50);
-      // Where nothing else is against it: the shapes, and more landmarks found than are asked for.
+      // Without the descriptor check the maps match: the same geometry and enough landmarks.
       place.settings.min_merge_alike = 0;
       EXPECT_TRUE(verify());
     }
   }
 }
 
-// The camera goes half around the ring at 0.63 m a second, is lost there, and another map of the
-// beginning follows `seconds` later. 30 of 100 points look different by then.
+// The camera moves half around the ring at 0.63 m/s and is lost there; `seconds` later another map
+// begins at the start of the ring. `changed` percent of the points look different then.
 bool Merges(double seconds, bool one_recording, int changed = 30) {
   OldPlace place;
   place.world = MakeRing({.points = 8000, .changed = changed});
@@ -195,11 +195,12 @@ bool Merges(double seconds, bool one_recording, int changed = 30) {
 }
 
 TEST(VerifyLoop, BetweenTwoMapsOfARecordingACameraDoesNotLeap) {
-  EXPECT_FALSE(Merges(1, true));  // six metres in a second
-  EXPECT_TRUE(Merges(16, true));  // half around takes 15 s
-  EXPECT_TRUE(Merges(1, false));  // when the other was recorded is not known
+  EXPECT_FALSE(Merges(1, true));  // 6 m in 1 s: too fast
+  EXPECT_TRUE(Merges(16, true));  // half of the ring takes 15 s
+  EXPECT_TRUE(Merges(1, false));  // other recording: times are not comparable
   EXPECT_TRUE(
-      Merges(1, true, 0));  // a film may be cut: all that should be seen is, and looks alike
+      // A cut is accepted if everything expected is found and looks the same.
+      Merges(1, true, 0));
 }
 
 TEST(VerifyLoop, WhatIsGoneIsNone) {

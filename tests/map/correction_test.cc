@@ -1,4 +1,4 @@
-// Large moves: everything that hangs on a keyframe must come along, in place and in scale.
+// Large corrections: everything relative to a keyframe must follow in position and scale.
 #include "alidade/map/correction.h"
 
 #include <gtest/gtest.h>
@@ -17,18 +17,18 @@ void ExpectNear(const Se3& a, const Se3& b, double bound = 1e-9) {
   EXPECT_LT((a.t - b.t).norm(), bound);
 }
 
-// A map of eight keyframes in a row, of which two were culled; and places told by each.
+// A map of eight keyframes in a row, three of them culled, with one anchor per keyframe.
 struct Fixture {
   SyntheticWorld world = MakeSyntheticWorld({.points = 300, .cameras = 8});
   MapStore store;
   std::vector<KeyFrameId> ids;
   std::vector<Anchor> anchors;
-  std::vector<Se3> frames;  // T_camera_world told by the anchors
+  std::vector<Se3> frames;  // T_camera_world of the anchors
 
   Fixture() {
     ids = FillDriftedMap(world, {}, store).keyframes;
     store.Commit([&](MapCommit& commit) {
-      for (KeyFrameId id : {ids[3], ids[6], ids[2]}) {  // the parent after its child, too
+      for (KeyFrameId id : {ids[3], ids[6], ids[2]}) {  // includes a parent culled after its child
         const std::vector<LandmarkId> landmarks = commit.Find(id)->landmarks;
         commit.Remove(id);
         for (LandmarkId landmark : landmarks) {
@@ -49,7 +49,7 @@ struct Fixture {
 TEST(CommitCorrections, WhatIsYoungerFollowsItsParentsWithItsScale) {
   Fixture fixture;
   const MapSnapshot before = fixture.store.Snapshot();
-  // Worked out when only the first five were there.
+  // Computed when only the first five keyframes existed.
   std::vector<KeyFrameCorrection> corrections;
   for (KeyFrameId id : before.KeyFrames()) {
     if (id > fixture.ids[4]) break;
@@ -62,7 +62,7 @@ TEST(CommitCorrections, WhatIsYoungerFollowsItsParentsWithItsScale) {
   for (size_t i = 0; i < fixture.ids.size(); ++i) {
     SCOPED_TRACE(i);
     ExpectNear(after.PoseOf(fixture.ids[i]),
-               InOtherWorld(before.PoseOf(fixture.ids[i]), kMove));  // the culled, too
+               InOtherWorld(before.PoseOf(fixture.ids[i]), kMove));  // also the culled ones
     EXPECT_NEAR(after.ScaleOf(fixture.ids[i]), kMove.s, 1e-12);
     ExpectNear(PoseOf(after.state(), fixture.anchors[i]), InOtherWorld(fixture.frames[i], kMove));
   }
@@ -98,7 +98,7 @@ TEST(CommitCorrections, LandmarksKeepTheirPixelInTheirReferenceWhereEachKeyFrame
 
 TEST(CommitCorrections, ScalesOfSeveralAddUp) {
   Fixture fixture;
-  const Anchor anchor = fixture.anchors[6];  // to a culled one
+  const Anchor anchor = fixture.anchors[6];  // relative to a culled keyframe
   Se3 expected = fixture.frames[6];
   for (int round = 0; round < 3; ++round) {
     const MapSnapshot map = fixture.store.Snapshot();
@@ -129,7 +129,7 @@ TEST(CommitCorrections, OtherMapsStayWhereTheyAre) {
 }
 
 TEST(CommitMerge, PutsTwoMapsIntoOneWorld) {
-  Fixture fixture;  // the older
+  Fixture fixture;  // the older map
   const Sim3 T_younger_world{0.7, ExpSo3({0.1, 0.8, -0.2}), {-3, 1, 4}};
   const std::vector<KeyFrameId> younger =
       FillDriftedMap(fixture.world, {.first = 2, .T_map_world = T_younger_world}, fixture.store)
@@ -158,7 +158,7 @@ TEST(CommitMerge, PutsTwoMapsIntoOneWorld) {
     ExpectNear(PoseOf(after.state(), anchors[i]), step * fixture.world.views[2 + i].T_camera_world);
   }
   for (KeyFrameId id : fixture.ids) ExpectNear(after.PoseOf(id), before.PoseOf(id), 1e-15);
-  for (LandmarkId id : after.Landmarks()) {  // both know the same points, exactly
+  for (LandmarkId id : after.Landmarks()) {  // both maps contain the same points, without error
     const Landmark& landmark = *after.Find(id);
     const Observation& seen = landmark.observations[0];
     const int view = after.Find(seen.keyframe)->frame->number;
@@ -183,7 +183,8 @@ TEST(CommitMerge, ParentsAreOlderThanTheirChildrenWhereverTheMapsTouch) {
   const KeyFrameId root = AddEmpty(store, {}), second = AddEmpty(store, root);
   const KeyFrameId other_root = AddEmpty(store, {});
   AddEmpty(store, other_root);
-  const KeyFrameId third = AddEmpty(store, second);  // the older map goes on, relocalised
+  // The older map is continued after relocalization.
+  const KeyFrameId third = AddEmpty(store, second);
   const KeyFrameId fourth = AddEmpty(store, third);
   const MapSnapshot map = store.Commit([&](MapCommit& commit) {
     ASSERT_NE(commit.Find(other_root)->map, commit.Find(root)->map);

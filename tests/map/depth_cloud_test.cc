@@ -11,13 +11,13 @@ namespace {
 
 Camera TestCamera() { return Camera::FromFieldOfView(64, 48, 60); }
 
-// The plane n·p = d of the world.
+// The plane n·p = d in the world frame.
 struct Plane {
   Eigen::Vector3d n = Eigen::Vector3d(0.2, -0.1, 1).normalized();
   double d = 2;
 };
 
-// What a camera at `T_world_camera` measures of it, exactly, every `step` pixels.
+// Exact depth of the plane in a camera at `T_world_camera`, at every `step` pixels.
 DepthMap Measure(const Plane& plane, const Camera& camera, const Se3& T_world_camera,
                  float relative_sigma = 0.01f, int step = 1) {
   DepthMap depth;
@@ -65,14 +65,14 @@ Cube CubeOf(const Eigen::Vector3f& p, double edge) {
 
 TEST(DepthCloud, VoxelsHoldOnePointEachAndAllThatWereMet) {
   const Camera camera = TestCamera();
-  // Planes that pass through no cube's face within a float's precision of it.
+  // Planes that are not within float precision of a voxel face.
   const DepthMap here = Measure({}, camera, kHere), there = Measure({}, camera, kThere);
   const std::vector<PlacedDepth> both = {{&here, kHere, 1}, {&there, kThere, 1}};
   constexpr double kEdge = 0.07;
   std::map<Cube, int> all, kept;
   for (const auto& p : MakeDepthCloud(both, camera, 0).points) ++all[CubeOf(p, kEdge)];
   for (const auto& p : MakeDepthCloud(both, camera, kEdge).points) ++kept[CubeOf(p, kEdge)];
-  EXPECT_LT(kept.size(), 64u * 48);  // they did share
+  EXPECT_LT(kept.size(), 64u * 48);  // points were merged
   EXPECT_EQ(kept.size(), all.size());
   for (const auto& [cube, count] : kept) {
     EXPECT_EQ(count, 1);
@@ -83,7 +83,7 @@ TEST(DepthCloud, VoxelsHoldOnePointEachAndAllThatWereMet) {
 TEST(DepthCloud, PointOfAVoxelIsTheMeanByInverseVariance) {
   const Camera camera = TestCamera();
   DepthMap depth;
-  // Two depths along one ray: 1.000 and 1.004 m with sigmas of 1 and 2 cm (by z² σ_ρ).
+  // Two depths along one ray: 1.000 and 1.004 m with sigmas of 1 and 2 cm (z² σ_ρ).
   const auto x = static_cast<uint16_t>(32), y = static_cast<uint16_t>(24);
   depth.pixels = {{x, y, 1.f, 0.01f, {100, 0, 0}},
                   {x, y, 1 / 1.004f, 0.02f / 1.004f / 1.004f, {200, 0, 50}}};
@@ -143,11 +143,11 @@ TEST(DepthPicture, IsRegisteredToTheImageAsTaken) {
   EXPECT_EQ(picture.type(), CV_16UC1);
   EXPECT_EQ(picture.size(), cv::Size(64, 48));
   EXPECT_EQ(cv::countNonZero(picture), 2);
-  const double x = 30 / camera.fx;  // Brown's model on the axis, by hand
+  const double x = 30 / camera.fx;  // Brown's model on the x axis, computed by hand
   const int taken = static_cast<int>(std::lround(30 + camera.fx * x * (1 - 0.3 * x * x)));
-  ASSERT_LT(taken, 59);  // the lens moves it visibly
+  ASSERT_LT(taken, 59);  // the distortion is visible
   EXPECT_EQ(picture.at<uint16_t>(20, taken), 10000);
-  EXPECT_EQ(picture.at<uint16_t>(20, 30), 20000);  // the principal point stays
+  EXPECT_EQ(picture.at<uint16_t>(20, 30), 20000);  // the principal point is not displaced
 }
 
 TEST(DepthPicture, TheNearerHoldsAndTheFarIsLeftOut) {
@@ -156,10 +156,10 @@ TEST(DepthPicture, TheNearerHoldsAndTheFarIsLeftOut) {
   depth.pixels = {{10, 9, 1 / 3.f, 0.01f, {}},  {10, 9, 1 / 2.f, 0.01f, {}},
                   {10, 9, 1 / 4.f, 0.01f, {}},  {12, 9, 1 / 6.5f, 0.01f, {}},
                   {14, 9, 1 / 6.6f, 0.01f, {}}, {700, 9, 1.f, 0.01f, {}}};
-  const cv::Mat picture = DrawDepth(depth, 2, camera);  // a loop doubled all lengths
+  const cv::Mat picture = DrawDepth(depth, 2, camera);  // a loop closure doubled all lengths
   EXPECT_EQ(picture.at<uint16_t>(9, 10), 20000);
   EXPECT_EQ(picture.at<uint16_t>(9, 12), 65000);
-  EXPECT_EQ(picture.at<uint16_t>(9, 14), 0);  // 13.2: beyond 13.1
+  EXPECT_EQ(picture.at<uint16_t>(9, 14), 0);  // 13.2 m is beyond the range of 13.1 m
   EXPECT_EQ(cv::countNonZero(picture), 2);
 }
 

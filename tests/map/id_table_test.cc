@@ -25,7 +25,7 @@ TEST(IdTable, HoldsWhatStdMapHoldsInTheSameOrder) {
   IdTable<Thing> table;
   std::map<uint32_t, std::shared_ptr<const Thing>> expected;
   for (uint64_t version = 1; version <= 4000; ++version) {
-    // Few and many ids, near and far: levels are added as they are needed.
+    // Few and many ids, small and large: levels are added as needed.
     const uint32_t id = random.Below(200) << random.Below(25);
     if (random.Below(3) == 0) {
       table.Erase(id, version);
@@ -73,7 +73,7 @@ TEST(IdTable, AChangeCopiesOnlyTheWayToIt) {
   EXPECT_GT(table.tree().CountNodes(), 1500);
 }
 
-// A table through which a million ids have passed is as large as what is left in it.
+// The size of a table depends on its contents, not on a million ids erased before.
 TEST(IdTable, ForgetsThePast) {
   IdTable<Thing> table;
   for (uint32_t id = 0; id < 1000000; ++id) {

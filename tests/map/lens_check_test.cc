@@ -15,13 +15,13 @@ namespace {
 
 struct Walk {
   int keyframes = 30;
-  double k1 = 0;        // of the lens, which the map knows nothing of …
-  int bent_from = 0;    // … in keyframes from this one on
+  double k1 = 0;        // k1 of the lens that the camera model does not include
+  int bent_from = 0;    // first keyframe with k1
   double opposite = 0;  // k1 of the keyframes before
   uint64_t seed = 1;
 };
 
-// Keyframes on a way past points, each of which the next ones see for a while.
+// Keyframes along a path past points, each of which is observed for a while.
 MapSnapshot MapOf(const Walk& walk) {
   Camera lens = MakeVgaCamera();
   Random random(walk.seed);
@@ -82,7 +82,7 @@ TEST(CheckLens, TellsALensThatBendsStrongly) {
     const LensCheck check = CheckOf({.k1 = k1});
     EXPECT_EQ(check.windows, 3);
     EXPECT_NEAR(check.k1, k1, 0.05);
-    EXPECT_NEAR(check.bend, check.k1 * 0.5805, 1e-3);  // the corner is 0.762 from the axis
+    EXPECT_NEAR(check.bend, check.k1 * 0.5805, 1e-3);  // the corner is at 0.762 from the axis
     EXPECT_TRUE(check.strong);
   }
 }

@@ -16,7 +16,7 @@
 namespace alidade::map_file_test {
 namespace {
 
-bool SamePose(const Se3& a, const Se3& b) { return a.R == b.R && a.t == b.t; }  // to the last bit
+bool SamePose(const Se3& a, const Se3& b) { return a.R == b.R && a.t == b.t; }  // bitwise
 
 TEST(MapFile, ReadsBackWhatWasWritten) {
   const SavedMap saved = MakeSavedMap();
@@ -44,7 +44,7 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
   EXPECT_EQ(read.map.next_landmark(), saved.map.next_landmark());
   ASSERT_EQ(read.map.KeyFrames(), saved.map.KeyFrames());
   ASSERT_EQ(read.map.Landmarks(), saved.map.Landmarks());
-  EXPECT_GT(saved.map.state().culled.size(), 0);  // what is gone is not saved
+  EXPECT_GT(saved.map.state().culled.size(), 0);  // culled keyframes are not saved
   EXPECT_EQ(read.map.state().culled.size(), 0);
   EXPECT_FALSE(saved.map.state().forwards.empty());
   EXPECT_TRUE(read.map.state().forwards.empty());
@@ -68,7 +68,7 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
       EXPECT_EQ(a.covisible[i].id, b.covisible[i].id);
       EXPECT_EQ(a.covisible[i].shared, b.covisible[i].shared);
     }
-    int near = 0;  // the search grid was made again
+    int near = 0;  // the search grid was rebuilt
     const Keypoint& first = b.frame->keypoints.front();
     b.frame->grid.VisitNear(first.x, first.y, 1, [&](int k) { near += k == 0; });
     EXPECT_EQ(near, 1);
@@ -86,7 +86,7 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
   }
 }
 
-// What went wrong in one landmark must not cost the map.
+// An invalid landmark must not prevent saving the map.
 TEST(MapFile, ALandmarkThatIsNoNumberIsLeftOut) {
   SavedMap saved = MakeSavedMap();
   MapStore store;
@@ -103,7 +103,7 @@ TEST(MapFile, ALandmarkThatIsNoNumberIsLeftOut) {
   ExpectConsistent(read.map);
 }
 
-// After weeks in one place: few are alive of all ids ever given.
+// As after weeks of operation: few objects exist for the number of ids issued.
 TEST(MapFile, AMapOfManyIdsLoads) {
   SavedMap saved = MakeSavedMap();
   MapState state = saved.map.state();
@@ -117,7 +117,7 @@ TEST(MapFile, AMapOfManyIdsLoads) {
 TEST(MapFile, WrittenAgainHasTheSameBytes) {
   const std::string bytes = EncodeMap(MakeSavedMap());
   EXPECT_TRUE(EncodeMap(DecodeMap(bytes)) == bytes);
-  EXPECT_EQ(bytes.substr(4, 4), "ALDM");  // what any FlatBuffers reader looks for
+  EXPECT_EQ(bytes.substr(4, 4), "ALDM");  // FlatBuffers file identifier
 }
 
 TEST(MapFile, EqualMapsWithDifferentHistoriesHaveTheSameBytes) {
@@ -174,7 +174,7 @@ TEST(MapFile, RefusesWhatIsNoMap) {
   }
 }
 
-// Truncated and damaged ones: map_fuzz_test.cc.
+// Truncated and damaged files: map_fuzz_test.cc.
 
 TEST(MapFile, RefusesAMapFromANewerProgram) {
   std::string bytes = EncodeMap(MakeSavedMap());
@@ -185,7 +185,7 @@ TEST(MapFile, RefusesAMapFromANewerProgram) {
   EXPECT_THAT(message, testing::HasSubstr("newer"));
 }
 
-// Version 1 knew one map, and neither loops, scales nor places: what it has no field for.
+// Version 1 had one map and no loops, scales or places.
 TEST(MapFile, ReadsVersionOne) {
   SavedMap saved = MakeSavedMap({.second_map = false, .loops = false, .places = false});
   std::string bytes = EncodeMap(saved);
@@ -195,11 +195,10 @@ TEST(MapFile, ReadsVersionOne) {
   EXPECT_EQ(read.version, 1u);
   EXPECT_EQ(read.map.KeyFrames(), saved.map.KeyFrames());
   EXPECT_EQ(read.map.Maps(), (std::vector<MapId>{{0}}));
-  EXPECT_TRUE(EncodeMap(read) == EncodeMap(saved));  // as version 2
+  EXPECT_TRUE(EncodeMap(read) == EncodeMap(saved));  // the new encoding has version 2
 }
 
-// Maps that contradict themselves, with a checksum that fits: only made on purpose.
-// What EncodeMap() says of a map that DecodeMap() would refuse.
+// Reason why EncodeMap() refuses a map that DecodeMap() would reject.
 std::string WhyNotWritten(const SavedMap& saved) {
   try {
     EncodeMap(saved);
@@ -209,7 +208,7 @@ std::string WhyNotWritten(const SavedMap& saved) {
   return "written";
 }
 
-// What is written can be read: the one who writes applies the rules of the one who reads.
+// EncodeMap() applies the checks of DecodeMap(), so that every written file can be read.
 TEST(MapFile, RefusesAMapThatContradictsItself) {
   struct Case {
     const char* message;
@@ -226,7 +225,8 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
       {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = NAN; }},
       {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{1}}; }},
       {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {{77}}; }},
-      {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {}; }},  // the other names it
+      // The other keyframe still refers to it.
+      {"loop", [](MapCommit& c) { c.Edit(KeyFrameId{0})->loops = {}; }},
       {"order",
        [](MapCommit& c) {
          c.Edit(KeyFrameId{0})->loops = {{8}, {8}};

@@ -1,6 +1,6 @@
-// Maps that were damaged: refused with one clear error, or, where the damage was given a checksum
-// that fits and makes sense, as good as any other. A few on each run, many with scripts/test
-// --long; under the sanitizers they show that nothing is read past its end.
+// Damaged maps are rejected with one clear error; or, if the checksum was repaired and the contents
+// are valid, accepted like any other. Few cases per normal run, many with scripts/test --long;
+// under the sanitizers they show that nothing is read out of bounds.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -20,7 +20,7 @@ bool Long() { return std::getenv("ALIDADE_LONG_TESTS") != nullptr; }
 
 SavedMap Tiny() { return MakeSavedMap({.points = 40, .cameras = 5, .clutter = 2}); }
 
-// Refuses it as an input error that says something, or reads it; whatever else happens fails.
+// Either rejects the bytes with an input error, or decodes them; any other outcome fails.
 bool Refused(std::string_view bytes) {
   SavedMap saved;
   try {
@@ -37,7 +37,7 @@ bool Refused(std::string_view bytes) {
 TEST(MapFuzz, EveryTruncationOfATinyMapIsRefused) {
   const std::string bytes = EncodeMap(Tiny());
   for (size_t size = 0; size < bytes.size(); ++size) {
-    // A copy of its own, so that the sanitizer knows where it ends.
+    // An exact-size copy, so that the sanitizer detects reads past the end.
     const std::vector<char> cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     ASSERT_TRUE(Refused({cut.data(), cut.size()})) << size << " of " << bytes.size();
     std::string repaired(cut.begin(), cut.end());
@@ -64,7 +64,7 @@ TEST(MapFuzz, AnyFlippedBitIsNoticed) {
   }
 }
 
-// Damage by someone who knows how: up to four bits, and the checksum that fits.
+// Deliberate damage: up to four flipped bits with a repaired checksum.
 void FlipWithRepairedChecksum(const SavedMap& saved, int times, uint64_t seed) {
   const std::string bytes = EncodeMap(saved);
   Random random(seed);
@@ -77,19 +77,19 @@ void FlipWithRepairedChecksum(const SavedMap& saved, int times, uint64_t seed) {
     }
     if (RepairChecksum(damaged)) read += !Refused(damaged);
   }
-  EXPECT_GT(read, times / 10);  // a descriptor's bit, say, may be this or that
+  EXPECT_GT(read, times / 10);  // e.g. a flipped bit of a descriptor is valid
 }
 
 TEST(MapFuzz, FlippedBitsWithAChecksumThatFitsDoNoHarm) {
   FlipWithRepairedChecksum(MakeSavedMap(), Long() ? 10000 : 150, 12);
 }
 
-// Few keypoints: more of the flips hit tables, offsets and counts.
+// Few keypoints, so that more flips hit tables, offsets and counts.
 TEST(MapFuzz, FlippedBitsOfATinyMapWithAChecksumThatFitsDoNoHarm) {
   FlipWithRepairedChecksum(Tiny(), Long() ? 10000 : 300, 13);
 }
 
-// Where counts and offsets are dense: every bit of the end (tables are written last to first) and
+// Regions dense in counts and offsets: every bit of the end (tables are written last to first) and
 // of the root.
 TEST(MapFuzz, EveryBitOfTheFirstKilobyteDoesNoHarm) {
   const std::string bytes = EncodeMap(Tiny());
@@ -100,7 +100,7 @@ TEST(MapFuzz, EveryBitOfTheFirstKilobyteDoesNoHarm) {
   }
 }
 
-// Whole words replaced by the numbers that break things.
+// Replaces whole words by critical values.
 TEST(MapFuzz, ExtremeNumbersDoNoHarm) {
   const std::string bytes = EncodeMap(Tiny());
   const uint32_t extremes[] = {0,          1,          0x7fffffff, 0x80000000, 0xffffffff,

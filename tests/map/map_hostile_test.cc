@@ -1,5 +1,4 @@
-// Small files that ask for all memory, or for a walk without end: built on purpose, with a checksum
-// that fits.
+// Small crafted files with a valid checksum that would exhaust memory or cause endless loops.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -15,7 +14,7 @@ namespace {
 
 using flatbuffers::FlatBufferBuilder;
 
-// What a map is built from; each test spoils one thing.
+// Contents of a map file; each test corrupts one part.
 struct Parts {
   int width = 640, height = 480;
   uint32_t next_keyframe = 1000, next_landmark = 1000, next_map = 1;
@@ -102,7 +101,8 @@ TEST(HostileMap, IdsWithoutObjects) {
   FlatBufferBuilder builder;
   Parts parts;
   parts.next_landmark = parts.next_keyframe =
-      0xfffffff0;  // long ago, in a map that lived for weeks
+      // Large ids, as in a map of long operation.
+      0xfffffff0;
   parts.keyframes = {AddKeyFrame(builder, 0)};
   const SavedMap read = DecodeMap(Bytes(builder, parts));
   EXPECT_EQ(read.map.keyframe_count(), 1);
@@ -132,7 +132,7 @@ TEST(HostileMap, VocabularyThatIsNoTree) {
   const std::vector<std::vector<fb::PlaceNode>> cases = {
       {{centre, 0, 2}, {centre, 0, 0}, {centre, 0, 0}},           // its own child
       {{centre, 1, 0xffffffff}, {centre, 0, 0}, {centre, 0, 0}},  // more children than nodes
-      {{centre, 1, 2}, {centre, 1, 2}, {centre, 0, 0}}};          // a circle
+      {{centre, 1, 2}, {centre, 1, 2}, {centre, 0, 0}}};          // a cycle
   for (const auto& nodes : cases) {
     FlatBufferBuilder builder;
     Parts parts;

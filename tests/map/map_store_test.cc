@@ -13,7 +13,7 @@
 namespace alidade::map_store_test {
 namespace {
 
-// A keyframe with `keypoints` keypoints that show nothing yet.
+// A keyframe with `keypoints` keypoints and no landmarks.
 KeyFrame BareKeyFrame(int keypoints, KeyFrameId parent = {}, const Se3& T_camera_world = {}) {
   auto frame = std::make_shared<Frame>();
   frame->keypoints.resize(keypoints);
@@ -124,8 +124,8 @@ TEST_F(MapStoreTest, ForwardsTheIdsOfFusedLandmarks) {
   LandmarkId third;
   store_.Commit([&](MapCommit& commit) {
     third = commit.Add(SeenBy({{a_, 1}}));
-    commit.Replace(in_b_, both_);  // b sees both_ already: that observation is dropped
-    commit.Replace(both_, third);  // a sees third already, b moves over
+    commit.Replace(in_b_, both_);  // b already observes both_, so that observation is dropped
+    commit.Replace(both_, third);  // a already observes third; b's observation is moved
   });
   const MapSnapshot map = store_.Snapshot();
   ExpectConsistent(map);
@@ -142,7 +142,7 @@ TEST_F(MapStoreTest, ForwardsTheIdsOfFusedLandmarks) {
   EXPECT_FALSE(store_.Snapshot().Current(LandmarkId{}).valid());
 }
 
-// The tracker may come with ids of the snapshot it had last; older ones nobody can hold.
+// The tracker may hold ids of its last snapshot, but no older ones.
 TEST_F(MapStoreTest, ForwardsGoWhenNobodyHoldsTheOldIds) {
   LandmarkId third, fourth;
   store_.Commit([&](MapCommit& commit) {
@@ -162,7 +162,7 @@ TEST_F(MapStoreTest, ForwardsGoWhenNobodyHoldsTheOldIds) {
   EXPECT_EQ(after.state().forwards.size(), 2u);
 }
 
-// As many ids as in hours: what is left is as large as the map that lives, and so is a copy of it.
+// Hours of issued ids: the size of the map, and of a copy, depends only on live objects.
 TEST_F(MapStoreTest, TheMapIsAsLargeAsWhatLivesInIt) {
   KeyFrameId last = b_;
   MapSnapshot map;
@@ -202,7 +202,7 @@ TEST_F(MapStoreTest, CulledKeyframesGoWhenNobodyIsPlacedAgainstThem) {
   store_.ReleaseCulledKeyFrames(before.version());
   const MapSnapshot after = store_.Commit([&](MapCommit& commit) { commit.Remove(b_); });
   EXPECT_FALSE(after.MapOf(c).valid());
-  EXPECT_TRUE(after.MapOf(b_).valid());  // culled since
+  EXPECT_TRUE(after.MapOf(b_).valid());  // culled after the release
   EXPECT_NEAR(PoseOf(after.state(), kept).t.x(), -2.5, 1e-12);
   EXPECT_EQ(after.state().culled.size(), 1);
 }
@@ -262,7 +262,7 @@ TEST_F(MapStoreTest, AnAnchorFollowsPlaceAndScaleOfItsKeyframeEvenAfterCulling) 
   store_.Commit([&](MapCommit& commit) { commit.Remove(c); });
   EXPECT_LT(Distance(PoseOf(store_.Snapshot().state(), anchor), T_frame_c * before.PoseOf(c)),
             1e-12);
-  store_.Commit([&](MapCommit& commit) {  // a loop doubles all lengths around b
+  store_.Commit([&](MapCommit& commit) {  // a loop closure doubles all lengths around b
     KeyFrame* b = commit.Edit(b_);
     b->T_camera_world = Se3{ExpSo3({0, 0.3, 0}), {1, 2, 3}};
     b->scale *= 2;
@@ -296,7 +296,7 @@ TEST_F(MapStoreTest, RemovingAKeyframeHandsItsChildrenToItsParent) {
     d = commit.Add(BareKeyFrame(1, c, Sideways(-3)));
     commit.Remove(b_);
     if (commit.Find(in_b_))
-      commit.RefreshLandmark(in_b_);  // as every caller does: nobody sees it now
+      commit.RefreshLandmark(in_b_);  // as every caller does: it may have no observations now
     commit.RefreshLandmark(both_);
   });
   const MapSnapshot map = store_.Snapshot();
@@ -312,7 +312,8 @@ TEST_F(MapStoreTest, TheFirstKeyframeStays) {
 }
 
 TEST_F(MapStoreTest, AChildOfAKeyframeRemovedMeanwhileGetsItsNextLivingAncestor) {
-  // The tracker chose b on an older snapshot; the mapper removed it before the keyframe came.
+  // The parent was chosen from an older snapshot and removed by the mapper before the keyframe
+  // arrived.
   KeyFrameId c, d;
   store_.Commit([&](MapCommit& commit) { c = commit.Add(BareKeyFrame(1, b_, Sideways(-2))); });
   store_.Commit([&](MapCommit& commit) { commit.Remove(b_); });
@@ -329,7 +330,7 @@ TEST_F(MapStoreTest, ThePoseOfACulledKeyframeFollowsItsParents) {
   const Se3 T_c_a = T_c * store_.Snapshot().PoseOf(a_).Inverse();
   store_.Commit([&](MapCommit& commit) { commit.Remove(c); });
   EXPECT_LT(Distance(store_.Snapshot().PoseOf(c), T_c), 1e-12);
-  store_.Commit([&](MapCommit& commit) { commit.Remove(b_); });  // now two steps up
+  store_.Commit([&](MapCommit& commit) { commit.Remove(b_); });  // now two levels up
   EXPECT_LT(Distance(store_.Snapshot().PoseOf(c), T_c), 1e-12);
   const Se3 moved = Se3::Exp((Vector6d() << 1, 2, 3, -0.3, 0.2, 0.1).finished());
   store_.Commit([&](MapCommit& commit) { commit.Edit(a_)->T_camera_world = moved; });
@@ -364,7 +365,7 @@ TEST(MapStore, ReadersSeeWholeCommitsWhileAWriterWorks) {
   std::atomic<bool> stop{false};
   std::thread writer([&] {
     for (int i = 1; i <= 2000; ++i) {
-      store.Commit([&](MapCommit& commit) {  // always both to the same value
+      store.Commit([&](MapCommit& commit) {  // always sets both to the same value
         commit.Edit(one)->p_world.x() = i;
         commit.Edit(two)->p_world.x() = i;
       });

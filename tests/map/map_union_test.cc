@@ -1,4 +1,4 @@
-// Several maps in one: nothing but ids changes.
+// Union of several maps: only ids change.
 #include "alidade/map/map_union.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// How far a camera can have come unseen, and what that asks of a place.
+// Motion gate: maximum distance of an unobserved camera, and the resulting requirement on a place.
 #include "alidade/map/reach.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace alidade::reach_test {
 namespace {
 
-// Ten places a second along x, at `speed` map units per second, up to time 0 at the origin.
+// Positions at 10 Hz along x at `speed` map units per second, ending at time 0 in the origin.
 std::vector<TimedPlace> Walk(double speed, double seconds = 3) {
   std::vector<TimedPlace> way;
   for (int i = static_cast<int>(seconds * 10); i >= 0; --i)
@@ -28,7 +28,7 @@ double Doubt(const std::vector<TimedPlace>& way, double seconds, double moved, d
 TEST(Reach, IsWhatItsSettingsSay) {
   const ReachSettings settings{
       .speed = 3, .span = 2, .depth_speed = 0.2, .floor = 0.5, .drift = 0.1};
-  // .5 * 2 + (3 * 1 + .2 * 2) * 2 s + .1 * 5 = 8.3 map units
+  // 0.5 * 2 + (3 * 1 + 0.2 * 2) * 2 s + 0.1 * 5 = 8.3 map units
   EXPECT_NEAR(Doubt(Walk(1), 2, 8.3 / 2, 5, settings), 0.25, 1e-9);
   EXPECT_NEAR(Doubt(Walk(1), 2, 8.3 / 4, 5, settings), 0.0625, 1e-9);
   EXPECT_EQ(Doubt(Walk(1), 2, 8.4, 5, settings), 1);
@@ -50,7 +50,7 @@ TEST(Reach, AsksForTheSpeedJustBefore) {
   for (TimedPlace& place : stood) place.time -= 3;
   for (int i = 29; i >= 0; --i) stood.push_back({-0.1 * i, {0, 0, 0}});
   EXPECT_NEAR(Doubt(stood, 1, 0.5), Doubt(Walk(0), 1, 0.5), 1e-9);
-  // And not for a place that was off for a moment: 5 cm in a thirtieth of a second.
+  // Ignores a short position error: 5 cm within 1/30 s.
   std::vector<TimedPlace> noisy = Walk(0.5);
   noisy.insert(noisy.end() - 1, {-1 / 30.0, {0, 0.05, 0}});
   EXPECT_NEAR(Doubt(noisy, 1, 1), Doubt(Walk(0.5), 1, 1), 1e-9);
@@ -59,8 +59,8 @@ TEST(Reach, AsksForTheSpeedJustBefore) {
 TEST(Reach, SaysNothingOfWhatItDoesNotKnow) {
   EXPECT_EQ(Doubt({}, 1, 100), 0);
   EXPECT_EQ(Doubt({{0, {0, 0, 0}}}, 1, 100), 0);
-  EXPECT_EQ(Doubt(Walk(1, 0.1), 1, 100), 0);  // too short to tell how fast
-  EXPECT_EQ(Doubt(Walk(1), -0.5, 100), 0);    // a clock that was set back
+  EXPECT_EQ(Doubt(Walk(1, 0.1), 1, 100), 0);  // too short to estimate the speed
+  EXPECT_EQ(Doubt(Walk(1), -0.5, 100), 0);    // clock set back
 }
 
 TEST(Reach, RefusesWhatCannotBe) {

@@ -1,4 +1,4 @@
-// What commits recompute from observations: covisibility, and how to look for a landmark.
+// Data derived by commits: covisibility and search data of landmarks.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ int SharedLandmarks(const KeyFrame& a, const KeyFrame& b) {
 }
 
 TEST(RefreshCovisibility, EqualsCountingByBruteForce) {
-  // Wide steps: some pairs share many landmarks, some fewer than the 15 that count, some none.
+  // Large steps: pairs with many shared landmarks, with fewer than the minimum of 15, and with
+  // none.
   const SyntheticWorld world =
       MakeSyntheticWorld({.points = 300, .cameras = 12, .step = 0.9, .turn = 0});
   MapStore store;
@@ -31,7 +32,8 @@ TEST(RefreshCovisibility, EqualsCountingByBruteForce) {
   ExpectConsistent(map);
   int pairs = 0, weak_pairs = 0;
   for (KeyFrameId a : map.KeyFrames()) {
-    std::vector<std::pair<int, KeyFrameId>> expected;  // most shared first, then by id
+    // By descending number of shared landmarks, then by id.
+    std::vector<std::pair<int, KeyFrameId>> expected;
     for (KeyFrameId b : map.KeyFrames()) {
       const int shared = a == b ? 0 : SharedLandmarks(*map.Find(a), *map.Find(b));
       weak_pairs += shared > 0 && shared < 15;
@@ -47,7 +49,7 @@ TEST(RefreshCovisibility, EqualsCountingByBruteForce) {
     }
     pairs += static_cast<int>(expected.size());
   }
-  EXPECT_GT(pairs, 20);  // the world must put the rule to the test
+  EXPECT_GT(pairs, 20);  // ensures that both cases occur
   EXPECT_GT(weak_pairs, 4);
 }
 
@@ -90,8 +92,8 @@ TEST(RefreshLandmark, TakesTheDescriptorNearestToTheOthers) {
     for (int i = 0; i < 5; ++i) {
       auto frame = std::make_shared<Frame>();
       frame->keypoints.resize(1);
-      // The third is the typical one: the others are each 20 bits away from it, and further from
-      // each other.
+      // The third descriptor is the representative: the others differ from it by 20 bits, and more
+      // from each other.
       frame->descriptors = {i == 2 ? typical : WithFlippedBits(typical, 20, random)};
       KeyFrame keyframe;
       keyframe.frame = frame;
@@ -128,11 +130,11 @@ TEST(RefreshLandmark, KnowsDirectionAndRangeOfScales) {
   const MapSnapshot map = store.Snapshot();
   const Landmark& landmark = *map.Find(id);
   EXPECT_LT((landmark.normal - Eigen::Vector3f(0, 0, 1)).norm(),
-            1e-6);  // the mean of two mirrored directions
+            1e-6);  // mean of two mirrored directions
   const double distance = std::sqrt(17.0), scale = std::pow(1.2, 3);
-  EXPECT_NEAR(landmark.max_distance, distance * scale, 1e-5);  // there it would be on level 0
+  EXPECT_NEAR(landmark.max_distance, distance * scale, 1e-5);  // at this distance it is on level 0
   EXPECT_NEAR(landmark.min_distance, distance * scale / std::pow(1.2, 7),
-              1e-5);  // and here on the last
+              1e-5);  // at this distance it is on the last level
 }
 
 TEST(RefreshLandmark, RemovesOneThatNobodySees) {

@@ -22,7 +22,7 @@ TEST(SameCamera, TakesTheSameAndWhatIsTheSameInEffect) {
   now.fps = 15;
   CheckSameCamera(Saved(), now);
   now = Saved();
-  now.depth_factor = 0;  // a mono run beside a map that was made with depth
+  now.depth_factor = 0;  // a monocular run continuing a map with depth
   CheckSameCamera(Saved(), now);
 }
 

@@ -1,4 +1,4 @@
-// A map is parted in two: nothing moves, nothing hangs between the two, and they can be joined
+// Splitting a map: nothing moves, no references remain between the parts, and they can be merged
 // again.
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ TEST(Split, PartsAMapAndMovesNothing) {
   row.store.Commit([&](MapCommit& commit) {
     commit.AddLoop(row.ids[1], row.ids[6]);
     commit.AddLoop(row.ids[5], row.ids[7]);
-    commit.Remove(row.ids[4]);  // culled: what hangs on it follows its parent
+    commit.Remove(row.ids[4]);  // culled: anchors to it follow its parent
   });
   const MapSnapshot before = row.store.Snapshot();
   MapId younger;
@@ -45,7 +45,7 @@ TEST(Split, PartsAMapAndMovesNothing) {
     EXPECT_EQ(after.Find(id)->p_world, before.Find(id)->p_world);
     divided += after.Find(id)->observations.size() < before.Find(id)->observations.size();
   }
-  EXPECT_GT(divided, 50);  // points that both sides saw
+  EXPECT_GT(divided, 50);  // points observed by both parts
 }
 
 TEST(Split, IsUndoneByAMerge) {

@@ -13,7 +13,7 @@ bool Contains(const std::vector<KeyFrameId>& ids, KeyFrameId id) {
   return std::find(ids.begin(), ids.end(), id) != ids.end();
 }
 
-// Cameras that hardly move: all see the same.
+// Almost stationary cameras that observe the same landmarks.
 SyntheticWorld CrowdedWorld(int cameras) {
   return MakeSyntheticWorld({.points = 300, .cameras = cameras, .step = 0.005, .turn = 0});
 }
@@ -27,7 +27,7 @@ TEST(FindRedundantKeyFrames, LeavesThreeViewsOfNearlyEverything) {
       FindRedundantKeyFrames(store.Snapshot(), newest, false, {});
   EXPECT_GE(redundant.size(), 4u);  // nine cameras at one place
   EXPECT_FALSE(Contains(redundant, newest));
-  EXPECT_FALSE(Contains(redundant, made.keyframes.front()));  // holds the world's frame
+  EXPECT_FALSE(Contains(redundant, made.keyframes.front()));  // defines the world frame
   const MapSnapshot after = store.Commit([&](MapCommit& commit) {
     for (KeyFrameId id : redundant) commit.Remove(id);
     for (LandmarkId id : made.landmarks) commit.RefreshLandmark(id);
@@ -46,14 +46,14 @@ TEST(FindRedundantKeyFrames, KeepsKeyframesThatSeeSomethingOfTheirOwn) {
 }
 
 TEST(FindRedundantKeyFrames, ThreeOthersAreNeeded) {
-  const SyntheticWorld world = CrowdedWorld(3);  // each landmark has two others
+  const SyntheticWorld world = CrowdedWorld(3);  // each landmark has only two other observations
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
   EXPECT_TRUE(FindRedundantKeyFrames(store.Snapshot(), made.keyframes.back(), false, {}).empty());
 }
 
 TEST(FindRedundantKeyFrames, ViewsFromFartherAwayDoNotCount) {
-  // Four cameras far back, one near: it sees the landmarks two levels finer... than nobody else.
+  // Four cameras far back and a near one, which observes the landmarks on a coarser pyramid level.
   SyntheticWorldMaker maker({.points = 500, .cameras = 1});
   for (double back : {2.0, 2.01, 2.02, 2.03})
     maker.Look({Eigen::Matrix3d::Identity(), {0, 0, back}});
@@ -63,11 +63,11 @@ TEST(FindRedundantKeyFrames, ViewsFromFartherAwayDoNotCount) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
   const KeyFrameId near = made.keyframes[4];
-  // The near view has the coarser levels of the larger picture: the far ones, on finer levels,
-  // cover it.
+  // In the near view the landmarks are larger, hence on coarser levels: the far views, on finer
+  // levels, cover it.
   EXPECT_TRUE(
       Contains(FindRedundantKeyFrames(store.Snapshot(), made.keyframes.back(), false, {}), near));
-  // But no far one is covered by the near one and two others alone.
+  // But a far view is not covered by near ones on coarser levels.
   MapStore few;
   SyntheticWorld part = world;
   part.views = {world.views[4], world.views[4], world.views[4], world.views[0], world.views[4]};
@@ -77,7 +77,7 @@ TEST(FindRedundantKeyFrames, ViewsFromFartherAwayDoNotCount) {
 }
 
 TEST(FindRedundantKeyFrames, DoesNotJudgeKeyframesThatAreYetToBeProcessed) {
-  // The tracker entered two more while this one was worked on; it still holds their ids.
+  // The tracker added two keyframes meanwhile and still holds their ids.
   const SyntheticWorld world = CrowdedWorld(9);
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
@@ -122,16 +122,17 @@ TEST_F(WeakLandmarksTest, SeldomFoundIsWeak) {
   tallies_[one_] = {9, 2};
   EXPECT_EQ(Weak(made_.keyframes[0]), std::vector<LandmarkId>{one_});
   EXPECT_TRUE(still_young_.empty());
-  tallies_[one_] = {8, 2};  // a quarter is enough
+  tallies_[one_] = {8, 2};  // exactly the minimum of a quarter
   EXPECT_TRUE(Weak(made_.keyframes[0]).empty());
 }
 
 TEST_F(WeakLandmarksTest, SeenByTooFewAfterTwoKeyframesIsWeak) {
   KeepObservations(2);
-  EXPECT_TRUE(Weak(made_.keyframes[1]).empty());  // too early to say
+  EXPECT_TRUE(Weak(made_.keyframes[1]).empty());  // too early to decide
   EXPECT_EQ(still_young_, std::vector<LandmarkId>{one_});
   EXPECT_EQ(Weak(made_.keyframes[2]), std::vector<LandmarkId>{one_});
-  EXPECT_TRUE(Weak(made_.keyframes[2], /*has_depth=*/true).empty());  // with depth, two are enough
+  // With depth, two observations suffice.
+  EXPECT_TRUE(Weak(made_.keyframes[2], /*has_depth=*/true).empty());
   KeepObservations(1);
   EXPECT_EQ(Weak(made_.keyframes[2], true), std::vector<LandmarkId>{one_});
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr SyntheticWorldSettings kWorld{
     .points = 500, .cameras = 6, .noise_px = 0.5, .flipped_bits = 12, .clutter = 100};
 
-// All keypoints of a landmark show one and the same point of the world.
+// All keypoints of a landmark observe the same world point.
 void ExpectNothingMixedUp(const SyntheticWorld& world, const MapSnapshot& map) {
   for (LandmarkId id : map.Landmarks()) {
     std::set<int> points;
@@ -29,8 +29,8 @@ TEST(FindDuplicates, MergesLandmarksThatAreTheSameTwice) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
   const KeyFrameId newest = made.keyframes.back();
-  // Every second landmark that the newest keyframe sees becomes two: what the last two views see is
-  // split off.
+  // Duplicates every second landmark of the newest keyframe: the observations of the last two views
+  // are moved to a new landmark.
   std::vector<std::pair<LandmarkId, LandmarkId>> twins;
   store.Commit([&](MapCommit& commit) {
     for (size_t i = 0; i < made.landmarks.size(); i += 2) {
@@ -67,7 +67,8 @@ TEST(FindDuplicates, FindsSightingsNobodyNoticed) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {}, store);
   const KeyFrameId newest = made.keyframes.back();
-  std::vector<std::pair<LandmarkId, int>> forgotten;  // and the keypoint of the newest keyframe
+  // Landmark, and its keypoint in the newest keyframe.
+  std::vector<std::pair<LandmarkId, int>> forgotten;
   store.Commit([&](MapCommit& commit) {
     const std::vector<LandmarkId> seen = commit.Find(newest)->landmarks;
     for (size_t k = 0; k < seen.size(); k += 3) {

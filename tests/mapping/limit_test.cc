@@ -12,7 +12,7 @@
 namespace alidade::limit_test {
 namespace {
 
-// Cameras along a wall, from where the first are out of sight for the last.
+// Cameras along a wall; the first and the last have no common view.
 SyntheticWorld LongWorld(int cameras) {
   return MakeSyntheticWorld({.points = 3000, .cameras = cameras, .step = 0.3, .turn = 0});
 }
@@ -56,7 +56,8 @@ TEST(MapperLimit, KeepsTheMapWithinItAndSound) {
   const SyntheticMap made = FillMap(world, {}, store);
   Mapper mapper(store, world.camera, settings);
   EXPECT_EQ(mapper.KeepWithinLimit(made.keyframes.back()),
-            22);  // and 2 more, not to be back at once
+            // And 2 more, so that the limit is not reached again at once.
+            22);
   const MapSnapshot map = store.Snapshot();
   EXPECT_EQ(map.keyframe_count(), 38);
   ExpectConsistent(map);

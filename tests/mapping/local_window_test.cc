@@ -13,7 +13,7 @@ namespace {
 
 double Distance(const Se3& a, const Se3& b) { return (a * b.Inverse()).Log().norm(); }
 
-// Of all observations of the landmarks that were adjusted, pixels.
+// Over all observations of the adjusted landmarks, pixels.
 double RmsReprojection(const MapSnapshot& map, const Camera& camera, const Adjustment& window) {
   double sum = 0;
   int count = 0;
@@ -39,7 +39,7 @@ MapperSettings Patient() {
 
 class WindowTest : public testing::TestWithParam<bool> {  // with depth?
  protected:
-  // The first two keyframes are where they were, everything else is off by centimetres.
+  // The first two keyframes are exact, everything else is off by centimeters.
   void Make(const SyntheticMapSettings& settings, double noise_px = 0) {
     world_ = MakeSyntheticWorld(
         {.points = 250, .cameras = 7, .noise_px = noise_px, .depth = GetParam()});
@@ -69,7 +69,7 @@ TEST_P(WindowTest, ReturnsToTheTruthOfAnExactWorld) {
 TEST_P(WindowTest, LowersTheErrorAndHoldsTheGauge) {
   Make({.pose_sigma = 0.01, .point_sigma = 0.03}, /*noise_px=*/1);
   MapperSettings settings;
-  settings.window_keyframes = 3;  // the others hold it
+  settings.window_keyframes = 3;  // the other keyframes are fixed
   const MapSnapshot before = store_.Snapshot();
   const Adjustment result =
       AdjustWindow(before, made_.keyframes.back(), world_.camera, settings, nullptr);
@@ -78,7 +78,7 @@ TEST_P(WindowTest, LowersTheErrorAndHoldsTheGauge) {
   const MapSnapshot after = store_.Commit([&](MapCommit& commit) {
     CommitAdjustment(commit, before, result);
     for (const auto& point : result.points)
-      commit.RefreshLandmark(point.first);  // nobody may see it now
+      commit.RefreshLandmark(point.first);  // it may have no observations now
   });
   EXPECT_LT(RmsReprojection(after, world_.camera, result),
             RmsReprojection(before, world_.camera, result));
@@ -101,14 +101,14 @@ TEST_P(WindowTest, TheFirstKeyframeNeverMoves) {
       EXPECT_NE(adjusted, made_.keyframes.front());
       ++moved;
     }
-    // And in a monocular map a second one holds the scale.
+    // In a monocular map a second fixed keyframe determines the scale.
     EXPECT_LE(moved, made_.keyframes.size() - (GetParam() ? 1 : 2));
   }
 }
 
 TEST_P(WindowTest, NamesObservationsThatDoNotFit) {
   Make({}, /*noise_px=*/0.3);
-  // One keyframe takes two far-apart landmarks for each other.
+  // One keyframe has the observations of two distant landmarks swapped.
   LandmarkId one, other;
   const KeyFrameId confused = made_.keyframes[4];
   store_.Commit([&](MapCommit& commit) {
@@ -178,7 +178,7 @@ TEST(CommitAdjustment, TheYoungFollow) {
   const MapSnapshot base = store.Snapshot();
   const KeyFrameId parent = made.keyframes.back();
   const Adjustment result = AdjustWindow(base, parent, world.camera, {}, nullptr);
-  // Meanwhile: a child of the adjusted keyframe, its child, and a landmark in each.
+  // Created meanwhile: a child of the adjusted keyframe, a grandchild, and a landmark in each.
   KeyFrameId child, grandchild;
   LandmarkId in_parent, in_grandchild;
   store.Commit([&](MapCommit& commit) {
@@ -218,7 +218,7 @@ TEST(CommitAdjustment, TheYoungFollow) {
   EXPECT_LT((in_camera(before, in_grandchild) - in_camera(after, in_grandchild)).norm(), 1e-12);
 }
 
-// A camera that turns round on the spot: the newest keyframe shares landmarks with few others.
+// A pure rotation: the newest keyframe shares landmarks with few others.
 TEST(AdjustWindow, IsFilledWithNeighboursOfNeighbours) {
   const SyntheticWorld world = MakeSyntheticWorld({.points = 1500, .cameras = 24, .ring = 0.5});
   MapStore store;
@@ -235,8 +235,8 @@ TEST(AdjustWindow, IsFilledWithNeighboursOfNeighbours) {
   EXPECT_EQ(adjusted(15), 20u);
 }
 
-// Noise is a quarter of what is assumed, and every tenth keypoint is off by less than would be
-// noticed at that: they pull less where the loss follows the noise there is.
+// Noise is a quarter of the assumed one, and every tenth keypoint has an error below the assumed
+// gate: with a loss adapted to the measured noise these have less influence.
 TEST(AdjustWindow, LetsGoOfWhatTheNoiseDoesNotExplain) {
   SyntheticWorld world = MakeSyntheticWorld({.points = 400, .cameras = 7, .noise_px = 0.2});
   for (SyntheticView& view : world.views) {

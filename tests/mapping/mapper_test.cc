@@ -16,10 +16,10 @@ namespace {
 constexpr SyntheticWorldSettings kWorld{
     .points = 600, .cameras = 14, .noise_px = 0.7, .flipped_bits = 12, .clutter = 150};
 
-// What the map thinks each keypoint of a view is, as a perfect tracker would know it.
+// Correct landmark of each keypoint of a view.
 std::vector<LandmarkId> MatchesOf(const SyntheticWorld& world, const MapSnapshot& map,
                                   const SyntheticView& view) {
-  std::map<int, LandmarkId> landmark_of;  // points
+  std::map<int, LandmarkId> landmark_of;  // by world point
   for (LandmarkId id : map.Landmarks()) {
     const Observation& first = map.Find(id)->observations.front();
     const int number = map.Find(first.keyframe)->frame->number;
@@ -32,8 +32,8 @@ std::vector<LandmarkId> MatchesOf(const SyntheticWorld& world, const MapSnapshot
   return matches;
 }
 
-// Median distance of landmarks to the points their first observations show, in units of the world's
-// metres.
+// Median distance of landmarks from the true points of their first observations, meters of the
+// world.
 double MedianError(const SyntheticWorld& world, const MapSnapshot& map, double scale) {
   std::vector<double> errors;
   for (LandmarkId id : map.Landmarks()) {
@@ -68,7 +68,7 @@ TEST(Mapper, MapsAWorldSeenWithDepth) {
   MapWithDepth(world, store);
   const MapSnapshot map = store.Snapshot();
   EXPECT_GT(map.landmark_count(), 300);
-  // Half of them lie beyond the depth that is used, and are triangulated from little parallax.
+  // Half of them are beyond the depth limit and triangulated with little parallax.
   EXPECT_LT(MedianError(world, map, 1), 0.03);
   for (KeyFrameId id : map.KeyFrames()) {
     const KeyFrame& keyframe = *map.Find(id);
@@ -77,7 +77,8 @@ TEST(Mapper, MapsAWorldSeenWithDepth) {
   }
 }
 
-// sigma_z / z = z sigma_d / (f b) for a pair, 0.003 z for a depth camera: one share for all.
+// sigma_z / z = z sigma_d / (f b) for a stereo pair, 0.003 z for a depth camera: the same limit
+// applies to both.
 TEST(Mapper, TrustsDepthAsFarAsTheSensorCanTell) {
   struct Case {
     double focal, baseline, depth_factor, share;
@@ -85,12 +86,12 @@ TEST(Mapper, TrustsDepthAsFarAsTheSensorCanTell) {
     double trusted, too_far;  // metres
   };
   const std::vector<Case> cases = {
-      {707, 0.537, 0, 0.08, 0, 75, 77},     // KITTI: 0.08 * 707 * 0.537 / 0.4 = 75.9
-      {707, 0.537, 0, 0.08, 4, 36, 37.5},   // 1.2^4 times as uncertain
-      {525, 0.11, 0, 0.08, 0, 11.4, 11.7},  // a hand-held pair
-      {525, 0, 5000, 0.08, 0, 26, 27},      // a depth camera; its range is the tracker's to see to
-      {525, 0, 5000, 0.08, 7, 26, 27},      // whose noise is not the keypoint's
-      {707, 0.537, 0, 0.02, 0, 18.5, 19.5}};  // a stricter share
+      {707, 0.537, 0, 0.08, 0, 75, 77},       // KITTI: 0.08 * 707 * 0.537 / 0.4 = 75.9
+      {707, 0.537, 0, 0.08, 4, 36, 37.5},     // larger uncertainty by 1.2^4
+      {525, 0.11, 0, 0.08, 0, 11.4, 11.7},    // a hand-held stereo pair
+      {525, 0, 5000, 0.08, 0, 26, 27},        // a depth camera; its range is limited by the tracker
+      {525, 0, 5000, 0.08, 7, 26, 27},        // whose noise does not depend on the level
+      {707, 0.537, 0, 0.02, 0, 18.5, 19.5}};  // a stricter limit
   for (const Case& c : cases) {
     Camera camera;
     camera.width = 640;
@@ -137,7 +138,7 @@ TEST(Mapper, MapsAWorldFromTwoMonocularViewsOn) {
   Mapper::TwoViewMap start;
   start.a = a.frame;
   start.b = b.frame;
-  start.T_b_a = b.T_camera_world;  // the first camera is the world
+  start.T_b_a = b.T_camera_world;  // the first camera is the world frame
   for (size_t i = 0; i < a.points.size(); ++i) {
     const auto j = std::find(b.points.begin(), b.points.end(), a.points[i]);
     if (a.points[i] < 0 || j == b.points.end()) continue;
@@ -148,7 +149,7 @@ TEST(Mapper, MapsAWorldFromTwoMonocularViewsOn) {
   KeyFrameId parent = mapper.InsertTwoViews(start);
   MapSnapshot map = store.Snapshot();
   ExpectConsistent(map);
-  std::vector<double> depths;  // the unit of the map is the median depth
+  std::vector<double> depths;  // median 1 in map units
   for (LandmarkId id : map.Landmarks()) depths.push_back(map.Find(id)->p_world.z());
   std::nth_element(depths.begin(), depths.begin() + static_cast<long>(depths.size() / 2),
                    depths.end());
@@ -166,7 +167,7 @@ TEST(Mapper, MapsAWorldFromTwoMonocularViewsOn) {
   }
   map = store.Snapshot();
   EXPECT_GT(map.landmark_count(),
-            started_with + 80);                    // most of the 600 points were in view at once
+            started_with + 80);                    // most of the 600 points are visible at once
   EXPECT_LT(MedianError(world, map, scale), 0.1);  // 2 % of their distance
 }
 

@@ -1,4 +1,4 @@
-// How well a keyframe's place is known, and what is told of scale by it.
+// Covariance of a keyframe's center, and the resulting knowledge of scale.
 #include "alidade/mapping/scale_hold.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace alidade::scale_hold_test {
 namespace {
 
-// Gauss-Newton on exact landmarks seen with noise, as the covariance has it.
+// Gauss-Newton on exact landmarks with noisy observations, the model of the covariance.
 Eigen::Vector3d CentreFromNoisyPixels(const MapSnapshot& map, const KeyFrame& keyframe,
                                       const Camera& camera, double sigma, std::mt19937& random) {
   std::normal_distribution<double> noise(0, sigma);
@@ -65,7 +65,7 @@ TEST(CentreCovariance, IsThatOfPosesFromNoisyPixels) {
     scatter += off * off.transpose() / kTrials;
   }
   const Eigen::Matrix3d covariance = CentreCovariance(map, keyframe, world.camera, noise);
-  // 400 trials tell a standard deviation to 3.5 %.
+  // 400 trials determine a standard deviation within 3.5 %.
   for (int k = 0; k < 3; ++k)
     EXPECT_NEAR(std::sqrt(covariance(k, k) / scatter(k, k)), 1, 0.12) << k;
 }

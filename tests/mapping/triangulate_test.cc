@@ -13,11 +13,11 @@ namespace {
 
 struct Judgement {
   int right = 0, wrong = 0;
-  double worst_error = 0;  // metres, of the right ones
+  double worst_error = 0;  // of the correct ones, meters
 };
 
-// Right: both keypoints show one point of the world, and it is placed within `tolerance` of its
-// distance.
+// Correct: both keypoints observe the same world point, and its position error is within
+// `tolerance` of its distance.
 Judgement Judge(const SyntheticWorld& world, const std::vector<NewLandmark>& made,
                 double tolerance) {
   Judgement judgement;
@@ -41,7 +41,7 @@ double ParallaxDegrees(const Eigen::Vector3d& p, const Se3& T_a_world, const Se3
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
 
-// As the mapper does it.
+// As in the mapper.
 std::vector<NewLandmark> Triangulated(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
                                       const MapperSettings& settings = {}) {
   return TriangulateNew(map, id, AtKnownDistance(map, *map.Find(id), camera, settings), camera,
@@ -54,11 +54,11 @@ TEST(TriangulateNew, FindsTheTruePointsOfAnExactWorld) {
   const SyntheticMap made = FillMap(world, {.known = 0.4}, store);
   const auto landmarks = Triangulated(store.Snapshot(), made.keyframes.back(), world.camera);
   const Judgement judgement =
-      Judge(world, landmarks, 1e-3);  // keypoints are floats: 3e-5 px on 20 px of parallax
+      Judge(world, landmarks, 1e-3);  // keypoints are floats: 3e-5 px at 20 px of parallax
   EXPECT_EQ(judgement.wrong, 0);
 
-  // All that could be found: unknown, seen from an older keyframe at an angle clearly above the
-  // least.
+  // All possible ones: not mapped yet and observed from an older keyframe with more than the
+  // minimum parallax.
   std::set<int> possible;
   const SyntheticView& last = world.views.back();
   for (size_t v = 0; v + 1 < world.views.size(); ++v) {
@@ -74,7 +74,8 @@ TEST(TriangulateNew, FindsTheTruePointsOfAnExactWorld) {
   }
   ASSERT_GT(possible.size(), 100u);
   EXPECT_GE(judgement.right,
-            0.97 * static_cast<double>(possible.size()));  // a few lie on each other's lines
+            // A few lie on each other's epipolar lines.
+            0.97 * static_cast<double>(possible.size()));
 }
 
 TEST(TriangulateNew, MakesNoWrongPointsOfOutlierDescriptors) {
@@ -84,7 +85,7 @@ TEST(TriangulateNew, MakesNoWrongPointsOfOutlierDescriptors) {
                                              .flipped_bits = 15,
                                              .clutter = 200,
                                              .seed = 4});
-  // Every third keypoint of the newest view looks like nothing seen before.
+  // Every third keypoint of the newest view has a random descriptor.
   Random random(9);
   auto frame = std::make_shared<Frame>(*world.views.back().frame);
   for (size_t i = 0; i < frame->descriptors.size(); i += 3)
@@ -93,7 +94,7 @@ TEST(TriangulateNew, MakesNoWrongPointsOfOutlierDescriptors) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {.known = 0.4}, store);
   const auto landmarks = Triangulated(store.Snapshot(), made.keyframes.back(), world.camera);
-  // Half a pixel (more on coarse levels) at a parallax of a degree and up: up to a fifth of the
+  // Half a pixel (more on coarse levels) at a parallax of at least a degree: up to a fifth of the
   // distance.
   const Judgement judgement = Judge(world, landmarks, 0.35);
   EXPECT_EQ(judgement.wrong, 0);
@@ -123,8 +124,8 @@ TEST(TriangulateNew, RefusesWhatHasTooLittleParallax) {
   MapStore store;
   const SyntheticMap made = FillMap(world, {.known = 0.5}, store);
   MapperSettings settings;
-  settings.min_parallax_degrees_mono = 1;  // 24 mm at 2.5 m and more: half of that
-  settings.min_baseline_ratio = 1e-6;      // so that it is the angle that decides
+  settings.min_parallax_degrees_mono = 1;  // 24 mm at 2.5 m or more: half of that
+  settings.min_baseline_ratio = 1e-6;      // so that only the angle decides
   EXPECT_TRUE(
       Triangulated(store.Snapshot(), made.keyframes.back(), world.camera, settings).empty());
 }

@@ -1,4 +1,4 @@
-// One camera that turns past what it does not know: landmarks without a depth, and when they go.
+// Pure rotation with few known landmarks: landmarks with assumed depth, and when they are removed.
 #include "alidade/mapping/turn.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@
 namespace alidade::turn_test {
 namespace {
 
-// Views from one place, each turned 1.5° further, or `step` metres to the right as well.
+// Views rotated by 1.5° each, and translated by `step` meters to the right.
 SyntheticWorld Turning(int views, double noise_px, double step = 0) {
   SyntheticWorldMaker maker({.points = 600, .noise_px = noise_px});
   for (int i = 0; i < views; ++i)
@@ -45,7 +45,7 @@ TEST(MapTurn, MapsWhatTwoViewsFromOnePlaceShare) {
     for (const Observation& o : {landmark.first, landmark.second})
       EXPECT_FALSE(map.Find(o.keyframe)->landmarks[o.keypoint].valid());
   }
-  // What was triangulated is left alone.
+  // Keypoints that were triangulated are skipped.
   const std::vector<NewLandmark> half(turned.begin(), turned.begin() + 50);
   for (const NewLandmark& landmark : MapTurn(map, last.id, half, world.camera, {})) {
     for (const NewLandmark& taken : half)
@@ -71,7 +71,8 @@ TEST(MapTurn, LeavesAloneWhatIsWellKnownAndWhatCanBeTriangulated) {
   EXPECT_TRUE(MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
 }
 
-// Standard deviation of log depth by true log depth, in the first view, after an adjustment.
+// Ratio of the standard deviations of log depth and of true log depth in the first view, after an
+// adjustment.
 double WanderOf(double assumed_depth_error) {
   const SyntheticWorld world = Turning(6, 0.5);
   MapStore store;
@@ -99,8 +100,9 @@ TEST(AdjustWindow, LetsNoDepthWanderThatNothingTells) {
   EXPECT_GT(WanderOf(0), 0.3);
 }
 
-// A camera that looks out of a ring, 12° further each time, and knows the scale of what some views
-// see, and of nothing else. Which keyframes are in a map of their own after the last was mapped?
+// A camera that looks outwards from a ring, rotated by 12° per view; only the landmarks of the
+// views in `knowing` have a known scale. Returns which keyframes are split off after mapping the
+// last one.
 std::vector<bool> SplitOff(double radius, int cameras, const std::set<int>& knowing) {
   const SyntheticWorld world =
       MakeSyntheticWorld({.points = 2500, .cameras = cameras, .ring = radius, .lap = 30});
@@ -131,7 +133,7 @@ std::vector<bool> SplitOff(double radius, int cameras, const std::set<int>& know
 TEST(Mapper, GivesUpWhatWasMappedAwayFromTheKnownWithoutAScale) {
   const std::vector<bool> split = SplitOff(0.4, 14, {0, 1, 2, 3});
   EXPECT_TRUE(split.back());
-  // What was mapped before the camera had moved far enough stays.
+  // Keyframes before the camera moved far enough stay.
   for (size_t i = 0; i < 5; ++i) EXPECT_FALSE(split[i]) << i;
 }
 

@@ -20,8 +20,7 @@ SquareBlock<kSize> BlockOf(const Eigen::MatrixXd& m, int row, int column) {
   return block;
 }
 
-// A positive definite matrix with blocks on the diagonal, at `ties` places at random, and in a
-// closed chain.
+// A positive definite matrix with diagonal blocks, `ties` random blocks, and a closed chain.
 template <int kSize>
 struct Problem {
   Problem(int rows, int ties, uint64_t seed) : matrix(kSize * rows, kSize * rows) {
@@ -35,7 +34,7 @@ struct Problem {
     matrix.setZero();
     for (const auto& [low, high] : pairs) {
       below.push_back({high, low});
-      Eigen::MatrixXd J(kSize, 2 * kSize);  // of an edge
+      Eigen::MatrixXd J(kSize, 2 * kSize);  // Jacobian of an edge
       for (int i = 0; i < J.size(); ++i) J.data()[i] = random.Gaussian();
       const Eigen::MatrixXd H = J.transpose() * J;
       const int at[2] = {kSize * low, kSize * high};
@@ -46,7 +45,7 @@ struct Problem {
       }
     }
     matrix.diagonal().array() += 0.1;
-    // In no order.
+    // In random order.
     for (size_t i = below.size(); i > 1; --i) {
       std::swap(below[i - 1], below[random.Below(static_cast<uint32_t>(i))]);
     }
@@ -78,7 +77,7 @@ void ExpectSolved(int rows, int ties, uint64_t seed) {
   Problem<kSize> problem(rows, ties, seed);
   BlockCholesky<kSize> factor;
   factor.Analyse(rows, problem.below);
-  for (const double scale : {1.0, 3.0}) {  // the second time on what the first has left
+  for (const double scale : {1.0, 3.0}) {  // the second pass reuses the memory of the first
     problem.matrix *= scale;
     Eigen::VectorXd x;
     ASSERT_TRUE(problem.Solve(factor, x));

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// ½ sum of Huber losses, written down once more.
+// ½ sum of Huber losses, implemented independently.
 double CostOf(const BundleProblem& problem, const BundleSettings& settings = {}) {
   double cost = 0;
   for (const BundleObservation& o : problem.observations) {
@@ -110,7 +110,7 @@ TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
                                                    .max_track = 5,
                                                    .outliers = 0.05,
                                                    .seed = 22});
-    ASSERT_GT(start.observations.size(), 4000u);  // enough to be cut into all chunks
+    ASSERT_GT(start.observations.size(), 4000u);  // enough for several chunks
     BundleSettings settings;
     settings.sparse_above = sparse_above;
     BundleProblem one = start;
@@ -127,7 +127,7 @@ TEST(AdjustBundle, GivesTheSameBitsWithAnyNumberOfThreads) {
   }
 }
 
-// As a closed loop leaves it: little is wrong anywhere, but all along.
+// As after a loop closure: a small error everywhere, varying smoothly around the loop.
 TEST(AdjustBundle, AMapBentAllAlongIsStraightenedWithLittleDamping) {
   BundleProblem bent = MakeBundleProblem({.scene = BundleScene::kRing,
                                           .fixed_cameras = 2,
@@ -141,7 +141,8 @@ TEST(AdjustBundle, AMapBentAllAlongIsStraightenedWithLittleDamping) {
                                           .rotation_error = 0,
                                           .seed = 31});
   const auto bend = [](const Eigen::Vector3d& p) -> Eigen::Vector3d {
-    const double turn = std::atan2(p.x(), p.z());  // once around; the first cameras are at 0
+    // Angle along the ring; the first cameras are at 0.
+    const double turn = std::atan2(p.x(), p.z());
     return (1 + 0.03 * (1 - std::cos(turn))) * p + Eigen::Vector3d(0, 0.15 * std::sin(2 * turn), 0);
   };
   for (Eigen::Vector3d& p : bent.points) p = bend(p);
@@ -193,7 +194,7 @@ TEST(AdjustBundle, SaysWhetherItConverged) {
   EXPECT_FALSE(AdjustBundle(problem, {.max_iterations = 1}).converged);
   problem = start;
   EXPECT_TRUE(AdjustBundle(problem, {.max_iterations = 50}).converged);
-  EXPECT_TRUE(AdjustBundle(problem, {.max_iterations = 50}).converged);  // already there
+  EXPECT_TRUE(AdjustBundle(problem, {.max_iterations = 50}).converged);  // already converged
 }
 
 TEST(AdjustBundle, EmptyProblemsStayAsTheyAre) {
@@ -291,7 +292,7 @@ TEST(AdjustBundle, LeavesOutWhatStartsBehindTheCamera) {
 
 TEST(AdjustBundle, NoPointEndsBehindACameraThatSeesIt) {
   for (uint64_t seed = 1; seed <= 6; ++seed) {
-    // Wrong matches far apart draw points through the cameras.
+    // Distant wrong matches pull points through the cameras.
     BundleProblem problem = MakeBundleProblem(
         {.max_track = 3, .stereo = 0, .outliers = 0.3, .outlier_px = 400, .seed = seed});
     ASSERT_TRUE(std::isfinite(CostOf(problem)));
@@ -304,7 +305,7 @@ TEST(AdjustBundle, NoPointEndsBehindACameraThatSeesIt) {
 TEST(AdjustBundle, APointThatCannotMoveForwardHoldsNobodyBack) {
   const BundleProblem clean = MakeBundleProblem({.stereo = 1, .noise_px = 0.5, .seed = 32});
   BundleProblem problem = clean;
-  // A hair in front of its camera, and drawn far behind it by a negative disparity.
+  // Very close to its camera, and pulled far behind it by a negative disparity.
   BundleObservation o = problem.observations[0];
   o.point = static_cast<int>(problem.points.size());
   o.camera = 0;
@@ -319,7 +320,7 @@ TEST(AdjustBundle, APointThatCannotMoveForwardHoldsNobodyBack) {
   EXPECT_LT(LargestPointError(problem, expected), 1e-3);
 }
 
-// Points that walked on while the cameras passed: all of them drag the cameras the same way.
+// Points that moved while the cameras passed: all pull the cameras in the same direction.
 TEST(AdjustBundle, WhatIsHardlyTrustedHardlyPulls) {
   const BundleProblem clean = MakeBundleProblem({.stereo = 1, .noise_px = 0.5, .seed = 35});
   const auto walking = [](const BundleObservation& o) { return o.point % 3 == 0; };
@@ -338,7 +339,7 @@ TEST(AdjustBundle, WhatIsHardlyTrustedHardlyPulls) {
     EXPECT_NEAR(report.final_cost, CostOf(with), 1e-9 * report.initial_cost);
     return LargestCameraError(without, with);
   };
-  EXPECT_GT(pulled_by(1), 0.01);  // metres
+  EXPECT_GT(pulled_by(1), 0.01);  // meters
   EXPECT_LT(pulled_by(1e-3), 0.001);
   EXPECT_EQ(pulled_by(0), 0);
 }
@@ -360,7 +361,7 @@ TEST(AdjustBundle, PointsSeenOnceByOneEyeDoNoHarm) {
   BundleProblem expected = clean;
   const BundleSettings settings{.max_iterations = 100, .min_relative_decrease = 1e-12};
   const double cost = AdjustBundle(expected, settings).final_cost;
-  // Each can be explained entirely, and so adds nothing.
+  // Each can be explained completely, and therefore adds no cost.
   EXPECT_NEAR(AdjustBundle(problem, settings).final_cost, cost, 1e-6 * cost);
   for (const Eigen::Vector3d& p : problem.points) EXPECT_TRUE(p.allFinite());
 }
@@ -405,9 +406,9 @@ TEST(ChiSquared, IsTheSquaredErrorInStandardDeviations) {
   o.pixel += Eigen::Vector3d(3, -4, 2);
   o.inv_sigma2 = 0.25;
   o.inv_sigma2_right = 0.5;
-  // The disparity u - u_right is off by 3 - 2.
+  // The error of the disparity u - u_right is 3 - 2.
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 1, 1e-10);
-  o.trust = 0.1;  // says nothing of how well it fits
+  o.trust = 0.1;  // does not affect chi²
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25 + 0.5 * 1, 1e-10);
   o.pixel.z() = kNaN;
   EXPECT_NEAR(ChiSquared(camera, {}, p, o), 0.25 * 25, 1e-10);

@@ -1,4 +1,4 @@
-// Our bundle adjustment and Ceres', on the same problems.
+// Comparison of AdjustBundle() with Ceres.
 #include <gtest/gtest.h>
 
 #include "alidade/optimize/bundle_schur.h"
@@ -10,7 +10,7 @@ namespace {
 
 constexpr BundleSettings kToTheEnd{.max_iterations = 400, .min_relative_decrease = 1e-15};
 
-// Both start from the same place; costs are compared as Ceres computes them.
+// Same start; costs are compared as computed by Ceres.
 void ExpectSameOptimum(const BundleProblemOptions& options, double tolerance = 1e-6) {
   const BundleProblem problem = MakeBundleProblem(options);
   BundleProblem ours = problem, theirs = problem;
@@ -19,7 +19,7 @@ void ExpectSameOptimum(const BundleProblemOptions& options, double tolerance = 1
   EXPECT_NEAR(report.initial_cost, summary.initial_cost, 1e-9 * summary.initial_cost);
   EXPECT_NEAR(report.final_cost, summary.final_cost, tolerance * summary.final_cost)
       << summary.BriefReport() << " ours " << report.iterations;
-  // That the result is where the cost was taken: Ceres' own figure for our answer.
+  // Check that the returned state has the reported cost, as computed by Ceres.
   CeresBundleOptions no_steps;
   no_steps.max_iterations = 0;
   EXPECT_NEAR(AdjustWithCeres(ours, kToTheEnd, no_steps).initial_cost, report.final_cost,
@@ -36,8 +36,8 @@ TEST(BundleAgainstCeres, SameOptimumOnStereoProblems) {
 
 TEST(BundleAgainstCeres, SameOptimumOnMixedProblemsWithOutliers) {
   for (uint64_t seed = 1; seed <= 3; ++seed) {
-    // With fewer sightings an outlier can make infinity a point's best place, and neither ever
-    // arrives.
+    // With fewer sightings, an outlier can move a point's optimum to infinity, where neither
+    // converges.
     ExpectSameOptimum(
         {.points = 150, .min_track = 4, .stereo = 0.5, .outliers = 0.05, .seed = seed});
   }
@@ -54,7 +54,7 @@ TEST(BundleAgainstCeres, SameOptimumWhenSomeAreTrustedLess) {
   EXPECT_NEAR(report.final_cost, summary.final_cost, 1e-6 * summary.final_cost);
 }
 
-// From near the optimum, where both walk into the same one: this loss has several.
+// Start near the optimum, since this loss has several.
 TEST(BundleAgainstCeres, SameOptimumWithARedescendingLoss) {
   for (uint64_t seed = 1; seed <= 3; ++seed) {
     BundleProblem problem =
@@ -102,8 +102,7 @@ TEST(BundleAgainstCeres, SameOptimumAfterALoopWithTheReducedSystemSparse) {
 }
 
 TEST(BundleAgainstCeres, NoWorseThanCeresWhenOneEyeOnlyTurns) {
-  // Depths and positions are hardly seen at all: both creep along a flat valley, neither to its
-  // end.
+  // Depths and positions are hardly observable: both creep along a flat valley without converging.
   const BundleProblem problem =
       MakeBundleProblem({.scene = BundleScene::kTurning, .stereo = 0, .noise_px = 0.2, .seed = 16});
   BundleProblem ours = problem, theirs = problem;
@@ -133,7 +132,7 @@ TEST(BundleAgainstCeres, SameOptimumWhenACameraSeesAPointTwice) {
   const BundleReport report = AdjustBundle(ours, kToTheEnd);
   const double expected = AdjustWithCeres(theirs, kToTheEnd).final_cost;
   EXPECT_NEAR(report.final_cost, expected, 1e-6 * expected);
-  // A wrong block would still end there, only slower.
+  // A wrong Hessian block would still converge, but slowly.
   EXPECT_LT(report.iterations, 60);
 }
 

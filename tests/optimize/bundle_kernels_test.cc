@@ -1,4 +1,4 @@
-// Each of bundle adjustment's small products on random blocks, against Eigen's general ones.
+// The kernels of bundle adjustment on random blocks, compared with Eigen.
 #include "alidade/optimize/bundle_kernels.h"
 
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@ namespace {
 
 using Matrix63 = Eigen::Matrix<double, 6, 3>;
 
-// Rounding of a dozen operations on numbers near 1; factors of H lose as much again by its
-// condition, which stays below 1000 here.
+// Rounding of a dozen operations on numbers near 1. Factors of H additionally lose precision by its
+// condition number, which is below 1000 here.
 constexpr double kRounding = 1e-14, kFactored = 1e-11;
 constexpr int kTimes = 200;
 
@@ -33,7 +33,7 @@ Eigen::Matrix3d Lower(const PointFactor& L) {
 Eigen::Vector3d Of(const std::array<double, 3>& v) { return Eigen::Vector3d(v.data()); }
 
 Matrix63 Full(const CouplingFactor& E) {
-  return Eigen::Map<const Matrix63>(&E.column[0][0]);  // both column by column
+  return Eigen::Map<const Matrix63>(&E.column[0][0]);  // both column-major
 }
 
 // G N of one camera and one point: G = [I; [Y]x].
@@ -58,7 +58,7 @@ class BundleKernels : public testing::Test {
     for (double& value : s) value = random_.Gaussian();
     return s;
   }
-  Symmetric3 Definite() {  // J'J of a random J, and some more
+  Symmetric3 Definite() {  // J'J of a random J plus a multiple of the identity
     Eigen::Matrix3d J;
     for (int i = 0; i < 9; ++i) J.data()[i] = random_.Gaussian();
     const Eigen::Matrix3d H = J.transpose() * J + 0.05 * Eigen::Matrix3d::Identity();
@@ -161,7 +161,7 @@ TEST_F(BundleKernels, AStepOfACameraMovesTheGradientOfItsPoints) {
   }
 }
 
-// All of them together: what they leave of a point's and two cameras' equations is the Schur
+// All kernels together: eliminating a point from the equations of two cameras gives the Schur
 // complement.
 TEST_F(BundleKernels, EliminateAPointAsTheSchurComplementDoes) {
   for (int n = 0; n < kTimes; ++n) {
@@ -191,8 +191,9 @@ TEST_F(BundleKernels, EliminateAPointAsTheSchurComplementDoes) {
 TEST_F(BundleKernels, DampingIsAShareOfTheDiagonalWithAFloorByTheLargest) {
   EXPECT_DOUBLE_EQ(DampingOfEntry(1e-3, 4, 10), 4e-3);
   EXPECT_DOUBLE_EQ(DampingOfEntry(1e-3, 0, 10),
-                   1e-8);  // nothing was seen of it: a millionth counts
-  EXPECT_DOUBLE_EQ(DampingOfEntry(1e-9, 0, 10), 1e-11);  // … and what keeps it invertible
+                   // Unobserved: a millionth of the largest entry counts.
+                   1e-8);
+  EXPECT_DOUBLE_EQ(DampingOfEntry(1e-9, 0, 10), 1e-11);  // the lower limit that keeps it invertible
   const std::array<double, 3> damping = DampingOf(Symmetric3{2, 9, 9, 0, 9, 8}, 0.5);
   EXPECT_DOUBLE_EQ(damping[0], 1);
   EXPECT_DOUBLE_EQ(damping[1], 4e-6);
@@ -202,7 +203,7 @@ TEST_F(BundleKernels, DampingIsAShareOfTheDiagonalWithAFloorByTheLargest) {
   set(CameraBlock::kTt, 2);
   set(CameraBlock::kTt + 5, 8);
   set(CameraBlock::kRr + 3, 600);
-  Vector6d expected;  // translations and rotations have a scale each
+  Vector6d expected;  // translations and rotations have separate scales
   expected << 1, 4e-6, 4, 3e-4, 300, 3e-4;
   EXPECT_LT((DampingOf(block, 0.5) - expected).norm(), 1e-12);
 }

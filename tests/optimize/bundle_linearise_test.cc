@@ -9,12 +9,12 @@
 namespace alidade::bundle_linearise_test {
 namespace {
 
-// ρ θ of the camera, then the point, as in bundle_linearise.h.
+// (ρ, θ) of the camera, then the point, as in bundle_linearise.h.
 using Jet = ceres::Jet<double, 9>;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-// J'WJ and J'Wr with W the loss's weight, by automatic derivatives of p = R Exp(θ) (X - c + ρ).
+// J'WJ and J'Wr, with W the loss's weight, by automatic derivatives of p = R Exp(θ) (X - c + ρ).
 void ByJets(const BundleCamera& camera, const Eigen::Vector3d& X, const Camera& intrinsics,
             const BundleObservation& o, const ceres::LossFunction& loss, Matrix9d& H, Vector9d& g) {
   const bool stereo = std::isfinite(o.pixel.z());
@@ -63,7 +63,7 @@ TEST_P(LineariseBundle, AgreesWithAutomaticDerivatives) {
     settings.redescending = GetParam();
     for (BundleObservation& o : problem.observations) {
       o.trust = 0.2 * (1 + o.camera % 5);
-      // One camera, one point, one sighting: the sums are that sighting's terms.
+      // One camera, one point, one sighting: the sums consist of its terms only.
       BundleProblem one;
       one.camera = problem.camera;
       one.T_camera_world = {problem.T_camera_world[o.camera]};

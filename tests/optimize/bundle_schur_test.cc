@@ -13,7 +13,7 @@ Eigen::Matrix3d Full(const Symmetric3& s) {
   return (Eigen::Matrix3d() << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5]).finished();
 }
 
-// All of J'WJ and J'Wr at once: cameras by slot, then points.
+// Full J'WJ and J'Wr: cameras by slot, then points.
 void Assemble(const BundleLayout& layout, const Linearisation& system, Eigen::MatrixXd& H,
               Eigen::VectorXd& g) {
   const int cameras = static_cast<int>(layout.free_cameras.size());
@@ -43,7 +43,7 @@ TEST(SchurSolver, StepSolvesTheWholeDampedSystem) {
   for (const ReducedFactor kind : {ReducedFactor::kDense, ReducedFactor::kSparse}) {
     BundleProblem problem =
         MakeBundleProblem({.free_cameras = 6, .points = 80, .outliers = 0.1, .seed = 51});
-    problem.observations.push_back(problem.observations[4]);  // seen twice
+    problem.observations.push_back(problem.observations[4]);  // observed twice
     const BundleLayout layout = LayOut(problem, {});
     BundleState state;
     for (const Se3& T : problem.T_camera_world) state.cameras.push_back({T.R, T.Inverse().t});
@@ -56,7 +56,7 @@ TEST(SchurSolver, StepSolvesTheWholeDampedSystem) {
 
     SchurSolver solver(layout, kind);
     BundleStep step;
-    for (const double lambda : {1e-2, 1e-4}) {  // the second time on what the first has left
+    for (const double lambda : {1e-2, 1e-4}) {  // the second pass reuses the memory of the first
       solver.Solve(system, lambda, step);
       ASSERT_TRUE(step.valid);
       Eigen::MatrixXd damped = H;

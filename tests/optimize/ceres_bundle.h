@@ -1,4 +1,4 @@
-// Bundle adjustment by Ceres: the oracle.
+// Reference implementation of bundle adjustment with Ceres.
 #pragma once
 
 #include <memory>
@@ -12,11 +12,11 @@ namespace alidade {
 
 struct CeresBundleOptions {
   int max_iterations = 200;
-  bool tight = true;  // to the last digit; otherwise for timing, a fixed number of iterations
+  bool tight = true;  // to full precision; otherwise a fixed number of iterations, for timing
   ceres::LinearSolverType solver = ceres::DENSE_SCHUR;
 };
 
-// Improves `problem` in place. Every observation must be a number and in front of its camera.
+// Improves `problem` in place. All observations must be finite and in front of their camera.
 inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
                                               const BundleSettings& settings,
                                               const CeresBundleOptions& with = {}) {
@@ -26,7 +26,7 @@ inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
   ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   const auto mono = CeresLoss(settings.huber_mono, settings.redescending);
   const auto stereo = CeresLoss(settings.huber_stereo, settings.redescending);
-  std::vector<std::unique_ptr<ceres::LossFunction>> losses;  // of each observation
+  std::vector<std::unique_ptr<ceres::LossFunction>> losses;  // one per observation
   ceres::Problem ceres_problem(ownership);
   auto* ordering = new ceres::ParameterBlockOrdering;
   for (const BundleObservation& o : problem.observations) {

@@ -1,4 +1,4 @@
-// The losses of bundle adjustment, as Ceres takes them.
+// Loss functions of bundle adjustment for Ceres.
 #pragma once
 
 #include <ceres/loss_function.h>
@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-// Of s = r²: ρ = s / (1 + s / c²).
+// As a function of s = r²: ρ = s / (1 + s / c²).
 class GemanMcClureLoss final : public ceres::LossFunction {
  public:
   explicit GemanMcClureLoss(double c) : c2_(c * c) {}

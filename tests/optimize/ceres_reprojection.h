@@ -1,4 +1,4 @@
-// The residuals of optimize/, written a second time for Ceres' automatic derivatives.
+// The residuals of optimize/, implemented independently for Ceres' automatic derivatives.
 #pragma once
 
 #include <ceres/ceres.h>
@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-// A pose as Ceres takes it: rotation vector, then translation.
+// Pose parameters for Ceres: rotation vector, then translation.
 inline Eigen::Matrix<double, 6, 1> ToCeresPose(const Se3& T) {
   Eigen::Matrix<double, 6, 1> pose;
   pose << LogSo3(T.R), T.t;

@@ -1,5 +1,5 @@
-// Sim(3) written a second time for Ceres' automatic derivatives: the logarithm solved from the
-// translation's integral by quadrature.
+// Sim(3) implemented independently for Ceres' automatic derivatives; the logarithm solves for the
+// translation with the integral by quadrature.
 #pragma once
 
 #include <ceres/ceres.h>
@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-// A similarity as Ceres takes it: rotation vector, translation, log scale.
+// Similarity parameters for Ceres: rotation vector, translation, log scale.
 inline Vector7d ToCeresSim3(const Sim3& T) {
   Vector7d x;
   x << LogSo3(T.R), T.t, std::log(T.s);
@@ -41,8 +41,8 @@ struct CeresSim3 {
     return exp(log_s) * (q * p) + t;
   }
 
-  // (translation; rotation; log scale). V is the mean of e^(στ) Exp(τ ω): Gauss–Legendre with ten
-  // nodes is exact to 1e-12 for turns up to pi.
+  // Returns (translation; rotation; log scale). V is the mean of e^(στ) Exp(τ ω); Gauss–Legendre
+  // quadrature with ten nodes is exact to 1e-12 for rotations up to π.
   Eigen::Matrix<T, 7, 1> Log() const {
     const T q_[4] = {q.w(), q.x(), q.y(), q.z()};
     T w[3];
@@ -56,7 +56,7 @@ struct CeresSim3 {
       const double tau = 0.5 + (i < 5 ? 0.5 : -0.5) * kNode[i % 5];
       const T turn[3] = {tau * w[0], tau * w[1], tau * w[2]};
       T R[9];
-      ceres::AngleAxisToRotationMatrix(turn, R);  // column by column
+      ceres::AngleAxisToRotationMatrix(turn, R);  // column-major
       V += 0.5 * kWeight[i % 5] * exp(tau * log_s) * Eigen::Map<Eigen::Matrix<T, 3, 3>>(R);
     }
     Eigen::Matrix<T, 7, 1> xi;

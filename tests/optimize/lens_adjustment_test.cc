@@ -18,8 +18,8 @@ struct World {
   std::vector<LensWindow> windows;
 };
 
-// Points in a box of 4 x 3 x 3 about 5 ahead; cameras in an arc that looks at its middle, or on a
-// straight line without turning.
+// Points in a box of 4 x 3 x 3, about 5 ahead; cameras on an arc that look at its center, or on a
+// straight line without rotation.
 World MakeWorld(Motion motion, double fov, double k1, double noise_px, int seed, int windows = 1,
                 double outliers = 0) {
   std::mt19937 random(static_cast<unsigned>(seed));
@@ -68,7 +68,7 @@ World MakeWorld(Motion motion, double fov, double k1, double noise_px, int seed,
   return world;
 }
 
-// A map as one makes it with a wrong lens is off by more than noise.
+// A map built with a wrong lens has more than noise errors.
 void Disturb(std::vector<LensWindow>& windows, double by, int seed) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> gauss(0, by);
@@ -90,7 +90,7 @@ TEST(LensAdjustment, FindsAnyLensFromAnyStartWithoutNoise) {
         World world = MakeWorld(Motion::kRound, fov, k1, 0, 3);
         Disturb(world.windows, 0.01, 5);
         const RadialLens at{320 / std::tan(start * M_PI / 360), 0, 0, world.lens.centre};
-        // Too far for the prior to count: only the convergence is asked for.
+        // The prior is practically off: this tests convergence only.
         const LensAdjustment found = AdjustLens(
             world.windows, at,
             {.max_iterations = 100, .focal_sigma = 10, .k1_sigma = 10, .k2_sigma = 0, .bound = 20});
@@ -102,7 +102,7 @@ TEST(LensAdjustment, FindsAnyLensFromAnyStartWithoutNoise) {
   }
 }
 
-// The same world, seen by a shutter that rolls while the cameras move on.
+// The same world, observed with a rolling shutter by moving cameras.
 void Roll(World& world, const Eigen::Vector2d& readout) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> even(-1, 1);
@@ -117,7 +117,8 @@ void Roll(World& world, const Eigen::Vector2d& readout) {
       const auto camera = static_cast<size_t>(o.camera);
       const Eigen::Vector3d p =
           window.T_camera_world[camera] * window.points[static_cast<size_t>(o.point)];
-      for (int i = 0; i < 20; ++i) {  // when it is read depends on where it is seen
+      // Fixed-point iteration: the readout time depends on the position.
+      for (int i = 0; i < 20; ++i) {
         o.read = {o.pixel.x() / 640 - 0.5, o.pixel.y() / 480 - 0.5};
         const Eigen::Vector3d q = Se3::Exp(readout.dot(o.read) * window.motions[camera]) * p;
         const Eigen::Vector2d x = q.head<2>() / q.z();
@@ -141,7 +142,7 @@ TEST(LensAdjustment, FindsHowLongARollingShutterTakes) {
     EXPECT_NEAR(found.lens.focal / world.lens.focal, 1, 1e-3);
     EXPECT_GT(found.covariance(5, 5), 0);
 
-    // Of a lens that is known nothing else moves.
+    // With a known lens only the readout time changes.
     settings.hold_focal = true;
     settings.k1_sigma = 0;
     windows = world.windows;
@@ -187,7 +188,7 @@ struct CeresPrior {
   }
 };
 
-// Its minimum and covariance are those of Ceres, with all weights 1.
+// Minimum and covariance agree with Ceres for unit weights.
 TEST(LensAdjustment, AgreesWithCeres) {
   World world = MakeWorld(Motion::kRound, 60, -0.15, 0.5, 7, 2);
   Disturb(world.windows, 0.005, 8);
@@ -200,7 +201,7 @@ TEST(LensAdjustment, AgreesWithCeres) {
   std::vector<LensWindow> windows = world.windows;
   const LensAdjustment found = AdjustLens(windows, at, settings);
   EXPECT_TRUE(found.converged);
-  // What is left of it after a fit: of some 20 residuals a point takes up 3.
+  // Remaining after the fit: a point takes 3 of about 20 residuals.
   EXPECT_NEAR(found.noise, 0.5 * std::sqrt(17.0 / 20), 0.02);
 
   ceres::Problem problem;
@@ -224,7 +225,7 @@ TEST(LensAdjustment, AgreesWithCeres) {
                                nullptr, pose.turn, pose.shift,
                                window.points[static_cast<size_t>(o.point)].data(), lens);
     }
-    // The gauge: the first camera, and how far the last one is.
+    // Gauge: the first camera, and the distance of the last one.
     problem.SetParameterBlockConstant(poses[w][0].turn);
     problem.SetParameterBlockConstant(poses[w][0].shift);
     problem.SetManifold(poses[w][11].shift, new ceres::SubsetManifold(3, {0}));
@@ -254,7 +255,7 @@ TEST(LensAdjustment, AgreesWithCeres) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found.covariance(i, i) / expected(i, i), 1, 0.01) << i;
 }
 
-// Errors are as large as it says: 30 worlds.
+// Errors agree with the reported covariance over 30 worlds.
 TEST(LensAdjustment, SaysHowFarItIsToBeTrusted) {
   double normalised = 0;
   for (int seed = 0; seed < 30; ++seed) {
@@ -266,7 +267,8 @@ TEST(LensAdjustment, SaysHowFarItIsToBeTrusted) {
     EXPECT_LT(std::abs(off), 0.03) << seed;
     normalised += off * off / found.covariance(0, 0) / 30;
   }
-  // chi² of 30 by 30: 0.5 to 1.6 in 98 of 100. Half a loss's weight goes to good observations.
+  // chi² with 30 degrees of freedom divided by 30: 98 % in 0.5 to 1.6. The loss also down-weights
+  // good observations.
   EXPECT_GT(normalised, 0.4);
   EXPECT_LT(normalised, 1.7);
 }
@@ -280,8 +282,8 @@ TEST(LensAdjustment, IsNotMovedByMatchesThatAreNoPoints) {
             4 * std::sqrt(found.covariance(0, 0)));
 }
 
-// A camera that never turns tells nothing of its focal length: any other, with depths to go with
-// it, shows the same.
+// Without rotation the focal length is unobservable: any other one with adapted depths explains the
+// observations.
 TEST(LensAdjustment, KnowsWhatItCannotKnow) {
   for (Motion motion : {Motion::kSideways, Motion::kForward}) {
     World world = MakeWorld(motion, 60, 0, 0.4, 21);

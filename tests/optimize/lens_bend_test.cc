@@ -10,14 +10,14 @@ namespace alidade {
 namespace {
 
 struct Seen {
-  double k1 = 0;     // of the lens it was seen through
-  double focal = 1;  // of the lens, as a share of what the problem's camera says
+  double k1 = 0;     // of the true lens
+  double focal = 1;  // of the true lens, relative to that of the problem's camera
   BundleScene scene = BundleScene::kRoom;
   double stereo = 0;
   uint64_t seed = 1;
 };
 
-// Adjusted as if the lens were what the problem's camera says.
+// Adjusted as if the problem's camera were correct.
 std::optional<LensBend> BendOf(const Seen& seen) {
   BundleProblem problem = MakeBundleProblem({.scene = seen.scene,
                                              .fixed_cameras = 2,
@@ -62,7 +62,7 @@ TEST(LensBend, TakesNoiseForNone) {
   }
 }
 
-// A focal length that is off bends what a turning camera sees much like a lens does.
+// For a rotating camera a wrong focal length has an effect similar to radial distortion.
 TEST(LensBend, KeepsAWrongFocalLengthApart) {
   for (double focal : {0.85, 1.15}) {
     for (BundleScene scene : {BundleScene::kRoom, BundleScene::kTurning}) {

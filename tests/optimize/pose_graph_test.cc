@@ -106,11 +106,11 @@ void ExpectSameOptimum(const PoseGraphProblem& problem, const PoseGraphSettings&
       << summary.BriefReport() << " ours " << report.iterations;
   EXPECT_LT(report.final_cost, 0.7 * report.initial_cost);
   EXPECT_TRUE(report.converged);
-  // That the result is where the cost was taken: Ceres' own figure for our answer.
+  // Check that the returned state has the reported cost, as computed by Ceres.
   PoseGraph copy = ours;
   EXPECT_NEAR(OptimizeWithCeres(copy, settings, 0).initial_cost, report.final_cost,
               1e-9 * report.final_cost);
-  // And the optimum is one and the same.
+  // Both find the same optimum.
   EXPECT_LT(CentreError(ours.T_camera_world, theirs.T_camera_world),
             1e-3 * CentreError(problem.graph.T_camera_world, problem.truth));
 }
@@ -143,7 +143,7 @@ TEST(OptimizePoseGraph, AgreesWithCeresWithALossAndUnequalWeights) {
 
 TEST(OptimizePoseGraph, ClosesALoopOfExactStepsExactly) {
   for (const bool with_scale : {true, false}) {
-    // Measured without error, but started with drift.
+    // Measurements without error, initial poses with drift.
     PoseGraphProblem problem = MakePoseGraphProblem({.nodes = 200, .with_scale = with_scale});
     PoseGraph& graph = problem.graph;
     for (PoseGraphEdge& edge : graph.edges) {
@@ -188,7 +188,7 @@ TEST(OptimizePoseGraph, NodesWithoutATieToAFixedOneStayWhereTheyAre) {
   PoseGraphProblem problem = MakePoseGraphProblem({.nodes = 40, .seed = 8});
   PoseGraph& graph = problem.graph;
   PoseGraph alone = graph;
-  // A pair that is tied to itself only, one tied to nobody, one tied with no weight.
+  // Two nodes connected to each other only, an isolated node, and one with a zero-weight edge.
   Random random(9);
   for (int i = 0; i < 4; ++i) {
     graph.T_camera_world.push_back(
@@ -204,12 +204,12 @@ TEST(OptimizePoseGraph, NodesWithoutATieToAFixedOneStayWhereTheyAre) {
     EXPECT_EQ(graph.T_camera_world[i].R, before.T_camera_world[i].R) << i;
     EXPECT_EQ(graph.T_camera_world[i].s, before.T_camera_world[i].s) << i;
   }
-  // And they change nothing for the others.
+  // They do not affect the other nodes.
   EXPECT_EQ(report.final_cost, OptimizePoseGraph(alone).final_cost);
   for (int i = 0; i < 40; ++i) {
     EXPECT_EQ(graph.T_camera_world[i].t, alone.T_camera_world[i].t) << i;
   }
-  EXPECT_EQ(graph.T_camera_world[0].t, before.T_camera_world[0].t);  // held
+  EXPECT_EQ(graph.T_camera_world[0].t, before.T_camera_world[0].t);  // fixed
 
   for (uint8_t& fixed : graph.fixed) fixed = 0;
   const PoseGraph floating = graph;

@@ -17,7 +17,7 @@ constexpr double kDegree = 3.14159265358979323846 / 180;
 
 double PositionError(const Se3& a, const Se3& b) { return (a.Inverse().t - b.Inverse().t).norm(); }
 
-// Minimum over the pose of the plain squares of the matches that are `used`.
+// Minimizes the plain squares over the matches that are `used`.
 std::pair<Se3, double> SolveWithCeres(const Camera& camera, const Se3& start,
                                       const std::vector<PoseMatch>& matches,
                                       const std::vector<bool>& used) {
@@ -51,8 +51,8 @@ TEST(OptimizePose, ReturnsToTruthFromTenDegreesAwayAmongThirtyPercentOutliers) {
     away << RandomVector(random, 0.1), RandomVector(random, 1).normalized() * 10 * kDegree;
     const PoseOnlyResult result =
         OptimizePose(problem.camera, Se3::Exp(away) * problem.truth, problem.matches);
-    // 140 matches of sigma 1..3.6 px at f = 520 px: 0.1 degrees is 0.9 px, several deviations of
-    // their mean.
+    // 140 matches with sigma 1 to 3.6 px at f = 520 px: 0.1 degrees is 0.9 px, several standard
+    // deviations of their mean.
     EXPECT_LT(RotationAngle(result.T_camera_world, problem.truth), 0.2 * kDegree) << seed;
     EXPECT_LT(PositionError(result.T_camera_world, problem.truth), 0.02) << seed;
     int wrong = 0, lost = 0;
@@ -60,7 +60,7 @@ TEST(OptimizePose, ReturnsToTruthFromTenDegreesAwayAmongThirtyPercentOutliers) {
       wrong += result.inlier[i] && problem.outlier[i];
       lost += !result.inlier[i] && !problem.outlier[i];
     }
-    EXPECT_LE(wrong, 3) << seed;  // an outlier may fall near the right place by chance
+    EXPECT_LE(wrong, 3) << seed;  // an outlier may be consistent by chance
     EXPECT_LE(lost, 20) << seed;  // the gate keeps 95 % of 140: 7 expected
   }
 }
@@ -90,7 +90,7 @@ TEST(OptimizePose, InformationIsThatOfAutomaticDerivatives) {
     if (!result.inlier[i]) continue;
     const PoseMatch& m = problem.matches[i];
     const Eigen::Vector3d p = result.T_camera_world * m.p_world;
-    // Exp(xi) at xi = 0, as a rotation vector and a translation; both exact to first order.
+    // Exp(xi) at xi = 0 as a rotation vector and a translation, both exact to first order.
     Jet pose[6], point[3], residual[3];
     for (int d = 0; d < 3; ++d) {
       pose[d] = Jet(0, 3 + d);
@@ -109,16 +109,16 @@ TEST(OptimizePose, InformationIsThatOfAutomaticDerivatives) {
       expected += residual[row].v * residual[row].v.transpose();
     }
   }
-  // It is that of the last but one step, a 1e-7th of the cost away.
+  // The information is from the last step but one, with a relative cost difference of 1e-7.
   EXPECT_LT((result.information - expected).norm(), 1e-6 * expected.norm());
 }
 
-// Ceres' covariance of the same pose, in increments Exp(xi) on the left: xi = (translation;
+// Ceres' covariance of the same pose, for left increments Exp(xi) with xi = (translation;
 // rotation).
 Matrix6d CovarianceOfCeres(const Camera& camera, const PoseOnlyResult& result,
                            const std::vector<PoseMatch>& matches) {
-  // The landmarks are moved into the camera's frame, so that the increment is the pose itself,
-  // around zero: rotation vector, translation.
+  // Landmarks are transformed to the camera frame, so that the pose parameters (rotation vector,
+  // translation) are the increment around zero.
   Eigen::Matrix<double, 6, 1> pose = Eigen::Matrix<double, 6, 1>::Zero();
   std::vector<Eigen::Vector3d> points;
   for (const PoseMatch& m : matches) points.push_back(result.T_camera_world * m.p_world);
@@ -142,7 +142,7 @@ Matrix6d CovarianceOfCeres(const Camera& camera, const PoseOnlyResult& result,
 
 TEST(OptimizePose, CovarianceIsCeresTimesTheResidualsVariance) {
   for (uint64_t seed = 1; seed <= 5; ++seed) {
-    // Half the noise that is assumed: the gate cuts nothing off.
+    // Half of the assumed noise, so that the gate removes nothing.
     const PoseProblem problem =
         MakePoseProblem({.matches = 150, .stereo = 0.5, .noise_px = 0.5, .seed = seed});
     const PoseOnlyResult result = OptimizePose(problem.camera, problem.truth, problem.matches);
@@ -158,10 +158,10 @@ TEST(OptimizePose, CovarianceIsCeresTimesTheResidualsVariance) {
   }
 }
 
-// The spread of the errors themselves, over many draws of the noise: normalised by the covariance
-// each pose claims, their mean square is 1.
+// Spread of the errors over many noise samples: normalized by each reported covariance, the mean
+// square is 1.
 TEST(OptimizePose, CovarianceIsTheSpreadOfTheErrors) {
-  for (const double noise : {0.3, 1.0}) {  // pixels; the latter fills the gate
+  for (const double noise : {0.3, 1.0}) {  // pixels; the latter reaches the gate
     for (const double outliers : {0.0, 0.2}) {
       double sum = 0;
       constexpr int kDraws = 400;
@@ -172,21 +172,21 @@ TEST(OptimizePose, CovarianceIsTheSpreadOfTheErrors) {
         const Vector6d xi = (problem.truth * result.T_camera_world.Inverse()).Log();
         sum += xi.dot(result.covariance.inverse() * xi) / 6;
       }
-      // The mean square of 2400 normal numbers is 1 ± 0.03; outliers that fall within the gate by
-      // chance make it a little more.
+      // The mean square of 2400 standard normal numbers is 1 ± 0.03; outliers within the gate
+      // increase it slightly.
       EXPECT_NEAR(std::sqrt(sum / kDraws), 1, 0.1) << noise << " px, outliers " << outliers;
     }
   }
 }
 
-// In the camera's own frame: along the optical axis, where all is far and nothing has a second
-// column, a pose is known worst.
+// In the camera frame the correlations have a known structure for distant points without depth.
 TEST(OptimizePose, CovarianceIsInTheCamerasFrame) {
   const PoseProblem problem = MakePoseProblem(
       {.matches = 200, .stereo = 0, .noise_px = 0.5, .min_depth = 20, .max_depth = 25, .seed = 4});
   const Matrix6d covariance =
       OptimizePose(problem.camera, problem.truth, problem.matches).covariance;
-  // Far points seen within 30° around the axis: x and turning about y are hard to tell apart.
+  // Distant points within 30° of the axis: translation along x and rotation about y are strongly
+  // correlated.
   EXPECT_GT(covariance(0, 0), 0);
   EXPECT_GT(std::abs(covariance(0, 4)) / std::sqrt(covariance(0, 0) * covariance(4, 4)), 0.9);
   EXPECT_LT(std::abs(covariance(0, 3)) / std::sqrt(covariance(0, 0) * covariance(3, 3)), 0.5);
@@ -195,7 +195,7 @@ TEST(OptimizePose, CovarianceIsInTheCamerasFrame) {
 TEST(OptimizePose, CovarianceIsZeroWhereMatchesDoNotTellAPose) {
   PoseProblem problem = MakePoseProblem({.matches = 50, .stereo = 0, .seed = 8});
   EXPECT_TRUE(OptimizePose(problem.camera, problem.truth, std::span(problem.matches).first(3))
-                  .covariance.isZero());  // six numbers: nothing left to judge them by
+                  .covariance.isZero());  // six coordinates: no redundancy
   for (PoseMatch& m : problem.matches) m = problem.matches[0];
   EXPECT_TRUE(OptimizePose(problem.camera, problem.truth, problem.matches).covariance.isZero());
 }
@@ -224,14 +224,14 @@ TEST(OptimizePose, LooksPastMatchesThatAreNotNumbers) {
 
 TEST(OptimizePose, APointBehindTheCameraIsNeverAnInlierAndStopsNothing) {
   PoseProblem problem = MakePoseProblem({.matches = 60, .noise_px = 0.5, .seed = 6});
-  // Mirrored through the optical centre: the same pixel, behind.
+  // Mirrored through the optical center: the same pixel, but behind the camera.
   const Se3 T_world_camera = problem.truth.Inverse();
   for (int i = 0; i < 10; ++i) {
     const Eigen::Vector3d p = problem.truth * problem.matches[i].p_world;
     problem.matches[i].p_world = T_world_camera * Eigen::Vector3d(-p);
     problem.matches[i].pixel.z() = std::numeric_limits<double>::quiet_NaN();
   }
-  // And some a hair in front of where the camera starts, behind it in the end.
+  // Points just in front of the camera at the start, behind it at the solution.
   Vector6d away = Vector6d::Zero();
   away << 0.02, 0, 0.1, 0.02, -0.03, 0.01;
   const Se3 start = Se3::Exp(away) * problem.truth;
@@ -257,7 +257,7 @@ TEST(OptimizePose, FewerThanThreeMatchesGiveBackTheStart) {
 TEST(OptimizePose, DegenerateMatchesGiveAFinitePose) {
   PoseProblem problem = MakePoseProblem({.matches = 50, .stereo = 0, .seed = 8});
   for (PoseMatch& m : problem.matches)
-    m = problem.matches[0];  // one point: a pose has 4 free directions
+    m = problem.matches[0];  // a single point: 4 degrees of freedom remain
   const PoseOnlyResult result = OptimizePose(problem.camera, problem.truth, problem.matches);
   EXPECT_TRUE(result.T_camera_world.R.allFinite());
   EXPECT_TRUE(result.T_camera_world.t.allFinite());

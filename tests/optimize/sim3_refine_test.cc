@@ -12,7 +12,7 @@
 namespace alidade::sim3_refine_test {
 namespace {
 
-// Both residuals of one match, by (rotation, translation, log scale).
+// Both residuals of one match, as a function of (rotation, translation, log scale).
 struct CeresSim3Residual {
   Camera camera;
   Sim3Match m;
@@ -70,7 +70,7 @@ TEST(RefineSim3, ReturnsToTruthAmongWrongMatches) {
         {.matches = 150, .outliers = 0.3, .scale = with_scale ? 1.3 : 1, .seed = seed});
     const Sim3RefineResult result = RefineSim3(
         problem.camera, Away(problem.truth, with_scale, seed), problem.matches, with_scale);
-    // 100 points known to a hundredth of their depth, pixels to 1..3.6.
+    // 100 points with 1 % depth error, pixel noise 1 to 3.6.
     EXPECT_NEAR(result.T_a_b.s / problem.truth.s, 1, with_scale ? 0.01 : 0) << seed;
     EXPECT_LT(LogSo3(result.T_a_b.R.transpose() * problem.truth.R).norm(), 0.005) << seed;
     EXPECT_LT((result.T_a_b.t - problem.truth.t).norm(), 0.04) << seed;
@@ -80,7 +80,7 @@ TEST(RefineSim3, ReturnsToTruthAmongWrongMatches) {
       lost += !result.inlier[i] && !problem.outlier[i];
     }
     EXPECT_LE(wrong, 2) << seed;
-    EXPECT_LE(lost, 25) << seed;  // of 105: the points' own errors count beside the pixels'
+    EXPECT_LE(lost, 25) << seed;  // of 105: point errors add to the pixel errors
     EXPECT_EQ(result.inliers, std::count(result.inlier.begin(), result.inlier.end(), true));
   }
 }

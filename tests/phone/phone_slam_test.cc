@@ -1,4 +1,4 @@
-// The core as a page wants it, natively.
+// The interface of the core for web pages, tested natively.
 #include "alidade/phone/phone_slam.h"
 
 #include <gmock/gmock.h>
@@ -37,12 +37,12 @@ TEST(PhoneSlam, TellsWhereTheCameraIsAndWhatItSees) {
   EXPECT_GT(last.keyframes, 2);
   EXPECT_GT(last.landmarks, 100);
   EXPECT_GT(last.matches, 30);
-  EXPECT_EQ(last.fov_sigma, 0);  // it was given
+  EXPECT_EQ(last.fov_sigma, 0);  // the field of view was given
   slam.Finish();
   EXPECT_THAT(slam.Cloud(), StartsWith("ply\nformat binary_little_endian"));
   const std::string trajectory = slam.Trajectory();
   EXPECT_GT(std::count(trajectory.begin(), trajectory.end(), '\n'), 60);
-  // Who takes the messages, and who joins at the end, know the same.
+  // A receiver of all messages and one that joins at the end have the same state.
   StreamScene told, joined;
   for (const std::string& message : slam.TakeMessages()) messages.push_back(message);
   for (const std::string& message : messages) told.Take(message);
@@ -66,12 +66,12 @@ TEST(PhoneSlam, AnUnknownCameraIsAssumedAndSaidToBe) {
   EXPECT_NEAR(upright.Track(grey.data(), 1, 0).fov, 52, 1);  // 66 along the longer side
 }
 
-// What is left out of the last picture's features in the middle of it, of all there.
+// Number of features of the last image in its middle, and of excluded ones.
 struct LeftOut {
   int inside = 0, left_out = 0, elsewhere_left_out = 0;
 };
 
-// Says of each tenth picture that a person fills the middle third, twelve pictures late.
+// Reports for every tenth image that a person fills the middle third, twelve images late.
 LeftOut WalkPast(PhoneSlam& slam, const WalkedRoom& room, bool person) {
   const cv::Rect2f middle(110, 60, 100, 140);
   for (int i = 0; i < static_cast<int>(room.frames.size()); ++i) {
@@ -99,7 +99,7 @@ TEST(PhoneSlam, WhatADetectorFindsIsLeftOutHoweverLateItAnswers) {
   settings.detector_classes = {"person", "chair"};
   PhoneSlam with(room.camera, settings), without(room.camera, settings);
   const LeftOut person = WalkPast(with, room, true), nobody = WalkPast(without, room, false);
-  // Features are looked for elsewhere; those that are there are left out.
+  // Features are extracted elsewhere; the existing ones are excluded.
   EXPECT_GT(nobody.inside, 10);
   EXPECT_LT(nobody.left_out, 0.2 * nobody.inside);
   EXPECT_LT(person.inside - person.left_out, 0.2 * nobody.inside);
@@ -125,7 +125,7 @@ TEST(PhoneSlam, DetectionsThatCannotBeAreRefusedAndThoseWithoutADetectorIgnored)
                           slam.Detected(0, {{7, 1, {0, 0, 9, 9}}});
                         }),
               HasSubstr("class 7 of 1"));
-  slam.Detected(99, {{0, 1, {0, 0, 9, 9}}});  // of a picture to come
+  slam.Detected(99, {{0, 1, {0, 0, 9, 9}}});  // a future image
   slam.Track(grey.data(), 1, 0.1);
   EXPECT_FALSE(slam.slam().Detections().has_value());
 }
@@ -133,7 +133,7 @@ TEST(PhoneSlam, DetectionsThatCannotBeAreRefusedAndThoseWithoutADetectorIgnored)
 TEST(PhoneSlam, ColoursAreTurnedToGrey) {
   PhoneSlam slam(64, 48, 60, PhoneSettings::Default(false));
   const std::vector<uint8_t> pixels(size_t{64} * 48 * 4, 90);
-  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitialising);
+  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitializing);
 }
 
 TEST(PhoneSettings, AreSetByLines) {

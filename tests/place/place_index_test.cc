@@ -13,8 +13,8 @@
 namespace alidade::place_index_test {
 namespace {
 
-// Views of a made-up world, quick to have: 100 keypoints each, half of them shared with the next
-// view. Each seed looks a little different: 10 bits of each descriptor flip.
+// Views of an artificial world: 100 keypoints each, half of them shared with the next view. Each
+// seed flips 10 random bits per descriptor.
 std::vector<SharedFrame> Views(int count, uint64_t seed) {
   Random world(11), random(seed);
   std::vector<Descriptor> points;
@@ -40,7 +40,7 @@ Answers AllAnswers(const PlaceIndex& index, const std::vector<SharedFrame>& quer
   return answers;
 }
 
-// Once round a room, and the same way again a lap later, at other moments, among other rooms.
+// A lap around a room and a second lap at other times, with views of other rooms in the index.
 TEST(PlaceIndex, FindsARevisitAmongOtherPlaces) {
   const std::vector<SharedFrame> room = RenderPlaces("room", 0, 4, 14),
                                  again = RenderPlaces("room", 57, 4, 14),
@@ -48,7 +48,7 @@ TEST(PlaceIndex, FindsARevisitAmongOtherPlaces) {
                                  desk = RenderPlaces("desk", 0, 6, 5);
   PlaceIndex index;
   for (uint32_t i = 0; i < 14; ++i) {
-    // From the first on: the places there are, and among them others.
+    // Add the views one by one, interleaved with other places.
     index.Add({i}, room[i]);
     if (i < 10) index.Add({100 + i}, i % 2 == 0 ? wall[i / 2] : desk[i / 2]);
     for (uint32_t k = 0; k <= i; ++k) {
@@ -88,7 +88,7 @@ TEST(PlaceIndex, ScoresThoseNamed) {
   ASSERT_EQ(scores.size(), 5u);
   EXPECT_GT(scores[0], 0.5);
   EXPECT_EQ(scores[1], 0);
-  EXPECT_GT(scores[2], 0.2);  // half of the view
+  EXPECT_GT(scores[2], 0.2);  // half of the view is shared
   EXPECT_LT(scores[2], scores[0]);
   EXPECT_EQ(scores[3], scores[0]);
   EXPECT_LT(scores[4], scores[2]);
@@ -180,7 +180,7 @@ TEST(PlaceIndex, GoesOnAfterRestoringAsIfItHadNotBeenSaved) {
     if (id != 2 && id != 3 && id != 11) in.emplace_back(KeyFrameId{id}, room[id]);
   }
   PlaceIndex restored;
-  restored.Add({77}, room[30]);  // is replaced
+  restored.Add({77}, room[30]);  // replaced by Restore()
   restored.Restore(index.Save(), in);
   EXPECT_EQ(restored.size(), 10);
   EXPECT_EQ(AllAnswers(restored, again), AllAnswers(index, again));
@@ -218,7 +218,7 @@ TEST(PlaceIndex, RefusesWhatCannotHaveBeenSavedAndStaysAsItWas) {
   EXPECT_THAT(refused({{}, 3}, keyframes), testing::HasSubstr("contradict"));
   EXPECT_THAT(refused(good, {{{8}, room[8]}, {{8}, room[9]}}), testing::HasSubstr("twice"));
   EXPECT_THAT(refused(good, {{{8}, nullptr}}), testing::HasSubstr("keyframe 8"));
-  index.Restore({}, keyframes);  // a map saved without: grown on the spot
+  index.Restore({}, keyframes);  // a map saved without a vocabulary: grown on restore
   EXPECT_EQ(index.Save().grown_at, 2u);
   EXPECT_EQ(index.Query(*room[9], {}, 1).at(0).id.value, 9u);
   EXPECT_THAT(MessageOf(ErrorKind::kUsage,
@@ -239,7 +239,7 @@ TEST(PlaceIndex, IsAskedWhileItGrows) {
     while (!done) {
       const int size = index.size();
       const std::vector<PlaceMatch> found = index.Query(*frames[3], {}, 3);
-      // 3 is never taken out: once in, it is found.
+      // Keyframe 3 is never removed, so it must be found.
       if (size > 4 && (found.empty() || found[0].id.value != 3)) ++wrong;
       if (size > 4 && index.Score(*frames[3], {3}) < 0.99) ++wrong;
       index.Save();

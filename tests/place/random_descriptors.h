@@ -1,4 +1,4 @@
-// Descriptors drawn at random, alone and in clusters, and frames of them.
+// Random descriptors, single and in clusters, and frames of them.
 #pragma once
 
 #include <vector>
@@ -19,7 +19,7 @@ inline Descriptor Flipped(Descriptor d, int bits, Random& random) {
   return d;
 }
 
-// `copies` of each of `places` random descriptors, a few bits off.
+// `copies` noisy copies of each of `places` random descriptors.
 inline std::vector<Descriptor> Clustered(int places, int copies, uint64_t seed) {
   Random random(seed);
   std::vector<Descriptor> sample;
@@ -30,7 +30,7 @@ inline std::vector<Descriptor> Clustered(int places, int copies, uint64_t seed) 
   return sample;
 }
 
-// A frame with these descriptors, its keypoints anywhere.
+// A frame with these descriptors at random positions.
 inline Frame FrameOf(std::vector<Descriptor> descriptors) {
   Frame frame;
   frame.keypoints.resize(descriptors.size());

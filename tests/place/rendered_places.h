@@ -1,4 +1,4 @@
-// Keyframes of rendered rooms, small and quick to make.
+// Keyframes of rendered rooms, small and fast to create.
 #pragma once
 
 #include <memory>
@@ -12,7 +12,8 @@ namespace alidade {
 
 using SharedFrame = std::shared_ptr<const Frame>;
 
-// Frames `first`, first + step, … of a scene at a tenth of the usual rate: 57 go round the room.
+// Frames `first`, first + step, … of a scene at a tenth of the usual frame rate: 57 frames per lap
+// in the room.
 inline std::vector<SharedFrame> RenderPlaces(const std::string& scene, int first, int step,
                                              int count) {
   SynthSettings settings;

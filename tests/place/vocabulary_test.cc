@@ -30,8 +30,9 @@ TEST(Vocabulary, WithNothingLearntHasOneWord) {
 }
 
 TEST(Vocabulary, GivesDescriptorsOfOneClusterOneWord) {
-  // 12 bits off each: two of a cluster differ by 24 bits at most, of two clusters by 128 or so.
-  // Now and then two of one cluster are drawn as centres: then it is parted, and others are not.
+  // 12 flipped bits each: two descriptors of a cluster differ by at most 24 bits, of different
+  // clusters by about 128. Occasionally two centers are drawn from one cluster, which is then
+  // split, and other clusters are merged.
   VocabularySettings settings;
   settings.branching = 16;
   settings.levels = 1;
@@ -51,7 +52,7 @@ TEST(Vocabulary, HasTheMajorityOfItsMembersBitsForACentre) {
   VocabularySettings settings;
   settings.branching = 5;
   settings.levels = 1;
-  settings.rounds = 100;  // until nothing changes
+  settings.rounds = 100;  // until convergence
   Random random(3);
   std::vector<Descriptor> sample;
   for (int i = 0; i < 701; ++i) sample.push_back(RandomDescriptor(random));
@@ -73,7 +74,7 @@ TEST(Vocabulary, HasTheMajorityOfItsMembersBitsForACentre) {
   }
 }
 
-// Walks down the nodes as the header says, without the class.
+// Independent implementation: descends the nodes as documented.
 uint32_t LeafOf(const Nodes& nodes, const Descriptor& d) {
   uint32_t at = 0;
   while (nodes[at].children > 0) {
@@ -91,7 +92,7 @@ TEST(Vocabulary, NumbersTheLeavesFromLeftToRight) {
   const std::vector<Descriptor> sample = Clustered(300, 12, 4);
   const Vocabulary vocabulary = Vocabulary::Grow(sample, {}, 1);
   const Nodes& nodes = vocabulary.nodes();
-  // Depth first, by recursion: the word of each leaf, the first word of each node's, and levels.
+  // Recursive depth-first traversal: word of each leaf, first word of each node, and levels.
   std::vector<uint32_t> word(nodes.size(), 0), first(nodes.size(), 0);
   std::vector<std::vector<uint32_t>> groups(5);
   uint32_t words = 0;
@@ -120,7 +121,7 @@ TEST(Vocabulary, KeepsToItsBounds) {
   settings.levels = 2;
   const std::vector<Descriptor> sample = Clustered(50, 20, 5);
   EXPECT_EQ(Vocabulary::Grow(sample, settings, 1).word_count(), 9u);
-  settings.min_split = 1001;  // more than there are
+  settings.min_split = 1001;  // more than the sample has
   EXPECT_EQ(Vocabulary::Grow(sample, settings, 1).word_count(), 1u);
   settings.branching = 1;
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { Vocabulary::Grow(sample, settings, 1); }),
@@ -164,7 +165,7 @@ TEST(Vocabulary, RefusesNodesThatMakeNoTree) {
   EXPECT_THAT(refused({node(1, 1), node(0, 0)}), HasSubstr("one child"));
   EXPECT_THAT(refused({node(1, 2), node(0, 0), node(1, 0)}), HasSubstr("no children"));
   EXPECT_THAT(refused(Nodes(Vocabulary::kMaxNodes + 1)), HasSubstr("more nodes"));
-  Nodes chain = {node(1, 2)};  // each second child has two again
+  Nodes chain = {node(1, 2)};  // a chain: each second child has two children
   for (uint32_t i = 1; i <= Vocabulary::kMaxLevels; ++i) {
     chain.push_back(node(0, 0));
     chain.push_back(node(2 * i + 1, 2));

@@ -13,7 +13,7 @@ struct Pair {
   Frame a, b;
 };
 
-// 200 keypoints both have, 15 bits off and in another order, and 100 each of their own.
+// 200 common keypoints with 15 flipped bits in another order, and 100 different ones in each frame.
 Pair MakePair(uint64_t seed) {
   Random random(seed);
   std::vector<Descriptor> a, b(300);
@@ -68,7 +68,7 @@ TEST(CountMatches, FindsFewerTheDeeperItLooksAndNoneThatAreNotThere) {
   for (int level = 1; level <= 3; ++level) {
     const int found = Matches(pair.a, pair.b, vocabulary, {.level = level});
     EXPECT_LE(found, last);
-    EXPECT_GT(found, 20);  // of random bits, which no tree can part well
+    EXPECT_GT(found, 20);  // random bits cannot be clustered well
     EXPECT_EQ(Matches(pair.a, other.b, vocabulary, {.level = level}), 0);
     last = found;
   }
@@ -76,7 +76,7 @@ TEST(CountMatches, FindsFewerTheDeeperItLooksAndNoneThatAreNotThere) {
 }
 
 TEST(CountMatches, IsOneToOne) {
-  // Two of a are near the same one of b.
+  // Two keypoints of a are similar to the same one of b.
   Random random(5);
   const Descriptor d = RandomDescriptor(random);
   const Frame a = FrameOf({Flipped(d, 3, random), Flipped(d, 9, random), RandomDescriptor(random)});
@@ -90,7 +90,7 @@ TEST(CountMatches, IsOneToOne) {
 TEST(CountMatches, LeavesOutMatchesThatTurnUnlikeTheRest) {
   Pair pair = MakePair(6);
   for (Keypoint& k : pair.b.keypoints) k.angle = 0.5f;
-  // A third of a is turned by angles spread over the circle.
+  // A third of a's keypoints is rotated by random angles.
   Random random(7);
   for (int i = 0; i < 200; i += 3) {
     pair.a.keypoints[i].angle = static_cast<float>(random.Uniform(1.0, 6.0));

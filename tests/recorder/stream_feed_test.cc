@@ -89,7 +89,7 @@ TEST(StreamFeed, TellsWhatTheDetectorFoundAndHowLongAgo) {
     feed.Frame(frame, slam.Track({frame.time, rendered.image, {}, rendered.depth}));
   }
   feed.Finished();
-  feed.End({}, folder.path());
+  feed.Written(folder.path());
   StreamScene scene;
   int told = 0;
   for (const std::string& message : messages) {

@@ -27,8 +27,7 @@ std::set<std::string> FilesUnder(const std::string& folder) {
   return names;
 }
 
-constexpr char kStats[] =
-    R"({"version": 1, "source": "x", "coverage": 1, "settings": {"semidense.enabled": 1}})";
+constexpr char kStats[] = R"({"version": 1, "source": "x", "coverage": 1})";
 
 class SemiDenseOutputs : public testing::Test {
  protected:
@@ -69,9 +68,13 @@ class SemiDenseOutputs : public testing::Test {
     }
   }
 
-  Cloud Write(const std::string& path) {
-    OutputFolder folder(path);
-    return WriteSemiDense(folder, results_, camera_, 0.01);
+  // A run with depth, or without.
+  Cloud Write(const std::string& path, bool depth = true) {
+    OutputFolder folder({path});
+    folder.Write("stats.json", kStats);
+    const Cloud cloud = depth ? WriteSemiDense(folder, results_, camera_, 0.01) : Cloud();
+    folder.Place(true);
+    return cloud;
   }
 
   Camera camera_ = Camera::FromFieldOfView(64, 48, 60);
@@ -85,7 +88,8 @@ TEST_F(SemiDenseOutputs, EachMapHasItsListAndCloudAndOneFolderHasThePictures) {
   const Cloud cloud = Write(out);
   EXPECT_THAT(FilesUnder(out), ElementsAre("depth.1.txt", "depth.txt", "depth/100.50.png",
                                            "depth/101.50.png", "depth/103.000000000.png",
-                                           "depth/104.50.png", "semidense.1.ply", "semidense.ply"));
+                                           "depth/104.50.png", "semidense.1.ply", "semidense.ply",
+                                           "stats.json"));
   EXPECT_EQ(ReadText(out + "/depth.txt"), std::string(kDepthListHeader) +
                                               "100.50 depth/100.50.png\n"
                                               "101.50 depth/101.50.png\n"
@@ -122,33 +126,21 @@ TEST_F(SemiDenseOutputs, NoDepthLeavesNoFile) {
   for (MapResults& map : results_.maps) map.keyframe_ids.clear();
   const std::string out = temp_ / "out";
   EXPECT_TRUE(Write(out).points.empty());
-  EXPECT_TRUE(FilesUnder(out).empty());
+  EXPECT_THAT(FilesUnder(out), ElementsAre("stats.json"));
   EXPECT_FALSE(fs::exists(out + "/depth"));
 }
 
 TEST_F(SemiDenseOutputs, EarlierRunsPicturesGoAndNobodyElses) {
   const std::string out = temp_ / "out";
   Write(out);
-  temp_.Write("out/stats.json", kStats);
   temp_.Write("out/depth/mine.png", "a picture of my own");
   temp_.Write("out/depth/101.50.png.tmp12-3", "half a picture");
-  OutputFolder again(out);
-  EXPECT_THAT(FilesUnder(out), ElementsAre("depth/mine.png"));
+  Write(out, false);
+  EXPECT_THAT(FilesUnder(out), ElementsAre("depth/mine.png", "stats.json"));
   fs::remove_all(out + "/depth");
   Write(out);
-  temp_.Write("out/stats.json", kStats);
-  OutputFolder third(out);
+  Write(out, false);
   EXPECT_FALSE(fs::exists(out + "/depth"));  // nothing else was in it
-}
-
-TEST_F(SemiDenseOutputs, PicturesOfARunThatWasKilledBeforeItListedThemGo) {
-  const std::string out = temp_ / "out";
-  temp_.Write("out/stats.json", kStats);
-  temp_.Write("out/keyframes.txt", "# timestamp tx\n100.50 0 0 0 0 0 0 1\n");
-  temp_.Write("out/depth/100.50.png", "ours");
-  temp_.Write("out/depth/999.png", "not ours");
-  OutputFolder folder(out);
-  EXPECT_THAT(FilesUnder(out), ElementsAre("depth/999.png"));
 }
 
 TEST_F(SemiDenseOutputs, DepthThatARunWithoutSemiDenseMappingDidNotWriteStays) {
@@ -157,17 +149,17 @@ TEST_F(SemiDenseOutputs, DepthThatARunWithoutSemiDenseMappingDidNotWriteStays) {
   temp_.Write("out/keyframes.txt", "100.50 0 0 0 0 0 0 1\n");
   temp_.Write("out/depth.txt", "# depth maps\n100.50 depth/100.50.png\n");
   temp_.Write("out/depth/100.50.png", "a sensor's");
-  OutputFolder folder(out);
-  EXPECT_THAT(FilesUnder(out), ElementsAre("depth.txt", "depth/100.50.png"));
+  Write(out, false);
+  EXPECT_THAT(FilesUnder(out), ElementsAre("depth.txt", "depth/100.50.png", "stats.json"));
 }
 
 TEST_F(SemiDenseOutputs, AFailureLeavesNoPictureWithoutAList) {
   const std::string out = temp_ / "out";
-  OutputFolder folder(out);
-  temp_.Folder("out/depth.1.txt");  // in the way
+  OutputFolder folder({out});
+  fs::create_directory(folder.draft() + "/depth.1.txt");  // in the way
   EXPECT_THROW(WriteSemiDense(folder, results_, camera_, 0.01), Error);
-  EXPECT_TRUE(FilesUnder(out).empty());
-  EXPECT_FALSE(fs::exists(out + "/depth"));
+  EXPECT_TRUE(FilesUnder(folder.draft()).empty());
+  EXPECT_FALSE(fs::exists(folder.draft() + "/depth"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Bytes of ROS 2 messages and of MCAP files, by hand. Whole files are read by readers that are not
-// ours in web/mcap/test.
+// Bytes of ROS 2 messages and MCAP files, computed by hand. web/mcap/test reads complete files with
+// third-party readers.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -14,7 +14,7 @@ namespace alidade::ros_test {
 namespace {
 
 TEST(Crc32, IsThatOfTheCatalogue) {
-  EXPECT_EQ(Crc32("123456789"), 0xcbf43926u);  // "check" of CRC-32/ISO-HDLC
+  EXPECT_EQ(Crc32("123456789"), 0xcbf43926u);  // the "check" value of CRC-32/ISO-HDLC
   EXPECT_EQ(Crc32("6789", Crc32("12345")), 0xcbf43926u);
   EXPECT_EQ(Crc32(""), 0u);
 }
@@ -24,7 +24,7 @@ TEST(CdrWriter, PutsNumbersAtMultiplesOfTheirSize) {
   out.Add(uint8_t{7});
   out.Add(uint32_t{0x01020304});
   out.AddText("ab");
-  out.Add(1.0);  // at 16: 8 bytes, 7 of text, one to fill
+  out.Add(1.0);  // at 16: 8 bytes, 7 of text, 1 of padding
   const std::string expected("\0\1\0\0\7\0\0\0\4\3\2\1\3\0\0\0ab\0\0\0\0\0\0\0\0\xf0\x3f", 28);
   std::string found = out.Take();
   ASSERT_EQ(found.size(), 28u);
@@ -96,7 +96,7 @@ TEST(McapWriter, HandsChunksOnAsTheyFill) {
       writer.AddChannel(writer.AddSchema("a/msg/A", "ros2msg", ""), "/a", "cdr", {});
   const size_t before = written.bytes.size();
   for (uint64_t time = 0; time < 99; ++time) writer.Write(channel, time, std::string(100, 'x'));
-  EXPECT_EQ(packed, 12);  // of 8 messages of 131 bytes each
+  EXPECT_EQ(packed, 12);  // 8 messages of 131 bytes each
   EXPECT_GT(written.bytes.size(), before + 12 * 10);
   writer.Close();
   EXPECT_EQ(packed, 13);

@@ -11,14 +11,14 @@
 namespace alidade::cross_check_test {
 namespace {
 
-// Views of the world whose depth is the truth with noise, at every second pixel.
+// Views with true depth plus noise at every second pixel.
 class CrossCheckTest : public testing::Test {
  protected:
   struct Known {
     Se3 T_camera_world;
     std::vector<EdgePixel> edges;
     std::vector<Hypothesis> depth;
-    std::vector<float> truth;  // inverse
+    std::vector<float> truth;  // inverse depth
   };
 
   Known Make(const Eigen::Vector3d& centre, double noise, uint64_t seed) const {

@@ -32,7 +32,7 @@ struct Errors {
   }
 };
 
-// All edge pixels of a view searched in another between 1 and 8 metres.
+// Searches all edge pixels of a view in another one, between 1 and 8 meters.
 Errors SearchAll(const DenseView& reference, const DenseView& other, const Camera& camera,
                  const Exposure& exposure = {}, const SemiDenseSettings& settings = {}) {
   const GradientImageMaker maker(camera, settings.min_gradient, settings.gradient_weight);
@@ -66,9 +66,9 @@ TEST_F(EpipolarSearchTest, FindsTheDepthOfASidewaysStep) {
                 world_.Look(CameraAt({0.2, 0.02, 0}), {.noise_seed = 2}), camera_);
   EXPECT_GT(errors.relative.size(), errors.edges / 2);
   EXPECT_LT(Errors::Median(errors.relative),
-            0.015);                    // 17 pixels of disparity at 3 m: a quarter pixel
-  EXPECT_GT(errors.Share(0.05), 0.8);  // one pair alone: some matches are wrong
-  // The standard deviation is none too small, nor many times too large.
+            0.015);                    // 17 pixels of disparity at 3 m: a quarter of a pixel
+  EXPECT_GT(errors.Share(0.05), 0.8);  // a single pair: some matches are wrong
+  // The standard deviation is neither too small nor far too large.
   EXPECT_LT(Errors::Median(errors.by_sigma), 1);
   EXPECT_GT(Errors::Median(errors.by_sigma), 0.1);
 }
@@ -116,7 +116,7 @@ TEST_F(EpipolarSearchTest, ATurnOnTheSpotTellsNothing) {
 }
 
 TEST_F(EpipolarSearchTest, EdgesAlongTheLineAreLeftOut) {
-  // Horizontal stripes, and a step to the side along them.
+  // Horizontal stripes and a translation along them.
   cv::Mat stripes(camera_.height, camera_.width, CV_8U);
   for (int y = 0; y < stripes.rows; ++y) {
     stripes.row(y) = static_cast<uint8_t>(128 + 100 * std::sin(y / 3.0));
@@ -142,7 +142,7 @@ TEST_F(EpipolarSearchTest, WhatMovesInTheOtherIsNoMatch) {
   EXPECT_GT(count.searches, 1000);
 }
 
-// `picture` within one that is filled with `value` and has room beside it for any slip.
+// `picture` inside a larger image filled with `value`.
 cv::Mat Framed(const cv::Mat& picture, double value) {
   constexpr int kBeside = 40;  // pixels
   cv::Mat frame;
@@ -151,8 +151,7 @@ cv::Mat Framed(const cv::Mat& picture, double value) {
   return frame(cv::Rect({kBeside, kBeside}, picture.size()));
 }
 
-// Whatever the cameras, poses and intervals: what lies beside the pictures in memory changes
-// nothing.
+// For any cameras, poses and intervals, the memory around the images must not affect the result.
 TEST(EpipolarSearch, ReadsNothingBesideThePictures) {
   Random random(11);
   const SemiDenseSettings settings;
@@ -206,7 +205,7 @@ TEST(EpipolarSearch, ReadsNothingBesideThePictures) {
 }
 
 TEST(WithExposure, IsGainAndOffsetOfEveryPixel) {
-  cv::Mat values(5, 21, CV_8UC2);  // no whole number of lanes
+  cv::Mat values(5, 21, CV_8UC2);  // not a multiple of the number of lanes
   for (int i = 0; i < 105; ++i) {
     values.at<cv::Vec2b>(i / 21, i % 21) = {static_cast<uint8_t>(2 * i), static_cast<uint8_t>(i)};
   }

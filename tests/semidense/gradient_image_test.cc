@@ -29,7 +29,8 @@ TEST(GradientImage, HasMagnitudeAndDirectionOfARamp) {
     }
   }
   const GradientImage image = GradientImageMaker(SmallCamera(), 8, 0.25).Make({ramp});
-  // Ten grey levels per pixel, over the root of the weight; downwards, a quarter of a turn.
+  // Ten gray levels per pixel divided by the root of the weight; direction downwards, a quarter
+  // turn.
   EXPECT_EQ(image.values.at<cv::Vec2b>(50, 40)[0], 100);
   EXPECT_EQ(image.values.at<cv::Vec2b>(50, 40)[1], 20);
   EXPECT_EQ(image.direction.at<uint8_t>(50, 40), GradientImage::kTurn / 4);
@@ -77,7 +78,7 @@ TEST(GradientImage, IsUndistortedAsOpenCvDoesIt) {
 
 TEST(GradientImage, HasNoEdgesWhereTheLensDoesNotSee) {
   Camera camera = SmallCamera();
-  camera.distortion = {0.3, 0, 0, 0, 0};  // the corners come from outside the picture
+  camera.distortion = {0.3, 0, 0, 0, 0};  // the corners are outside the raw image
   const GradientImage image = GradientImageMaker(camera, 8, 0.23).Make({MakeTexture(160, 120, 4)});
   EXPECT_GT(image.edges.size(), 1000u);
   for (const EdgePixel& edge : image.edges) {
@@ -88,7 +89,7 @@ TEST(GradientImage, HasNoEdgesWhereTheLensDoesNotSee) {
 
 TEST(GradientImage, CarriesColours) {
   const cv::Mat gray = MakeTexture(160, 120, 5);
-  cv::Mat color(120, 160, CV_8UC3, cv::Scalar(1, 2, 3));  // blue green red
+  cv::Mat color(120, 160, CV_8UC3, cv::Scalar(1, 2, 3));  // BGR
   const GradientImageMaker maker(SmallCamera(), 8, 0.23);
   EXPECT_EQ(maker.Make({gray, color}).colors.at(10), (std::array<uint8_t, 3>{3, 2, 1}));
   const GradientImage plain = maker.Make({gray});
@@ -109,7 +110,7 @@ TEST(GradientImage, IsMadeAnewForABetterKnownLens) {
   cv::extractChannel(made.values, a, 0);
   cv::extractChannel(wanted.values, b, 0);
   const cv::Rect inner(10, 10, 140,
-                       100);  // resampled once more, to the grey level and half a pixel
+                       100);  // resampled twice: to one gray level and half a pixel
   EXPECT_LT(cv::norm(a(inner), b(inner), cv::NORM_L1) / inner.area(), 1);
   cv::extractChannel(once.values, a, 0);
   EXPECT_GT(cv::norm(a(inner), b(inner), cv::NORM_L1) / inner.area(), 3);

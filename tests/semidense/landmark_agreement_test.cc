@@ -12,7 +12,7 @@
 namespace alidade::landmark_agreement_test {
 namespace {
 
-// A keyframe with depth one pixel beside each of its landmarks' keypoints.
+// A keyframe with semi-dense depth one pixel beside each landmark's keypoint.
 class LandmarkAgreement : public testing::Test {
  protected:
   LandmarkAgreement() : world_(MakeSyntheticWorld({.points = 300, .cameras = 4})) {
@@ -29,7 +29,7 @@ class LandmarkAgreement : public testing::Test {
       depth_.push_back({static_cast<float>(1 / p.z()), 0.01f});
     }
   }
-  // With the depth at edge i multiplied by factor(i); 0: not known.
+  // Multiplies the depth of edge i by factor(i); 0: unknown.
   bool Agrees(const std::function<double(size_t)>& factor) const {
     std::vector<Hypothesis> depth = depth_;
     for (size_t i = 0; i < depth.size(); ++i) {

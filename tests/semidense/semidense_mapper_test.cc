@@ -37,7 +37,7 @@ class SemiDenseMapperTest : public testing::Test {
   std::shared_ptr<const Picture> PictureOf(size_t view) const {
     return std::make_shared<Picture>(Picture{views_[view].image, {}, views_[view].depth});
   }
-  // All pictures, and all that follows from them.
+  // Keeps all pictures and processes everything.
   SemiDenseReport MapAll() {
     SemiDenseMapper mapper(store_, world_.camera(), settings_);
     for (size_t i = 0; i < ids_.size(); ++i) mapper.Keep(ids_[i], PictureOf(i));
@@ -134,7 +134,7 @@ TEST_F(SemiDenseMapperTest, WorksAFewKeyframesBehindNewestFirst) {
   Look(WayBeforeTheWall(8, 0.08));
   SemiDenseMapper mapper(store_, world_.camera(), settings_);
   for (size_t i = 0; i < 6; ++i) mapper.Keep(ids_[i], PictureOf(i));
-  mapper.Process();  // of the first four, whose turn has come, the last
+  mapper.Process();  // the last of the first four, which are due
   EXPECT_EQ(mapper.report().most_behind, 4);
   EXPECT_TRUE(DepthOf(3));
   EXPECT_FALSE(DepthOf(2));
@@ -146,7 +146,7 @@ TEST_F(SemiDenseMapperTest, WorksAFewKeyframesBehindNewestFirst) {
   EXPECT_TRUE(DepthOf(4));
   mapper.Finish();
   for (size_t i = 0; i < 7; ++i) EXPECT_TRUE(DepthOf(i)) << i;
-  EXPECT_FALSE(DepthOf(7));  // nothing is known of its picture
+  EXPECT_FALSE(DepthOf(7));  // no picture was kept
 }
 
 TEST_F(SemiDenseMapperTest, AKeyframeIsDoneAgainWhenItsNeighboursMoved) {
@@ -187,7 +187,7 @@ TEST_F(SemiDenseMapperTest, AfterALoopMovedKeyframesAreDoneBesideNewOnes) {
   EXPECT_EQ(mapper.report().keyframes, 5);
 }
 
-// A loop that was closed: the whole map moves, turns and grows.
+// A loop closure: the whole map is moved, rotated and scaled.
 TEST_F(SemiDenseMapperTest, DepthFollowsItsKeyframeInPlaceAndScale) {
   Look(WayBeforeTheWall(7, 0.08));
   SemiDenseMapper mapper(store_, world_.camera(), settings_);
@@ -206,7 +206,7 @@ TEST_F(SemiDenseMapperTest, DepthFollowsItsKeyframeInPlaceAndScale) {
   });
   const KeyFrame keyframe = *store_.Snapshot().Find(ids_[3]);
   EXPECT_NEAR(keyframe.scale / keyframe.depth->scale, 1.25, 1e-12);
-  // Nothing is to be done again: baselines grew with the depth. And the next check agrees.
+  // Nothing is recomputed, because baselines scale with the depth; the next check agrees.
   mapper.Finish();
   EXPECT_EQ(mapper.report().keyframes, before);
   const Score score = ScoreOf(3, 1 / 1.25);
@@ -219,7 +219,7 @@ TEST_F(SemiDenseMapperTest, ACulledKeyframeDropsItsDepth) {
   MapAll();
   store_.Commit([&](MapCommit& commit) { commit.Remove(ids_[3]); });
   EXPECT_EQ(store_.Snapshot().Find(ids_[3]), nullptr);
-  MapAll();  // goes on without it
+  MapAll();  // continues without it
   EXPECT_GT(ScoreOf(2).pixels, EdgesOf(2) / 2);
 }
 
@@ -305,11 +305,11 @@ TEST_F(SemiDenseMapperTest, LetsTheOldestGoWhenTooManyWait) {
   SetWarningListener([&](const std::string& warning) { warnings.push_back(warning); });
   SemiDenseMapper mapper(store_, world_.camera(), settings_);
   for (size_t i = 0; i < 4; ++i) mapper.Keep(ids_[i], PictureOf(i));
-  mapper.Process();  // the newest with two behind it: 0, 2 and 3 wait
+  mapper.Process();  // the newest with two keyframes behind it; 0, 2 and 3 remain waiting
   for (size_t i = 4; i < 8; ++i) mapper.Keep(ids_[i], PictureOf(i));
   mapper.Finish();
   SetWarningListener(nullptr);
-  EXPECT_EQ(mapper.report().let_go, 2);  // 0 and 2
+  EXPECT_EQ(mapper.report().let_go, 2);  // keyframes 0 and 2
   EXPECT_EQ(warnings.size(), 1u);
   for (size_t i = 0; i < 8; ++i) EXPECT_EQ(DepthOf(i) == nullptr, i == 0 || i == 2) << i;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kChi2 = 5.99f;
 
-// A block of pixels, each with depth by place.
+// A block of pixels with depth, indexed by position.
 struct Block {
   std::vector<EdgePixel> edges;
   std::vector<Hypothesis> depth;
@@ -44,7 +44,7 @@ TEST(Smooth, RemovesWhatItsNeighboursContradict) {
   block.At(3, 3) = {2.0f, 0.01f};
   const std::vector<Hypothesis> smoothed = block.Smoothed();
   for (const Hypothesis& h : smoothed) {
-    ASSERT_TRUE(h.known());  // the hole is filled by those around it
+    ASSERT_TRUE(h.known());  // the hole is filled from its neighbors
     EXPECT_NEAR(h.inverse_depth, 1.0, 1e-6);
   }
 }
@@ -86,7 +86,8 @@ TEST(Smooth, TakesNoiseAwayWithOneThreadOrThree) {
     after += (one[i].inverse_depth - 1) * (one[i].inverse_depth - 1);
     EXPECT_EQ(one[i].inverse_depth, three[i].inverse_depth);
   }
-  // Nine together would leave a ninth; those in the tails agree with fewer.
+  // The mean of nine would have a ninth of the variance; outer values have fewer compatible
+  // neighbors.
   EXPECT_LT(after, before / 2.5);
 }
 

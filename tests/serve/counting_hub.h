@@ -1,5 +1,5 @@
-// A hub for tests: its stream is numbers, its whole state "whole N", where N is the last number
-// told.
+// A stream hub for tests: its messages are numbers, its whole state is "whole N", where N is the
+// last number sent.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@ namespace alidade {
 
 class CountingHub : public StreamHub {
  public:
-  // Each message is filled up to so many bytes.
+  // Pads each message to `bytes` bytes.
   explicit CountingHub(size_t bytes = 0) : bytes_(bytes) {}
 
   int Join(Take take) override {
@@ -46,14 +46,15 @@ class CountingHub : public StreamHub {
     for (auto& [id, take] : takes_) take(message);
   }
 
-  // Waits until `condition` holds, at most a minute: a test that is too slow fails, none is timed.
+  // Waits until `condition` holds, for at most a minute.
   template <class Condition>
   bool WaitFor(Condition condition) {
     std::unique_lock lock(mutex_);
     return changed_.wait_for(lock, std::chrono::minutes(1), [&] { return condition(*this); });
   }
-  size_t living_bytes() const { return *living_; }  // of messages that somebody keeps
-  // Inside WaitFor().
+  // Size of the messages that are still referenced.
+  size_t living_bytes() const { return *living_; }
+  // Call inside WaitFor().
   size_t members() const { return takes_.size(); }
   int joins() const { return joins_; }
   const std::vector<StreamControl>& controls() const { return controls_; }

@@ -1,5 +1,5 @@
-// The viewer's server among those who mean no good, or have stopped: it goes on for the others, and
-// its memory stays bounded.
+// The viewer's server with malicious and stalled clients: it continues to serve the others, and its
+// memory is bounded.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -29,14 +29,14 @@ ServeSettings AnyPort() {
   return settings;
 }
 
-// Bytes of this process that are in memory.
+// Resident memory of this process, bytes.
 size_t MemoryInUse() {
   size_t pages = 0, resident = 0;
   std::ifstream("/proc/self/statm") >> pages >> resident;
   return resident * 4096;
 }
 
-// As many descriptors as the system allows; how many those are.
+// Raises the limit of file descriptors to the maximum and returns it.
 size_t RaiseDescriptors() {
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
@@ -49,11 +49,11 @@ TEST(ClientQueue, HoldsWhatItMayAndForgetsAllBeyond) {
   const auto message = std::make_shared<const std::string>(400, 'x');
   ClientQueue queue(1000);
   queue.Begin();
-  for (int i = 0; i < 10; ++i) queue.Push(message);  // the whole state counts not
+  for (int i = 0; i < 10; ++i) queue.Push(message);  // the whole state does not count
   queue.Joined();
   EXPECT_FALSE(queue.behind());
   EXPECT_EQ(queue.waiting_bytes(), 4000u);
-  EXPECT_FALSE(queue.Push(message));  // who sends was woken by the first
+  EXPECT_FALSE(queue.Push(message));  // the first message already woke the consumer
   EXPECT_FALSE(queue.Push(message));
   EXPECT_TRUE(queue.Push(message));
   EXPECT_TRUE(queue.behind());
@@ -65,21 +65,21 @@ TEST(ClientQueue, HoldsWhatItMayAndForgetsAllBeyond) {
   queue.Joined();
   EXPECT_TRUE(queue.Push(message));
   EXPECT_EQ(queue.Pop(), message);
-  EXPECT_FALSE(queue.Push(message));  // who got something looks again
+  EXPECT_FALSE(queue.Push(message));  // the consumer is active
   EXPECT_EQ(queue.Pop(), message);
   EXPECT_EQ(queue.Pop(), nullptr);
   EXPECT_TRUE(queue.Push(std::make_shared<const std::string>(5000, 'x'))) << "alone, any size goes";
   EXPECT_FALSE(queue.behind());
 }
 
-// 400 MB are told while one viewer does not read: it is given the whole state when it reads again,
-// and meanwhile costs no more than its bounds. The other one misses nothing.
+// 400 MB are sent while one viewer does not read: its memory is bounded, and it gets the whole
+// state when it reads again. The other viewer misses nothing.
 TEST(ServeCrowd, AStoppedViewerCostsLittleAndHarmsNobody) {
   constexpr int kTold = 4000;
   CountingHub hub(100000);
   ServeSettings settings = AnyPort();
   settings.client_bytes = 1 << 20;
-  settings.patience = 600;  // the stopped one is not to be closed here
+  settings.patience = 600;  // do not close the stalled one
   const auto server = StartViewer(settings, &hub, "", "");
   PlainClient reader(server->port()), stopped(server->port(), 65536);
   ASSERT_EQ(reader.Upgrade(), 101);
@@ -95,13 +95,13 @@ TEST(ServeCrowd, AStoppedViewerCostsLittleAndHarmsNobody) {
     most = std::max(most, hub.living_bytes());
     most_memory = std::max(most_memory, MemoryInUse());
   }
-  // For each of them 1 MB, the two messages of the whole state and the one being sent.
+  // For each viewer 1 MB, the two messages of the whole state, and the one being sent.
   EXPECT_LE(most, size_t{2} * ((1 << 20) + 3 * 100000));
   EXPECT_GT(most, size_t{1} << 19) << "the viewer had not stopped";
   RecordProperty("memory_growth_kb",
                  static_cast<int>((most_memory - std::min(most_memory, before)) >> 10));
 
-  // Reads on: old messages that were under way, then the whole state as it is now.
+  // It reads on: old messages in transit, then the current whole state.
   bool whole = false;
   while (!whole) {
     const auto message = stopped.Message();
@@ -125,7 +125,7 @@ TEST(ServeCrowd, WhoGivesNoSignOfLifeIsClosed) {
   EXPECT_EQ(silent.ReceiveAll(), "");
   EXPECT_EQ(half.ReceiveAll(), "");
   EXPECT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 0; }));
-  // One that answers pings stays, for longer than all others were given.
+  // A viewer that answers pings stays connected for longer than the others could.
   PlainClient alive(server->port());
   ASSERT_EQ(alive.Upgrade(), 101);
   for (int i = 0; i < 2; ++i) EXPECT_TRUE(alive.Message());
@@ -152,7 +152,7 @@ TEST(ServeCrowd, AThousandWhoStaySilent) {
   for (const char* text : {"hello", "whole 0"}) EXPECT_EQ(viewer.Message(), text);
   hub.Tell();
   EXPECT_EQ(viewer.Message(), "1");
-  // The longest silent were closed to make room, the newest were not.
+  // The longest idle connections were closed to make room, the newest were not.
   EXPECT_EQ(silent.front().ReceiveAll(), "");
   EXPECT_THAT(silent.back().Ask("GET /"), StartsWith("HTTP/1.1 200 "));
 }
@@ -182,11 +182,11 @@ TEST(ServeCrowd, AThousandViewers) {
   RecordProperty("memory_growth_kb", static_cast<int>((MemoryInUse() - before) >> 10));
 }
 
-// Connections that cannot be taken must not be tried again at once: that would fill a core.
+// After a failed accept the server must wait, or it would fully load a core.
 TEST(ServeCrowd, OutOfDescriptorsItWaitsForSome) {
 #ifdef __SANITIZE_ADDRESS__
-  // UBSan probes memory through a pipe: without a descriptor for it, it takes every object for a
-  // broken one.
+  // UBSan probes memory through a pipe; without a descriptor for it, it considers every object
+  // invalid.
   GTEST_SKIP() << "the sanitizers need descriptors of their own";
 #endif
   CountingHub hub;
@@ -199,7 +199,7 @@ TEST(ServeCrowd, OutOfDescriptorsItWaitsForSome) {
   const rlimit before = limit;
   limit.rlim_cur = static_cast<rlim_t>(free) + 1;
   setrlimit(RLIMIT_NOFILE, &limit);
-  PlainClient client(server->port());  // has the last one
+  PlainClient client(server->port());  // uses the last descriptor
   const clock_t start = clock();
   std::this_thread::sleep_for(std::chrono::seconds(1));
   const double cpu = static_cast<double>(clock() - start) / CLOCKS_PER_SEC;
@@ -214,7 +214,7 @@ TEST(ServeCrowd, TheEndIsSoonWhoeverHangs) {
   {
     const auto server = StartViewer(AnyPort(), &hub, "", "");
     for (int i = 0; i < 3; ++i) hanging.emplace_back(server->port(), 65536);
-    EXPECT_EQ(hanging[0].Upgrade(), 101);  // reads nothing
+    EXPECT_EQ(hanging[0].Upgrade(), 101);  // does not read
     ASSERT_TRUE(hub.WaitFor([](const CountingHub& h) { return h.members() == 1; }));
     hanging[1].Send("GET / HTTP/1.1\r\n");
   }
@@ -222,8 +222,8 @@ TEST(ServeCrowd, TheEndIsSoonWhoeverHangs) {
   EXPECT_EQ(hanging[1].ReceiveAll(), "");
 }
 
-// What is nearly right goes deeper than what is nonsense: bytes of good requests are changed, added
-// and left out.
+// Nearly valid requests reach deeper than random ones: changes, inserts and removes bytes of valid
+// requests.
 std::string Spoiled(std::string bytes, Random& random) {
   const uint32_t times = 1 + random.Below(6);
   for (uint32_t i = 0; i < times && !bytes.empty(); ++i) {

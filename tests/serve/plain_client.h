@@ -1,5 +1,5 @@
-// A client for tests of the viewer's server: sends any bytes, waits for answers. Blocking sockets,
-// no library that would mend what is sent.
+// A client for tests of the server: sends arbitrary bytes and waits for answers, with blocking
+// sockets and without a library that would correct the input.
 #pragma once
 
 #include <arpa/inet.h>
@@ -20,7 +20,7 @@ namespace alidade {
 
 class PlainClient {
  public:
-  // `receive_buffer`: bytes the kernel keeps for us; 0: as many as it likes.
+  // `receive_buffer`: size of the kernel's receive buffer in bytes; 0: default.
   explicit PlainClient(int port, int receive_buffer = 0) : port_(port) {
     fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     if (fd_ < 0) throw std::runtime_error("no socket");
@@ -55,7 +55,7 @@ class PlainClient {
   }
   void EndOfSending() { shutdown(fd_, SHUT_WR); }
 
-  // More bytes; false when the other side has closed.
+  // Reads more bytes; false when the server has closed the connection.
   bool Receive() {
     char part[65536];
     const ssize_t got = recv(fd_, part, sizeof part, 0);
@@ -76,7 +76,8 @@ class PlainClient {
   }
 
   std::string Host() const { return "127.0.0.1:" + std::to_string(port_); }
-  // A request and its whole answer. `lines`: headers, each ended by \r\n; with "Host" by itself.
+  // Sends a request and returns the whole answer. `lines`: headers, each ended by \r\n; Host is
+  // added if missing.
   std::string Ask(const std::string& first_line, const std::string& lines = "") {
     Send(first_line + " HTTP/1.1\r\nConnection: close\r\n" +
          (lines.find("Host:") == std::string::npos ? "Host: " + Host() + "\r\n" : "") + lines +
@@ -84,7 +85,7 @@ class PlainClient {
     return ReceiveAll();
   }
 
-  // The status of the answer: 101 when this is a WebSocket now.
+  // Returns the status; 101 means that the connection is now a WebSocket.
   int Upgrade(const std::string& target = "/stream", const std::string& lines = "") {
     Send("GET " + target + " HTTP/1.1\r\n" +
          (lines.find("Host:") == std::string::npos ? "Host: " + Host() + "\r\n" : "") +
@@ -100,7 +101,7 @@ class PlainClient {
     return status;
   }
 
-  // A frame as clients send them, masked (with zeros), final. `opcode`: 1 text, 2 binary, 8 close.
+  // A final client frame, masked with zeros. `opcode`: 1 text, 2 binary, 8 close.
   static std::string Frame(int opcode, std::string_view payload) {
     std::string frame(1, static_cast<char>(0x80 | opcode));
     const size_t size = payload.size();
@@ -117,8 +118,8 @@ class PlainClient {
   }
   bool Say(std::string_view text) { return Send(Frame(1, text)); }
 
-  // The next binary message, put together from its frames; pings are answered. Nothing when it was
-  // closed: close_code() says why.
+  // The next binary message, assembled from its frames; answers pings. nullopt when closed; see
+  // close_code().
   std::optional<std::string> Message() {
     std::string message;
     while (true) {

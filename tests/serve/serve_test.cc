@@ -1,4 +1,4 @@
-// The viewer's server as browsers, and worse, meet it: over sockets.
+// Tests the viewer's server over sockets, as browsers and other clients use it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -136,7 +136,7 @@ TEST(Serve, OtherHostNamesAndOriginsAreRefused) {
     EXPECT_EQ(status("Host: " + host + "\r\n"), "403") << host;
     EXPECT_EQ(upgrade("Host: " + host + "\r\n"), 403) << host;
   }
-  EXPECT_EQ(PlainClient(server->port()).Upgrade(), 101);  // a program, not a page
+  EXPECT_EQ(PlainClient(server->port()).Upgrade(), 101);  // a program, not a web page
   EXPECT_EQ(upgrade("Origin: http://127.0.0.1" + port + "\r\n"), 101);
   for (const std::string& origin :
        {std::string("http://evil.example"), "https://127.0.0.1" + port, std::string("null"),
@@ -200,7 +200,7 @@ TEST(Serve, WhatCannotBeServedIsSaid) {
   EXPECT_THAT(complaint(ErrorKind::kInput, settings, nullptr, "/none"),
               HasSubstr("/none: there is no such file"));
   EXPECT_THAT(complaint(ErrorKind::kInput, settings, nullptr, "/dev/zero"), HasSubstr("/dev/zero"));
-  settings.host = "198.51.100.7";  // for documentation: nobody's
+  settings.host = "198.51.100.7";  // reserved for documentation
   EXPECT_THAT(complaint(ErrorKind::kUsage, settings, &hub, ""), HasSubstr("198.51.100.7"));
   settings.host = "no host";
   EXPECT_THAT(complaint(ErrorKind::kUsage, settings, &hub, ""), HasSubstr("no host"));
@@ -267,7 +267,7 @@ TEST(ServeStream, ViewersMayAskAndNothingElse) {
                            "{\"do\":\"pause\",\"x\":1}", "{\"do\":\"PAUSE\"}"}) {
     client.Say(text);
   }
-  client.Send(PlainClient::Frame(2, "{\"do\":\"pause\"}"));  // not as text
+  client.Send(PlainClient::Frame(2, "{\"do\":\"pause\"}"));  // not sent as text
   client.Say("{\"do\":\"step\"}");
   client.Say(" { \"do\" : \"pause\" }\n");
   client.Say("{\"do\":\"resume\"}");
@@ -286,7 +286,7 @@ TEST(ServeStream, WhoAsksTooMuchIsClosed) {
   }
   EXPECT_EQ(large.close_code(), 1009);
   ASSERT_EQ(often.Upgrade(), 101);
-  // More than 100 in some second, however slow the machine, as soon as 10,000 take under 100 s.
+  // More than 100 per second, on any machine that processes 10,000 within 100 s.
   std::string frames;
   for (int i = 0; i < 10000; ++i) frames += PlainClient::Frame(1, "{\"do\":\"pause\"}");
   often.Send(frames);

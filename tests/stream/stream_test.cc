@@ -1,4 +1,4 @@
-// What the stream tells gives the map back: to one who read all of it, and to one who came late.
+// The stream reproduces the map, for a receiver of all messages and for one that joins late.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +34,7 @@ SlamSettings Phone(bool threaded) {
 
 RenderedFrames& Room() { return SmallRoom(); }
 
-// A run beside its stream, and one who reads it.
+// A run with its stream and a receiver.
 struct Streamed {
   explicit Streamed(const SlamSettings& settings)
       : slam(Room().camera(), settings),
@@ -46,7 +46,7 @@ struct Streamed {
     messages.push_back(message);
     scene.Take(message);
   }
-  // `told_each`: the stream is shown every so many frames only.
+  // `told_each`: only every n-th frame is passed to the stream.
   void Play(const std::vector<int>& numbers, int told_each = 1) {
     for (int number : numbers) {
       const RenderedFrame& frame = Room().Frame(std::max(number, 0));
@@ -77,7 +77,7 @@ struct Streamed {
   int played = 0;
 };
 
-// That the scene holds the map to what the stream keeps of it.
+// Checks that the scene equals the map within the stream's resolution.
 void ExpectMap(const StreamScene& scene, const MapSnapshot& map) {
   ASSERT_EQ(scene.keyframes.size(), static_cast<size_t>(map.keyframe_count()));
   ASSERT_EQ(scene.landmarks.size(), static_cast<size_t>(map.landmark_count()));
@@ -101,7 +101,7 @@ void ExpectMap(const StreamScene& scene, const MapSnapshot& map) {
   }
 }
 
-// That the frames are where the system now says they were.
+// Checks that the frames' poses equal the system's current estimates.
 void ExpectPath(const StreamScene& scene, const Slam& slam) {
   const std::vector<FramePose> trajectory = slam.Trajectory();
   int compared = 0;
@@ -116,7 +116,7 @@ void ExpectPath(const StreamScene& scene, const Slam& slam) {
   EXPECT_GT(compared, 10);
 }
 
-// That the last frame's camera is where the system now says it is.
+// Checks that the last frame's camera pose equals the system's current estimate.
 void ExpectNow(const StreamScene& scene, const Slam& slam) {
   EXPECT_EQ(scene.camera.fx, slam.camera().fx);
   EXPECT_EQ(scene.camera.cy, slam.camera().cy);
@@ -162,7 +162,7 @@ StreamScene Late(const StreamEncoder& encoder) {
 
 class StreamOfARun : public testing::TestWithParam<bool> {};
 
-// Lost in the dark and found again; two maps that become one; keyframes culled meanwhile.
+// Lost in the dark and relocalized; two maps are merged; keyframes are culled meanwhile.
 TEST_P(StreamOfARun, GivesTheMapBack) {
   Streamed run(Phone(GetParam()));
   run.Play(Steps(0, 48, 3));
@@ -175,12 +175,12 @@ TEST_P(StreamOfARun, GivesTheMapBack) {
   ExpectSame(run.scene, Late(run.encoder));
   EXPECT_GT(run.scene.told, told);
   EXPECT_NE(Late(run.encoder).told, Late(run.encoder).told);
-  run.Play(Steps(486, 640, 6), 5);  // hardly looked at
+  run.Play(Steps(486, 640, 6), 5);  // few frames are streamed
   run.Finish();
   ExpectMap(run.scene, run.slam.Snapshot());
   ExpectPath(run.scene, run.slam);
   ExpectSame(run.scene, Late(run.encoder));
-  if (!GetParam()) {  // what the workers have done by then is the threads' to say
+  if (!GetParam()) {  // with threads the workers' progress is not determined
     EXPECT_EQ(run.slam.Counts().merges, 1);
     std::set<int> kinds;
     for (const SceneEvent& event : run.scene.events) kinds.insert(event.kind);
@@ -237,7 +237,8 @@ TEST(Stream, ABetterKnownCameraIsToldOnceAndTheMapGoesOn) {
   frame.camera = run.slam.camera();
   for (const std::string& message : run.encoder.Add(frame)) run.Read(message);
   ++frame.number;
-  EXPECT_EQ(run.encoder.Add(frame).size(), 1u);  // the same camera and map: the frame alone
+  // The camera and the map are unchanged: the frame alone.
+  EXPECT_EQ(run.encoder.Add(frame).size(), 1u);
   frame.camera.fx *= 1.1;
   frame.camera.distortion[0] = -0.1;
   for (int i = 0; i < 2; ++i) {
@@ -279,8 +280,8 @@ TEST(Stream, DamagedMessagesAreRefused) {
   EXPECT_GT(refused, 100);
 }
 
-// Those that show a landmark of the last keyframes are told as new, also when the keyframe made it
-// of what the tracker had not matched.
+// Features matched to a landmark of the last keyframes are marked as new, also when the keyframe
+// made the landmark from features that the tracker had not matched.
 TEST(Stream, TellsWhatBecameOfFeatures) {
   constexpr int kNew = 2;  // keyframes
   Streamed run(Phone(false));
@@ -289,7 +290,7 @@ TEST(Stream, TellsWhatBecameOfFeatures) {
     run.Play({number});
     if (run.slam.Trajectory().back().tracked == false) continue;
     const MapSnapshot map = run.slam.Snapshot();
-    std::set<std::pair<int, int>> fresh;  // by place, a hundredth of a pixel
+    std::set<std::pair<int, int>> fresh;  // by position in 1/25 pixels
     const auto place = [](double x, double y) {
       return std::pair(static_cast<int>(std::lround(25 * x)),
                        static_cast<int>(std::lround(25 * y)));
@@ -302,7 +303,7 @@ TEST(Stream, TellsWhatBecameOfFeatures) {
     }
     const KeyFrame& newest = *map.Find(KeyFrameId{map.next_keyframe() - 1});
     if (newest.frame->number != run.played - 1) {
-      if (keyframes <= kNew) continue;  // all is new
+      if (keyframes <= kNew) continue;  // all are new
       ++others;
       EXPECT_GT(matched, 0);
       continue;
@@ -320,7 +321,7 @@ TEST(Stream, TellsWhatBecameOfFeatures) {
                                               run.slam.camera().height))),
                 1u);
     }
-    EXPECT_GE(young, 20);  // a keyframe that adds nothing would not have been made
+    EXPECT_GE(young, 20);  // a keyframe is made only if it adds landmarks
     if (keyframes > kNew) {
       EXPECT_GT(matched, 0);
     }
@@ -357,7 +358,7 @@ TEST(Stream, TellsWhatWasFoundAndLeftOut) {
   EXPECT_EQ(scene.boxes[0].label, "person");
   EXPECT_EQ(scene.detection_age, 0.25f);
   EXPECT_EQ(scene.outlines, 1);
-  frame.detection_age = 0.6;  // people have walked on
+  frame.detection_age = 0.6;  // people have moved on
   show();
   EXPECT_TRUE(scene.boxes.empty());
   EXPECT_EQ(scene.detection_age, 0.6f);

@@ -1,4 +1,4 @@
-// What must hold in every published map, whatever was done to it.
+// Invariants of every published map.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -62,8 +62,8 @@ inline void ExpectConsistent(const MapSnapshot& map) {
     }
   }
   std::sort(with_root.begin(), with_root.end());
-  EXPECT_EQ(with_root, map.Maps());  // each map hangs together: one tree
-  EXPECT_EQ(observations, shown);    // each is known on both sides
+  EXPECT_EQ(with_root, map.Maps());  // each map is one connected tree
+  EXPECT_EQ(observations, shown);    // observations are consistent on both sides
   EXPECT_EQ(map.keyframe_count(), static_cast<int>(map.KeyFrames().size()));
   EXPECT_EQ(map.landmark_count(), static_cast<int>(map.Landmarks().size()));
 }

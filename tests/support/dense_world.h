@@ -1,5 +1,5 @@
-// Textured planes seen by a moving camera, with exact depth: for tests of what looks at every
-// pixel. The same pictures, and what a map would know of them.
+// Textured planes seen by a moving camera, with exact depth, for tests of semi-dense algorithms:
+// the images, and a matching map.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,12 @@ struct DenseView {
 };
 
 struct DenseWorldSettings {
-  double noise = 3;             // standard deviation, grey levels
-  double gain = 1, offset = 0;  // of this picture's exposure
+  double noise = 3;             // standard deviation, gray levels
+  double gain = 1, offset = 0;  // exposure of this image
   uint64_t noise_seed = 1;
 };
 
-// A wall that leans away to the right, and a panel that stands 1.2 m before a part of it.
+// A wall at an angle, and a panel in front of a part of it at a distance of 1.2 m.
 class DenseWorld {
  public:
   explicit DenseWorld(uint64_t seed = 5) {
@@ -59,7 +59,7 @@ class DenseWorld {
   }
 
  private:
-  static double Texel(const cv::Mat& texture, double u, double v) {  // between pixels; it repeats
+  static double Texel(const cv::Mat& texture, double u, double v) {  // bilinear, periodic
     const auto at = [&](int x, int y) {
       const int w = texture.cols, h = texture.rows;
       return static_cast<double>(texture.at<uint8_t>((y % h + h) % h, (x % w + w) % w));
@@ -70,10 +70,10 @@ class DenseWorld {
            b * ((1 - a) * at(x, y + 1) + a * at(x + 1, y + 1));
   }
 
-  // Depth along the ray in lengths of `direction` (whose z in the camera is 1), and grey level.
+  // Depth along the ray in lengths of `direction` (whose z in the camera is 1), and gray level.
   std::pair<double, double> Hit(const Eigen::Vector3d& from,
                                 const Eigen::Vector3d& direction) const {
-    constexpr double kTexels = 85;  // per metre: about a pixel each where they are seen
+    constexpr double kTexels = 85;  // per meter: about one pixel per texel
     const double panel = (1.8 - from.z()) / direction.z();
     const Eigen::Vector3d on_panel = from + panel * direction;
     if (std::abs(on_panel.x() + 0.2) < 0.35 && std::abs(on_panel.y() - 0.1) < 0.3)
@@ -88,7 +88,7 @@ class DenseWorld {
   cv::Mat wall_, panel_;
 };
 
-// The camera at a place, turned by `turn` about the vertical (radians).
+// A camera at `centre`, rotated by `turn` about the vertical (radians).
 inline Se3 CameraAt(const Eigen::Vector3d& centre, double turn = 0) {
   Vector6d xi = Vector6d::Zero();
   xi[4] = turn;
@@ -96,7 +96,7 @@ inline Se3 CameraAt(const Eigen::Vector3d& centre, double turn = 0) {
   return {R, -R * centre};
 }
 
-// To and fro and up and down before the wall, `step` metres from one to the next.
+// Camera positions left and right, up and down in front of the wall, `step` meters apart.
 inline std::vector<Se3> WayBeforeTheWall(int cameras, double step) {
   std::vector<Se3> way;
   for (int i = 0; i < cameras; ++i) {
@@ -106,8 +106,8 @@ inline std::vector<Se3> WayBeforeTheWall(int cameras, double step) {
   return way;
 }
 
-// Enters the views as keyframes of one map. Landmarks: on a grid of each view, exact, seen by all
-// views that have them in sight.
+// Adds the views as keyframes of one map, with exact landmarks on a grid of each view, observed by
+// all views that see them.
 inline std::vector<KeyFrameId> EnterViews(const std::vector<DenseView>& views, const Camera& camera,
                                           MapStore& store) {
   std::vector<std::shared_ptr<Frame>> frames;

@@ -1,4 +1,4 @@
-// Expectations about alidade::Error: its kind and what its message must say.
+// Checks an alidade::Error's kind and message.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -10,8 +10,8 @@
 
 namespace alidade {
 
-// Runs `code`, which must throw an Error of that kind, and returns its message ("" with a failure
-// otherwise).
+// Runs `code`, which must throw an Error of this kind, and returns its message (otherwise a test
+// failure and "").
 template <typename Code>
 std::string MessageOf(ErrorKind kind, const Code& code) {
   try {
@@ -24,7 +24,7 @@ std::string MessageOf(ErrorKind kind, const Code& code) {
   return "";
 }
 
-// What Check() says of settings: "" when they can be.
+// The message of settings' Check(); "" for valid settings.
 template <typename Settings>
 std::string ComplaintAbout(const Settings& settings) {
   try {
@@ -35,7 +35,7 @@ std::string ComplaintAbout(const Settings& settings) {
   return "";
 }
 
-// Collects warnings while it lives, instead of printing them.
+// Collects warnings during its lifetime instead of printing them.
 class WarningCatcher {
  public:
   WarningCatcher() {

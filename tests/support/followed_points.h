@@ -1,5 +1,5 @@
-// Points in space followed by a moving camera, some of them moving together: what flow would give,
-// with the truth.
+// Points tracked by a moving camera, some of them moving together: ideal optical flow with ground
+// truth.
 #pragma once
 
 #include <cmath>
@@ -19,12 +19,12 @@ struct FollowedSettings {
   int frames = 16;
   int standing = 300;
   double noise_px = 0.2;
-  bool depth = false;      // the cells of earlier frames know theirs
-  bool scattered = false;  // standing points are anywhere from 2.5 m to 5 m, not on walls
+  bool depth = false;      // earlier frames have depth per cell
+  bool scattered = false;  // static points are anywhere from 2.5 m to 5 m, instead of on walls
   std::function<Se3(int frame)> T_camera_world = [](int frame) {
     return Se3{Eigen::Matrix3d::Identity(), {-0.01 * frame, 0.002 * frame, 0}};
   };
-  // Where a group of points (a board of 0.5 m around the origin) is then, metres; the rest stands.
+  // Position of a group of moving points (a board of 0.5 m), meters; all other points are static.
   int moving = 40;
   std::function<Eigen::Vector3d(int frame)> board = [](int frame) {
     return Eigen::Vector3d(-0.3 + 0.02 * frame, 0, 2);
@@ -34,13 +34,13 @@ struct FollowedSettings {
 struct FollowedPoints {
   Camera camera;
   std::vector<FlowTrack> tracks;
-  std::vector<uint8_t> moves;  // of each track
-  History history;             // of all frames but the last
-  Se3 T_camera_world;          // of the last
-  std::vector<float> depth;    // of the cells of the last frame; empty without depth
+  std::vector<uint8_t> moves;  // per track
+  History history;             // all frames except the last
+  Se3 T_camera_world;          // of the last frame
+  std::vector<float> depth;    // per cell of the last frame; empty without depth
 };
 
-// Points stand on two walls at 2.5 m and 4 m, to the left and to the right.
+// Static points are on two walls at 2.5 m and 4 m, to the left and to the right.
 inline FollowedPoints FollowPoints(const FollowedSettings& settings) {
   FollowedPoints made;
   made.camera = MakeVgaCamera();
@@ -66,7 +66,7 @@ inline FollowedPoints FollowPoints(const FollowedSettings& settings) {
       track.path.emplace_back(static_cast<float>(pixel.x()), static_cast<float>(pixel.y()));
     }
     if (!seen) continue;
-    if (!moves) {  // not what the board hides, nor what is so near to it that one cannot tell
+    if (!moves) {  // skip points hidden by the board, or too near to it to be distinguished
       bool hidden = false;
       for (int frame = 0; frame < settings.frames; ++frame) {
         const Eigen::Vector2d centre = project(settings.board(frame), frame);
@@ -107,7 +107,7 @@ inline FollowedPoints FollowPoints(const FollowedSettings& settings) {
   return made;
 }
 
-// Of the tracks that move, or stand, the share with that vote.
+// Share of the moving (or static) tracks that have this vote.
 inline double ShareOf(const FollowedPoints& made, const std::vector<int8_t>& votes, bool moves,
                       int vote) {
   int all = 0, found = 0;

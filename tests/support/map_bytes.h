@@ -1,4 +1,4 @@
-// Tampering with the bytes of a saved map, by the layout of FlatBuffers alone.
+// Modifies the bytes of a saved map, using FlatBuffers' layout only.
 #pragma once
 
 #include <cstring>
@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-// Where a field of the root table lies; none when damage has put it, or the way to it, outside.
+// Position of a field of the root table; nullopt when damage has moved it outside.
 inline std::optional<size_t> RootField(const std::string& bytes, size_t field, size_t size) {
   const auto read = [&](size_t at, auto value) -> std::optional<decltype(value)> {
     if (at > bytes.size() || bytes.size() - at < sizeof(value)) return std::nullopt;
@@ -29,7 +29,7 @@ inline std::optional<size_t> RootField(const std::string& bytes, size_t field, s
   return place;
 }
 
-// Writes the checksum that fits the bytes as they are. False when its place is not to be found.
+// Updates the checksum to match the bytes. Returns false when its position cannot be found.
 inline bool RepairChecksum(std::string& bytes) {
   const auto place = RootField(bytes, 1, sizeof(uint64_t));
   if (!place) return false;

@@ -1,6 +1,5 @@
-// A straight motorway seen by a stereo pair behind a windscreen, rendered with exact poses: trees
-// far away, a guard rail whose posts all look alike, dashed lanes. Little of it is near, and what
-// is near moves fast.
+// A straight motorway seen by a stereo pair in a car, rendered with exact poses: distant trees, a
+// guard rail with identical posts, dashed lane markings. Few points are near, and those move fast.
 #pragma once
 
 #include <opencv2/imgproc.hpp>
@@ -14,12 +13,12 @@
 namespace alidade {
 
 struct MotorwaySettings {
-  double step = 1.5;       // metres per frame
-  int frames = 12;         //
-  double noise = 3;        // grey levels, standard deviation
-  double baseline = 0.54;  // metres, as KITTI's
+  double step = 1.5;       // meters per frame
+  int frames = 12;         // number of frames
+  double noise = 3;        // gray levels, standard deviation
+  double baseline = 0.54;  // meters, as in KITTI
   int width = 1240, height = 372;
-  double focal = 707;  // pixels, as KITTI's
+  double focal = 707;  // pixels, as in KITTI
 };
 
 struct Motorway {
@@ -34,7 +33,7 @@ struct Motorway {
 
 namespace motorway {
 
-// x ahead, y to the left, z up; metres. Seen from the side to which down × right points.
+// x forward, y left, z up; meters. Visible from the side to which down × right points.
 inline void AddRect(Scene& scene, const Eigen::Vector3d& origin, const Eigen::Vector3d& right,
                     const Eigen::Vector3d& down, const cv::Mat& picture) {
   Rect rect;
@@ -46,7 +45,7 @@ inline void AddRect(Scene& scene, const Eigen::Vector3d& origin, const Eigen::Ve
   scene.rects.push_back(rect);
 }
 
-// `piece`, so many times beside itself.
+// `piece` repeated horizontally.
 inline cv::Mat Repeated(const cv::Mat& piece, int times) {
   cv::Mat row;
   cv::repeat(piece, 1, times, row);
@@ -56,18 +55,18 @@ inline cv::Mat Repeated(const cv::Mat& piece, int times) {
 inline Scene Build() {
   Scene scene;
   const double length = 160, ahead = length - 10;
-  // Trees across the end of it, and along both sides farther off.
+  // Trees across the end, and along both sides at a larger distance.
   AddRect(scene, {ahead, 60, 22}, {0, -120, 0}, {0, 0, -22}, MakeTexture(1440, 264, 1));
   AddRect(scene, {-10, 28, 9}, {length, 0, 0}, {0, 0, -9}, MakeTexture(1920, 108, 2));
   AddRect(scene, {ahead, -28, 9}, {-length, 0, 0}, {0, 0, -9}, MakeTexture(1920, 108, 3));
-  // Asphalt with dashes of 4 m every 8: hardly anything on it that is the only one of its kind.
+  // Asphalt with 4 m dashes every 8 m: hardly any unique feature.
   cv::Mat road(1600, 160, CV_8UC1, cv::Scalar(105));
   AddNoise(road, 6, 4);
   for (int y = 0; y < road.rows; y += 80) {
     for (int x : {50, 110}) cv::rectangle(road, {x, y, 2, 40}, cv::Scalar(215), cv::FILLED);
   }
   AddRect(scene, {ahead, 8, 0}, {0, -16, 0}, {-length, 0, 0}, road);
-  // A rail with a post every 2 m, the same all along.
+  // A rail with identical posts every 2 m.
   cv::Mat piece(20, 50, CV_8UC1, cv::Scalar(150));
   cv::rectangle(piece, {0, 4, 50, 3}, cv::Scalar(200), cv::FILLED);
   cv::rectangle(piece, {20, 0, 5, 20}, cv::Scalar(60), cv::FILLED);

@@ -1,4 +1,4 @@
-// Small surgery on MP4 files (ISO 14496-12), for tests: what OpenCV's writer cannot write.
+// Edits MP4 files (ISO 14496-12) to produce features that OpenCV's writer does not support.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ inline std::string Mp4Text(uint32_t value) {
   return text;
 }
 
-// Where the box of that type starts (its size field).
+// Start of a box (its size field).
 inline size_t Mp4Box(const std::string& bytes, const std::string& type) {
   return bytes.rfind(type) - 4;
 }
 
-// Sets how long each frame is shown, in units of the track's time scale. The index must follow the
-// pictures (as FFmpeg writes it), since it grows.
+// Sets the duration of each frame in units of the track's time scale. The index must follow the
+// media data (as FFmpeg writes it), because it grows.
 inline void SetMp4Durations(std::string& bytes, const std::vector<uint32_t>& durations) {
   std::string stts = "stts" + Mp4Text(0) + Mp4Text(static_cast<uint32_t>(durations.size()));
   for (const uint32_t duration : durations) stts += Mp4Text(1) + Mp4Text(duration);
@@ -42,7 +42,7 @@ inline void SetMp4Durations(std::string& bytes, const std::vector<uint32_t>& dur
   }
 }
 
-// Marks the video to be shown turned by a quarter clockwise.
+// Sets the rotation flag to a clockwise quarter turn.
 inline void SetMp4QuarterTurn(std::string& bytes) {
   const uint32_t one = 0x10000, minus_one = 0xffff0000, one_w = 0x40000000;
   std::string matrix;

@@ -1,5 +1,5 @@
-// Writes small ONNX files, field by field as onnx.proto numbers them: networks whose answers a test
-// knows, and files that are wrong in one way.
+// Writes small ONNX files with the field numbers of onnx.proto: networks with known outputs, and
+// files with one specific error.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace alidade {
 
-// A protocol buffers message under construction.
+// Builds a protocol buffers message.
 class ProtobufWriter {
  public:
   ProtobufWriter& Integer(int number, int64_t value) {
@@ -38,7 +38,7 @@ class OnnxFile {
  public:
   static constexpr int kFloat = 1, kUint8 = 2, kInt64 = 7;
 
-  // Sides that are -1 are left open.
+  // A size of -1 is variable.
   OnnxFile& Input(const std::string& name, const std::vector<int64_t>& shape, int type = kFloat) {
     graph_.Bytes(11, ValueInfo(name, shape, type));
     return *this;
@@ -54,7 +54,7 @@ class OnnxFile {
   OnnxFile& Constant(const std::string& name, const std::vector<int64_t>& values) {
     return Tensor(name, {static_cast<int64_t>(values.size())}, kInt64, Raw(values));
   }
-  // Whose values are said to be in another file.
+  // A constant whose data is stated to be in another file.
   OnnxFile& ExternalConstant(const std::string& name, const std::vector<int64_t>& shape) {
     ProtobufWriter tensor;
     for (const int64_t side : shape) tensor.Integer(1, side);
@@ -62,7 +62,7 @@ class OnnxFile {
     graph_.Bytes(5, tensor.text());
     return *this;
   }
-  // An attribute of one value is an integer, of several a list.
+  // An attribute with one value is an integer, with several a list.
   OnnxFile& Node(const std::string& operation, const std::vector<std::string>& inputs,
                  const std::string& output,
                  const std::vector<std::pair<std::string, std::vector<int64_t>>>& attributes = {}) {

@@ -1,4 +1,4 @@
-// Runs the real programs, as a user would, and collects what they say.
+// Runs the real alidade program as a user would, and captures its output.
 #pragma once
 
 #include <fcntl.h>
@@ -17,14 +17,15 @@
 namespace alidade {
 
 struct ProgramResult {
-  int status = -1;       // exit status; -1 when a signal ended it
+  int status = -1;       // exit status; -1: ended by a signal
   std::string out, err;  // stdout, stderr
 };
 
-// `while_running` is given the process id, to send it signals.
+// `while_running` is called with the process id, to send signals. `in`: the working folder.
 inline ProgramResult RunProgram(const std::string& program,
                                 const std::vector<std::string>& arguments,
-                                const std::function<void(pid_t)>& while_running = nullptr) {
+                                const std::function<void(pid_t)>& while_running = nullptr,
+                                const std::string& in = ".") {
   const TempFolder folder;
   const std::string out = folder / "out", err = folder / "err";
   std::vector<std::string> words = {program};
@@ -38,6 +39,7 @@ inline ProgramResult RunProgram(const std::string& program,
     dup2(open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     dup2(open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
+    if (chdir(in.c_str()) != 0) _exit(127);
     execv(argv[0], argv.data());
     _exit(127);
   }
@@ -52,11 +54,12 @@ inline ProgramResult RunProgram(const std::string& program,
 }
 
 inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
-                                const std::function<void(pid_t)>& while_running = nullptr) {
-  return RunProgram(ALIDADE_BINARY, arguments, while_running);
+                                const std::function<void(pid_t)>& while_running = nullptr,
+                                const std::string& in = ".") {
+  return RunProgram(ALIDADE_BINARY, arguments, while_running, in);
 }
 
-// How many lines a text has: an error is one.
+// Number of lines; an error message is one line.
 inline int LineCount(const std::string& text) {
   int lines = 0;
   for (const char c : text) lines += c == '\n';

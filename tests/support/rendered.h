@@ -1,4 +1,4 @@
-// Rendered recordings for end-to-end tests: each made once per test run, by the program itself.
+// Rendered recordings for end-to-end tests, made by the program, each once per test run.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 
 namespace alidade {
 
-// The folder of the recording `alidade synth` makes from `arguments` ({"room", "--frames", "30"}).
-// CTest empties the folder of recordings before the first test; do not change what is in them (see
-// CopyOf).
+// Folder of the recording that `alidade synth` makes from `arguments` ({"room", "--frames", "30"}).
+// CTest empties the folder of recordings before the first test. The content must not be modified
+// (use CopyOf()).
 inline std::string Rendered(const std::vector<std::string>& arguments) {
   namespace fs = std::filesystem;
   std::string name;
@@ -27,13 +27,13 @@ inline std::string Rendered(const std::vector<std::string>& arguments) {
   words.insert(words.end(), arguments.begin() + 1, arguments.end());
   const ProgramResult result = RunAlidade(words);
   EXPECT_EQ(result.status, 0) << result.err;
-  std::error_code taken;  // by another test process: its recording is the same
+  std::error_code taken;  // another test process made the same recording
   fs::rename(draft, folder, taken);
   if (taken) fs::remove_all(draft);
   return folder.string();
 }
 
-// A copy to break.
+// A copy that may be modified.
 inline std::string CopyOf(const std::string& recording, const TempFolder& folder) {
   namespace fs = std::filesystem;
   const std::string copy = folder / "recording";
@@ -41,7 +41,7 @@ inline std::string CopyOf(const std::string& recording, const TempFolder& folder
   return copy;
 }
 
-// Lines of a text file, without their ends.
+// Lines of a text file, without line ends.
 inline std::vector<std::string> ReadLines(const std::string& path) {
   std::ifstream file(path);
   std::vector<std::string> lines;
@@ -49,7 +49,7 @@ inline std::vector<std::string> ReadLines(const std::string& path) {
   return lines;
 }
 
-// Those of them that are no comments.
+// The lines that are not comments.
 inline std::vector<std::string> DataLines(const std::string& path) {
   std::vector<std::string> lines;
   for (std::string& line : ReadLines(path)) {

@@ -1,5 +1,5 @@
-// A map to save, with everything that can be in one: culled keyframes and landmarks, forwarded ids,
-// depth and clutter, two maps, loops, scales, and a vocabulary.
+// A map with all kinds of content: culled keyframes and landmarks, forwarded ids, depth and
+// clutter, two maps, loops, scales, and a vocabulary.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct SavedMapSettings {
   int cameras = 9;
   int clutter = 20;
   bool second_map = true;
-  bool loops = true;  // and scales that are not 1
+  bool loops = true;  // also scales other than 1
   bool places = true;
 };
 
@@ -39,7 +39,7 @@ inline SavedMap MakeSavedMap(const SavedMapSettings& settings = {}) {
     commit.Replace(ids[some], ids[some + 1]);
     commit.Replace(ids[some + 1], ids[some + 2]);  // a chain
     commit.Replace(ids[some + 5], ids[some + 6]);
-    commit.Remove(ids[some + 6]);  // leads nowhere
+    commit.Remove(ids[some + 6]);  // a dangling forward
     if (settings.loops) {
       commit.AddLoop(made.keyframes.front(), made.keyframes.back());
       for (size_t i = 2; i < made.keyframes.size(); ++i) {

@@ -1,4 +1,4 @@
-// The map of a short run, and the commands that are given it.
+// The map of a short run, for tests of commands that read it.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -19,7 +19,7 @@ using testing::HasSubstr;
 
 class SavedMapCommand : public testing::Test {
  protected:
-  // The folder of a short run with a camera that distorts.
+  // Folder of a short run with lens distortion.
   static std::string Result(const std::string& sensor) {
     const std::string recording = Rendered({"room", "--frames", "40", "--distortion"});
     const std::string out = recording + "." + sensor;
@@ -28,7 +28,7 @@ class SavedMapCommand : public testing::Test {
     const ProgramResult run =
         RunAlidade({"run", recording, "--sensor", sensor, "--out", draft, "--quiet"});
     EXPECT_EQ(run.status, 0) << run.err;
-    std::error_code taken;  // by another test process: its map is the same
+    std::error_code taken;  // another test process made the same map
     fs::rename(draft, out, taken);
     if (taken) fs::remove_all(draft);
     return out;

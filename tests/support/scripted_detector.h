@@ -1,4 +1,4 @@
-// A detector that says what a test tells it to.
+// A detector that returns detections set by the test.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,4 @@
-// A recording that can be tracked, small and quick: the camera slides along a textured wall, which
-// it faces.
+// A small recording that can be tracked fast: the camera faces a textured wall and moves along it.
 #pragma once
 
 #include <cstdio>
@@ -15,10 +14,10 @@ namespace alidade {
 struct SlidingRecording {
   int frames = 12;
   int width = 320, height = 240;
-  double focal = 250;  // pixels
-  double depth = 2;    // metres to the wall
-  int step = 3;        // pixels the wall moves from frame to frame
-  double metres() const { return step * depth / focal; }  // the camera does meanwhile, along x
+  double focal = 250;                                     // pixels
+  double depth = 2;                                       // distance to the wall, meters
+  int step = 3;                                           // motion of the image per frame, pixels
+  double metres() const { return step * depth / focal; }  // motion of the camera per frame along x
 };
 
 inline std::string SlidingStamp(int i) {
@@ -29,7 +28,7 @@ inline std::string SlidingStamp(int i) {
 
 inline std::string SlidingImage(int i) { return "rgb/" + SlidingStamp(i) + ".png"; }
 
-// As a TUM RGB-D folder.
+// Writes it as a TUM RGB-D folder.
 inline void WriteSlidingTum(const TempFolder& folder, const SlidingRecording& options = {}) {
   Random random(1);
   cv::Mat wall(options.height, options.width + options.step * options.frames, CV_8UC1);

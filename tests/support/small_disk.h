@@ -1,4 +1,4 @@
-// A file system that is soon full.
+// A small file system, to test a full disk.
 #pragma once
 
 #include <sys/mount.h>
@@ -7,7 +7,7 @@
 
 namespace alidade {
 
-// A file system of its own, of some kilobytes.
+// A mounted file system with a capacity of a few kilobytes.
 class SmallDisk {
  public:
   SmallDisk(const std::string& folder, int kilobytes)

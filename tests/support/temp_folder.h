@@ -1,4 +1,4 @@
-// A folder that is gone after the test, and small helpers to fill it.
+// A folder that is deleted after the test, and helpers to fill it.
 #pragma once
 
 #include <cstdlib>
@@ -26,7 +26,7 @@ class TempFolder {
   const std::string& path() const { return path_; }
   std::string operator/(const std::string& name) const { return path_ + "/" + name; }
 
-  // Writes a file, making the folders it needs. Returns its path.
+  // Writes a file, creating folders as needed. Returns its path.
   std::string Write(const std::string& name, std::string_view bytes) const {
     const std::string path = path_ + "/" + name;
     std::filesystem::create_directories(std::filesystem::path(path).parent_path());
@@ -42,7 +42,7 @@ class TempFolder {
   std::string path_;
 };
 
-// The folder of real recordings, empty when the tests run without it.
+// The folder of real recordings; empty when the tests run without it.
 inline std::string DataFolder() {
   const char* folder = std::getenv("ALIDADE_DATA");
   return folder == nullptr ? "" : folder;

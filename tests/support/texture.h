@@ -1,6 +1,5 @@
-// Pictures with structure at all scales, for tests of what looks at images: opaque shapes of
-// power-law sizes on each other ("dead leaves"), slightly blurred. Made from a seed; the same
-// everywhere.
+// Images with structure at all scales: opaque shapes with power-law sizes that occlude each other
+// ("dead leaves"), slightly blurred. Deterministic for a given seed on all machines.
 #pragma once
 
 #include <cmath>

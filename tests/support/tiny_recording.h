@@ -1,4 +1,4 @@
-// Recordings of a few small images, written into a folder, for tests of what reads them.
+// Writes recordings of a few small images into a folder, for tests of the readers.
 #pragma once
 
 #include <opencv2/imgproc.hpp>
@@ -22,12 +22,12 @@ inline cv::Mat TinyImage(int seed, int width = kTinyWidth, int height = kTinyHei
   return image;
 }
 
-// A depth image that names its frame: every value is 1000 + number.
+// A depth image that identifies its frame: every value is 1000 + number.
 inline cv::Mat TinyDepth(int number) {
   return cv::Mat(kTinyHeight, kTinyWidth, CV_16UC1, cv::Scalar(1000 + number));
 }
 
-// Where frame i of a tiny TUM recording keeps its image.
+// Stamp of frame i of a tiny TUM recording, which is also the name of its image.
 inline std::string TinyStamp(int i) { return "10" + std::to_string(i) + ".500000"; }
 
 struct TinyTum {

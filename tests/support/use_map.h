@@ -1,4 +1,4 @@
-// All a program does with a map it has read.
+// Everything a program does with a map it has read.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-// What went wrong; "" when nothing did.
+// Returns what went wrong; "" if nothing.
 inline std::string UseMap(const SavedMap& saved) {
   const std::string bytes = EncodeMap(saved);
   if (EncodeMap(DecodeMap(bytes)) != bytes) return "what was read cannot be kept";

@@ -1,11 +1,11 @@
-// A camera as recordings with depth have it, for tests that need no particular one.
+// A typical RGB-D camera, for tests that need no particular one.
 #pragma once
 
 #include "alidade/geometry/camera.h"
 
 namespace alidade {
 
-// 640 × 480 pixels, focal length 525, the axis through the middle, no lens distortion.
+// 640 × 480 pixels, focal length 525, principal point at the center, no distortion.
 inline Camera MakeVgaCamera() {
   Camera camera;
   camera.width = 640;

@@ -1,4 +1,4 @@
-// A rendered room in which people walk about, with exact poses, depth and masks.
+// A rendered room with walking people, with exact poses, depth and masks.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,7 +21,7 @@ struct WalkedRoomSettings {
   uint64_t seed = 1;
 };
 
-// At 320 × 240. Rendering takes some ten milliseconds a frame.
+// Renders at 320 × 240, about 10 ms per frame.
 inline WalkedRoom WalkRoom(const WalkedRoomSettings& asked) {
   SynthSettings settings;
   settings.frames = asked.frames;
@@ -44,7 +44,7 @@ inline double ShareOfMask(const cv::Mat& mask) {
   return static_cast<double>(cv::countNonZero(mask)) / static_cast<double>(mask.total());
 }
 
-// Of two masks: what both have over what either has. 1 when both are empty.
+// Intersection over union of two masks; 1 when both are empty.
 inline double OverlapOf(const cv::Mat& a, const cv::Mat& b) {
   const int either = cv::countNonZero(a | b);
   return either == 0 ? 1 : static_cast<double>(cv::countNonZero(a & b)) / either;

@@ -1,4 +1,4 @@
-// Depth, poses and pictures must belong together, exactly.
+// Consistency of depth, poses and images.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,11 +30,11 @@ float Bilinear(const cv::Mat& image, const Eigen::Vector2d& pixel) {
 }
 
 struct Agreement {
-  int tested = 0;           // pixels of the first view that land in the second, unhidden
-  double median_grey = 0;   // grey levels they differ by
-  double median_depth = 0;  // relative
-  double gain = 0;  // the same difference of grey levels when the pose of the second is a degree
-                    // wrong, over median_grey
+  int tested = 0;           // pixels of the first view visible in the second
+  double median_grey = 0;   // difference of gray levels
+  double median_depth = 0;  // relative difference of depth
+  // Gray-level difference with the second pose wrong by one degree, divided by median_grey.
+  double gain = 0;
 };
 
 double Median(std::vector<double> values) {
@@ -42,7 +42,7 @@ double Median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-// Moves the first view's textured pixels into the second by depth and poses alone.
+// Transfers textured pixels of the first view to the second by depth and poses.
 Agreement Reproject(const RawCamera& camera, const RenderedFrame& a, const Se3& T_world_a,
                     const RenderedFrame& b, const Se3& T_world_b) {
   Agreement result;
@@ -56,14 +56,14 @@ Agreement Reproject(const RawCamera& camera, const RenderedFrame& a, const Se3& 
     for (int x = 2; x < camera.width - 2; x += 2) {
       const float step = std::abs(a.clean.at<float>(y, x + 1) - a.clean.at<float>(y, x - 1));
       const float z = a.depth_exact.at<float>(y, x);
-      if (step < 10 || !(z > 0)) continue;  // plain places agree with anything
+      if (step < 10 || !(z > 0)) continue;  // uniform regions agree with anything
       const Eigen::Vector3d ray = camera.Direction({x, y}), p_a = ray * (z / ray.z());
       const Eigen::Vector3d p_b = T_b_a * p_a, p_wrong = wrong * p_a;
       if (p_b.z() < 0.1 || p_wrong.z() < 0.1) continue;
       const Eigen::Vector2d pixel = camera.Project(p_b), pixel_wrong = camera.Project(p_wrong);
       if (!inside(pixel) || !inside(pixel_wrong)) continue;
       const double there = Bilinear(b.depth_exact, pixel);
-      if (std::abs(there - p_b.z()) > 0.03 * there) continue;  // hidden, or an edge
+      if (std::abs(there - p_b.z()) > 0.03 * there) continue;  // occluded, or at a depth edge
       const double here = a.clean.at<float>(y, x);
       grey.push_back(std::abs(Bilinear(b.clean, pixel) - here));
       wrong_grey.push_back(std::abs(Bilinear(b.clean, pixel_wrong) - here));
@@ -86,7 +86,7 @@ void ExpectAgreement(const SynthSettings& settings, int first, int second) {
   EXPECT_GT(found.tested, settings.scene == "road" ? 150 : 400) << settings.scene;  // fields
   EXPECT_LT(found.median_grey, 5) << settings.scene;
   EXPECT_LT(found.median_depth, 1e-3) << settings.scene;
-  EXPECT_GT(found.gain, 2) << settings.scene;  // or the test could not fail
+  EXPECT_GT(found.gain, 2) << settings.scene;  // otherwise the test could not fail
 }
 
 TEST(SynthGeometry, DepthAndPosesCarryTextureFromOneViewToAnother) {
@@ -102,7 +102,7 @@ TEST(SynthGeometry, LensDistortionIsTheCameraModels) {
   ExpectAgreement(settings, 100, 108);
   const Camera camera = SynthRecording(settings).camera();
   ASSERT_TRUE(camera.HasDistortion());
-  // Without it straight lines would stay straight: the corner moves by many pixels.
+  // The distortion is strong enough to matter: the corner moves by several pixels.
   EXPECT_GT((camera.Undistort({0, 0}) - Eigen::Vector2d(0, 0)).norm(), 5);
 }
 
@@ -114,7 +114,7 @@ TEST(SynthGeometry, StrongRadialDistortionAndAFisheyeAreTheCameraModelsToo) {
   settings.fisheye = true;
   settings.fov = 120;
   ExpectAgreement(settings, 100, 108);
-  // 120 degrees from the left edge to the right one, and as many pixels for each.
+  // 120 degrees from the left to the right edge, with the same number of pixels per degree.
   const RawCamera lens = SynthRecording(settings).lens();
   const auto angle = [&](double x) {
     const Eigen::Vector3d ray = lens.Direction({x, lens.cy});
@@ -165,11 +165,11 @@ TEST(SynthGeometry, DisparityOfTheSecondCameraIsBaselineTimesFocalLengthOverDept
 
 TEST(SynthGeometry, RowsOfARollingShutterAreSeenFromThePosesOfTheirTimes) {
   SynthSettings settings = Small("room");
-  settings.fps = 1000;  // poses and pictures at every millisecond
+  settings.fps = 1000;  // poses and images at every millisecond
   const SynthRecording global(settings);
   settings.rolling_shutter = 16;
   const RenderedFrame moving = SynthRecording(settings).Render(4000);
-  // Row r is taken (r + 0.5) / 240 - 0.5 of 16 ms after the frame's time.
+  // Row r is read ((r + 0.5) / 240 - 0.5) × 16 ms after the frame's time.
   const auto row_difference = [&](int milliseconds, int row) {
     const RenderedFrame still = global.Render(4000 + milliseconds);
     return cv::norm(still.clean.row(row), moving.clean.row(row), cv::NORM_L1) / still.clean.cols;

@@ -1,5 +1,4 @@
-// What recordings promise: the same pictures every time, hard enough, and people where the mask
-// says.
+// Recordings are reproducible, sufficiently difficult, and their masks mark the people.
 #include "alidade/synth/recording.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +71,7 @@ TEST(SynthRecording, PeopleAreWhereTheMaskSaysAndTheyMove) {
     const RenderedFrame without = empty.Render(number), with = peopled.Render(number);
     EXPECT_EQ(cv::countNonZero(without.mask), 0);
     covered += cv::countNonZero(with.mask) / static_cast<double>(with.mask.total()) / 4;
-    // The edge of the mask blends with what is behind.
+    // The border of the mask is blended with the background.
     cv::Mat wide;
     cv::dilate(with.mask, wide, cv::Mat::ones(3, 3, CV_8U));
     for (int y = 0; y < with.mask.rows; ++y) {
@@ -99,7 +98,7 @@ TEST(SynthRecording, NoiseHasTheDeviationAskedFor) {
   cv::Mat image, mean, deviation;
   frame.image.convertTo(image, CV_32F);
   cv::meanStdDev(image - frame.clean, mean, deviation);
-  EXPECT_NEAR(deviation.at<double>(0), std::hypot(settings.noise, 0.29), 0.1);  // and rounding
+  EXPECT_NEAR(deviation.at<double>(0), std::hypot(settings.noise, 0.29), 0.1);  // plus rounding
   EXPECT_NEAR(mean.at<double>(0), 0, 0.1);
 }
 
@@ -112,7 +111,7 @@ TEST(SynthRecording, BlurSmearsAndExposureDrifts) {
     return cv::norm(laplacian, cv::NORM_L1);
   };
   const SynthRecording still(settings);
-  int fastest = 0;  // where the camera turns fastest
+  int fastest = 0;  // frame with the fastest rotation
   const auto turn = [&still](int i) { return RotationAngle(still.Pose(i), still.Pose(i + 1)); };
   for (int i = 0; i < 300; ++i) {
     if (turn(i) > turn(fastest)) fastest = i;
@@ -148,8 +147,8 @@ TEST(DepthSensor, ErrsBySteepeningStepsAndIsBlindAtEdgesAndFarAway) {
       }
     }
     EXPECT_GT(readings, 9800);
-    // Disparity error of noise and steps (Khoshelham & Elberink 2012, eq. 7): sigma_z = z² / (f b)
-    // sigma_d.
+    // Disparity error from noise and quantization (Khoshelham & Elberink 2012, eq. 7): sigma_z = z²
+    // / (f b) sigma_d.
     const DepthSensorSettings sensor;
     const double sigma_d =
         std::hypot(sensor.disparity_sigma, sensor.disparity_step / std::sqrt(12.0));
@@ -160,10 +159,10 @@ TEST(DepthSensor, ErrsBySteepeningStepsAndIsBlindAtEdgesAndFarAway) {
   cv::Mat1f step(60, 120, 3.0f);
   step.colRange(60, 120) = 1.0f;
   const cv::Mat depth = SenseDepth(step, 525, 5000, {});
-  // Ragged: nearly nothing right at the edge.
+  // Ragged: almost no readings directly at the edge.
   EXPECT_LT(cv::countNonZero(depth.col(59)) + cv::countNonZero(depth.col(60)), 30);
-  // The projector stands to the camera's right: left of what is near the wall lies in its shadow, f
-  // b (1 - 1/3) = 26 pixels wide.
+  // The projector is to the right of the camera, so its shadow is left of the near object: f b (1 -
+  // 1/3) = 26 pixels wide.
   EXPECT_EQ(cv::countNonZero(depth.colRange(36, 57)), 0);
   EXPECT_GT(cv::countNonZero(depth.colRange(0, 30)), 0.95 * 60 * 30);
   EXPECT_GT(cv::countNonZero(depth.colRange(64, 120)), 0.95 * 60 * 56);
@@ -187,7 +186,7 @@ TEST(SynthRecording, HeldFramesShowWhereTheCameraIsByThen) {
   }
   EXPECT_GE(late, 8);
   EXPECT_LE(late, 35);
-  // 3 s on, by both clocks.
+  // Compare the poses 3 s after the start by both clocks.
   int i = 0;
   while (busy.Time(i) < 3) ++i;
   const int same = static_cast<int>(std::lround(busy.Time(i) * settings.fps));

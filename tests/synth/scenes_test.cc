@@ -1,4 +1,4 @@
-// Every scene, with several seeds, is as hard and as long as it is meant to be.
+// Every scene has the intended difficulty and length for several seeds.
 #include "alidade/synth/scenes.h"
 
 #include <gtest/gtest.h>
@@ -17,8 +17,8 @@ namespace {
 
 class Scenes : public testing::TestWithParam<std::string> {};
 
-// Corners as FAST (Rosten & Drummond 2006) finds them, segment test of 9 of 16, without suppression
-// of neighbours: counts 8 × 6 cells that hold any.
+// FAST-9 corners (Rosten & Drummond 2006) without non-maximum suppression; counts the cells of an 8
+// × 6 grid that contain any.
 struct Corners {
   int count = 0, cells = 0;
 };
@@ -40,7 +40,7 @@ Corners FindCorners(const cv::Mat& image, int threshold) {
         darker = value < centre - threshold ? darker + 1 : 0;
         corner = brighter >= 9 || darker >= 9;
       }
-      // One for each little group of neighbours.
+      // Count connected neighbors once.
       if (!corner || found(y - 1, x) || found(y - 1, x - 1) || found(y - 1, x + 1) ||
           found(y, x - 1)) {
         found(y, x) = corner;
@@ -55,16 +55,16 @@ Corners FindCorners(const cv::Mat& image, int threshold) {
   return corners;
 }
 
-// What a scene is meant to be.
+// Intended properties of a scene.
 struct Meant {
-  double turn = 20;               // degrees per second in the median, at least
-  double slow = 0.3, fast = 0.9;  // metres per second in the median, between
-  double fastest = 1.6;           // at any time
-  double length = 5;              // metres of the way, at least
-  double close = 0.6;             // metres between its end and its beginning, at most
-  int poor = 0, rich = 0;         // of 12 frames those with few corners, at least and at most
-  double missing = 0.45;          // share of the pixels without depth, at most
-  bool open = false;              // there is a sky
+  double turn = 20;               // median, degrees per second, minimum
+  double slow = 0.3, fast = 0.9;  // range of the median, meters per second
+  double fastest = 1.6;           // maximum, meters per second
+  double length = 5;              // of the path, meters, minimum
+  double close = 0.6;             // distance between end and start, meters, maximum
+  int poor = 0, rich = 0;         // of 12 frames, number with few corners: minimum and maximum
+  double missing = 0.45;          // share of pixels without depth, maximum
+  bool open = false;              // has a sky
 };
 Meant MeantOf(const std::string& scene) {
   Meant meant;
@@ -81,7 +81,7 @@ Meant MeantOf(const std::string& scene) {
 TEST_P(Scenes, AreWalkedAtTheSpeedTheyAreMeantToBeWithManyTurns) {
   const Meant meant = MeantOf(GetParam());
   for (const uint64_t seed : {1, 2, 3}) {
-    // Poses alone need nothing painted.
+    // Poses do not require painting.
     SceneBuilder builder(seed);
     const Layout layout = LayOut(GetParam(), builder);
     const CameraPath path(layout.knots, layout.period, layout.turns, layout.shake, seed);
@@ -105,9 +105,9 @@ TEST_P(Scenes, AreWalkedAtTheSpeedTheyAreMeantToBeWithManyTurns) {
     EXPECT_LT(found.median_speed, meant.fast) << seed;
     EXPECT_LT(fastest, meant.fastest) << seed;
     EXPECT_GE(found.path_length, meant.length) << seed;
-    // Begins by moving, not by turning on the spot: a monocular map can start.
+    // Starts with a translation, not a pure rotation, so that a monocular map can be initialized.
     EXPECT_GT((poses[30].t - poses[0].t).norm(), 0.15) << seed;
-    // Comes back to where it began.
+    // Returns to its start.
     double nearest = 1e9;
     for (int i = frames * 3 / 4; i < frames; ++i)
       nearest = std::min(nearest, (poses[i].t - poses[0].t).norm());
@@ -135,7 +135,8 @@ TEST_P(Scenes, HaveCornersWhereTheyAreMeantToYetMuchThatIsPlain) {
       seen += "frame " + std::to_string(number) + ": " + std::to_string(corners.count) +
               " corners in " + std::to_string(corners.cells) + " cells; ";
     poor += !enough;
-    // Nothing is walked through, nothing is open to the void, but for a pixel where seams meet.
+    // The path does not pass through objects, and the scene is closed except for single pixels at
+    // seams.
     double nearest = 0;
     const cv::Mat there = frame.depth_exact > 0;
     cv::minMaxLoc(frame.depth_exact, &nearest, nullptr, nullptr, nullptr, there);

@@ -1,4 +1,4 @@
-// How the camera goes about (SynthSettings::path), and what moves before it.
+// Camera paths (SynthSettings::path) and moving objects.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ SynthSettings Small(const std::string& scene, const std::string& path) {
   return settings;
 }
 
-// Metres between the two places that are furthest from the first.
+// Largest distance from the first position, meters.
 double Reach(const SynthRecording& recording, int first, int last) {
   double reach = 0;
   for (int i = first; i <= last; ++i)
@@ -37,7 +37,7 @@ TEST(SynthWays, ATurnOnTheSpotIsAboutTheCamerasCentre) {
     double most = 0;
     for (int i = 0; i < 480; ++i)
       most = std::max(most, RotationAngle(recording.Pose(0), recording.Pose(i)));
-    EXPECT_GT(most, 0.95 * std::numbers::pi) << scene;  // all the way round
+    EXPECT_GT(most, 0.95 * std::numbers::pi) << scene;  // a full turn
   }
 }
 
@@ -48,7 +48,7 @@ TEST(SynthWays, AnArmCarriesTheCameraRoundTheAxis) {
   const SynthRecording round(settings);
   for (int i = 0; i < 480; i += 20) {
     const Eigen::Vector3d arm = round.Pose(i).t - about.Pose(i).t;
-    EXPECT_NEAR(arm.norm(), 0.4, 0.02) << i;  // the spline cuts corners
+    EXPECT_NEAR(arm.norm(), 0.4, 0.02) << i;  // the spline rounds corners
     EXPECT_LT(RotationAngle(about.Pose(i), round.Pose(i)), 1e-12) << i;
   }
 }
@@ -58,7 +58,7 @@ TEST(SynthWays, TurnsFirstAndThenWalksTheScenesOwnWay) {
   EXPECT_LT(Reach(recording, 0, 120), 1e-9);
   EXPECT_GT(RotationAngle(recording.Pose(0), recording.Pose(60)), 1);
   EXPECT_GT(Reach(recording, 0, 300), 1);
-  // 4 s on the spot, and half a second lost by starting off. What is left is the hand's shake.
+  // 4 s of rotation, and half a second lost by the acceleration. The rest is shake.
   EXPECT_LT((recording.Pose(285).t - own.Pose(150).t).norm(), 0.1);
   for (int i = 1; i < 300; ++i) {
     EXPECT_LT((recording.Pose(i).t - recording.Pose(i - 1).t).norm(), 0.06) << i;
@@ -95,7 +95,7 @@ TEST(SynthWays, AStillCameraSeesTheSameButForWhatMoves) {
     covered += cv::countNonZero(frame.mask) / static_cast<double>(frame.mask.total()) / 3;
     if (!before.empty()) changed += cv::countNonZero(before != frame.mask);
     before = frame.mask;
-    // In front of the table they are moved over.
+    // The objects are in front of the table.
     cv::Mat behind;
     cv::bitwise_and(frame.depth_exact > bare.depth_exact, frame.mask, behind);
     EXPECT_EQ(cv::countNonZero(behind), 0) << number;
@@ -125,7 +125,8 @@ TEST(SynthWays, LowLightIsDarkerAndNoisierAgainstWhatIsSeen) {
   };
   double day = 0, dusk = 0, night = 0;
   EXPECT_NEAR(noise_of(1, &day), 4, 0.3);
-  EXPECT_NEAR(noise_of(0.25, &dusk), 8, 0.6);  // as bright as by day, with a quarter of the light
+  // Same brightness as by day, with a quarter of the light.
+  EXPECT_NEAR(noise_of(0.25, &dusk), 8, 0.6);
   EXPECT_NEAR(noise_of(0.0625, &night), 4, 0.3);
   EXPECT_NEAR(dusk, day, 0.02);
   EXPECT_NEAR(night, day / 4, 0.02);
@@ -139,10 +140,10 @@ TEST(SynthWays, SettingsSayWhatCannotBe) {
   };
   refused([](SynthSettings& s) { s.path = "fly"; });
   refused([](SynthSettings& s) { s.speed = 0; });
-  refused([](SynthSettings& s) { s.arm = 0.3; });  // of a turn alone
+  refused([](SynthSettings& s) { s.arm = 0.3; });  // only with path "turn"
   refused([](SynthSettings& s) { s.light = 0; });
   refused([](SynthSettings& s) { s.fov = 170; });
-  refused([](SynthSettings& s) { s.k1 = -0.5; });  // bends the corners back
+  refused([](SynthSettings& s) { s.k1 = -0.5; });  // not invertible at the corners
   refused([](SynthSettings& s) { s.k1 = s.distortion = true; });
   refused([](SynthSettings& s) { s.rolling_shutter = -1; });
   refused([](SynthSettings& s) { s.blur = std::nan(""); });

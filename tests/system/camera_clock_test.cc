@@ -12,7 +12,7 @@ using testing::ElementsAre;
 constexpr ClockStep kGoesOn = ClockStep::kGoesOn, kLate = ClockStep::kLate, kGap = ClockStep::kGap,
                     kBack = ClockStep::kBack;
 
-// A clock that has seen ten frames, `interval` apart, the last at time 100.
+// A clock after ten frames, `interval` seconds apart, the last at 100 s.
 CameraClock Started(double interval) {
   CameraClock clock;
   for (int i = 9; i >= 0; --i) EXPECT_EQ(clock.Take(100 - i * interval), kGoesOn);

@@ -1,4 +1,4 @@
-// The detector beside the tracker: when its answers come, and that nobody waits for it.
+// When results of the detector arrive, and that the tracker does not wait for them.
 #include "alidade/system/detection_feed.h"
 
 #include <algorithm>
@@ -18,15 +18,15 @@ namespace {
 
 using testing::HasSubstr;
 
-// A picture that names its frame.
+// An image whose gray level is the number of its frame.
 cv::Mat Picture(int number) { return cv::Mat(8, 8, CV_8U, cv::Scalar(number)); }
 
-// Says the number of the frame it was shown.
+// One detection, whose class is the number of the image's frame.
 std::vector<Detection> NumberOf(const cv::Mat& image) { return {{image.at<uint8_t>(0, 0), 1, {}}}; }
 
 class InlineFeed : public testing::Test {
  protected:
-  // The frames whose answers come at each of `frames` frames; -1: none.
+  // Numbers of the frames whose results are returned at each of `frames` frames; -1: no result.
   std::vector<int> Play(int frames, uint64_t seed = 1) {
     shown_.clear();
     const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat& image) {
@@ -42,7 +42,7 @@ class InlineFeed : public testing::Test {
       if (!answer) continue;
       EXPECT_EQ(answer->detections.size(), 1u);
       EXPECT_EQ(answer->detections[0].class_id, answer->number);
-      EXPECT_FALSE(feed.Take(number).has_value());  // once
+      EXPECT_FALSE(feed.Take(number).has_value());  // each result once
     }
     EXPECT_EQ(feed.milliseconds().All().size(), shown_.size());
     return answers;
@@ -66,7 +66,7 @@ TEST_F(InlineFeed, EverySoManyFramesOneIsAnsweredSoManyFramesLater) {
   }
 }
 
-// As where a recording goes on in a saved map.
+// As when a recording continues in a saved map.
 TEST_F(InlineFeed, TheFirstFrameIsShownWhateverItsNumber) {
   settings_.detector_every_frames = 6;
   settings_.detector_latency_frames = 2;
@@ -91,7 +91,7 @@ TEST_F(InlineFeed, AnswersThatAreThrownAwayAreTheSameOnesForTheSameSeed) {
   EXPECT_EQ(Play(200), answers);
   EXPECT_NE(Play(200, 2), answers);
   const auto dropped = std::count(answers.begin(), answers.end(), -1);
-  EXPECT_NEAR(static_cast<double>(dropped), 60, 20);  // three standard deviations
+  EXPECT_NEAR(static_cast<double>(dropped), 60, 20);  // 20: three standard deviations
   settings_.drop_detections = 1;
   EXPECT_EQ(Play(50), std::vector<int>(50, -1));
 }
@@ -139,7 +139,7 @@ TEST_F(InlineFeed, WithoutADetectorThereAreNoAnswers) {
   }
 }
 
-// A detector that does nothing until it is let.
+// A detector that waits in Detect() until Let() allows it to return.
 class Gate {
  public:
   std::vector<Detection> Detect(const cv::Mat& image) {
@@ -154,7 +154,7 @@ class Gate {
     allowed_ += answers;
     changed_.notify_all();
   }
-  // Waits until it has been shown so many frames, and says which.
+  // Waits until it was given `count` frames; returns the numbers of all of them.
   std::vector<int> WaitForShown(size_t count) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return shown_.size() >= count; });
@@ -177,7 +177,7 @@ class ThreadedFeed : public testing::Test {
             [this](const cv::Mat& image) { return gate_.Detect(image); }),
         settings_, true, 1);
   }
-  // The test's time limit ends what never comes.
+  // Waits for a result; if none comes, the time limit of the test ends it.
   static FrameDetections WaitForAnswer(DetectionFeed& feed, int number) {
     for (;;) {
       if (auto answer = feed.Take(number)) return *answer;
@@ -192,7 +192,7 @@ TEST_F(ThreadedFeed, TheNewestFrameWinsAndNobodyWaitsForASlowDetector) {
   const auto feed = Feed();
   feed->Offer(0, Picture(0));
   gate_.WaitForShown(1);
-  for (int number = 1; number < 100; ++number) {  // it is busy with the first all the while
+  for (int number = 1; number < 100; ++number) {  // the detector is still busy with frame 0
     feed->Offer(number, Picture(number));
     EXPECT_FALSE(feed->Take(number).has_value());
   }
@@ -212,7 +212,7 @@ TEST_F(ThreadedFeed, ThePictureIsTheDetectorsOwn) {
   gate_.WaitForShown(1);
   cv::Mat picture = Picture(5);
   feed->Offer(5, picture);
-  picture.setTo(200);  // the next frame is read into it
+  picture.setTo(200);  // as if the next frame were read into it
   gate_.Let(2);
   EXPECT_EQ(gate_.WaitForShown(2).back(), 5);
 }
@@ -268,7 +268,7 @@ TEST(LateFeed, AnswersComeFromElsewhereAndNoneIsOfAFrameToCome) {
     EXPECT_FALSE(feed.Take(6).has_value());
     detector->Bring({9, {}});
     EXPECT_FALSE(feed.Take(7).has_value());
-    EXPECT_EQ(feed.failure(), nullptr);  // it was never asked
+    EXPECT_EQ(feed.failure(), nullptr);  // the detector was never called
     EXPECT_TRUE(feed.milliseconds().All().empty());
   }
 }

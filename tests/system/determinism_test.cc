@@ -16,7 +16,7 @@ constexpr int kFrames = 60;
 struct Outcome {
   std::string trajectory, keyframes, map;  // bytes
   int tracked = 0;
-  double worst = 0;  // distance to the truth, in units of the map
+  double worst = 0;  // largest distance to the true position, map units
 };
 
 Outcome Play(Sensor sensor, int threads, bool threaded = false) {
@@ -25,7 +25,7 @@ Outcome Play(Sensor sensor, int threads, bool threaded = false) {
   SlamSettings settings;
   settings.sensor = sensor;
   settings.threaded = threaded;
-  settings.tracker.extractor.features = 600;  // the picture is small
+  settings.tracker.extractor.features = 600;  // for a small image
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
   Slam slam(room.camera(), settings);
   for (int i = 0; i < kFrames; ++i) {
@@ -86,7 +86,7 @@ TEST(InlineSchedule, ItsMapIsReadBack) {
 
 TEST(ThreadedSchedule, FinishesAndTracks) {
   const Outcome run = Play(Sensor::kRgbd, 2, /*threaded=*/true);
-  EXPECT_GE(run.tracked, 57);  // how far the mapper gets meanwhile is not ours to say
+  EXPECT_GE(run.tracked, 57);  // the mapper may lag behind
   EXPECT_LT(run.worst, 0.1);
   EXPECT_EQ(DecodeMap(run.map).sensor, "rgbd");
 }

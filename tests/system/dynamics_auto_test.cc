@@ -1,5 +1,5 @@
-// dynamics.mode auto: what moves is left out once the poses are seen to follow it, and nothing is
-// different where nothing moves.
+// dynamics.mode auto: moving objects are left out once the poses follow them. Without moving
+// objects the result is that of off.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace alidade::dynamics_auto_test {
 namespace {
 
-// Someone walks ahead of the camera, near and full of corners, for 3 s; or no one does.
+// A person with many corners walks close ahead of the camera for 3 s; with 0 actors nobody does.
 SynthRecording Room(int actors, int width, uint64_t seed = 4) {
   SynthSettings settings;
   settings.frames = 200;
@@ -27,8 +27,8 @@ SynthRecording Room(int actors, int width, uint64_t seed = 4) {
 
 struct Played {
   int tracked = 0, with_mask = 0;  // frames
-  int landmarks = 0, looks = 0;    // looks: frames the filter had
-  double rmse = 0, path = 0;       // of the ATE, after Sim(3); of the truth, metres
+  int landmarks = 0, looks = 0;    // looks: frames that the filter processed
+  double rmse = 0, path = 0;       // ATE after Sim(3) alignment; length of the true path; meters
   std::vector<std::string> stages;
   std::string poses, warnings;
 };
@@ -78,7 +78,7 @@ TEST(DynamicsAuto, LeavesOutWhomTheCameraFollowed) {
   const SynthRecording people = Room(3, 480);
   const Played off = Play(people, Settings(DynamicsMode::kOff, Sensor::kMono), kFrames);
   const Played watched = Play(people, Settings(DynamicsMode::kAuto, Sensor::kMono), kFrames);
-  EXPECT_GT(off.rmse, 0.1 * off.path);  // else there is nothing to show
+  EXPECT_GT(off.rmse, 0.1 * off.path);  // without dynamics the people do harm
   EXPECT_LT(watched.rmse, 0.25 * off.rmse);
   EXPECT_GE(watched.tracked, 80);
   EXPECT_GT(watched.with_mask, 30);
@@ -103,7 +103,7 @@ TEST(DynamicsAuto, IsOffWhereNothingMoves) {
   }
 }
 
-// People who pass far away, a tenth of the picture and less: too few as it comes.
+// People pass at a distance and cover at most a tenth of the image: too little for the default.
 TEST(DynamicsAuto, WithDepthASmallShareOfWhatMovesIsEnoughWhenAskedFor) {
   SlamSettings settings = Settings(DynamicsMode::kAuto, Sensor::kRgbd);
   settings.dynamics.watch_moved_depth = 0.03;

@@ -1,5 +1,5 @@
-// SLAM among moving people, in rendered rooms: what gets into the map, and what a detector may do
-// without harm.
+// SLAM among moving people in rendered rooms: what enters the map, and results of a detector that
+// must do no harm.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +20,8 @@
 namespace alidade::dynamics_test {
 namespace {
 
-constexpr int kAll = 80;        // frames; the first may have too few corners with depth
-constexpr double kNear = 0.06;  // metres: 320 × 240 pixels, and people about
+constexpr int kAll = 80;        // frames; the first may have too few keypoints with depth
+constexpr double kNear = 0.06;  // meters; images have 320 × 240 pixels and show people
 
 const WalkedRoom& Room() {
   static const WalkedRoom room = WalkRoom({.actors = 2, .frames = kAll, .stereo = true, .seed = 6});
@@ -32,12 +32,12 @@ SlamSettings Settings(DynamicsMode mode, Sensor sensor = Sensor::kRgbd) {
   SlamSettings settings;
   settings.sensor = sensor;
   settings.dynamics.mode = mode;
-  settings.tracker.extractor.features = 600;  // the picture is small
+  settings.tracker.extractor.features = 600;  // for a small image
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
   return settings;
 }
 
-// The frame an image is of.
+// The number of an image's frame; -1: unknown.
 int NumberOf(const cv::Mat& image) {
   for (size_t i = 0; i < Room().frames.size(); ++i) {
     const cv::Mat& known = Room().frames[i].image;
@@ -48,7 +48,7 @@ int NumberOf(const cv::Mat& image) {
   return -1;
 }
 
-// Boxes around the people's true masks, as a good detector has them.
+// Boxes around the true masks of people, as from a good detector.
 std::vector<Detection> TrueBoxes(const cv::Mat& image) {
   const int number = NumberOf(image);
   std::vector<Detection> found;
@@ -70,9 +70,9 @@ std::vector<Detection> TrueBoxes(const cv::Mat& image) {
 std::shared_ptr<Detector> Good() { return std::make_shared<ScriptedDetector>(TrueBoxes); }
 
 struct Played {
-  int tracked = 0, tracked_at_end = 0;  // frames; of the last ten
-  double worst = 0, worst_at_end = 0;   // metres from the truth
-  int keypoints = 0, on_people = 0;     // of landmarks in keyframes
+  int tracked = 0, tracked_at_end = 0;  // frames; at the end: of the last ten
+  double worst = 0, worst_at_end = 0;   // largest position error, meters
+  int keypoints = 0, on_people = 0;     // keypoints of landmarks in keyframes
   std::string map;                      // bytes
 };
 
@@ -115,7 +115,7 @@ Played Play(const SlamSettings& settings, std::shared_ptr<Detector> detector = n
   ExpectConsistent(map);
   for (KeyFrameId id : map.KeyFrames()) {
     const KeyFrame& keyframe = *map.Find(id);
-    cv::Mat people;  // on their outline nobody can tell
+    cv::Mat people;  // without the outline, where a keypoint may be on either side
     cv::erode(Room().frames[keyframe.frame->number].mask, people, cv::Mat::ones(5, 5, CV_8U));
     for (size_t k = 0; k < keyframe.landmarks.size(); ++k) {
       if (!keyframe.landmarks[k].valid()) continue;
@@ -135,7 +135,7 @@ double ShareOnPeople(const Played& played) {
 
 TEST(DynamicSlam, TheMapHoldsFewPeople) {
   const Played off = Play(Settings(DynamicsMode::kOff));
-  ASSERT_GT(ShareOnPeople(off), 0.015);  // else there is nothing to show
+  ASSERT_GT(ShareOnPeople(off), 0.015);  // without dynamics the people do harm
   for (DynamicsMode mode : {DynamicsMode::kGeometry, DynamicsMode::kFull}) {
     const Played on = Play(Settings(mode), Good());
     EXPECT_GE(on.tracked, kAll - 1) << NameOf(mode);
@@ -188,7 +188,7 @@ TEST(DynamicSlam, GoesOnWithGeometryWhenTheDetectorFails) {
   EXPECT_LT(played.worst, kNear);
 }
 
-// Says in the frames from `begin` to `end` that this is a person.
+// Reports a person at `box` in the frames `begin` to `end`.
 std::shared_ptr<Detector> Says(const cv::Rect2f& box, int begin, int end) {
   return std::make_shared<ScriptedDetector>([=](const cv::Mat& image) {
     const int number = NumberOf(image);
@@ -215,7 +215,7 @@ TEST(DynamicSlam, APersonOverHalfThePictureIsOfNoHarm) {
 
 TEST(DynamicSlam, TrackingComesBackAfterTheWholePictureWasAPerson) {
   for (Sensor sensor : {Sensor::kRgbd, Sensor::kStereo}) {
-    for (bool foreground : {true, false}) {  // without it, every feature is left out
+    for (bool foreground : {true, false}) {  // false: every feature is left out
       SlamSettings settings = AtOnce(sensor);
       settings.dynamics.foreground = foreground;
       const Played played = Play(settings, Says({0, 0, 320, 240}, 30, 39));

@@ -1,5 +1,5 @@
-// Frames before one camera's start, and its first ones, get their poses later: on a rendered room,
-// with exact poses.
+// Deferred localization: frames before the start of a map of one camera, and its first frames, get
+// their poses later. On a rendered room with exact poses.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -66,8 +66,8 @@ TEST(EarlyFrames, ACutForgetsThoseThatWait) {
   EXPECT_TRUE(trajectory[2].tracked);
 }
 
-// Turning, the camera comes to see the map from what is at its edge alone, where depths are wrong
-// and agree with each other: frame for frame it creeps, then it leaps.
+// While it rotates, the camera sees only the edge of the map, where the depths of all landmarks are
+// wrong in the same way: the position creeps from frame to frame, then jumps.
 TEST(EarlyFrames, NoneIsPlacedBeyondALeap) {
   SynthSettings settings;
   settings.path = "turn";
@@ -81,7 +81,7 @@ TEST(EarlyFrames, NoneIsPlacedBeyondALeap) {
   const SynthRecording recording(settings);
   std::vector<RenderedFrame> frames;
   for (int i = kFirst; i < kLast; ++i) frames.push_back(recording.Render(i));
-  // The longest step from one frame to the next of all with a pose, in medians.
+  // The longest step between consecutive frames with a pose, as a multiple of the median step.
   const auto leap = [&](double max_leap) {
     SlamSettings with = Settings(180);
     with.early.max_leap = max_leap;

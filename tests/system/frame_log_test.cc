@@ -37,8 +37,9 @@ KeyFrameId AddKeyFrame(MapCommit& commit, const Se3& T_camera_world, KeyFrameId 
   return commit.Add(std::move(keyframe));
 }
 
-// A map in which everything happens: it grows, is corrected in place and in scale, and keyframes
-// are culled. Frames hang on its keyframes; `plain` is the same as the log, without any art.
+// A map that grows, is corrected in position and scale, and whose keyframes are culled. The poses
+// of frames are relative to its keyframes; `plain` holds the same anchors as the log, in a plain
+// list.
 class Journey {
  public:
   explicit Journey(unsigned seed, const TrajectorySettings& settings = {})
@@ -128,7 +129,7 @@ TEST(FrameLog, GivesThePosesItsKeyFramesGive) {
   const MapSnapshot map = journey.store.Snapshot();
   const std::vector<FramePose> trajectory = journey.log.Trajectory(journey.store);
   ASSERT_EQ(trajectory.size(), journey.plain.size());
-  ASSERT_GT(trajectory.size(), 1500u);  // some chunks
+  ASSERT_GT(trajectory.size(), 1500u);  // several chunks
   Trajectory given, expected;
   for (size_t i = 0; i < trajectory.size(); ++i) {
     const Anchor& anchor = journey.plain[i];
@@ -157,7 +158,7 @@ TEST(FrameLog, FramesStayWhereTheyAreWhenTheirCulledKeyFramesAreLeftForLivingOne
     for (KeyFrameId id : journey.log.Anchors()) EXPECT_NE(map.Find(id), nullptr);
     ExpectSame(journey.log.Trajectory(journey.store), before, 1e-9);
   }
-  // And they follow what happens later as they would have.
+  // Poses follow all later corrections as those of the original anchors.
   const MapSnapshot map = journey.store.Snapshot();
   const std::vector<FramePose> trajectory = journey.log.Trajectory(journey.store);
   for (size_t i = 0; i < trajectory.size(); ++i) {
@@ -191,13 +192,13 @@ TEST(FrameLog, FramesOfADroppedMapHaveNoPoseBeforeAndAfterTheyAreTiedAnew) {
   EXPECT_THAT(log.Anchors(), testing::ElementsAre(kept));
 }
 
-TEST(FrameLog, AFrameTakesLessThan185Bytes) {  // 20 MB an hour at 30 frames per second
+TEST(FrameLog, AFrameTakesLessThan185Bytes) {  // 20 MB per hour at 30 frames per second
   MapStore store;
   FrameLog log;
   KeyFrameId parent;
   const int frames = 20000;
   for (int i = 0; i < frames; ++i) {
-    if (i % 10 == 0)  // three keyframes a second: more than any recording of ours has
+    if (i % 10 == 0)  // three keyframes per second, more than in any of our recordings
       store.Commit([&](MapCommit& commit) { parent = AddKeyFrame(commit, {}, parent); });
     log.Begin(i / 30.0);
     log.Place(AnchorTo(store.Snapshot().state(), parent, {}), {});
@@ -258,7 +259,7 @@ TEST(FrameLog, AFrameIsReadOnceItHasEnded) {
   EXPECT_TRUE(log.Trajectory(store).empty());
   log.End();
   EXPECT_EQ(log.Trajectory(store).size(), 1u);
-  log.Begin(2);  // never ended: something was thrown
+  log.Begin(2);  // never ended, as after an exception
   log.Begin(3);
   EXPECT_EQ(log.Trajectory(store).size(), 2u);
   EXPECT_FALSE(log.Trajectory(store)[1].tracked);
@@ -280,14 +281,14 @@ TEST(FrameLog, AFrameIsPlacedLate) {
       log.Place(AnchorTo(store.Snapshot().state(), keyframe, placed[i]), placed[i].Inverse());
     log.End();
   }
-  const std::vector<int> late = {0, 512, 600, 1299,
-                                 1298};  // the last but one lacks its pose no more
+  // All without a pose but 1299.
+  const std::vector<int> late = {0, 512, 600, 1299, 1298};
   const std::vector<FramePose> before = log.Trajectory(store);
   for (int i : late) {
     placed[i] = dice.Pose();
     log.PlaceLate(i, AnchorTo(store.Snapshot().state(), keyframe, placed[i]));
   }
-  log.PlaceLate(frames, {});  // there is none such: nothing happens
+  log.PlaceLate(frames, {});  // no such frame: nothing happens
   const std::vector<FramePose> after = log.Trajectory(store);
   ASSERT_EQ(after.size(), before.size());
   for (int i = 0; i < frames; ++i) {

@@ -1,4 +1,4 @@
-// Long in one place: what is held and walked through is what lives, however much came and went.
+// A long stay in one place: memory follows live objects, however many were removed meanwhile.
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
@@ -14,8 +14,8 @@ namespace {
 struct Held {
   uint32_t issued = 0;  // landmark ids
   int alive = 0;        // landmarks and keyframes
-  int nodes = 0;        // of the tables
-  int left_overs = 0;   // of culled keyframes and fused landmarks
+  int nodes = 0;        // tree nodes of the id tables
+  int left_overs = 0;   // records of culled keyframes and fused landmarks
 };
 
 Held HeldBy(const MapSnapshot& map) {
@@ -30,7 +30,7 @@ TEST(Lasting, WhatIsHeldFollowsWhatLives) {
   const WalkedRoom room = WalkRoom({.actors = 0, .frames = 40});
   SlamSettings settings;
   settings.sensor = Sensor::kRgbd;
-  settings.tracker.extractor.features = 400;  // the picture is small
+  settings.tracker.extractor.features = 400;  // for a small image
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.5;
   Slam slam(room.camera, settings);
   cv::RNG noise(5);
@@ -42,7 +42,7 @@ TEST(Lasting, WhatIsHeldFollowsWhatLives) {
     const int phase = i % (2 * last);
     const RenderedFrame& frame =
         room.frames[static_cast<size_t>(std::min(phase, 2 * last - phase))];
-    // The sensor's noise is another each time, else nothing would come and go.
+    // Different noise in every frame, so that landmarks are created and removed.
     cv::Mat grain(frame.image.size(), CV_16S), image;
     noise.fill(grain, cv::RNG::NORMAL, 0, 6);
     frame.image.convertTo(image, CV_16S);

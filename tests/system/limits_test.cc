@@ -1,4 +1,4 @@
-// What may be limited: keyframes, and the time that Finish() takes.
+// Limits on the number of keyframes and on the time that Finish() takes.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -42,7 +42,7 @@ class Limits : public testing::Test {
 TEST_F(Limits, KeyFramesStayWithinTheirsAndTrackingGoesOn) {
   SlamSettings settings = Phone();
   settings.mapper.max_keyframes = 12;
-  settings.mapper.redundant_share = 1;  // nothing else removes any
+  settings.mapper.redundant_share = 1;  // no keyframe is removed as redundant
   std::string first;
   for (int threads : {1, 2}) {
     SetThreadCount(threads);

@@ -1,5 +1,5 @@
-// Lost and found again, several maps that become one, maps that are gone on with: on small pictures
-// of a furnished room, as the phone has them.
+// Relocalization, several maps that are merged, saved maps that are continued: on small images of a
+// furnished room, as from a phone.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -17,7 +17,7 @@ SlamSettings Phone() {
   SlamSettings settings;
   settings.ApplyProfile("phone");
   settings.sensor = Sensor::kRgbd;
-  settings.new_map_frames = 8;  // frames are few here, and far apart
+  settings.new_map_frames = 8;  // the tests have few frames, far apart
   return settings;
 }
 
@@ -29,7 +29,7 @@ std::vector<int> Steps(int first, int last, int step) {
 
 constexpr int kBlack = -1;
 
-// Plays frames of the room one after another, 10 a second, and keeps what came of each.
+// Plays frames of the room, 10 per second, and keeps their results.
 class Player {
  public:
   explicit Player(const SlamSettings& settings) : slam(SmallRoom().camera(), settings) {}
@@ -46,8 +46,8 @@ class Player {
     }
   }
 
-  // Largest distance of tracked frames to the truth in the world of `map`, the first of whose
-  // frames is `origin`; how many there are.
+  // Largest position error of the frames tracked in `map`, meters, and their number. `origin`: the
+  // frame whose pose is the map's world frame.
   std::pair<double, int> WorstOf(MapId map, int origin) const {
     std::pair<double, int> worst{0, 0};
     for (const FramePose& pose : slam.Trajectory()) {
@@ -70,7 +70,7 @@ TEST(Lost, IsFoundAgainWhenSightReturns) {
   player.Play(std::vector<int>(12, kBlack));
   for (size_t i = player.played.size() - 12; i < player.played.size(); ++i)
     EXPECT_EQ(player.results[i].state, TrackState::kLost);
-  player.Play(Steps(9, 45, 3));  // somewhere else than where sight was lost
+  player.Play(Steps(9, 45, 3));  // another place than where the camera was lost
   EXPECT_EQ(player.results[16 + 12].state, TrackState::kTracking);
   EXPECT_EQ(player.slam.Counts().relocalisations, 1);
   EXPECT_EQ(player.slam.Snapshot().Maps().size(), 1u);
@@ -88,7 +88,7 @@ TEST(Lost, DarknessStartsNoMap) {
   EXPECT_EQ(player.results.back().state, TrackState::kTracking);
 }
 
-// One part of the room, then another that shares nothing with it, from which the camera comes back.
+// One part of the room, then another without overlap, from which the camera returns to the first.
 const Player& CutInTwo(int threads) {
   static std::map<int, std::unique_ptr<Player>> players;
   auto& player = players[threads];
@@ -105,17 +105,17 @@ const Player& CutInTwo(int threads) {
 TEST(Maps, WhatNeverOverlapsIsAMapOfItsOwnUntilTheyMeet) {
   const Player& player = CutInTwo(1);
   const size_t cut = Steps(0, 48, 3).size();
-  // The jump is noticed, and the second map waits its second.
+  // The camera is lost at the jump; a second map starts one second later.
   for (size_t i = cut; i < cut + 8; ++i) EXPECT_EQ(player.results[i].state, TrackState::kLost);
   EXPECT_EQ(player.results[cut + 15].state, TrackState::kTracking);
   EXPECT_EQ(player.slam.Counts().merges, 1);
   const MapSnapshot map = player.slam.Snapshot();
   ExpectConsistent(map);
   EXPECT_EQ(map.Maps(), std::vector<MapId>{MapId{0}});
-  // All frames in one world, those of the time before they met, too.
+  // All frames are in one world, including those from before the merge.
   const auto worst = player.WorstOf(MapId{0}, 0);
   EXPECT_GT(worst.second, 55);
-  EXPECT_LT(worst.first, 0.2);  // metres; a wrong tie costs whole ones
+  EXPECT_LT(worst.first, 0.2);  // meters; after a wrong merge it is several
 }
 
 TEST(Maps, StayApartWhereNothingTiesThem) {
@@ -143,7 +143,8 @@ TEST(Maps, AMergeGivesTheSameBytesWithOneAndTwoThreads) {
   }
 }
 
-// How far the workers get meanwhile is not ours to say; but never is a map broken, or a pose wrong.
+// How far the workers get between frames varies, but the map is always consistent and no pose is
+// wrong.
 TEST(Maps, AreSoundInTheThreadedSchedule) {
   SlamSettings settings = Phone();
   settings.threaded = true;
@@ -161,7 +162,7 @@ TEST(Maps, AreSoundInTheThreadedSchedule) {
   EXPECT_LT(player.WorstOf(MapId{0}, 0).first, 0.5);
 }
 
-// What was saved of frames 0 to 48.
+// The saved map of frames 0 to 48.
 const std::string& SavedRoom() {
   static const std::string saved = [] {
     Player player(Phone());

@@ -1,5 +1,5 @@
-// Maps of several recordings: joined where they show one place, whatever their order, and kept
-// apart where they do not.
+// Maps of several recordings: merged if they show the same place, in any order, and kept apart
+// otherwise.
 #include "alidade/system/merge_maps.h"
 
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@ namespace {
 
 struct Visit {
   MapToMerge map;
-  Se3 T_truth_world;         // of its first frame
-  std::vector<int> numbers;  // frame of the scene's path, by number in the recording
+  Se3 T_truth_world;         // true pose of its first frame
+  std::vector<int> numbers;  // frame of the scene's path for each frame of the visit
 };
 
 RenderedFrames& Scene(const std::string& name) {
@@ -48,7 +48,7 @@ Visit Play(const std::string& scene, int first, int last, Sensor sensor = Sensor
   return visit;
 }
 
-// Largest distance of a part's keyframes to the truth, when the world is that of `first`.
+// Largest position error of a part's keyframes, meters, if the world frame is that of `first`.
 double WorstOf(const MergedMaps& merged, const UnitedPart& part, const Visit& visit,
                const Visit& first, const std::string& scene) {
   double worst = 0;
@@ -85,7 +85,7 @@ TEST_F(MergeMapsOfARoom, TwoVisitsBecomeOneMapAsTrueAsEach) {
   const Visit& first = early_first ? *early_ : *late_;
   EXPECT_LT(WorstOf(merged, merged.parts[0], *early_, first, "room"), 0.03);
   EXPECT_LT(WorstOf(merged, merged.parts[1], *late_, first, "room"), 0.03);
-  // Welded: landmarks that both visits see.
+  // Landmarks that both visits observe.
   int shared = 0;
   for (LandmarkId id : merged.saved.map.Landmarks()) {
     const auto& seen = merged.saved.map.Find(id)->observations;

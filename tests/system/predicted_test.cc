@@ -1,4 +1,5 @@
-// A lens that is covered for a moment: the pose is predicted, told as such, and never written.
+// A camera that is covered for a moment: its pose is predicted, marked as such, and in no
+// trajectory.
 #include <gtest/gtest.h>
 
 #include "alidade/slam.h"
@@ -9,7 +10,7 @@ namespace {
 
 constexpr int kCovered = 20;  // first frame that shows nothing
 
-// RGB-D: lengths are metres, so that a predicted pose can be held against the truth.
+// RGB-D: lengths are meters, so that predicted poses can be compared with the truth.
 struct CoveredLens {
   explicit CoveredLens(int frames, double seconds = 0.5) : recording(Small()) {
     SlamSettings settings;
@@ -52,21 +53,21 @@ TEST(Predicted, IsNearTheTruthForAMomentAndInNoTrajectory) {
     EXPECT_EQ(result.state, TrackState::kLost);
     ASSERT_TRUE(result.predicted) << i;
     EXPECT_FALSE(run.trajectory[static_cast<size_t>(i)].tracked);
-    // Better than to say that it stands where it was last seen.
+    // Closer than the last tracked pose.
     const Se3 truth = run.TrueFromFirst(i);
     const double stood = (run.TrueFromFirst(kCovered - 1).t - truth.t).norm();
-    EXPECT_LT((result.T_world_camera.t - truth.t).norm(), 0.7 * stood) << i;
+    EXPECT_LT((result.predicted->t - truth.t).norm(), 0.7 * stood) << i;
   }
   EXPECT_EQ(run.counts.predicted, 10);
   for (size_t i = kCovered + 10; i < run.results.size(); ++i) {
-    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason;
+    EXPECT_EQ(run.results[i].state, TrackState::kTracking) << run.results[i].reason();
     EXPECT_LT((run.results[i].T_world_camera.t - run.TrueFromFirst(static_cast<int>(i)).t).norm(),
               0.01);
   }
 }
 
 TEST(Predicted, EndsWhenTheMotionIsTooLongAgo) {
-  const CoveredLens run(25);  // 30 per second
+  const CoveredLens run(25);  // frames, at 30 per second
   EXPECT_EQ(run.counts.predicted, 15);
   EXPECT_TRUE(run.results[kCovered + 14].predicted);
   EXPECT_FALSE(run.results[kCovered + 15].predicted);

@@ -1,5 +1,4 @@
-// What a pose says of its own quality, held against the errors it has: on a rendered room, with
-// exact poses.
+// Covariances of poses compared with their errors, on a rendered room with exact poses.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -14,8 +13,9 @@ namespace {
 
 constexpr int kFrames = 60;
 constexpr int kSettled = 20;
-// Frames between the two of a pair: some third of a second. Neighbours lean on the same landmarks,
-// whose errors they share: between them the errors are a third smaller than claimed.
+// Distance of the two frames of a pair: a third of a second. Consecutive frames use the same
+// landmarks and share their errors, so the error between them is a third smaller than their
+// covariances say.
 constexpr int kGap = 10;
 
 RenderedFrames& TheRoom() {
@@ -26,8 +26,7 @@ RenderedFrames& TheRoom() {
   return FramesOf(settings);
 }
 
-// d(left increment) of X Exp(xi) X⁻¹ = Exp(Ad xi), xi = (translation; rotation) (Solà et al. 2018,
-// example 6).
+// Ad of X: X Exp(xi) X⁻¹ = Exp(Ad xi), xi = (translation; rotation) (Solà et al. 2018, example 6).
 Matrix6d Adjoint(const Se3& X) {
   Matrix6d ad = Matrix6d::Zero();
   ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = X.R;
@@ -37,10 +36,10 @@ Matrix6d Adjoint(const Se3& X) {
 
 class Quality : public testing::TestWithParam<Sensor> {};
 
-// What is checked: the motion between two frames, which is told by both of their poses against the
-// map (what the map as a whole is off by falls out), and whose covariance is the sum of theirs. Its
-// error, divided by its standard deviation as claimed, is 1 in the root mean square when what is
-// claimed is right. The six numbers of a pose count alike.
+// Checks the motion between two frames, computed from their poses in the map; a common error of the
+// map cancels. Its covariance is the sum of those of the poses. If the covariances are right, the
+// root mean square of error / standard deviation is 1. All six parameters of the motion count
+// equally.
 TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
   RenderedFrames& room = TheRoom();
   SlamSettings settings;
@@ -93,7 +92,7 @@ TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
     EXPECT_EQ(quality.inliers, result.matches);
     EXPECT_GE(quality.expected, quality.inliers);
     EXPECT_DOUBLE_EQ(quality.found_share, static_cast<double>(quality.inliers) / quality.expected);
-    if (result.keyframe && tracked == 1) continue;  // where it is by definition
+    if (result.keyframe && tracked == 1) continue;  // its pose is the identity by definition
     EXPECT_TRUE(quality.covariance.isApprox(quality.covariance.transpose()));
     EXPECT_GT(quality.covariance.diagonal().minCoeff(), 0);
     EXPECT_GT(quality.covariance.determinant(), 0);
@@ -101,7 +100,7 @@ TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
   EXPECT_GT(tracked, 5);
 }
 
-// A wall of fog: the fewer landmarks are seen, the less is claimed.
+// Half of the image is blank: with fewer landmarks the covariance is larger.
 TEST(QualityOfAView, FewerLandmarksMakeItLarger) {
   RenderedFrames& room = TheRoom();
   SlamSettings settings;
@@ -111,13 +110,13 @@ TEST(QualityOfAView, FewerLandmarksMakeItLarger) {
   for (int i = 0; i < 6; ++i) {
     const RenderedFrame& frame = room.Frame(i);
     cv::Mat left = frame.image.clone(), right = frame.right.clone();
-    if (i == 5) {  // half of it gone
+    if (i == 5) {  // the left half is blank
       for (cv::Mat* image : {&left, &right})
         (*image)(cv::Rect(0, 0, image->cols / 2, image->rows)).setTo(128);
     }
     (i == 5 ? veiled : clear) = slam.Track({frame.time, left, right, {}});
   }
-  ASSERT_EQ(veiled.state, TrackState::kTracking) << veiled.reason;
+  ASSERT_EQ(veiled.state, TrackState::kTracking) << veiled.reason();
   EXPECT_LT(veiled.quality.inliers, 0.8 * clear.quality.inliers);
   EXPECT_LT(veiled.quality.found_share, 0.8 * clear.quality.found_share);
   EXPECT_GT(veiled.quality.covariance.trace(), 1.5 * clear.quality.covariance.trace());

@@ -1,4 +1,4 @@
-// A camera whose shutter rolls, and nobody said so.
+// A rolling-shutter camera whose readout time is not given.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Settings by name: what is printed can be read back, and thresholds have ends.
+// Settings by name: printed values can be read back, and thresholds have limits.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -29,7 +29,7 @@ TEST(SettingNames, ValuesArePrintedAsTheyAreWritten) {
   }
 }
 
-// Of the parts of dynamics, which have fields of their own: dynamics.PART.FIELD.
+// Of all settings named dynamics.PART.FIELD.
 TEST(SettingNames, EveryThresholdOfDynamicsHasEndsAndIsNamedBeyondThem) {
   int thresholds = 0;
   for (const auto& [name, value] : SlamSettings().All()) {

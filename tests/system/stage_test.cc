@@ -1,4 +1,4 @@
-// One worker, two schedules; and several of them that wait for each other without end.
+// One worker in all schedules, and several workers that make each other rest.
 #include "alidade/system/stage.h"
 
 #include <gtest/gtest.h>
@@ -59,13 +59,13 @@ TEST(Stage, WhatWorkThrowsEndsItInSilenceButForFailure) {
         schedule);
     EXPECT_EQ(stage.failure(), nullptr);
     stage.WhileResting([&] {
-      if (schedule == Schedule::kInline) return;  // there nothing waits
+      if (schedule == Schedule::kInline) return;  // inline nothing is queued
       for (uint32_t i = 0; i < 5; ++i) stage.Add({i});
       EXPECT_TRUE(stage.AddErrand([&] { ++done; }));
     });
     for (uint32_t i = 0; i < 5 && schedule == Schedule::kInline; ++i) stage.Add({i});
     stage.Drain();
-    EXPECT_EQ(done, 1);  // the first; what waited behind the second was dropped
+    EXPECT_EQ(done, 1);  // the first; work queued behind the second was dropped
     EXPECT_EQ(WhatOf(stage.failure()), "broken");
     EXPECT_EQ(stage.backlog(), 0);
 
@@ -75,7 +75,7 @@ TEST(Stage, WhatWorkThrowsEndsItInSilenceButForFailure) {
     stage.Drain();
     EXPECT_EQ(done, 1);
     EXPECT_EQ(stage.backlog(), 0);
-    bool ran = false;  // and those who wait for it to rest go on
+    bool ran = false;  // a failed stage can still be made to rest
     stage.WhileResting([&] { ran = true; });
     EXPECT_TRUE(ran);
   }
@@ -138,7 +138,7 @@ TEST(Stage, WorkIsToldToHurryWhenMoreComes) {
         schedule);
     stage.Add({0});
     Until([&] { return begun.load(); });
-    stage.Add({1});  // without the hurry, the first would never end
+    stage.Add({1});  // unless *stop becomes true, the first never ends
     stage.Drain();
     EXPECT_EQ(hurried, 1);
   }
@@ -171,7 +171,7 @@ TEST(Stage, TheLastOfAQueueIsNotHurried) {
           if (id.value == 9) hurried = stop->load();
         },
         schedule);
-    stage.WhileResting([&] {  // so that all are in the queue before the first is begun
+    stage.WhileResting([&] {  // so that all are queued before the first is processed
       for (uint32_t i = 0; i < 10; ++i) stage.Add({i});
     });
     stage.Drain();
@@ -232,23 +232,23 @@ TEST(Stage, StopEndsWhatIsInWorkAndDropsTheQueue) {
     Until([&] { return begun.load(); });
     stage.Stop();
     EXPECT_EQ(done, 1);
-    stage.Stop();  // twice is once
+    stage.Stop();  // a second call does nothing
   }
   std::atomic<int> done{0};
   {
     Stage stage([&](KeyFrameId, const std::atomic<bool>*) { ++done; }, Schedule::kThread);
     stage.WhileResting([&] {
       for (uint32_t i = 0; i < 5; ++i) stage.Add({i});
-      stage.Stop();  // while it rests with a queue
+      stage.Stop();  // while it rests, with work queued
     });
     EXPECT_EQ(stage.backlog(), 0);
   }
   EXPECT_EQ(done, 0);
 }
 
-// As Workers has them: a mapper hands on to a loop closer, which makes it rest and hands on to an
-// adjuster, which makes it rest, too; and the tracker stops the first two from outside. The test
-// that hangs here has found a deadlock.
+// As in Workers: a mapper passes keyframes to a loop closer, which makes the mapper rest and passes
+// some to an adjuster, which makes the mapper rest, too; the tracker makes the first two rest from
+// outside. If the test hangs, there is a deadlock.
 TEST(Stage, ThreeStagesThatMakeEachOtherRestComeToAnEnd) {
   for (int round = 0; round < 3; ++round) {
     std::atomic<int> mapped{0}, closed{0}, adjusted{0}, changed{0}, in_mapping{0}, overlaps{0};
@@ -294,7 +294,7 @@ TEST(Stage, ThreeStagesThatMakeEachOtherRestComeToAnEnd) {
       EXPECT_EQ(mapped, 400);
       EXPECT_EQ(closed, 400);
       EXPECT_EQ(adjusted, 134);
-    }  // else: stopped in the middle of it
+    }  // in the other rounds: stopped while they work
     mapping.Stop();
     looping.Stop();
     adjusting.Stop();

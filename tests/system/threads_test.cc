@@ -1,5 +1,5 @@
-// Any thread may ask while another tracks (system/slam.h, "Threads"). What is checked of the
-// answers is little: that nothing races is ThreadSanitizer's to say (scripts/sanitize tsan).
+// Any thread may make queries while another tracks (system/slam.h, "Threads"). The tests check
+// little of their results; ThreadSanitizer checks for data races (scripts/sanitize tsan).
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -17,8 +17,8 @@
 namespace alidade::threads_test {
 namespace {
 
-// One part of the room, then another that shares nothing with it, from which the camera comes back:
-// two maps that become one. Ten a second.
+// One part of the room, then another without overlap, from which the camera returns to the first:
+// two maps that are merged. 10 frames per second.
 std::vector<RenderedFrame> TwoParts() {
   std::vector<RenderedFrame> frames;
   const auto add = [&](int first, int last, int step) {
@@ -44,7 +44,7 @@ SlamSettings Everything() {
   return settings;
 }
 
-// Asks all there is to be asked, over and over.
+// Makes all queries repeatedly, on its own thread.
 class Asker {
  public:
   explicit Asker(const Slam& slam)
@@ -69,7 +69,7 @@ class Asker {
       const int before = slam_.frames();
       EXPECT_GE(before, seen);
       const std::vector<FramePose> all = slam_.Trajectory(), late = slam_.Trajectory(before / 2);
-      EXPECT_GE(static_cast<int>(all.size()) + 1, before);  // one may be in work
+      EXPECT_GE(static_cast<int>(all.size()) + 1, before);  // one may be in progress
       for (size_t i = 0; i < all.size(); ++i) EXPECT_EQ(all[i].index, static_cast<int>(i));
       if (!late.empty()) {
         EXPECT_EQ(late.front().index, before / 2);
@@ -95,7 +95,7 @@ class Asker {
       }
       seen = before;
       ++rounds_;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // the tracker is to get on
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // leaves time for the tracker
     }
   }
 
@@ -118,7 +118,7 @@ TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
       const RenderedFrame& frame = frames[i];
       const TrackResult result = slam.Track({frame.time, frame.image, {}, frame.depth});
       tracked += result.state == TrackState::kTracking;
-      if (i % 3 == 2) slam.Finish();  // so that there is a place to come back to
+      if (i % 3 == 2) slam.Finish();  // so that earlier places can be recognized
     }
     slam.Finish();
     while (first.rounds() < 2 || second.rounds() < 2) std::this_thread::yield();
@@ -129,7 +129,7 @@ TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
   ExpectConsistent(slam.Snapshot());
 }
 
-// Several may drive, if they must: they take turns.
+// Driving calls from several threads run one at a time.
 TEST(Threads, DrivingCallsTakeTurns) {
   const std::vector<RenderedFrame> frames = TwoParts();
   SlamSettings settings = Everything();
@@ -149,7 +149,8 @@ TEST(Threads, DrivingCallsTakeTurns) {
   EXPECT_EQ(slam.frames(), 8);
 }
 
-// A detector that throws something that is no Error: told by the next frames, in both schedules.
+// A detector that throws something other than an Error: the next frames report it, in both
+// schedules.
 TEST(Failure, OfTheDetectorIsToldByTheFramesAndByHealth) {
   const std::vector<RenderedFrame> frames = TwoParts();
   for (bool threaded : {false, true}) {
@@ -168,7 +169,7 @@ TEST(Failure, OfTheDetectorIsToldByTheFramesAndByHealth) {
       const RenderedFrame& frame = frames[static_cast<size_t>(i)];
       result = slam.Track({frame.time, frame.image, {}, frame.depth});
       EXPECT_EQ(result.state, TrackState::kTracking);
-      while (slam.Health().ok()) std::this_thread::yield();  // it was given the frame
+      while (slam.Health().ok()) std::this_thread::yield();  // until it has the frame
     }
     EXPECT_TRUE(asked);
     EXPECT_EQ(result.warning, "detector stopped: unknown exception");

@@ -1,4 +1,5 @@
-// One camera that turns: what it mapped without a scale goes, frames that saw known places stay.
+// One camera that rotates: a map of unknown scale is dropped; frames that saw known places keep
+// their poses.
 #include <gtest/gtest.h>
 
 #include <vector>
@@ -9,8 +10,8 @@
 namespace alidade::unknown_scale_test {
 namespace {
 
-// The camera 0.4 m from the axis, 15 frames a second; keyframes of the turn are given up one after
-// the other (frames 58, 66, 70), between frames that stay.
+// The camera is 0.4 m from the axis of rotation, 15 frames per second. Keyframes are dropped one by
+// one (frames 58, 66, 70), between frames that keep their poses.
 TEST(UnknownScale, AFrameBetweenTwoThatStayIsNotLostWithItsKeyframe) {
   SynthSettings settings;
   settings.path = "turn";
@@ -27,7 +28,7 @@ TEST(UnknownScale, AFrameBetweenTwoThatStayIsNotLostWithItsKeyframe) {
     const RenderedFrame frame = recording.Render(i);
     slam.Track({frame.time, frame.image, {}, {}});
   }
-  // Each loss of the newest keyframe is made good by the next frame.
+  // Each time the newest keyframe is dropped, the next frame is relocalized.
   ASSERT_GT(slam.Counts().relocalisations, 1);
   const std::vector<FramePose> poses = slam.Trajectory();
   int tracked = 0;

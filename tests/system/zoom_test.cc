@@ -1,5 +1,5 @@
-// A lens whose focal length changes while it films: autofocus breathes by a per cent or two, users
-// zoom.
+// A focal length that changes during a recording: by one or two per cent with autofocus, by more
+// with a zoom.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,11 +13,12 @@ namespace alidade::zoom_test {
 namespace {
 
 struct Ran {
-  double coverage = 0, ate = 0;  // share, metres
+  double coverage = 0, ate = 0;  // share of frames with a pose; meters
 };
 
-// Pictures grow and shrink about their middle, to `most` times and back every two seconds; with
-// `to_stay` once, within half a second in the middle of the recording.
+// Scales images about the principal point: by a factor between 2 - `most` and `most`, with a period
+// of two seconds; with `to_stay` once to `most`, within half a second in the middle of the
+// recording.
 Ran RunRoom(double most, bool to_stay = false) {
   constexpr int kFrames = 200;
   SynthSettings synth;

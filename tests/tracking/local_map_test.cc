@@ -14,7 +14,7 @@ class LocalMapTest : public testing::Test {
  protected:
   void SetUp() override {
     world_ =
-        MakeSyntheticWorld({.points = 900, .cameras = 14, .step = 0.8, .turn = 0});  // a long way
+        MakeSyntheticWorld({.points = 900, .cameras = 14, .step = 0.8, .turn = 0});  // a long path
     made_ = FillMap(world_, {}, store_);
   }
   Se3 PoseOf(int view) const { return world_.views[view].T_camera_world; }
@@ -31,7 +31,7 @@ TEST_F(LocalMapTest, GathersWhatKeyframesThatShareLandmarksSee) {
       gatherer_.Gather(map, map.Find(made_.keyframes[6])->landmarks, PoseOf(6), 100);
   EXPECT_EQ(local.reference, made_.keyframes[6]);
   const std::set<KeyFrameId> keyframes(local.keyframes.begin(), local.keyframes.end());
-  EXPECT_EQ(keyframes.size(), local.keyframes.size());  // each once
+  EXPECT_EQ(keyframes.size(), local.keyframes.size());  // without duplicates
   for (const Neighbour& n : map.Find(made_.keyframes[6])->covisible)
     EXPECT_EQ(keyframes.count(n.id), 1u);
   std::set<LandmarkId> expected, found;
@@ -56,8 +56,8 @@ TEST_F(LocalMapTest, IsLimitedToTheKeyframesThatShareMost) {
 }
 
 TEST_F(LocalMapTest, TakesKeyframesThatLookTheSameWayThoughTheyShareNothing) {
-  // A second keyframe at the same place that knows none of the landmarks, as after a turn away and
-  // back.
+  // A second keyframe at the same place that observes none of the landmarks, as after turning away
+  // and back.
   KeyFrameId stranger, behind;
   store_.Commit([&](MapCommit& commit) {
     KeyFrame keyframe;

@@ -20,7 +20,7 @@ constexpr SyntheticWorldSettings kWorld{.points = 900,
 
 struct Start {
   std::optional<MonoStartResult> result;
-  std::string reason;  // of the last frame that did not start
+  std::string reason;  // of the last frame that did not start a map
 };
 
 Start FeedAll(const SyntheticWorld& world, MonoStart& start) {
@@ -28,7 +28,7 @@ Start FeedAll(const SyntheticWorld& world, MonoStart& start) {
   for (const SyntheticView& view : world.views) {
     outcome.result = start.Add(view.frame);
     if (outcome.result) break;
-    outcome.reason = start.reason();
+    outcome.reason = ReasonText(start.failure());
   }
   return outcome;
 }
@@ -45,8 +45,8 @@ TEST(MonoStart, StartsFromAMovingCamera) {
     const SyntheticView &a = world.views[result.a->number], &b = world.views[result.b->number];
     const Se3 truth = b.T_camera_world * a.T_camera_world.Inverse();
     EXPECT_LT(RotationAngle(result.T_b_a, truth), 0.01);
-    // Over a few degrees of parallax a step to the side and a turn look much alike under half a
-    // pixel of noise.
+    // At a few degrees of parallax, a lateral translation and a rotation are hardly distinguishable
+    // with half a pixel of noise.
     EXPECT_GT(result.T_b_a.t.normalized().dot(truth.t.normalized()), std::cos(0.2));
     int right = 0;
     for (const auto& point : result.points) {
@@ -90,7 +90,7 @@ TEST(MonoStart, WaitsWhileTheCameraStands) {
 
 TEST(MonoStart, ABadFirstFrameCostsNothing) {
   SyntheticWorld world = MakeSyntheticWorld(kWorld);
-  Random random(2);  // blurred, say: nothing of it is found again
+  Random random(2);  // like a blurred frame: nothing in it is matched
   auto blurred = std::make_shared<Frame>(*world.views[0].frame);
   for (Descriptor& descriptor : blurred->descriptors) descriptor = RandomDescriptor(random);
   world.views[0].frame = blurred;
@@ -121,8 +121,8 @@ TEST(MonoStart, StartsTheSameWayTwice) {
   EXPECT_EQ(a.result->T_b_a.t, b.result->T_b_a.t);
 }
 
-// A camera on a tripod before which a thing moves: keypoints in the middle move as if the camera
-// did, those all about stay where they were.
+// A stationary camera in front of a moving object: some keypoints move as if the camera did, the
+// others do not move.
 SyntheticWorld BeforeAStillCamera(double share_still) {
   SyntheticWorld world = MakeSyntheticWorld(kWorld);
   Random random(5);
@@ -155,7 +155,7 @@ TEST(MonoStart, AThingThatMovesBeforeAStillCameraIsNoPlace) {
   const Start outcome = FeedAll(world, start);
   EXPECT_FALSE(outcome.result);
   EXPECT_NE(outcome.reason.find("stand still"), std::string::npos) << outcome.reason;
-  EXPECT_TRUE(FeedAll(world, fooled).result);  // which is why
+  EXPECT_TRUE(FeedAll(world, fooled).result);  // without the check a wrong map is started
 }
 
 TEST(MonoStart, TellsTheReasonOfThePairThatCameNearest) {
@@ -165,7 +165,7 @@ TEST(MonoStart, TellsTheReasonOfThePairThatCameNearest) {
   for (int i = 0; i < 2; ++i) maker.Look({ExpSo3({0, 0.2, 0}), {0, 0, 0}});
   const SyntheticWorld world = maker.Take();
   MonoStart start(world.camera, {});
-  // The newest reference sees no motion; the older ones see a turn.
+  // The newest reference has no motion; the older ones have a pure rotation.
   EXPECT_NE(FeedAll(world, start).reason.find("too little parallax"), std::string::npos);
 }
 

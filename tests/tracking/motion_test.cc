@@ -5,7 +5,7 @@
 namespace alidade::motion_test {
 namespace {
 
-Se3 Turning() {  // along a bow
+Se3 Turning() {  // along an arc
   return Se3::Exp((Vector6d() << 0.02, 0.001, 0.03, 0.01, -0.03, 0.002).finished());
 }
 
@@ -43,12 +43,12 @@ TEST(Motion, IsNotDrawnOutForLongerThanSaid) {
   motion.Add(Turning(), 0.05);
   EXPECT_LT(Difference(motion.After(0.9), motion.After(0.5)), 1e-12);
   motion.Clear();
-  motion.Add(Turning(), 2);  // pictures far apart
+  motion.Add(Turning(), 2);  // a low frame rate
   EXPECT_LT(Difference(motion.After(2), Turning()), 1e-12);
   EXPECT_LT(Difference(motion.After(6), Turning()), 1e-12);
 }
 
-// Drawn out alone, the last step would be wrong by ten times its error.
+// Extrapolating the last step alone would multiply its error by ten.
 TEST(Motion, DoesNotDrawOutTheNoiseOfOneShortStep) {
   Motion motion;
   Se3 last = Turning();

@@ -1,4 +1,4 @@
-// Points on what rests for now: found again while they hold, forgotten when they do not.
+// Temporary points on objects at rest: matched while consistent, dropped otherwise.
 #include "alidade/tracking/passing_points.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ class PassingPointsTest : public testing::Test {
       }
     }
   }
-  // What a camera `x` metres to the right sees of them, each of probability p.
+  // Frame of a camera `x` meters to the right, with static probability p for each keypoint.
   PlacedFrame Seen(double x, float p) const {
     auto frame = std::make_shared<Frame>();
     PlacedFrame placed;
@@ -67,7 +67,7 @@ TEST_F(PassingPointsTest, AreNeitherOfWhatMovesNorOfWhatIsCertain) {
   points_.Update(Seen(0, 0.9f), 0);
   EXPECT_EQ(points_.size(), 0u);
   points_.Update(Seen(0, 0.3f), 0);
-  EXPECT_TRUE(points_.Find(Seen(0, 0.02f), 4, 50).empty());  // it begins to move
+  EXPECT_TRUE(points_.Find(Seen(0, 0.02f), 4, 50).empty());  // starts to move
   PlacedFrame mapped = Seen(0, 0.3f);
   mapped.matches.assign(world_.size(), LandmarkId{1});
   EXPECT_TRUE(points_.Find(mapped, 4, 50).empty());
@@ -77,7 +77,7 @@ TEST_F(PassingPointsTest, AreKeptWhereTheyWereFirstSeenWhileTheyHold) {
   points_.Update(Seen(0, 0.3f), 0);
   PlacedFrame next = Seen(0.1, 0.3f);
   next.passing = points_.Find(next, 4, 50);
-  next.T_camera_world.t.x() += 0.05;  // a wrong pose moves no point that is known
+  next.T_camera_world.t.x() += 0.05;  // a wrong pose does not move known points
   points_.Update(next, 0);
   ASSERT_EQ(points_.size(), world_.size());
   for (const PassingMatch& match : points_.Find(Seen(0.1, 0.3f), 4, 50))
@@ -90,7 +90,7 @@ TEST_F(PassingPointsTest, AreTakenAnewWhenTheyDidNotAgreeAndWhenTheWorldMoved) {
     points.Update(Seen(0, 0.3f), 0);
     PlacedFrame next = Seen(0.1, 0.3f);
     if (world == 1) next.passing = points.Find(next, 4, 50);
-    next.T_camera_world.t.x() = -0.3;  // 0.2 m on
+    next.T_camera_world.t.x() = -0.3;  // moved by 0.2 m
     points.Update(next, world);
     ASSERT_EQ(points.size(), world_.size());
     for (const PassingMatch& match : points.Find(next, 4, 50))

@@ -1,4 +1,4 @@
-// What frames of a moving camera say of its rolling shutter.
+// Estimating the rolling-shutter readout time from tracked frames.
 #include "alidade/tracking/readout.h"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace alidade::readout_test {
 namespace {
 
-// Landmarks as they are, and a shutter that takes so much longer than what was undone; the pose is
-// off by a little, too.
+// Exact landmarks, observed with a readout time that is longer by `longer` than assumed, and with a
+// pose error.
 std::vector<ReadoutMatch> Frame(const Camera& camera, const Vector6d& motion,
                                 const Eigen::Vector2d& longer, double noise, Random& random) {
   std::vector<ReadoutMatch> matches;
@@ -34,7 +34,7 @@ std::vector<ReadoutMatch> Frame(const Camera& camera, const Vector6d& motion,
 
 TEST(ReadoutSum, TellsHowMuchLongerTheShutterTakes) {
   for (const Eigen::Vector2d& longer : {Eigen::Vector2d(0, 0.008), Eigen::Vector2d(-0.005, 0)}) {
-    const bool upright = longer.x() != 0;  // rows of the sensor are columns of the picture
+    const bool upright = longer.x() != 0;  // sensor rows are image columns
     const Camera camera = Camera::FromFieldOfView(640, upright ? 720 : 480, 66);
     ReadoutSum sum(camera);
     Random random(3);

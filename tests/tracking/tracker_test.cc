@@ -13,7 +13,7 @@ double Metres(const Se3& a, const Se3& b) { return (a.Inverse().t - b.Inverse().
 
 class TrackerTest : public testing::TestWithParam<bool> {  // with depth?
  protected:
-  // The first eight views are keyframes, the rest are frames to track.
+  // The first eight views are keyframes, the others are frames to track.
   static constexpr int kKeyFrames = 8;
 
   void SetUp() override {
@@ -29,7 +29,7 @@ class TrackerTest : public testing::TestWithParam<bool> {  // with depth?
     made_ = FillMap(world_, {.keyframes = kKeyFrames}, store_);
   }
 
-  // View `v` as a perfect tracker would have placed it.
+  // View `v` with its true pose and matches.
   PlacedFrame Placed(int v) const {
     PlacedFrame placed;
     placed.frame = world_.views[v].frame;
@@ -42,8 +42,8 @@ class TrackerTest : public testing::TestWithParam<bool> {  // with depth?
 
   void ExpectAtTruth(const TrackEstimate& estimate, int v) const {
     ASSERT_TRUE(estimate.tracked);
-    // Hundreds of matches with half a pixel at 5 m: some tenths of a millimetre; a few millimetres
-    // are allowed.
+    // Hundreds of matches with half a pixel of noise at 5 m give some tenths of a millimeter; a few
+    // millimeters are allowed.
     EXPECT_LT(Metres(estimate.placed.T_camera_world, world_.views[v].T_camera_world), 0.005);
     EXPECT_LT(RotationAngle(estimate.placed.T_camera_world, world_.views[v].T_camera_world), 0.001);
     int right = 0, wrong = 0;
@@ -82,7 +82,7 @@ TEST_P(TrackerTest, ReturnsToTheTruthFromAGuessThatIsOff) {
   Tracker tracker(world_.camera, {});
   const int v = kKeyFrames;
   PlacedFrame guess = Placed(v);
-  // Known: a third of the landmarks. Off by some 2 px.
+  // A third of the landmarks is matched; the pose error is about 2 px.
   for (size_t k = 0; k < guess.matches.size(); ++k) {
     if (k % 3 != 0) guess.matches[k] = {};
     guess.inliers += guess.matches[k].valid();
@@ -106,7 +106,7 @@ TEST_P(TrackerTest, PredictsWithTheSpeedOfTheLastFrames) {
 TEST_P(TrackerTest, TheLastFrameFollowsItsKeyframeWhenTheMapIsAdjusted) {
   Tracker tracker(world_.camera, {});
   tracker.Remember(Placed(6), made_.keyframes[6], store_.Snapshot());
-  // The whole map moves, as after a loop.
+  // The whole map moves, as after a loop closure.
   const Se3 T_new_old = Se3::Exp((Vector6d() << 1, 2, -1, 0.3, -0.5, 0.2).finished());
   const MapSnapshot moved = store_.Commit([&](MapCommit& commit) {
     for (KeyFrameId id : made_.keyframes) {
@@ -129,7 +129,7 @@ TEST_P(TrackerTest, TheLastFrameFollowsItsKeyframeWhenTheMapIsAdjusted) {
 TEST_P(TrackerTest, FindsItsWayAfterASuddenJump) {
   const MapSnapshot map = store_.Snapshot();
   Tracker tracker(world_.camera, {});
-  tracker.Remember(Placed(1), made_.keyframes[3], map);  // the prediction is 0.5 m off
+  tracker.Remember(Placed(1), made_.keyframes[3], map);  // the prediction is off by 0.5 m
   const TrackEstimate estimate = tracker.Estimate(tracker.Predict(world_.views[9].frame, map), map);
   ExpectAtTruth(estimate, 9);
 }
@@ -144,7 +144,7 @@ TEST_P(TrackerTest, RelocalisesWithoutALastFrame) {
   ExpectAtTruth(estimate, 9);
 }
 
-// However well it is seen: the pose it tells is too vague to go on from.
+// Even with many matches, the pose would be too uncertain.
 TEST_P(TrackerTest, DoesNotRelocaliseByOnePosterAlone) {
   const SyntheticView& view = world_.views[9];
   const MapSnapshot map = store_.Commit([&](MapCommit& commit) {
@@ -156,7 +156,7 @@ TEST_P(TrackerTest, DoesNotRelocaliseByOnePosterAlone) {
     }
   });
   TrackerSettings settings;
-  settings.min_relocalised = 20;  // there is enough on it
+  settings.min_relocalised = 20;  // so that the number of matches suffices
   EXPECT_FALSE(
       Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
   settings.min_relocalised_spread = 0;
@@ -192,13 +192,13 @@ TEST_P(TrackerTest, TellsWhichLandmarksWereFoundOfThoseExpected) {
   }
   EXPECT_EQ(found, estimate.placed.inliers);
   EXPECT_GT(found, 0.7 * static_cast<double>(
-                             estimate.sightings.size()));  // nothing hides anything in this world
+                             estimate.sightings.size()));  // there is no occlusion in this world
 }
 
 TEST_P(TrackerTest, AsksForAKeyframeWhenItLeavesWhatTheReferenceSees) {
   const MapSnapshot map = store_.Snapshot();
   Tracker tracker(world_.camera, {});
-  // Where the newest keyframe is: nothing new to see.
+  // At the newest keyframe: nothing new to observe.
   tracker.KeyFrameInserted(kKeyFrames - 1);
   tracker.Remember(Placed(kKeyFrames - 1), made_.keyframes.back(), map);
   SyntheticWorldMaker same(settings_);
@@ -206,7 +206,7 @@ TEST_P(TrackerTest, AsksForAKeyframeWhenItLeavesWhatTheReferenceSees) {
   again.number = kKeyFrames;
   EXPECT_FALSE(
       tracker.Estimate(tracker.Predict(std::make_shared<Frame>(again), map), map).wants_keyframe);
-  // Far to the side: half of it is out of sight.
+  // Far to the side: half of the landmarks are out of view.
   SyntheticWorldMaker aside(settings_);
   PlacedFrame guess;
   guess.T_camera_world = PoseOnPath(settings_, 30);

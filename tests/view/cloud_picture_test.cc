@@ -69,7 +69,8 @@ TEST(CloudPicture, AllOfThePlaceIsInItAndFillsIt) {
     EXPECT_GT(box.y, 0);
     EXPECT_LT(box.br().x, picture.cols);
     EXPECT_LT(box.br().y, picture.rows);
-    // The camera at the origin must be in it too, and the place is not of the picture's shape.
+    // The camera at the origin must be included, and the scene's aspect ratio differs from the
+    // image's.
     EXPECT_TRUE(box.width > 0.5 * picture.cols || box.height > 0.5 * picture.rows);
   }
 }
@@ -87,11 +88,11 @@ TEST(CloudPicture, WallsSeenFromTheirOtherSideDoNotHideTheRoom) {
   const Se3 backwards{ExpSo3({0, 3.141592653589793, 0}), Eigen::Vector3d::Zero()};
   scene.path[0].push_back(backwards);
   AddWall(scene, 3, kRed);
-  AddWall(scene, -3, kBlue);  // between the wall and whoever looks in from behind the first camera
+  AddWall(scene, -3, kBlue);  // between the wall and the virtual camera behind the first camera
   const cv::Mat picture = DrawCloud(scene, CloudView::kFront);
   EXPECT_GT(Count(picture, kRed), 1000);
   EXPECT_EQ(Count(picture, kBlue), 0);
-  // A camera that saw it from behind, too, as it goes round an object: it stays.
+  // After a camera has seen it from behind, as when moving around an object, it is shown.
   scene.path[0].push_back({Eigen::Matrix3d::Identity(), {0, 0, -4.5}});
   EXPECT_GT(Count(DrawCloud(scene, CloudView::kFront), kBlue), 100);
 }

@@ -1,4 +1,4 @@
-// The pictures of a report say what happened.
+// Drawings of a report show what happened in the run.
 #include "alidade/view/drawings.h"
 
 #include <gmock/gmock.h>
@@ -47,11 +47,11 @@ TEST(Drawings, ForwardIsUpAndRightIsRightOnThePage) {
   EXPECT_LT(p[1].y(), p[0].y());
   EXPECT_GT(p[2].x(), p[1].x());
   EXPECT_NEAR(p[2].y(), p[1].y(), 0.11);
-  EXPECT_NEAR((p[1] - p[0]).norm(), 2 * (p[2] - p[1]).norm(), 0.3);  // one scale for both
+  EXPECT_NEAR((p[1] - p[0]).norm(), 2 * (p[2] - p[1]).norm(), 0.3);  // the same scale for both
 }
 
 TEST(Drawings, TiltedCameraIsStillSeenFromAbove) {
-  // Looks 40 degrees down while it walks on the level.
+  // Looks 40 degrees down while moving horizontally.
   const double tilt = 40 * M_PI / 180;
   const Eigen::Matrix3d R = Eigen::AngleAxisd(-tilt, Eigen::Vector3d::UnitX()).toRotationMatrix();
   PlaceDrawing place;
@@ -103,13 +103,13 @@ TEST(Drawings, TimelineBarsAreAsLongAsTheirFrames) {
 TEST(Histogram, BarsAreAsTallAsTheyAreFull) {
   std::vector<double> values(300, 1.0);
   values.insert(values.end(), 100, 3.0);
-  values.push_back(1000);  // one of 401: not where the axis ends
+  values.push_back(1000);  // one of 401: beyond the end of the axis
   const std::string svg = DrawHistogram(values, "ms", "times");
   std::vector<double> tall;
   const std::regex bar("class=\"bar\" [^/]*height=\"([0-9.]+)\"");
   for (std::sregex_iterator it(svg.begin(), svg.end(), bar), end; it != end; ++it)
     tall.push_back(std::stod((*it)[1]));
-  ASSERT_EQ(tall.size(), 2u);  // the last has the long one as well
+  ASSERT_EQ(tall.size(), 2u);  // the last bar includes the large value
   EXPECT_NEAR(tall[1] / tall[0], 101.0 / 300, 0.01);
 }
 
@@ -154,7 +154,7 @@ TEST(Report, CloudIsThinnedAndItsPictureStaysWhereThereAreNoScripts) {
   EXPECT_THAT(html, HasSubstr("alt=\"the place\" src=\"data:image/jpeg;base64,TWFu\""));
   EXPECT_THAT(html, HasSubstr("data-points=\"50000\" data-path=\"2\" data-colored=\"0\""));
   EXPECT_LT(html.size(), 1u << 20);
-  // 6 bytes for each point and pose, in base64.
+  // 6 bytes per point and pose, in base64.
   const size_t begin = html.find('>', html.find("data-points")) + 1;
   EXPECT_EQ(html.find('<', begin) - begin, 6 * 50002 / 3 * 4u);
 }

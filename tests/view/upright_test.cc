@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kDegree = 3.141592653589793 / 180;
 
-// In a world with y down: turned about the vertical, then pitched down.
+// In a world with y down: rotated about the vertical, then pitched down.
 Se3 Held(double yaw, double pitch_down, double roll = 0) {
   return {ExpSo3({0, yaw, 0}) * ExpSo3({-pitch_down, 0, 0}) * ExpSo3({0, 0, roll}),
           Eigen::Vector3d::Zero()};
@@ -27,7 +27,7 @@ TEST(Upright, CamerasThatLookDownDoNotTiltTheWorld) {
     stretch.push_back(Held(i * kDegree, 35 * kDegree, roll));
   }
   const Eigen::Matrix3d axes = UprightAxes({stretch});
-  EXPECT_LT(AngleFromUp(axes), 5);  // their own up directions are 35 degrees off
+  EXPECT_LT(AngleFromUp(axes), 5);  // their own up axes are off by 35 degrees
   EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
   EXPECT_NEAR(axes.determinant(), -1 * -1, 1e-12);  // right, forward, up: right-handed
 }

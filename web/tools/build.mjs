@@ -1,4 +1,4 @@
-// Bundles the viewer into viewer/dist and the page for phones into phone/dist: all files that the program serves, each also compressed.
+// Bundles the viewer into viewer/dist and the phone page into phone/dist, with a compressed version of every file.
 import { build } from 'esbuild';
 import { createHash } from 'node:crypto';
 import { copyFileSync, existsSync, mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -10,7 +10,7 @@ const web = fileURLToPath(new URL('..', import.meta.url));
 const source = join(web, 'viewer/src');
 const dist = join(web, 'viewer/dist');
 
-// Packages whose code is in the bundle; read off what esbuild took in, so that none is forgotten.
+// Packages included in the bundle, from esbuild's metafile, so that the list is complete.
 export function bundled(metafile) {
   const names = new Set();
   for (const input of Object.keys(metafile.inputs)) {
@@ -30,7 +30,7 @@ const options = {
   nodePaths: [join(web, 'node_modules')], alias: { '@alidade/scene': join(web, 'scene/src/index.ts') }, logLevel: 'warning',
 };
 
-// The page for phones: its script, the Worker and the service worker, which knows all files and a digest of them.
+// The phone page: its script, the Workers, and the service worker, which contains the list of files and their digest.
 export async function buildPhone() {
   const from = join(web, 'phone/src');
   const to = join(web, 'phone/dist');
@@ -79,7 +79,7 @@ function licences(packages) {
     `${rule}\n${name} ${version}: ${licence}\n${rule}\n${text || 'See https://www.apache.org/licenses/LICENSE-2.0\n'}`).join('\n');
 }
 
-// The program serves these to whoever takes them: over Wi-Fi a quarter of the bytes.
+// Compressed versions for slow networks; about a quarter of the size.
 function compressed(folder) {
   return readdirSync(folder).map((name) => {
     const small = gzipSync(readFileSync(join(folder, name)), { level: 9 });

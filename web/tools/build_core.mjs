@@ -1,4 +1,4 @@
-// Puts the npm package together: core/dist with index.js, its types and the modules that scripts/wasm/build has built.
+// Assembles the npm package: core/dist with index.js, its types and the modules built by scripts/wasm/build.
 import { build } from 'esbuild';
 import { spawnSync } from 'node:child_process';
 import { copyFileSync, existsSync, mkdirSync, rmSync } from 'node:fs';
@@ -15,7 +15,7 @@ await build({ entryPoints: [join(web, 'core/src/index.ts')], outfile: join(dist,
 const types = spawnSync(process.execPath, [join(web, 'node_modules/typescript/bin/tsc'), '--declaration', '--emitDeclarationOnly', '--outDir', dist,
   '--target', 'ES2022', '--lib', 'ES2022,DOM', '--module', 'ESNext', '--moduleResolution', 'bundler', '--strict', join(web, 'core/src/index.ts')], { stdio: 'inherit' });
 if (types.status !== 0) process.exit(1);
-// What `alidade-bench phone` runs, beside the modules.
+// The program that `alidade-bench phone` runs, beside the modules.
 await build({ entryPoints: [join(web, 'core/bench/bench.ts')], outfile: join(built, 'bench/bench.mjs'), format: 'esm', target: 'node18', platform: 'node', bundle: true, logLevel: 'warning' });
 for (const variant of ['single', 'threads']) {
   const from = join(built, variant, 'bin');

@@ -1,5 +1,5 @@
-// From the one schema of the stream: flatc's TypeScript accessors, and a table of all fields for the verifier
-// (flatc has none for TypeScript). Both go to scene/generated, which is not kept.
+// Generates from stream.fbs: flatc's TypeScript accessors, and a table of all fields for the verifier, for which flatc
+// has no TypeScript version. Output in scene/generated, which is not under version control.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -11,7 +11,7 @@ const SCALARS = {
   bool: 1, byte: 1, ubyte: 1, short: 2, ushort: 2, int: 4, uint: 4, float: 4, long: 8, ulong: 8, double: 8,
 };
 
-// The part of the language that stream.fbs uses: structs, tables, enums, unions, no attributes.
+// Parses the subset of the language that stream.fbs uses: structs, tables, enums and unions without attributes.
 export function parseSchema(text) {
   const plain = text.replace(/\/\/.*$/gm, '');
   const sizes = new Map(Object.entries(SCALARS).map(([name, size]) => [name, { size, align: size }]));

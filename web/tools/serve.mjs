@@ -1,5 +1,5 @@
-// Serves viewer/dist with a sample stream, to look at the page without the program.
-//   node tools/serve.mjs [--port N] [--replay | --file run.stream] [--frames N] [--speed X] [--points N]
+// Serves viewer/dist with a sample stream, to try the page without the program.
+// node tools/serve.mjs [--port N] [--replay | --file run.stream] [--frames N] [--speed X] [--points N]
 import { build } from 'esbuild';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';

@@ -1,5 +1,5 @@
-// Bundles each *.test.ts of a folder and hands them to node's own test runner. Arguments: folder, then words that file names must hold, and options of node's runner
-// (--test-name-pattern=…).
+// Bundles each *.test.ts of a folder and runs them with Node's test runner. Arguments: the folder, then words that the
+// file names must contain, and options of Node's runner (--test-name-pattern=…).
 import { build } from 'esbuild';
 import { spawnSync } from 'node:child_process';
 import { readdirSync, rmSync } from 'node:fs';
@@ -25,7 +25,7 @@ await build({
   define: { WEB: JSON.stringify(web) }, sourcemap: 'inline', logLevel: 'warning',
 });
 const files = names.map((name) => join(outdir, name.replace(/\.ts$/, '.mjs')));
-// Two files at a time: pages wait more than they work. Node before 20.10 decides itself.
+// Two files in parallel, because pages mostly wait. Node before 20.10 has no such option.
 const [major, minor] = process.versions.node.split('.').map(Number);
 const together = major > 20 || (major === 20 && minor >= 10) ? ['--test-concurrency=2'] : [];
 const run = spawnSync(process.execPath, ['--enable-source-maps', '--test', ...together, ...options, ...files], { stdio: 'inherit' });

@@ -1,4 +1,4 @@
-# What the page asks for: the camera, and a video of the user's.
+# Handles the page's requests for the camera and for a video file.
 .class public Lorg/alidade/page/Asked;
 .super Landroid/webkit/WebChromeClient;
 
@@ -11,7 +11,7 @@
     return-void
 .end method
 
-# No page but ours is ever shown (Files); of what it may ask for it gets the camera alone.
+# Only the app's own page is shown (see Files). It may use the camera and nothing else.
 .method public onPermissionRequest(Landroid/webkit/PermissionRequest;)V
     .registers 5
     const/4 v0, 0x1

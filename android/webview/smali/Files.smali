@@ -1,4 +1,4 @@
-# The page's files, from the app's assets.
+# Serves the page's files from the app's assets.
 .class public Lorg/alidade/page/Files;
 .super Landroid/webkit/WebViewClient;
 
@@ -23,7 +23,7 @@
     return v0
 .end method
 
-# True: other pages are not opened.
+# Blocks navigation to other pages (returns true for them).
 .method public shouldOverrideUrlLoading(Landroid/webkit/WebView;Landroid/webkit/WebResourceRequest;)Z
     .registers 4
     invoke-static {p2}, Lorg/alidade/page/Files;->isOurs(Landroid/webkit/WebResourceRequest;)Z
@@ -32,7 +32,7 @@
     return v0
 .end method
 
-# Browsers refuse a script or a WebAssembly module that is not said to be one.
+# Browsers require the correct MIME type for scripts and WebAssembly.
 .method static typeOf(Ljava/lang/String;)Ljava/lang/String;
     .registers 5
     const-string v1, ".html text/html .txt text/plain .js text/javascript .mjs text/javascript .css text/css .svg image/svg+xml .wasm application/wasm .webmanifest application/manifest+json"
@@ -60,7 +60,7 @@
 
 .method public shouldInterceptRequest(Landroid/webkit/WebView;Landroid/webkit/WebResourceRequest;)Landroid/webkit/WebResourceResponse;
     .registers 12
-    # Anything else goes to the network, which the app has no permission for.
+    # Other requests go to the network, for which the app has no permission.
     invoke-static {p2}, Lorg/alidade/page/Files;->isOurs(Landroid/webkit/WebResourceRequest;)Z
     move-result v0
     if-nez v0, :ours
@@ -77,7 +77,7 @@
     if-eqz v0, :named
     const-string v7, "/index.html"
     :named
-    # As the program sends with it (docs/phone.md).
+    # The same policy as the program's server sends (docs/guides/phone.md).
     new-instance v5, Ljava/util/HashMap;
     invoke-direct {v5}, Ljava/util/HashMap;-><init>()V
     const-string v0, "Content-Security-Policy"

@@ -1,10 +1,11 @@
-# The app: a page, the phone's camera for it, and nothing else. Written by hand, since there is no compiler from Java to Android's bytecode
-# among Debian's packages; tests/android holds each call to the public API.
+# An app that shows the phone page and gives it access to the camera. Written in smali, because
+# Debian has no compiler from Java to Android bytecode; tests/android checks every call against the
+# public API.
 .class public Lorg/alidade/page/Main;
 .super Landroid/app/Activity;
 
 .field private view:Landroid/webkit/WebView;
-.field chosen:Landroid/webkit/ValueCallback;  # who waits for a file the user chooses; or null
+.field chosen:Landroid/webkit/ValueCallback;  # callback waiting for the user's file choice, or null
 
 .method public constructor <init>()V
     .registers 1
@@ -41,7 +42,8 @@
     invoke-virtual {v0, v1}, Landroid/webkit/WebView;->setWebChromeClient(Landroid/webkit/WebChromeClient;)V
     invoke-virtual {p0, v0}, Lorg/alidade/page/Main;->setContentView(Landroid/view/View;)V
 
-    # The page asks for the camera when it is told to start; by then the user has answered. Without it the page says so.
+    # Ask for the camera permission early, so that it is granted before the page requests the
+    # camera. The page reports a refusal.
     const-string v1, "android.permission.CAMERA"
     invoke-virtual {p0, v1}, Lorg/alidade/page/Main;->checkSelfPermission(Ljava/lang/String;)I
     move-result v3
@@ -51,13 +53,14 @@
     aput-object v1, v3, v2
     invoke-virtual {p0, v3, v2}, Lorg/alidade/page/Main;->requestPermissions([Ljava/lang/String;I)V
     :open
-    # Cameras are for secure pages; no such host exists (RFC 2606), and all that it is asked for comes from the app's assets.
+    # Secure pages only may use the camera. This host does not exist (RFC 2606); all requests are
+    # answered from the app's assets.
     const-string v1, "https://alidade.invalid/"
     invoke-virtual {v0, v1}, Landroid/webkit/WebView;->loadUrl(Ljava/lang/String;)V
     return-void
 .end method
 
-# The page is hidden: it lets go of the camera.
+# The hidden page releases the camera.
 .method protected onPause()V
     .registers 2
     iget-object v0, p0, Lorg/alidade/page/Main;->view:Landroid/webkit/WebView;
@@ -82,7 +85,7 @@
     return-void
 .end method
 
-# A file was chosen, or none.
+# Result of the file chooser.
 .method protected onActivityResult(IILandroid/content/Intent;)V
     .registers 6
     invoke-super {p0, p1, p2, p3}, Landroid/app/Activity;->onActivityResult(IILandroid/content/Intent;)V

@@ -1,4 +1,4 @@
-# For scripts/android/test: the packaged page (scripts/android/apk), verified, and unpacked again.
+# Part of scripts/android/test: builds the packaged page (scripts/android/apk), verifies it and unpacks it.
 apk=$work/page.apk
 status=0
 rm -f "$apk"
@@ -17,7 +17,7 @@ else
     check "it says $word" grep -qF "$word" "$work/badging"
   done
   refuses "it asks for nothing but the camera" grep -E "uses-permission: name='" <(grep -vF android.permission.CAMERA "$work/badging")
-  # What was tested in Chromium is what is packaged.
+  # The package contains the files tested in Chromium.
   same() {
     local from=$1 to=$2 file
     for file in "$from"/*; do

@@ -1,4 +1,4 @@
-# For scripts/android/test: core and bridge built for 64-bit ARM, as phones have it, and run by qemu.
+# Part of scripts/android/test: core and bridge built for 64-bit ARM and run by qemu.
 root=
 if ! command -v aarch64-linux-gnu-g++ >/dev/null || ! command -v qemu-aarch64-static >/dev/null; then
   skip "the core on ARM: no cross-compiler or qemu (scripts/setup --android)"
@@ -17,7 +17,7 @@ if [ -n "$root" ]; then
   check "core, bridge and detector's module compile for ARM" build_arm
   emulated=(env "QEMU_LD_PREFIX=$root" "QEMU_SET_ENV=LD_LIBRARY_PATH=$lib:$lib/lapack:$lib/blas" qemu-aarch64-static)
 
-  # The same pictures on both: the same map, or poses that differ by less than 1e-4 of the map's unit.
+  # The same images on both processors give the same map, or poses that differ by less than 1e-4 of the map's unit.
   for pictures in "${PICTURES[@]}"; do
     replay_both() {
       build/bin/alidade_frames "${SOURCE[$pictures]/data:/${ALIDADE_DATA:-}/}" 60 "${WIDTH[$pictures]}" "$work/$pictures.frames" &&
@@ -30,11 +30,11 @@ if [ -n "$root" ]; then
     check "$pictures: places are less than 1e-4 of the unit apart" python3 tests/android/compare.py "$here.txt" "$on_arm.txt" 1e-4
     tail -1 "$work/log"
     cmp -s "$here.txt" "$on_arm.txt" && echo "     the trajectory is the same bytes" || echo "     the trajectory differs in its last digits"
-    # Rounding of sines, exponentials and the like is the C library's, which has other versions of them for each processor.
+    # Sines, exponentials and similar functions round differently in the C library of each processor.
     echo "     of the map's $(stat -c %s "$here.map") bytes $(cmp -l "$here.map" "$on_arm.map" | wc -l) differ"
   done
 
-  # NEON against scalar code, OpenCV's and closed forms: what tests/features holds.
+  # tests/features compares NEON code with scalar code, OpenCV and closed forms.
   if "${emulated[@]}" "$arm/bin/test_features" >"$work/features.log" 2>&1; then
     pass "tests/features on ARM: $(grep -oE '[0-9]+ tests? ran|PASSED.*' "$work/features.log" | tail -1)"
   else

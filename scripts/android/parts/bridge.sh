@@ -1,4 +1,4 @@
-# For scripts/android/test: the app's JNI bridge on this machine's JVM, with -Xcheck:jni.
+# Part of scripts/android/test: the app's JNI bridge on this machine's JVM, with -Xcheck:jni.
 check "the Gradle project names nothing that is missing" cmake "-DANDROID=$PWD/android" -P tests/android/project_files.cmake
 if [ ${#PICTURES[@]} -eq 0 ]; then
   skip "the bridge: no JDK (scripts/setup --android)"

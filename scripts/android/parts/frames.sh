@@ -1,5 +1,5 @@
-# For scripts/android/test: builds what its parts share. PICTURES: those there are to try it with, rendered ones and, where ALIDADE_DATA
-# names their folder, real ones; SOURCE and WIDTH of each.
+# Part of scripts/android/test: builds the shared programs and images. PICTURES: the test sets, rendered and, if
+# ALIDADE_DATA is set, real; SOURCE and WIDTH of each.
 declare -A SOURCE=([rendered]="synth:room?width=320&height=240&frames=60" [kitchen]=data:kitchen) WIDTH=([rendered]=320 [kitchen]=400)
 PICTURES=()
 if command -v javac >/dev/null; then

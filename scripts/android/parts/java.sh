@@ -1,5 +1,6 @@
-# For scripts/android/test: the app's Java against the public API 29, made from the framework's own list of signatures; resources by aapt2; the
-# hand-written bytecode of the packaged page against the same, and through the JVM's verifier.
+# Part of scripts/android/test: compiles the app's Java against the public API 29, made from the framework's list of
+# signatures, and its resources with aapt2; checks the packaged page's hand-written bytecode against the same API and
+# with the JVM's verifier.
 app=android/app/src/main
 framework=/usr/share/android-framework-res/framework-res.apk
 stubs=
@@ -9,7 +10,7 @@ else
   stubs=$(scripts/android/stubs-jar) || { stubs=; skip "Java against API 29: the framework's signatures could not be fetched"; }
 fi
 
-# compiles FOLDER: the app's Java as it is in a folder of sources.
+# compiles FOLDER: compiles the app's Java in a folder of sources.
 compiles() {
   rm -rf "$work/classes"
   javac --release 8 -Xlint:all,-options -Werror -cp "$stubs" -d "$work/classes" $(find "$1" -name '*.java') "$work/gen/org/alidade/phone/R.java"
@@ -17,7 +18,7 @@ compiles() {
 resources() {
   rm -rf "$work/gen" "$work/res.zip"
   aapt2 compile --dir "$app/res" -o "$work/res.zip" &&
-    # Gradle puts the package there.
+    # Gradle adds the package attribute.
     sed 's|<manifest |<manifest package="org.alidade.phone" |' "$1" >"$work/AndroidManifest.xml" &&
     aapt2 link -I "$framework" --manifest "$work/AndroidManifest.xml" -A "$app/assets" --java "$work/gen" --min-sdk-version 28 \
       --target-sdk-version 29 -o "$work/resources.apk" "$work/res.zip"
@@ -37,7 +38,7 @@ if [ -n "$stubs" ]; then
 
   if command -v smali >/dev/null && command -v enjarify >/dev/null && [ -d build/android/classes ]; then
     smali assemble -a 24 -o "$work/page.dex" android/webview/smali
-    # Debian's, which needs Debian's own Python.
+    # Debian's script requires Debian's Python.
     PATH=/usr/bin:$PATH enjarify -f -o "$work/page.jar" "$work/page.dex" >/dev/null
     java -cp "build/android/classes:$stubs:$work/page.jar" org.alidade.phone.SmaliCheck android/webview/smali org.alidade.page.Main \
       org.alidade.page.Asked org.alidade.page.Files >"$work/smali.log" 2>&1 || true

@@ -1,5 +1,5 @@
-// What users of the library may rely on: headers that say `namespace ALIDADE_API alidade` are
-// installed, and what they declare is visible in the shared library; everything else is hidden.
+// Marks the public API. Headers that open `namespace ALIDADE_API alidade` are installed and their
+// declarations are exported from the shared library; all other symbols are hidden.
 #pragma once
 
 #define ALIDADE_API [[gnu::visibility("default")]]

@@ -1,4 +1,5 @@
-// The one exception type of the library: what is wrong, where, and what to do about it.
+// The library's only exception type. The message says what is wrong, where, and what to do about
+// it.
 #pragma once
 
 #include <stdexcept>
@@ -8,11 +9,11 @@
 
 namespace ALIDADE_API alidade {
 
-// Doubles as the program's exit status.
+// The value is also the program's exit status.
 enum class ErrorKind {
-  kUsage = 2,          // a flag, setting or argument that cannot be
-  kInput = 3,          // a file or folder that cannot be read or written
-  kNothingMapped = 4,  // good input in which nothing could be tracked
+  kUsage = 2,          // invalid flag, setting or argument
+  kInput = 3,          // file or folder that cannot be read or written
+  kNothingMapped = 4,  // valid input in which nothing could be tracked
 };
 
 class Error : public std::runtime_error {

@@ -1,5 +1,5 @@
-// Values by id, for marks and tallies of some of the ids ever given: cost follows the entries that
-// are in, not the largest id.
+// Hash map keyed by id. Memory and time grow with the number of entries, not with the largest id
+// ever issued.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-// Open addressing with linear probing over places in a dense list of entries, which keeps the order
-// in which they came: iterating is deterministic, and clearing keeps the memory for the next time.
+// Open addressing with linear probing; slots index a dense vector of entries that keeps insertion
+// order. Iteration is therefore deterministic, and Clear() keeps the allocated memory for reuse.
 template <typename IdType, typename Value>
 class IdMap {
  public:
@@ -18,7 +18,7 @@ class IdMap {
 
   size_t size() const { return entries_.size(); }
   bool empty() const { return entries_.empty(); }
-  const std::vector<Entry>& entries() const { return entries_; }  // in order of entering
+  const std::vector<Entry>& entries() const { return entries_; }  // in insertion order
 
   Value* Find(IdType id) {
     const uint32_t place = PlaceOf(id);
@@ -27,7 +27,8 @@ class IdMap {
   const Value* Find(IdType id) const { return const_cast<IdMap*>(this)->Find(id); }
   bool Contains(IdType id) const { return Find(id) != nullptr; }
 
-  // The entry of `id`, made when there is none; true when it was made. Valid until the next one.
+  // Finds or inserts the entry of `id`. The bool is true if it was inserted. The pointer is valid
+  // until the next insertion.
   std::pair<Value*, bool> Enter(IdType id) {
     if (2 * (entries_.size() + 1) > slots_.size()) Grow(2 * slots_.size());
     uint32_t slot = SlotOf(id);
@@ -44,7 +45,7 @@ class IdMap {
     entries_.clear();
     std::fill(slots_.begin(), slots_.end(), kNone);
   }
-  // Takes out the entries for which gone(id, value), and gives memory back when few are left.
+  // Removes the entries for which gone(id, value) is true and releases memory if few remain.
   template <typename Gone>
   void EraseIf(Gone&& gone) {
     std::erase_if(entries_, [&](const Entry& e) { return gone(e.first, e.second); });
@@ -59,7 +60,7 @@ class IdMap {
   static constexpr size_t kFewest = 64;
 
   uint32_t mask() const { return static_cast<uint32_t>(slots_.size()) - 1; }
-  uint32_t SlotOf(IdType id) const {  // Fibonacci hashing: neighbours in number spread out
+  uint32_t SlotOf(IdType id) const {  // Fibonacci hashing spreads consecutive ids
     return (id.value * 2654435769u) >> shift_;
   }
   uint32_t PlaceOf(IdType id) const {
@@ -69,7 +70,7 @@ class IdMap {
     }
     return kNone;
   }
-  void Grow(size_t slots) {  // a power of two, more than there are entries
+  void Grow(size_t slots) {  // `slots`: a power of two larger than the number of entries
     slots = std::max(slots, kFewest);
     slots_.assign(slots, kNone);
     shift_ = 32;
@@ -82,15 +83,15 @@ class IdMap {
   }
 
   std::vector<Entry> entries_;
-  std::vector<uint32_t> slots_;  // places in entries_, kNone: free; at least half are
+  std::vector<uint32_t> slots_;  // indices into entries_, or kNone if free; at least half are free
   int shift_ = 32;               // 32 - log2(slots)
 };
 
-// Which ids were met.
+// Set of ids.
 template <typename IdType>
 class IdSet {
  public:
-  bool Enter(IdType id) { return met_.Enter(id).second; }  // false when it was in already
+  bool Enter(IdType id) { return met_.Enter(id).second; }  // false if it was already present
   bool Contains(IdType id) const { return met_.Contains(id); }
   void Clear() { met_.Clear(); }
 

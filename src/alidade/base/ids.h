@@ -1,4 +1,4 @@
-// Names of things in the map. Ids are given in order of birth, never reused, and never pointers.
+// Typed ids of map objects. They are issued in increasing order and never reused.
 #pragma once
 
 #include <compare>
@@ -21,7 +21,7 @@ struct Id {
 
 using KeyFrameId = Id<struct KeyFrameTag>;
 using LandmarkId = Id<struct LandmarkTag>;
-using MapId = Id<struct MapTag>;  // of a part of the map with a world frame of its own
+using MapId = Id<struct MapTag>;  // of a part of the map that has its own world frame
 
 }  // namespace alidade
 

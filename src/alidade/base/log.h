@@ -1,5 +1,4 @@
-// What the library has to say while it runs. Warnings go to stderr, one line each, unless a
-// listener takes them.
+// Warnings of the library: one line each to stderr, or to a listener if one is set.
 #pragma once
 
 #include <functional>
@@ -10,9 +9,11 @@
 namespace ALIDADE_API alidade {
 
 using WarningListener = std::function<void(const std::string&)>;
+// Thread-safe.
 
 void LogWarning(const std::string& message);
-// Replaces the listener (null: back to stderr). Called from any thread, one call at a time.
+// Replaces the listener; null restores stderr. The listener may be called from any thread, but
+// never by two threads at once.
 void SetWarningListener(WarningListener listener);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Probabilities as log-odds, in which independent evidence adds up.
+// Conversion between probabilities and log-odds, in which independent evidence is additive.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@ namespace alidade {
 
 inline float ProbabilityOf(float log_odds) { return 1 / (1 + std::exp(-log_odds)); }
 
-// `probability` between 0 and 1, neither included.
+// `probability` in the open interval (0, 1).
 inline float LogOddsOf(float probability) { return std::log(probability / (1 - probability)); }
 
 }  // namespace alidade

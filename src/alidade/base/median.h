@@ -1,4 +1,4 @@
-// The middle one of many values.
+// Median of a range.
 #pragma once
 
 #include <algorithm>
@@ -6,8 +6,8 @@
 
 namespace alidade {
 
-// The larger of the middle two when their number is even. `values`: a vector or span with at least
-// one; their order changes.
+// Upper median: for an even number of values, the larger of the two middle ones. `values` is a
+// vector or span with at least one element and is reordered.
 template <typename Values>
 auto UpperMedian(Values&& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -13,7 +13,8 @@ char Lower(char c) { return static_cast<char>(std::tolower(static_cast<unsigned 
 }  // namespace
 
 int EditDistance(std::string_view a, std::string_view b) {
-  // Rows i - 2, i - 1 and i of the table: between the first i letters of a and all starts of b.
+  // Rows i - 2, i - 1 and i of the table; entry j is the distance between the first i letters of a
+  // and the first j letters of b.
   std::vector<int> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (size_t j = 0; j <= b.size(); ++j) row[j] = static_cast<int>(j);
   for (size_t i = 1; i <= a.size(); ++i) {
@@ -35,10 +36,11 @@ std::string NearestName(std::string_view written, std::span<const std::string> k
   std::string nearest;
   int smallest = 0;
   for (const std::string& name : known) {
-    // Half the letters wrong is another word, not a slip.
+    // If half the letters differ, it is a different word rather than a typing error.
     const size_t longer = std::max(written.size(), name.size());
     const size_t limit = std::max<size_t>(1, longer / 2);
-    // So many must be put in at least: a book in the place of a name is compared with none.
+    // The difference in length is a lower bound of the distance; skips the comparison for very long
+    // input.
     if (longer - std::min(written.size(), name.size()) > limit) continue;
     const int distance = EditDistance(written, name);
     if (static_cast<size_t>(distance) > limit) continue;

@@ -1,4 +1,5 @@
-// "Unknown setting 'treads': did you mean 'threads'?"
+// Suggests the intended name for a misspelled one: "Unknown setting 'treads': did you mean
+// 'threads'?"
 #pragma once
 
 #include <span>
@@ -7,15 +8,15 @@
 
 namespace alidade {
 
-// Edits (insert, delete, replace, swap of neighbours) between two names; case counts for nothing.
-// Optimal string alignment: Damerau 1964.
+// Case-insensitive edit distance (insertion, deletion, substitution, transposition of adjacent
+// letters). Optimal string alignment (Damerau 1964).
 int EditDistance(std::string_view a, std::string_view b);
 
-// The known name closest to what was written, the first of equals; empty when none is near enough
-// to be meant.
+// The known name with the smallest edit distance to `written` (the first one on a tie). Empty if
+// the distance exceeds half the length of the longer of the two names.
 std::string NearestName(std::string_view written, std::span<const std::string> known);
 
-// "; did you mean 'threads'?" to hang on an error, or nothing when no name is near.
+// "; did you mean 'threads'?" to append to an error message; empty if there is no near name.
 std::string DidYouMean(std::string_view written, std::span<const std::string> known);
 
 }  // namespace alidade

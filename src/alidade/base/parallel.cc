@@ -39,10 +39,9 @@ struct Loop {
   }
 };
 
-// Workers sleep between loops: looking out for the next one instead was measured to save nothing
-// and to cost CPU time, and on a busy machine the caller's as well. One loop at a time has them;
-// `loop_` is null in between. A worker joins the loop when it wakes up, if it is still there: the
-// caller waits for those at work, never for one that sleeps.
+// Workers sleep between loops; spinning saved no time and cost CPU time. One loop at a time uses
+// them; `loop_` is null between loops. A worker that wakes joins the loop if it is still running.
+// The caller waits only for workers inside the loop, not for sleeping ones.
 class Pool {
  public:
   ~Pool() { Stop(); }
@@ -63,7 +62,7 @@ class Pool {
     for (int i = 0; i < helpers; ++i) wake_.notify_one();
     loop.Work();
     std::unique_lock<std::mutex> lock(mutex_);
-    loop_ = nullptr;  // from here on nobody joins
+    loop_ = nullptr;  // no worker can join from here on
     done_.wait(lock, [&] { return active_ == 0; });
     return true;
   }
@@ -78,9 +77,9 @@ class Pool {
     try {
       for (int i = 1; i < threads; ++i) workers_.emplace_back([this] { Run(); });
     } catch (const std::system_error&) {
-      // No more threads to be had: those there are will do.
+      // The system has no more threads: continue with those that exist.
     } catch (const std::bad_alloc&) {
-      // Nor memory for them.
+      // Out of memory: likewise.
     }
   }
 
@@ -96,11 +95,11 @@ class Pool {
 
   void Run();
 
-  std::mutex owner_;  // held by the caller whose loop it is
+  std::mutex owner_;  // held by the caller whose loop is running
   int threads_ = 1;
   std::vector<std::thread> workers_;
 
-  std::mutex mutex_;  // of all below
+  std::mutex mutex_;  // guards all members below
   std::condition_variable wake_, done_;
   Loop* loop_ = nullptr;
   uint64_t generation_ = 0;
@@ -109,11 +108,12 @@ class Pool {
 };
 
 std::atomic<int> g_threads{0};
-thread_local bool t_inside_loop = false;  // or asked to loop alone
+thread_local bool t_inside_loop = false;  // or set by KeepLoopsOnThisThread()
 
 void Pool::Run() {
   t_inside_loop = true;
-  uint64_t seen = 0;  // generations start at 1, and a loop that has gone is told by its absence
+  uint64_t seen =
+      0;  // generations start at 1; a loop that has ended is recognized by loop_ == nullptr
   while (true) {
     Loop* loop;
     {

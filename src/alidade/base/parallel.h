@@ -1,27 +1,27 @@
-// Parallel loops whose results do not depend on how many threads there are.
+// Parallel loops whose results do not depend on the number of threads.
 #pragma once
 
 #include <functional>
 
 namespace alidade {
 
-// Threads used by ParallelFor in all of the program, the caller's included. 0 = one per core. Call
-// it before the first loop; later calls take effect at the next loop.
+// Number of threads ParallelFor uses in the whole process, the calling thread included; 0 = one per
+// core. Takes effect at the next loop.
 void SetThreadCount(int threads);
 int ThreadCount();
 
-// Calls body(i) for each i in [0, count), spread over the threads; returns when all are done. The
-// body of one i must not touch what another's writes: then the result is the same with any number
-// of threads (reduce afterwards, in order). A loop inside a loop's body, or while another thread's
-// loop holds the workers, runs on the caller alone. The first exception thrown by a body is thrown
-// again here.
+// Calls body(i) for each i in [0, count) on several threads and returns when all calls are done.
+// One body must not access what another writes; then the result is the same for any number of
+// threads (reduce afterwards, in index order). A nested loop, or one started while another thread's
+// loop uses the workers, runs on the calling thread only. Rethrows the first exception thrown by a
+// body.
 void ParallelFor(int count, const std::function<void(int)>& body);
 
-// From now on the calling thread's loops run on it alone, leaving the workers to the others: for a
-// thread beside the work, whose CPU time is to be told apart.
+// From now on, loops started by the calling thread run on that thread only. For threads whose CPU
+// time is measured separately.
 void KeepLoopsOnThisThread();
 
-// The calling thread gives way to the others of the program where the system can do that (Linux).
+// Lowers the scheduling priority of the calling thread (nice 5). Does nothing except on Linux.
 void LowerThreadPriority();
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Names out of files, as they can be shown in one line of a terminal.
+// Makes text read from files safe to print on one line of a terminal.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,8 @@
 
 namespace alidade {
 
-// What is no printable ASCII character is '?': a damaged file may hold line ends, the terminal's
-// own commands, and zeros, at which an error would end.
+// Replaces every character that is not printable ASCII by '?'. A damaged file may contain line
+// breaks, terminal control sequences, or zero bytes that would truncate an error message.
 inline std::string Printable(std::string_view text) {
   std::string shown(text);
   std::replace_if(

@@ -19,8 +19,8 @@ uint32_t Random::Next() {
 }
 
 uint32_t Random::Below(uint32_t bound) {
-  const uint32_t threshold =
-      (0u - bound) % bound;  // below it the low values would come up once too often
+  // Rejecting draws below 2^32 mod bound removes the bias towards low values.
+  const uint32_t threshold = (0u - bound) % bound;
   while (true) {
     const uint32_t drawn = Next();
     if (drawn >= threshold) return drawn % bound;

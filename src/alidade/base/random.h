@@ -1,4 +1,4 @@
-// Random numbers that are the same on every machine and with every standard library.
+// Pseudo-random numbers that are the same on every machine and with every standard library.
 #pragma once
 
 #include <cstdint>
@@ -8,16 +8,16 @@
 
 namespace ALIDADE_API alidade {
 
-// PCG32 (O'Neill 2014). Cheap to copy; equal seeds and streams give equal sequences.
+// PCG32 (O'Neill 2014). Equal seeds and streams give equal sequences. Not thread-safe.
 class Random {
  public:
   explicit Random(uint64_t seed = 1, uint64_t stream = 0);
-  uint32_t Next();                 // all 32 bits
+  uint32_t Next();                 // uniform over all 32 bits
   uint32_t Below(uint32_t bound);  // uniform in [0, bound), bound > 0, unbiased
-  double Uniform();                // [0, 1)
+  double Uniform();                // uniform in [0, 1)
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
   double Gaussian();  // mean 0, standard deviation 1 (Marsaglia's polar method)
-  // `count` different numbers below `bound`, in the order drawn. Needs count <= bound.
+  // `count` distinct numbers in [0, bound), in the order drawn. Requires count <= bound.
   std::vector<int> Sample(int count, int bound);
 
  private:

@@ -1,4 +1,4 @@
-// Stopwatches and what is said of many of their readings.
+// Stopwatch, statistics of its readings, and resource usage of the process.
 #pragma once
 
 #include <chrono>
@@ -24,24 +24,25 @@ class Stopwatch {
   Clock::time_point start_;
 };
 
-// All in the unit of the samples. p95 and median are order statistics (nearest rank).
+// Statistics in the unit of the samples. `median` and `p95` are order statistics (nearest rank).
 struct Summary {
   double median = 0, mean = 0, p95 = 0, max = 0;
   int count = 0;
 };
 Summary Summarise(std::vector<double> samples);
 
-// Readings of one kind, for days in bounded memory: all of them up to `most`; from then on one of
-// every 2, 4, 8, …, drawn from those that follow each other. Any thread may add or ask.
+// Samples of one quantity in bounded memory. Keeps all of them up to `most`; each time that is
+// exceeded the sampling interval doubles (2, 4, 8, …), with one sample drawn at random from each
+// interval. Thread-safe.
 class SampleLog {
  public:
-  static constexpr size_t kMost = size_t{1} << 18;  // 2.4 hours at 30 a second, 1 MB
+  static constexpr size_t kMost = size_t{1} << 18;  // 2.4 hours at 30 samples/s, 1 MB
   explicit SampleLog(size_t most = kMost) : most_(most) {}
-  void Add(double sample) noexcept;  // to within 1e-7 of it; left out when there is no memory
+  void Add(double sample) noexcept;  // stored as float; dropped if out of memory
   std::vector<double> All() const;   // in the order they were added
   struct Reading {
     double value = 0;
-    int64_t number = 0;  // how many there were with it; 0: none yet
+    int64_t number = 0;  // of samples added so far, this one included; 0: none yet
   };
   Reading Last() const;
 
@@ -49,13 +50,14 @@ class SampleLog {
   size_t most_;
   mutable std::mutex mutex_;
   std::vector<float> kept_;
-  uint32_t stride_ = 1;            // one of so many is kept
-  uint32_t place_ = 0, pick_ = 0;  // of the next among them; which of them is kept
+  uint32_t stride_ = 1;  // interval: one of `stride_` samples is kept
+  // Position of the next sample in the current interval, and the position of the one that is kept.
+  uint32_t place_ = 0, pick_ = 0;
   Random random_;
   Reading last_;
 };
 
-double ProcessCpuSeconds();  // user + system time of all threads so far; 0 where unknown
-double PeakMegabytes();      // highest resident memory so far, 10^6 bytes; 0 where unknown
+double ProcessCpuSeconds();  // user + system time of all threads so far, seconds
+double PeakMegabytes();      // peak resident memory so far, 10^6 bytes; 0 if unavailable
 
 }  // namespace alidade

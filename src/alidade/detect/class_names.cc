@@ -7,7 +7,7 @@ namespace {
 
 constexpr size_t kMostClasses = 65536;
 
-// Reads Python's literals from left to right.
+// Parser of Python literals.
 class Reader {
  public:
   explicit Reader(std::string_view text) : rest_(text) {}

@@ -1,4 +1,4 @@
-// What the classes of a network are called.
+// Class names of a detector network.
 #pragma once
 
 #include <string>
@@ -7,18 +7,18 @@
 
 namespace alidade {
 
-// The 80 of the COCO data set (Lin et al. 2014) in the order all its detectors give them.
+// The 80 classes of COCO (Lin et al. 2014), in the order that its detectors use.
 const std::vector<std::string>& CocoNames();
 
-// From the text exporters leave in a file, a list or a table as Python writes it:
-// ['person', "dog's bed"] or {0: 'person', 1: 'bicycle'}. Empty when it is neither.
+// Parses the text that exporters store in a model file, a Python list or dict: ['person', "dog's
+// bed"] or {0: 'person', 1: 'bicycle'}. Returns an empty list for other text.
 std::vector<std::string> ParseClassNames(std::string_view text);
 
-// One for each class: those of the file; for what it doesn't name COCO's when there are 80, else
-// "class 7". `classes` 0: as many as the file names, or COCO's.
+// One name per class: the file's; for missing ones COCO's if there are 80 classes, else "class 7".
+// `classes` 0: the number of names in the file, or COCO's 80.
 std::vector<std::string> NamesFor(int classes, std::vector<std::string> from_file);
 
-// Whether `list`, names with commas between, has this one.
+// true when the comma-separated `list` contains `name`.
 bool IsListed(const std::string& list, const std::string& name);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// What kind of thing is where in an image, as a network trained for it says.
+// Object detections in an image, and the interface of detector networks.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -13,27 +13,29 @@ namespace ALIDADE_API alidade {
 struct Detection {
   int class_id = -1;  // index into Detector::ClassNames()
   float score = 0;    // 0…1
-  cv::Rect2f box;     // pixels of the image given, inside it, from edge to edge: pixel i covers
-                      // i to i + 1, its centre is i + 0.5 (as in cv::Rect, unlike keypoints)
+  // Pixels of the image passed to Detect(), clipped to it. Edges: pixel i covers i to i + 1 and its
+  // center is i + 0.5 (as in cv::Rect, unlike keypoints).
+  cv::Rect2f box;
 };
 
-// What was found in one frame.
+// Detections of one frame.
 struct FrameDetections {
   int number = 0;  // Frame::number
   std::vector<Detection> detections;
 };
 
-// One instance, one thread at a time.
+// Use each instance from one thread at a time.
 class Detector {
  public:
   virtual ~Detector() = default;
-  // `image`: CV_8UC3 (blue green red) or CV_8UC1, of any size. Best score first, each thing once.
-  // Throws Error (input) when the network gives no usable answer.
+  // `image`: CV_8UC3 (blue green red) or CV_8UC1, any size. Returns detections sorted by descending
+  // score, with overlapping ones suppressed. Throws Error (input) when the network's output is
+  // unusable.
   virtual std::vector<Detection> Detect(const cv::Mat& image) = 0;
   virtual const std::vector<std::string>& ClassNames() const = 0;
 
-  // Of one that works elsewhere (late_detector.h): nobody calls Detect(), TakeAnswer() gives what
-  // has come since it was asked last, the newest.
+  // true for a detector that runs elsewhere (late_detector.h): Detect() must not be called;
+  // TakeAnswer() returns the newest result that arrived since the previous call, if any.
   virtual bool AnswersLate() const { return false; }
   virtual std::optional<FrameDetections> TakeAnswer() { return {}; }
 };

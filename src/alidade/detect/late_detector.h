@@ -1,5 +1,5 @@
-// A detector that works somewhere else and answers when it can: in a page's Worker, on another
-// machine. Who has its answers brings them here; the system takes the newest.
+// A detector that runs elsewhere, in a web page's Worker or on another machine, with results that
+// arrive later. The owner passes them to Bring(); the SLAM system takes the newest.
 #pragma once
 
 #include <mutex>
@@ -18,20 +18,22 @@ class LateDetector : public Detector {
   explicit LateDetector(std::vector<std::string> class_names)
       : class_names_(std::move(class_names)) {}
 
-  // Any thread. `answer.number`: the frame's, counted by Slam::Track() from Slam::first_number()
-  // on. One that is older than what came before changes nothing.
+  // Any thread. `answer.number` is the frame's number as counted by Slam::Track(), starting at
+  // Slam::first_number(). A result that is not newer than the previous one is ignored. Throws Error
+  // (input) for an invalid detection.
   void Bring(FrameDetections answer);
   std::optional<FrameDetections> TakeAnswer() override;
 
   bool AnswersLate() const override { return true; }
-  std::vector<Detection> Detect(const cv::Mat& image) override;  // throws Error: nobody may ask
+  // Throws Error (input): must not be called.
+  std::vector<Detection> Detect(const cv::Mat& image) override;
   const std::vector<std::string>& ClassNames() const override { return class_names_; }
 
  private:
   const std::vector<std::string> class_names_;
   std::mutex mutex_;
   std::optional<FrameDetections> newest_;
-  int last_ = -1;  // number of the last that was brought
+  int last_ = -1;  // number of the last accepted result
 };
 
 }  // namespace alidade

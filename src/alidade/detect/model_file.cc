@@ -45,10 +45,11 @@ namespace entry {
 enum { kKey = 1, kValue = 2 };
 }
 
-constexpr uint64_t kMostIrVersion = 100;  // 13 in 2025
+constexpr uint64_t kMostIrVersion = 100;  // version 13 in 2025
 constexpr int64_t kOpenSide = -1;
-// Of layers, their inputs and outputs, and constants. The largest YOLO has some thousand; each
-// takes as little as two bytes of a hostile file, but a hundred of memory.
+// Limit of the number of layers, their inputs and outputs, and constants. The largest YOLO has
+// about a thousand. In a crafted file each part takes as little as 2 bytes, but about 100 bytes of
+// memory.
 constexpr int kMostParts = 100000;
 
 struct Node {
@@ -71,11 +72,11 @@ class PartCounter {
 struct Graph {
   std::vector<Node> nodes;
   std::vector<OnnxInput> inputs;
-  std::map<std::string_view, std::vector<int64_t>> constants;  // name to shape
+  std::map<std::string_view, std::vector<int64_t>> constants;  // name -> shape
   bool external_weights = false;
 };
 
-// Calls visit(field) for each.
+// Calls visit(field) for each field. Throws Error (input) when the message is damaged.
 template <typename Visit>
 void ForEachField(std::string_view message, const Visit& visit) {
   ProtobufReader reader(message);
@@ -92,7 +93,7 @@ Node ReadNode(std::string_view bytes, PartCounter& count) {
     if (field.number == node::kOperation) read.operation = field.bytes;
     if (field.number != node::kAttribute) return;
     ForEachField(field.bytes, [](const ProtobufField& part) {
-      if (part.number == attribute::kTensor) ReadTensor(part.bytes);  // it may throw
+      if (part.number == attribute::kTensor) ReadTensor(part.bytes);  // only to check it
     });
   });
   return read;
@@ -104,7 +105,7 @@ void ReadConstant(std::string_view bytes, Graph* read) {
   read->constants[tensor.name] = std::move(tensor.shape);
 }
 
-// A dimension is a number, or a name when it is left open; some exporters write 0 or -1 for that.
+// Size of one dimension; kOpenSide when it is variable. Exporters write a name, 0 or -1 for that.
 int64_t ReadSide(std::string_view bytes) {
   int64_t side = kOpenSide;
   ForEachField(bytes, [&](const ProtobufField& field) {
@@ -140,7 +141,8 @@ OnnxInput ReadInput(std::string_view bytes) {
   return input;
 }
 
-// Each layer works on what the file holds or a layer before it makes: OpenCV doesn't look.
+// Checks that every layer's inputs are constants, inputs of the graph or outputs of earlier layers,
+// because OpenCV does not.
 void CheckConnections(const Graph& read) {
   std::set<std::string_view> known;
   for (const OnnxInput& input : read.inputs) known.insert(input.name);
@@ -163,15 +165,15 @@ Graph ReadGraph(std::string_view bytes) {
     if (field.number == graph::kInitializer) ReadConstant(field.bytes, &read);
     if (field.number == graph::kInput) read.inputs.push_back(ReadInput(field.bytes));
   });
-  // Files of the first years list the weights among the inputs.
+  // early versions of the format list the weights among the inputs
   std::erase_if(read.inputs,
                 [&](const OnnxInput& input) { return read.constants.count(input.name) > 0; });
   CheckConnections(read);
   return read;
 }
 
-// The first layer as arithmetic with a constant, a batch normalisation, or a convolution with one
-// 1 × 1 filter for each channel.
+// true when the first layer is arithmetic with a constant, a batch normalization, or a convolution
+// with one 1 × 1 filter per channel.
 bool NormalisesInput(const Graph& read) {
   constexpr std::array<std::string_view, 5> kArithmetic = {"Sub", "Add", "Mul", "Div",
                                                            "BatchNormalization"};
@@ -199,7 +201,7 @@ std::string ReadClassNames(std::string_view metadata) {
 
 void CheckOnnxStart(std::string_view start) {
   if (start.empty()) ThrowInput("is empty");
-  // The first byte holds the number of a field, from 1; those of a sparse file are zeros.
+  // The first byte holds a field number, which is at least 1. A sparse file begins with zeros.
   if (static_cast<unsigned char>(start.front()) >> 3 == 0) ThrowInput("is no ONNX file");
 }
 
@@ -212,7 +214,7 @@ OnnxModel ReadOnnxModel(std::string_view bytes) {
   while (const std::optional<ProtobufField> field = reader.Next()) {
     if (field->number == model::kIrVersion)
       version = field->is_integer && field->value > 0 && field->value <= kMostIrVersion;
-    if (!version) continue;  // it comes first: nothing of another file is taken for a network
+    if (!version) continue;  // the version comes first; without it the file is not an ONNX model
     if (field->number == model::kGraph) graph = ReadGraph(field->bytes);
     if (field->number == model::kMetadata && read.class_names.empty())
       read.class_names = ReadClassNames(field->bytes);

@@ -1,4 +1,4 @@
-// A picture as the array a network reads.
+// Converts an image to a network's input array.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,10 +7,10 @@ namespace alidade {
 
 struct InputConvention {
   bool red_first = true;     // red green blue; false: blue green red
-  float scale = 1.0f / 255;  // of values 0…255; 1 when the network wants them as they are
+  float scale = 1.0f / 255;  // factor for values 0…255; 1 when the network normalizes its input
 };
 
-// 1 × 3 × height × width floats from a CV_8UC3 picture (blue green red), plane after plane.
+// Returns 1 × 3 × height × width floats, plane by plane, from a CV_8UC3 image (blue green red).
 cv::Mat ToNetworkInput(const cv::Mat& picture, const InputConvention& convention);
 
 }  // namespace alidade

@@ -27,7 +27,7 @@ std::optional<std::string_view> ProtobufReader::TakeBytes(uint64_t count) {
 
 std::optional<ProtobufField> ProtobufReader::Next() {
   if (damaged_ || rest_.empty()) return std::nullopt;
-  damaged_ = true;  // until the field is whole
+  damaged_ = true;  // reset once the field is complete
   const std::optional<uint64_t> key = TakeInteger();
   if (!key || *key >> 3 == 0 || *key >> 32 != 0) return std::nullopt;
   ProtobufField field;
@@ -52,7 +52,7 @@ std::optional<ProtobufField> ProtobufReader::Next() {
       size = TakeInteger();
       break;
     default:
-      break;  // groups: not used for 15 years
+      break;  // groups, which are deprecated
   }
   const std::optional<std::string_view> bytes = size ? TakeBytes(*size) : std::nullopt;
   if (!bytes) return std::nullopt;

@@ -1,4 +1,4 @@
-// Reads protocol buffers' wire format, one field after the other, without copying.
+// Reader of the protocol buffers wire format, field by field, without copying.
 // Protocol Buffers Encoding, developers.google.com.
 #pragma once
 
@@ -11,8 +11,8 @@ namespace alidade {
 
 struct ProtobufField {
   uint32_t number = 0;
-  uint64_t value = 0;      // of integers
-  std::string_view bytes;  // of strings and messages; of fixed-size values their 4 or 8 bytes
+  uint64_t value = 0;      // of an integer field
+  std::string_view bytes;  // of a string or message; for fixed-size values their 4 or 8 bytes
   bool is_integer = false;
 };
 
@@ -20,11 +20,11 @@ class ProtobufReader {
  public:
   explicit ProtobufReader(std::string_view message) : rest_(message) {}
 
-  // The next field; none at the end, and none when the message is damaged from here on.
+  // The next field; nullopt at the end, and when the message is damaged from here on.
   std::optional<ProtobufField> Next();
   bool damaged() const { return damaged_; }
 
-  // For packed fields: the next of integers that stand one behind the other.
+  // The next varint; used for packed fields.
   std::optional<uint64_t> TakeInteger();
 
  private:
@@ -34,10 +34,9 @@ class ProtobufReader {
   bool damaged_ = false;
 };
 
-// Of a repeated integer field, which may be written one by one or packed: the first `most`. What is
-// damaged of it is left out.
+// The first `most` values of a repeated integer field, packed or not. Damaged values are skipped.
 std::vector<uint64_t> Integers(const ProtobufField& field, size_t most);
-// How many there are.
+// Number of values.
 uint64_t CountIntegers(const ProtobufField& field);
 
 }  // namespace alidade

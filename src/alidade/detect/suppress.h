@@ -1,4 +1,4 @@
-// Each thing once: of detections that overlap, the best.
+// Non-maximum suppression: keeps the best of overlapping detections.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace alidade {
 
-// Area of the intersection over that of the union: 0…1.
+// Intersection over union of two boxes, 0…1.
 float Overlap(const cv::Rect2f& a, const cv::Rect2f& b);
 
-// Greedy non-maximum suppression within each class: leaves out what overlaps a better one by more
-// than `most`. Best score first, equal ones as they stood.
+// Greedy non-maximum suppression within each class: removes detections whose overlap with a better
+// one exceeds `most`. Sorts by descending score; the order is stable.
 std::vector<Detection> SuppressOverlaps(std::vector<Detection> detections, float most);
 
 }  // namespace alidade

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// TensorProto.
+// Field numbers of TensorProto.
 enum FieldNumber {
   kDims = 1,
   kDataType = 2,
@@ -24,11 +24,11 @@ enum FieldNumber {
 
 constexpr int64_t kMostNumbers = int64_t{1} << 31;  // 8 GB of floats
 
-// Bytes of a number of each TensorProto.DataType: none, float, uint8, int8, uint16, int16, int32,
-// int64, string, bool, half, double, uint32, uint64. 0: not to be checked.
+// Bytes per element for each TensorProto.DataType: none, float, uint8, int8, uint16, int16, int32,
+// int64, string, bool, half, double, uint32, uint64. 0: not checked.
 constexpr size_t kBytesOf[] = {0, 4, 1, 1, 2, 2, 4, 8, 0, 1, 2, 8, 4, 8};
 
-// None when there are sides below 0, or too many numbers for a file.
+// Number of elements; nullopt for a negative size or more than kMostNumbers elements.
 std::optional<uint64_t> CountOf(const std::vector<int64_t>& shape) {
   int64_t count = 1;
   for (const int64_t side : shape) {

@@ -1,5 +1,5 @@
-// The head of a constant in an ONNX file (TensorProto): its shape, and whether its numbers are all
-// there. OpenCV reads past the end of what is too short.
+// Header of a constant in an ONNX file (TensorProto). Checks that the data has the size its shape
+// requires, because OpenCV reads past the end of data that is too short.
 #pragma once
 
 #include <cstddef>
@@ -9,15 +9,15 @@
 
 namespace alidade {
 
-inline constexpr size_t kMostOnnxSides = 32;  // as many as OpenCV's arrays may have
+inline constexpr size_t kMostOnnxSides = 32;  // the limit of OpenCV's arrays
 
 struct OnnxTensor {
   std::string_view name;
   std::vector<int64_t> shape;
-  bool external = false;  // its numbers are in another file
+  bool external = false;  // the data is in another file
 };
 
-// Throws Error (input) when it is damaged, or holds more or fewer numbers than its shape says.
+// Throws Error (input) when the tensor is damaged or its data does not match its shape.
 OnnxTensor ReadTensor(std::string_view bytes);
 
 }  // namespace alidade

@@ -10,9 +10,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kStride = 32;          // of the coarsest cells: sides are multiples of it
-constexpr int64_t kMostSide = 4096;  // pixels: beyond, it is a damaged file
-constexpr int kOpenSize = 640;       // of both sides when the file leaves them open
+constexpr int kStride = 32;  // of the coarsest cells, pixels: input sizes are multiples of it
+constexpr int64_t kMostSide = 4096;  // pixels; a larger size means a damaged file
+constexpr int kOpenSize = 640;       // pixels, both sides, when the file leaves the size open
 constexpr int kTrialGrey = 114;
 constexpr int kFloat = 1, kHalf = 10;  // TensorProto.DataType
 
@@ -42,7 +42,8 @@ bool LeavesSizeOpen(const OnnxModel& model) {
   return shape.size() != 4 || shape[2] < 1 || shape[3] < 1;
 }
 
-// What a network was trained with can't be read off its outputs; see docs/detectors.md.
+// The training's color order and scale do not follow from the outputs' shapes; see
+// docs/guides/detectors.md.
 InputConvention ConventionOf(const OnnxModel& model, const YoloLayout& layout) {
   const bool yolox = layout.family == YoloFamily::kAnchorFree && !layout.sure_of_objects;
   if (model.normalises_input) return {/*red_first=*/true, /*scale=*/1};

@@ -1,5 +1,6 @@
-// A detector's file: what goes into its network and what its outputs mean. Everything but running
-// it, which OpenCV's dnn does in the program (detect/onnx) and onnxruntime in a page (wasm/).
+// The parts of a detector other than running its network: preparing the input and decoding the
+// outputs. The network runs in OpenCV's dnn (detect/onnx) or, in a web page, in onnxruntime
+// (wasm/).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -16,26 +17,27 @@
 
 namespace alidade {
 
-// Which files work, and how colours and sizes are chosen: docs/detectors.md.
+// docs/guides/detectors.md lists supported files and explains the choice of color order and size.
 class YoloModel {
  public:
-  // Of an ONNX file's bytes, which may go afterwards. Throws Error (input) when they are no network
-  // that takes one picture.
+  // Parses the bytes of an ONNX file, which need not outlive this object. Throws Error (input) when
+  // they are not a network with one image as input.
   explicit YoloModel(std::string_view bytes, const DetectorSettings& settings = {});
 
-  cv::Size input() const { return input_; }  // of the network, pixels
+  cv::Size input() const { return input_; }  // size of the network's input, pixels
   bool leaves_size_open() const { return leaves_size_open_; }
-  // A grey picture: the outputs for it tell which family the network is of, and Recognise() takes
-  // them. Throws Error (input) when that is none that is known.
+  // Input for a trial run: a gray image. Recognise() detects the network's family from the outputs
+  // of this run. It throws Error (input) for an unknown family.
   cv::Mat TrialInput() const;
   void Recognise(std::span<const NetworkOutput> outputs);
 
-  // After Recognise().
+  // The following require Recognise() first.
   const std::vector<std::string>& class_names() const { return class_names_; }
-  int output() const { return layout_.output; }  // the one that Read() takes
-  // What the network is given for a picture (CV_8UC3 blue green red, or CV_8UC1, of any size).
+  int output() const { return layout_.output; }  // index of the output that Read() expects
+  // Converts an image (CV_8UC3 blue green red, or CV_8UC1, any size) to the network's input.
   cv::Mat Prepare(const cv::Mat& image) const;
-  // What was found in it: as Detector::Detect. Throws Error (input) on an output that cannot be.
+  // Decodes the output to detections as in Detector::Detect(); `image`: size of the image. Throws
+  // Error (input) for an invalid output.
   std::vector<Detection> Read(const NetworkOutput& output, cv::Size image) const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::array<int, 3> kStrides = {8, 16, 32};
 constexpr int kSuppressedRow = 6;     // left, top, right, bottom, score, class
-constexpr float kScoreSlack = 1e-3f;  // rounding of half floats may lead beyond 1
+constexpr float kScoreSlack = 1e-3f;  // half floats may round to more than 1
 
 int Cells(cv::Size input, int stride) { return (input.width / stride) * (input.height / stride); }
 
@@ -38,8 +38,8 @@ std::string Known(cv::Size input) {
          cells + ", 5+C], YOLOv8 and later [1, 4+C, " + cells + "] or [1, n, 6] (C classes)";
 }
 
-// Of a segmenting network, which gives masks' prototypes beside its boxes: how many numbers of each
-// box belong to the mask.
+// Number of mask coefficients per box of a segmentation network, which has mask prototypes as a
+// second output; 0 for a detector.
 int MaskCoefficients(std::span<const NetworkOutput> outputs, cv::Size input) {
   for (const NetworkOutput& output : outputs) {
     if (output.shape.size() == 4 && output.shape[2] == input.height / 4 &&
@@ -75,7 +75,7 @@ void RequireFinite(std::span<const float> values) {
     ThrowInput("the network gives values that are not finite");
 }
 
-// The output as a table, whichever way round it is stored: a row of numbers for each box.
+// View of an output with one row per box, independent of the storage order.
 struct Table {
   const float* values;
   int rows;
@@ -92,7 +92,7 @@ Table TableOf(const YoloLayout& layout, const NetworkOutput& output) {
   return {output.values.data(), output.shape[1], columns, 1};
 }
 
-// Columns that are scores: from, to.
+// Columns that hold scores: [from, to).
 std::array<int, 2> ScoreColumns(const YoloLayout& layout) {
   if (layout.family == YoloFamily::kSuppressed) return {4, 5};
   const int from = 4;
@@ -113,7 +113,7 @@ void RequireScores(const YoloLayout& layout, const Table& table) {
   }
 }
 
-// Calls visit(row, column of the cell, its row, stride) for each row of an anchor-free output.
+// Calls visit(row, cell x, cell y, stride) for each row of an anchor-free output.
 template <typename Visit>
 void ForEachCell(cv::Size input, const Visit& visit) {
   int row = 0;
@@ -124,8 +124,8 @@ void ForEachCell(cv::Size input, const Visit& visit) {
   }
 }
 
-// Centres stay near their cells: decoded ones lie within a few strides of theirs, offsets within a
-// few of zero. Whichever the median is nearer to; along x and y, where the cells spread most.
+// Detects whether box centers are decoded. Decoded centers lie within a few strides of their cells,
+// offsets within a few units of zero; compares the medians of both distances.
 bool CentresAreDecoded(const Table& table, cv::Size input) {
   std::vector<float> from_cell, from_zero;
   ForEachCell(input, [&](int row, int x, int y, int stride) {
@@ -137,7 +137,7 @@ bool CentresAreDecoded(const Table& table, cv::Size input) {
   return UpperMedian(from_cell) < UpperMedian(from_zero);
 }
 
-// From edge to edge, clipped to the input.
+// Box from its edges, clipped to the input.
 cv::Rect2f Clipped(float left, float top, float right, float bottom, cv::Size input) {
   const auto width = static_cast<float>(input.width), height = static_cast<float>(input.height);
   left = std::clamp(left, 0.0f, width);

@@ -1,6 +1,6 @@
-// What the outputs of the YOLO family of networks mean, told by their shapes. A network of input
-// W × H has one cell per 8 × 8, 16 × 16 and 32 × 32 pixels: (W/8·H/8 + W/16·H/16 + W/32·H/32) in
-// all. Redmon et al. 2016 (YOLO), Ge et al. 2021 (YOLOX).
+// Detects the layout of the outputs of YOLO networks from their shapes, and decodes them. A network
+// with input W × H has one cell per 8 × 8, 16 × 16 and 32 × 32 pixels: W/8·H/8 + W/16·H/16 +
+// W/32·H/32 cells. Redmon et al. 2016 (YOLO), Ge et al. 2021 (YOLOX).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-// One output array, row after row.
+// One output array, row-major.
 struct NetworkOutput {
   std::vector<int> shape;
   std::span<const float> values;
@@ -19,26 +19,26 @@ struct NetworkOutput {
 
 enum class YoloFamily {
   kAnchors,     // YOLOv5, YOLOv7: [1, 3·cells, 5+C], boxes decoded
-  kAnchorFree,  // YOLOX, YOLOv6: [1, cells, 5+C], YOLOX' with or without the boxes decoded
+  kAnchorFree,  // YOLOX, YOLOv6: [1, cells, 5+C]; YOLOX's boxes may be decoded or not
   kTransposed,  // YOLOv8, v9, 11: [1, 4+C, cells], boxes decoded, no objectness
-  kSuppressed,  // YOLOv10, or others exported with suppression inside: [1, n, 6]
+  kSuppressed,  // YOLOv10, and networks exported with non-maximum suppression: [1, n, 6]
 };
 
 struct YoloLayout {
   YoloFamily family = YoloFamily::kAnchors;
-  int output = 0;                // which of the outputs
-  int classes = 0;               // 0: the shape doesn't say (kSuppressed)
+  int output = 0;                // index of the output
+  int classes = 0;               // 0: not stated by the shape (kSuppressed)
   bool decoded = true;           // false: boxes are offsets from the cell and logarithms of sizes
-  bool sure_of_objects = false;  // kAnchorFree: objectness is 1 everywhere, which is YOLOv6
+  bool sure_of_objects = false;  // kAnchorFree: objectness is 1 everywhere, which identifies YOLOv6
 };
 
-// From the outputs for any one image. Throws Error (input) saying what was found when nothing fits,
-// when values are not finite, or when scores are not between 0 and 1.
+// Detects the layout from the outputs for any one image. Throws Error (input) when no layout
+// matches, a value is not finite, or a score is not between 0 and 1.
 YoloLayout RecogniseYolo(std::span<const NetworkOutput> outputs, cv::Size input);
 
-// The likeliest class of each cell that scores at least `min_score`; boxes in the input's pixels,
-// clipped to it, in the network's order, things found more than once not yet suppressed.
-// Throws Error (input) when the shape isn't that of `layout` or values are not finite.
+// Returns the most likely class of each cell with a score of at least `min_score`; boxes in pixels
+// of the input, clipped to it; in the network's order, before non-maximum suppression. Throws Error
+// (input) when the shape does not match `layout` or a value is not finite.
 std::vector<Detection> DecodeYolo(const YoloLayout& layout, const NetworkOutput& output,
                                   cv::Size input, float min_score);
 

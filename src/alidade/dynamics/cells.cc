@@ -13,8 +13,8 @@
 namespace alidade {
 namespace {
 
-// Median of the positive values among those read at nine places of each cell; 0 when fewer than
-// `least` have one.
+// Median of the positive values read at nine positions of each cell; 0 when fewer than `least` are
+// positive.
 template <typename Read>
 std::vector<float> Medians(const Cells& cells, cv::Size image, int least, Read&& read) {
   std::vector<float> medians(cells.count(), 0);
@@ -67,7 +67,7 @@ cv::Point2f Cells::Centre(int cell) const {
 int Cells::Project(const Eigen::Vector3d& p) const {
   if (!(p.z() > 0.01)) return -1;
   if (p.head<2>().squaredNorm() > reach2_ * p.z() * p.z())
-    return -1;  // lens models fold back there
+    return -1;  // lens distortion models are not monotonic out there
   const Eigen::Vector2d ideal = camera_.Project(p);
   if (!(std::abs(ideal.x()) < 1e4 && std::abs(ideal.y()) < 1e4)) return -1;
   const Eigen::Vector2d raw = distorted_ ? camera_.Distort(ideal) : ideal;
@@ -87,12 +87,12 @@ std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const 
 std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,
                                       const cv::Mat& right, const CellDepthSettings& settings) {
   constexpr int kShrink = 2;
-  constexpr int kSixteenths = 16;  // of a pixel: OpenCV's unit of disparity
+  constexpr int kSixteenths = 16;  // of a pixel: the unit of OpenCV's disparities
   cv::Mat small_left, small_right, disparity;
   const cv::Size size(left.cols / kShrink, left.rows / kShrink);
   cv::resize(left, small_left, size, 0, 0, cv::INTER_AREA);
   cv::resize(right, small_right, size, 0, 0, cv::INTER_AREA);
-  // The disparity of the nearest depth, d = b f / z in pixels of the small image.
+  // Disparity of the nearest depth in pixels of the reduced image, d = b f / z.
   const double widest = camera.bf() / settings.stereo_nearest / kShrink;
   const int disparities = std::clamp(static_cast<int>(std::ceil(widest / 16)) * 16, 16,
                                      std::max(16, size.width / 32 * 16));

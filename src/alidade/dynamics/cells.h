@@ -1,4 +1,5 @@
-// The picture in cells of some 8 × 8 pixels: fine enough for people, few enough to look at all.
+// A grid of cells of about 8 × 8 pixels over the image: fine enough for people, few enough to
+// process every frame.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,7 +14,7 @@
 
 namespace alidade {
 
-// Cells of the image as taken, lens distortion and all, row by row.
+// Cells of the raw (distorted) image, in row-major order.
 class Cells {
  public:
   static constexpr int kColumns = 80;
@@ -22,15 +23,16 @@ class Cells {
   int columns() const { return kColumns; }
   int rows() const { return rows_; }
   int count() const { return kColumns * rows_; }
-  float size() const { return size_; }  // pixels
-  // Cell of a raw pixel; outside the image the nearest.
+  float size() const { return size_; }  // side of a cell, pixels
+  // Cell of a raw pixel; for a pixel outside the image the nearest cell.
   int At(float x, float y) const;
   cv::Point2f Centre(int cell) const;  // raw pixel
-  // Point at depth 1 on the ray through the cell's centre.
+  // Point at depth 1 on the ray through the cell's center.
   const Eigen::Vector3d& Ray(int cell) const { return rays_[cell]; }
-  // Cell that shows a point of the camera's frame; -1: behind the camera or out of the picture.
+  // Cell in which a point of the camera's frame appears; -1: behind the camera or outside the
+  // image.
   int Project(const Eigen::Vector3d& p) const;
-  // Calls visit(neighbour) for the cell and those around it, inside the picture.
+  // Calls visit(n) for the cell and those within `reach` cells of it, inside the image.
   template <typename Visit>
   void VisitAround(int cell, int reach, Visit&& visit) const;
 
@@ -40,7 +42,9 @@ class Cells {
   float size_;
   int rows_;
   std::vector<Eigen::Vector3d> rays_;
-  double reach2_ = 0;  // squared distance from the axis at depth 1 that is seen, with some more
+  // Squared distance from the optical axis at depth 1 up to which points are visible, with a
+  // margin.
+  double reach2_ = 0;
 };
 
 template <typename Visit>
@@ -52,19 +56,19 @@ void Cells::VisitAround(int cell, int reach, Visit&& visit) const {
   }
 }
 
-// Whether `other` is not on the surface that `cell` is on: |z' - z| > surface_step z. Depths of all
-// cells in metres, 0 = unknown, may be empty; what is unknown is apart from nothing.
+// true when two cells show different surfaces: |z' - z| > surface_step z. `depth`: of all cells,
+// meters, 0 = unknown; may be empty. A cell of unknown depth is never apart from another.
 inline bool ApartInDepth(std::span<const float> depth, int cell, int other,
                          const CellDepthSettings& settings = {}) {
   return !depth.empty() && depth[other] > 0 && depth[cell] > 0 &&
          std::abs(depth[other] - depth[cell]) > settings.surface_step * depth[cell];
 }
 
-// Metres along z in every cell, 0 = unknown: the median of nine readings.
-// From a depth image (CV_16U in camera.depth_factor units or CV_32F metres).
+// Depth along z of every cell, meters, 0 = unknown: the median of nine readings.
+// From a depth image (CV_16U in camera.depth_factor units or CV_32F in meters).
 std::vector<float> DepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& depth,
                                 const CellDepthSettings& settings = {});
-// From a rectified pair (CV_8U), by block matching at half size (Konolige 1998).
+// From a rectified stereo pair (CV_8U), by block matching at half size (Konolige 1998).
 std::vector<float> StereoDepthOfCells(const Cells& cells, const Camera& camera, const cv::Mat& left,
                                       const cv::Mat& right, const CellDepthSettings& settings = {});
 

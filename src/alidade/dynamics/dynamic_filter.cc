@@ -11,7 +11,8 @@
 namespace alidade {
 namespace {
 
-// Of what is no object's: a little above that of objects, which tells them apart in earlier views.
+// Lower bound of the belief of cells without an object. It is above that of objects, so that past
+// views distinguish them.
 constexpr float kLeastGeometry = kObjectStatic + 0.1f;
 
 }  // namespace
@@ -42,7 +43,7 @@ void DynamicFilter::Advance(const DynamicInput& input,
   times_.push_front(input.time);
   if (times_.size() > FlowTracks::kHistory) times_.pop_back();
   tracks_.Advance(input.gray);
-  // Until it is judged the frame is taken to be as the last one was, but for its depth.
+  // Until Judge() the belief of the previous frame applies, except for its depth.
   FrameBelief expected = belief_;
   expected.depth.clear();
   if (!input.depth.empty())
@@ -60,7 +61,7 @@ void DynamicFilter::Advance(const DynamicInput& input,
 
 cv::Mat DynamicFilter::ExpectedMovers() const {
   cv::Mat movers(cells_.rows(), cells_.columns(), CV_8U);
-  // Without depth geometry tells single features, not what they are on.
+  // Without depth, geometry classifies single features but not the surfaces they are on.
   for (int i = 0; i < cells_.count(); ++i)
     movers.data[i] =
         belief_.object[i] || (!belief_.depth.empty() && belief_.log_odds[i] < 0) ? 255 : 0;
@@ -95,7 +96,7 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* gues
     unchanged.log_odds.assign(cells_.count(), kUnknownStatic);
     return unchanged;
   }
-  // A frame that comes without depth keeps what the last ones said.
+  // A frame that lacks depth keeps the belief of the previous ones.
   const bool had_depth = surfaces_.number() >= now_.number - settings_.surfaces.gap;
   return had_depth ? unchanged : JudgeWithoutDepth(guess);
 }
@@ -158,7 +159,7 @@ void DynamicFilter::FindObjects(std::span<const uint8_t> proven, FrameBelief& ju
   }
 }
 
-// A chair moves as a whole: when a good part of it is seen to, all of it does.
+// A portable object moves as a whole: true when more than carried_share of its cells move.
 bool DynamicFilter::IsCarried(const MovingObject& object, std::span<const float> geometry) const {
   const auto moving = std::count_if(object.cells.begin(), object.cells.end(),
                                     [&](int i) { return geometry[i] < 0; });
@@ -202,7 +203,7 @@ void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, cons
     view->static_log_odds = belief_.log_odds;
     for (int i = 0; i < cells_.count(); ++i) {
       if (belief_.object[i])
-        view->static_log_odds[i] = kObjectStatic;  // what rests is no background
+        view->static_log_odds[i] = kObjectStatic;  // a resting object is not background
     }
   }
   history_.Add(std::move(view));

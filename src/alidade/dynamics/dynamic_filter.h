@@ -1,5 +1,5 @@
-// Tells for every keypoint how likely it is part of what stands still. One instance per stream; in
-// the order Advance, Judge, Remember for each frame.
+// Estimates for each keypoint the probability that it belongs to a static part of the scene. Use
+// one instance per stream; call Advance, Judge and Remember in this order for each frame.
 #pragma once
 
 #include <deque>
@@ -25,76 +25,78 @@ namespace alidade {
 struct DynamicInput {
   int number = 0;   // Frame::number
   double time = 0;  // seconds
-  cv::Mat gray;     // CV_8U, of the camera's size
-  cv::Mat depth;  // registered, CV_16U in camera.depth_factor units or CV_32F metres; may be empty
+  cv::Mat gray;     // CV_8U, the camera's size
+  // Registered to `gray`, CV_16U in camera.depth_factor units or CV_32F in meters; may be empty.
+  cv::Mat depth;
   cv::Mat right;  // CV_8U, rectified; may be empty
 };
 
-// Whose world a pose is in: views of another cannot be held against it.
+// The world frame a pose refers to. Views from another world cannot be compared.
 struct WorldId {
   MapId map;
-  uint64_t corrections = 0;  // of the map store: loops and merges move worlds
+  uint64_t corrections = 0;  // corrections of the map store: loop closures and merges move worlds
   bool operator==(const WorldId& other) const {
     return map == other.map && corrections == other.corrections;
   }
 };
 
-// What is known of the camera before the pose is.
+// The predicted pose of the camera.
 struct PoseGuess {
   Se3 T_camera_world;
-  double nearest = 0.4;  // metres or map units: nothing is nearer
+  double nearest = 0.4;  // meters or map units: the smallest depth in the scene
   WorldId world = {};
 };
 
 class DynamicFilter {
  public:
-  // `class_names`: of the detector whose answers will come; may be empty.
+  // `class_names`: those of the detector whose results will be passed to Advance(); may be empty.
   DynamicFilter(const Camera& camera, const DynamicsSettings& settings,
                 std::span<const std::string> class_names);
   DynamicFilter(const DynamicFilter&) = delete;
   DynamicFilter& operator=(const DynamicFilter&) = delete;
 
-  // A new frame, before its features: flow, depth, and where the known objects are by now.
-  // `arrived`: an answer of the detector, for this frame or one before it.
+  // Starts a frame before its features are extracted: updates optical flow, depth and the predicted
+  // boxes of objects. `arrived`: a new result of the detector, for this frame or an earlier one.
   void Advance(const DynamicInput& input, const std::optional<FrameDetections>& arrived);
-  // 255 where movers are expected, one pixel for each cell: features there are of little use.
+  // Mask of the expected moving objects, 255 = moving, one pixel per cell. The extractor avoids
+  // these cells.
   cv::Mat ExpectedMovers() const;
-  // Fills frame.static_probability. `guess`: null when there is none.
+  // Sets frame.static_probability. `guess`: the predicted pose; null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
-  // Ends the frame. `T_camera_world`: its pose, in that world; null when lost.
+  // Ends the frame. `T_camera_world`: its pose in `world`; null when lost.
   void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
 
-  // Share of the picture that agrees on another motion than that of the pose just judged by: see
-  // ShareOfRivalMotion().
+  // Share of the image that agrees on a motion other than that of the pose passed to Judge(), 0…1;
+  // see ShareOfRivalMotion().
   double RivalShare() const;
-  // Of the tracks just judged of which flow tells whether they move, those that do; 0 when there
-  // are fewer than votes.agreement_tracks.
+  // Share of moving tracks among those that Judge() classified, 0…1; 0 when fewer than
+  // votes.agreement_tracks were classified.
   double MovedShare() const;
-  void Forget();  // what was believed by poses that were wrong
+  void Forget();  // Clears what was estimated from poses that turned out to be wrong.
 
-  // What there is where a point of the camera's frame should be seen.
+  // What this frame shows at the expected position of a landmark. `p`: in the camera's frame.
   Sight Look(const Eigen::Vector3d& p) const;
 
-  // What is left out as moving, of the camera's size: CV_8U, 255 = moves. Raw pixels.
+  // Mask of the moving parts of the image: CV_8U, 255 = moving, the camera's size, raw pixels.
   cv::Mat Mask() const;
-  // What the mask is made of, a copy: log-odds of standing still, CV_32F, one pixel for each cell.
+  // A copy of the log-odds of being static, CV_32F, one pixel per cell. Mask() is made from it.
   cv::Mat BeliefOfCells() const;
   const std::vector<MovingObject>& objects() const { return objects_.objects(); }
 
  private:
   void Enter(const WorldId& world);
   struct GeometryBelief {
-    std::vector<float> log_odds;  // of standing still, of each cell
-    std::vector<int8_t> votes;    // of each track
-    // Of each cell, nonzero: it stands still for certain, which only the rim of a detection's box
-    // can hold; may be empty.
+    std::vector<float> log_odds;  // of being static, per cell
+    std::vector<int8_t> votes;    // per track
+    // Cells (nonzero) that are certainly static; they are removed only from the rim of a
+    // detection's box. May be empty.
     std::vector<uint8_t> proven;
   };
   FrameBelief Unknown() const;
   GeometryBelief JudgeGeometry(const PoseGuess* guess);
   GeometryBelief JudgeWithDepth(const PoseGuess& guess);
   GeometryBelief JudgeWithoutDepth(const PoseGuess* guess);
-  // What each object covers of the picture: fills judged.object and judged.resting.
+  // Finds the cells that each object covers: sets judged.object and judged.resting.
   void FindObjects(std::span<const uint8_t> proven, FrameBelief& judged);
   bool IsCarried(const MovingObject& object, std::span<const float> geometry) const;
 
@@ -108,12 +110,12 @@ class DynamicFilter {
   History history_;
 
   DynamicInput now_;
-  std::deque<double> times_;  // of the last frames, newest first, seconds
-  FrameBelief belief_;        // of the present frame; before it is judged, what is expected of it
+  std::deque<double> times_;  // times of the last frames, newest first, seconds
+  FrameBelief belief_;        // of the current frame; before Judge(): the prediction
   WorldId world_;
 };
 
-// DynamicFilter::Mask() of BeliefOfCells(); `size`: the camera's.
+// DynamicFilter::Mask() from BeliefOfCells(); `size`: the camera's.
 cv::Mat MaskOf(const cv::Mat& belief_of_cells, cv::Size size);
 
 }  // namespace alidade

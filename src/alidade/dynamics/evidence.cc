@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-// How much passes from a cell to its neighbour: 1 - (|z - z'| / (spread_step min(z, z')))².
+// Share of a value that passes to a neighboring cell: 1 - (|z - z'| / (spread_step min(z, z')))².
 float Passes(std::span<const float> depth, int a, int b, const CellDepthSettings& settings) {
   if (depth.empty()) return 1;
   if (!(depth[a] > 0) || !(depth[b] > 0)) return settings.spread_unmeasured;
@@ -31,7 +31,7 @@ DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
     if (there < 0) continue;
     const auto z = static_cast<float>(p.z());
     const float tolerance = DepthTolerance(std::max(z, depth[i]), settings);
-    float nearest_to = 1e9f;  // signed difference of the neighbour that agrees best
+    float nearest_to = 1e9f;  // signed depth difference of the best matching neighbor
     int known = 0, met = -1;
     cells.VisitAround(there, 1, [&](int n) {
       if (!(past.depth[n] > 0)) return;
@@ -48,7 +48,7 @@ DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
       comparison.met[i] = met;
     } else if (nearest_to > settings.free_tolerances * tolerance &&
                known >= settings.free_neighbours) {
-      // The neighbour that agrees best lies behind, so all others that are not hidden do.
+      // The best matching neighbor is behind the point: check that all neighbors with depth are.
       bool free = true;
       cells.VisitAround(there, 1,
                         [&](int n) { free &= !(past.depth[n] > 0) || past.depth[n] > z; });
@@ -60,7 +60,7 @@ DepthComparison CompareDepth(const Cells& cells, std::span<const float> depth,
 
 EpipolarSegment SegmentOf(const Camera& camera, const Eigen::Vector3d& ray, const Se3& T_now_then,
                           double min_inverse_depth, double max_inverse_depth) {
-  constexpr double kLeastDepth = 1e-3;  // of the depth then
+  constexpr double kLeastDepth = 1e-3;  // of the depth in the earlier view
   EpipolarSegment segment;
   const auto at = [&](double inverse_depth) -> Eigen::Vector3d {
     return T_now_then.R * ray + inverse_depth * T_now_then.t;
@@ -70,7 +70,7 @@ EpipolarSegment SegmentOf(const Camera& camera, const Eigen::Vector3d& ray, cons
     segment.in_front = false;
     return segment;
   }
-  // Cut off what would be behind the camera.
+  // Clip the part of the segment that is behind the camera.
   const auto cut = [&](Eigen::Vector3d& behind, const Eigen::Vector3d& seen) {
     const double share = (seen.z() - kLeastDepth) / (seen.z() - behind.z());
     behind = seen + share * (behind - seen);

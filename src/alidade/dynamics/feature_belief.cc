@@ -8,9 +8,9 @@
 namespace alidade {
 namespace {
 
-// Log-odds of the surface that has depth z at a cell: of the nine cells around the one nearest to
-// z, if |z' - z| < surface × z; where all of them show something else (a chair's back, with someone
-// behind it), the least of the cells up to far_cells away that have it. `otherwise` where none has.
+// Log-odds of the surface with depth z near a cell. Of the nine cells around it, the one nearest to
+// z with |z' - z| < surface × z is used. If none matches (a person seen behind a chair's back), the
+// smallest log-odds of matching cells up to far_cells away is used; `otherwise` if there is none.
 float OfSurface(const Cells& cells, const FrameBelief& belief, int cell, float z, float otherwise,
                 const FeatureBeliefSettings& settings) {
   const float surface = settings.surface;
@@ -31,8 +31,8 @@ float OfSurface(const Cells& cells, const FrameBelief& belief, int cell, float z
   return log_odds;
 }
 
-// Log-odds of the surface the keypoint is on; where its depth is not known, the worst around it: an
-// outline moves with what it is the outline of.
+// Log-odds of the surface the keypoint is on. When its depth is unknown, the smallest log-odds
+// around it, because a keypoint on an outline moves with the object.
 float OfKeypoint(const Cells& cells, const FrameBelief& belief, const DepthImage& depth,
                  const Keypoint& keypoint, const FeatureBeliefSettings& settings) {
   const int cell = cells.At(keypoint.raw_x, keypoint.raw_y);
@@ -65,8 +65,8 @@ float OfKeypoint(const Cells& cells, const FrameBelief& belief, const DepthImage
   return known ? worst : otherwise;
 }
 
-// Where too few certain features are left, those that were not seen to move have a small say rather
-// than none: better a pose that leans on them a little than none.
+// When too few features are certainly static, the uncertain ones not seen to move get a small
+// weight, so that a pose can still be estimated.
 void FeedTheStarving(const Cells& cells, const FrameBelief& belief,
                      std::span<const Keypoint> keypoints, const FeatureBeliefSettings& settings,
                      std::vector<float>& probabilities) {

@@ -1,4 +1,4 @@
-// How likely each feature is part of what stands still, by what is believed of the cells around it.
+// Probability of each feature to be static, from the belief of the cells around it.
 #pragma once
 
 #include <span>
@@ -12,8 +12,8 @@
 
 namespace alidade {
 
-// Probability of each keypoint. `depth`: the frame's depth image, which may be empty though cells
-// have depth (of two cameras).
+// One probability per keypoint. `depth`: the frame's depth image; may be empty even if `belief` has
+// depth (stereo).
 std::vector<float> StaticProbabilities(const Cells& cells, const FrameBelief& belief,
                                        const DepthImage& depth, std::span<const Keypoint> keypoints,
                                        const DynamicsSettings& settings);

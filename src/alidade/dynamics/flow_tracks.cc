@@ -10,16 +10,16 @@
 namespace alidade {
 namespace {
 
-// Half size is enough to tell a mover from the rest, at a quarter of the cost.
+// Flow at half resolution suffices to detect moving objects and takes a quarter of the time.
 constexpr int kShrink = 2;
 constexpr int kLevels = 3;
 const cv::Size kWindow(9, 9);    // pixels of the half-size image
-constexpr float kReturn = 0.5f;  // pixels there: a track followed back must end so near its start
-constexpr int kCell = 27;        // pixels: a track is begun where there is none
+constexpr float kReturn = 0.5f;  // pixels there: largest forward-backward error of a track
+constexpr int kCell = 27;        // pixels: side of the cells in which new tracks are started
 constexpr int kPerCell = 1;
-constexpr double kCut = 0.2;  // of the tracks: with fewer left the view is another
+constexpr double kCut = 0.2;  // share of the tracks: when fewer survive, assume a cut
 constexpr int kMost = 500;
-constexpr int kChunk = 64;  // tracks a thread follows at a time
+constexpr int kChunk = 64;  // tracks per parallel task
 
 }  // namespace
 
@@ -33,7 +33,7 @@ void FlowTracks::Advance(const cv::Mat& gray) {
     std::vector<cv::Point2f> before, now, back;
     for (const FlowTrack& track : tracks_) {
       before.push_back(track.at() / kShrink);
-      const bool moves = track.length() > 1;  // the last motion is the best guess of the next
+      const bool moves = track.length() > 1;  // predict by the previous motion
       now.push_back(before.back() +
                     (moves ? (track.at() - track.Before(1)) / kShrink : cv::Point2f()));
     }
@@ -70,7 +70,7 @@ void FlowTracks::Advance(const cv::Mat& gray) {
       if (track.length() > kHistory) track.path.pop_front();
       kept.push_back(std::move(track));
     }
-    // After a cut some find a match all the same: chance.
+    // After a cut a few tracks match by chance.
     if (static_cast<double>(kept.size()) < kCut * count) kept.clear();
     tracks_ = std::move(kept);
   }

@@ -1,5 +1,5 @@
-// Points followed from frame to frame by pyramidal Lucas–Kanade flow (Bouguet 2000), with where
-// they were in the last second.
+// Tracks points from frame to frame by pyramidal Lucas–Kanade optical flow (Bouguet 2000), and
+// keeps their positions in the last kHistory frames.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,12 @@ namespace alidade {
 
 struct FlowTrack {
   uint32_t id = 0;
-  int first = 0;  // number of the frame it was first seen in
-  std::deque<cv::Point2f>
-      path;  // raw pixels, one for each frame since (or since the history's begin)
+  int first = 0;  // number of the frame in which the track started
+  // Raw pixels, one per frame since the start, limited to the last kHistory frames.
+  std::deque<cv::Point2f> path;
   cv::Point2f at() const { return path.back(); }
   int length() const { return static_cast<int>(path.size()); }
-  // Where it was `ago` frames ago; needs ago < length().
+  // Position `ago` frames ago; requires ago < length().
   cv::Point2f Before(int ago) const { return path[path.size() - 1 - static_cast<size_t>(ago)]; }
 };
 
@@ -27,16 +27,15 @@ class FlowTracks {
  public:
   static constexpr int kHistory = 32;  // frames
 
-  // The next frame (CV_8U, always of one size): every track is followed into it both ways; those
-  // that do not come back where they were are dropped. A frame that has no match for most of them
-  // (a cut) leaves none.
+  // Tracks every point into the next frame (CV_8U, constant size) and back, and drops those with a
+  // large forward-backward error. When most tracks fail (a cut), drops all.
   void Advance(const cv::Mat& gray);
-  // Begins tracks at keypoints of that frame where there are none nearby.
+  // Starts tracks at keypoints of that frame with no track nearby.
   void Seed(std::span<const Keypoint> keypoints, cv::Size image);
   const std::vector<FlowTrack>& tracks() const { return tracks_; }
 
  private:
-  std::vector<cv::Mat> pyramid_;  // of the last frame, at half size
+  std::vector<cv::Mat> pyramid_;  // of the previous frame, at half size
   std::vector<FlowTrack> tracks_;
   uint32_t next_id_ = 0;
   int frames_ = 0;

@@ -9,7 +9,8 @@
 namespace alidade {
 namespace {
 
-// `off`: pixels from the nearest place where it may be; `way`: pixels that it went.
+// `off`: distance from the predicted segment, pixels; `way`: length of the motion in the image,
+// pixels.
 int8_t Vote(double off, double way, bool measured, const FlowVoteSettings& settings) {
   const double moved = measured ? settings.measured_px + settings.measured_share * way
                                 : settings.moved_px + settings.moved_share * way;
@@ -17,12 +18,12 @@ int8_t Vote(double off, double way, bool measured, const FlowVoteSettings& setti
 }
 
 struct InverseDepths {
-  double least = 0, most = 0;  // 1/metres
-  bool measured = false;       // by a sensor
+  double least = 0, most = 0;  // 1/meters
+  bool measured = false;       // from a measured depth
 };
 
-// What depth a point may have had: the least and the most of the cells around, because corners
-// often lie on an outline, and depth_noise more.
+// Range of the point's possible depths in the earlier view: the extremes of the neighboring cells,
+// because corners often lie on an outline, widened by depth_noise.
 InverseDepths MayHave(const Cells& cells, const PastView& past, cv::Point2f then, double nearest,
                       const FlowVoteSettings& settings) {
   const int cell = cells.At(then.x, then.y);
@@ -45,7 +46,7 @@ std::vector<int8_t> VoteByPose(const Camera& camera, const Cells& cells,
   std::vector<int8_t> votes(tracks.size(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const FlowTrack& track = tracks[i];
-    // Of the frames it was seen in, the oldest with a known pose: the most parallax.
+    // Use the oldest frame of the track that has a pose, for the largest parallax.
     int ago = std::min(track.length() - 1, settings.most_ago);
     while (ago >= settings.least_ago && !history.Before(ago)) --ago;
     if (ago < settings.least_ago) continue;

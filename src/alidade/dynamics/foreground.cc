@@ -1,4 +1,4 @@
-// Which part of a box is the thing that was detected, and which is what one sees beside it.
+// Segments a detection's box into the object and the background.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,12 +10,13 @@
 namespace alidade {
 namespace {
 
-// A histogram of depths, in bins of 7 %: between z and e·z there are so many.
+// Histogram of depths with bins of 7 %: 14 bins between z and e·z.
 constexpr float kBinsPerFactor = 14;
 constexpr int kBins = 64;
-constexpr float kNearest = 0.2f;  // metres: begin of the first bin; the last begins at 18 m
+constexpr float kNearest = 0.2f;  // meters, start of the first bin; the last bin starts at 18 m
 
-// |u|^e + |v|^e, u and v from -1 to 1 across the box: with e = 2 below 1 inside its ellipse.
+// |u|^e + |v|^e for u, v from -1 to 1 across the box; for e = 2 it is below 1 inside the inscribed
+// ellipse.
 float Inside(const cv::Rect2f& box, cv::Point2f p, float exponent) {
   const float u = std::abs(p.x - box.x - box.width / 2) / (box.width / 2);
   const float v = std::abs(p.y - box.y - box.height / 2) / (box.height / 2);
@@ -35,8 +36,8 @@ int BinOf(float z) {
   return std::clamp(static_cast<int>(std::log(z / kNearest) * kBinsPerFactor), 0, kBins - 1);
 }
 
-// Depth of what fills the middle of the box: median of the two neighbouring bins of depth that
-// weigh most together, a cell weighing exp(-3 (u² + v²)). 0 when nothing there has depth.
+// Depth of the object in the middle of the box: the median of the two adjacent depth bins with the
+// largest weight, where a cell weighs exp(-3 (u² + v²)). 0 when no cell there has depth.
 float CoreDepth(const Cells& cells, std::span<const float> depth,
                 std::span<const float> static_log_odds, float least_static, const cv::Rect2f& box) {
   std::array<float, kBins> weights{};
@@ -47,7 +48,8 @@ float CoreDepth(const Cells& cells, std::span<const float> depth,
   });
   int best = -1;
   float most = 0;
-  for (int b = 0; b + 1 < kBins; ++b) {  // two neighbours together: a surface may lie on the edge
+  // Two adjacent bins, because a surface may straddle their boundary.
+  for (int b = 0; b + 1 < kBins; ++b) {
     if (weights[b] + weights[b + 1] <= most) continue;
     most = weights[b] + weights[b + 1];
     best = b;
@@ -83,7 +85,8 @@ std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
                                 std::span<const float> static_log_odds, const cv::Rect2f& box,
                                 const BoxSettings& settings) {
-  // Something that stood still before it was detected fills the middle all the same.
+  // An object that was static before it was detected fills the middle, too: then ignore the static
+  // belief.
   int of_core = 0, still = 0;
   VisitBox(cells, box, [&](int i) {
     if (!(depth[i] > 0) || Inside(box, cells.Centre(i), 2) > settings.middle) return;
@@ -99,7 +102,7 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
                         (1 + 2 * widen) * box.width, (1 + 2 * widen) * box.height);
   const float reach = std::max(settings.min_reach, settings.reach * core);
   const float begin = settings.seed * core;
-  std::vector<uint8_t> state(cells.count(), 0);  // 1: may be grown into, 2: taken
+  std::vector<uint8_t> state(cells.count(), 0);  // 1: candidate for growing, 2: part of the object
   std::deque<int> front;
   VisitBox(cells, wide, [&](int i) {
     if (!(depth[i] > 0) || std::abs(depth[i] - core) > reach) return;
@@ -120,7 +123,8 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
       front.push_back(n);
     });
   }
-  // What something else cuts off from the middle, such as legs by a chair's back.
+  // Add parts that are separated from the middle by an occluder, such as legs behind a chair's
+  // back.
   VisitBox(cells, box, [&](int i) {
     if (state[i] != 1) return;
     const float off = (depth[i] - core) / core;
@@ -128,7 +132,7 @@ std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth
         Inside(box, cells.Centre(i), settings.oval) < 1)
       state[i] = 2;
   });
-  // Cells without a reading belong to what is around them.
+  // Cells without depth get the label of the majority around them.
   VisitBox(cells, wide, [&](int i) {
     bool taken = state[i] == 2;
     if (!taken && !(depth[i] > 0)) {

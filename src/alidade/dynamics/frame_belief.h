@@ -1,4 +1,4 @@
-// What is believed of one frame.
+// The state of the dynamic filter for one frame.
 #pragma once
 
 #include <cstdint>
@@ -6,15 +6,16 @@
 
 namespace alidade {
 
-// A value: that of each frame is made whole, from the one of the frame before.
+// Built completely for each frame from that of the previous frame.
 struct FrameBelief {
-  // Of each cell:
-  std::vector<float> depth;     // metres, 0 = unknown; empty: none is measured
-  std::vector<float> geometry;  // log-odds of standing still, objects apart
-  std::vector<uint8_t> object;  // nonzero = of one that moves by itself
-  std::vector<float> resting;   // log-odds of standing still of an object there, 0 = there is none
-  std::vector<float> log_odds;  // of standing still, all together
-  // Of each track: -1 it moved, 0 unknown, 1 it stood still.
+  // Per cell:
+  std::vector<float> depth;     // meters, 0 = unknown; empty: no depth in this frame
+  std::vector<float> geometry;  // log-odds of being static, without objects
+  // Nonzero: covered by an object of a moving class, or by a carried one that moves.
+  std::vector<uint8_t> object;
+  std::vector<float> resting;   // log-odds of being static of the object there; 0: no object
+  std::vector<float> log_odds;  // log-odds of being static, combined
+  // Per track: -1 moving, 0 unknown, 1 static.
   std::vector<int8_t> votes;
 };
 

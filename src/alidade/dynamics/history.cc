@@ -13,7 +13,7 @@ void History::Add(std::shared_ptr<const PastView> view) {
 }
 
 void History::Clear() {
-  for (auto& view : recent_) view = nullptr;  // tracks count frames all the same
+  for (auto& view : recent_) view = nullptr;  // keep the count of frames, which tracks refer to
   older_.clear();
 }
 

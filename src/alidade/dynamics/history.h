@@ -1,4 +1,4 @@
-// Earlier frames that the present one is held against.
+// Past views for comparison with the current frame.
 #pragma once
 
 #include <deque>
@@ -12,13 +12,13 @@ namespace alidade {
 
 // An earlier frame.
 struct PastView {
-  int number = 0;  // of the frame
+  int number = 0;  // number of the frame
   Se3 T_camera_world;
-  std::vector<float> depth;            // of each cell, metres; 0 = unknown; empty: none is measured
-  std::vector<float> static_log_odds;  // of each cell, as believed then
+  std::vector<float> depth;            // of each cell, meters; 0 = unknown; empty: no depth
+  std::vector<float> static_log_odds;  // of each cell, as estimated then
 };
 
-// The last second frame by frame, and some of the seconds before.
+// Keeps each of the most recent frames, and some older ones at intervals.
 class History {
  public:
   explicit History(const HistorySettings& settings = {}) : settings_(settings) {}
@@ -26,9 +26,9 @@ class History {
   // Null for a frame without a pose.
   void Add(std::shared_ptr<const PastView> view);
   void Clear();
-  // That of `ago` frames before the present one, from 1 on; null when there is none.
+  // The view `ago` frames before the current one, from 1; null when there is none.
   const PastView* Before(int ago) const;
-  // Of the earlier ones, settings.step frames apart or more, the last first; null when there is
+  // Older views, at least settings.step frames apart; index 0 is the newest. Null when there is
   // none.
   const PastView* Older(size_t index) const;
   size_t most_older() const { return static_cast<size_t>(settings_.older); }

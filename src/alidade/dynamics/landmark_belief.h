@@ -1,4 +1,5 @@
-// What a frame says of a landmark: as log-odds of standing still, to be added up.
+// Evidence that a frame gives about a landmark, as log-odds of being static that are summed over
+// frames.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,18 +10,19 @@
 
 namespace alidade {
 
-// What there is where a landmark should be seen.
+// What the frame shows where a landmark should appear.
 enum class Sight {
-  kClear,    // nothing against seeing it
-  kHidden,   // something moving is in front of it, or may be
-  kOnMover,  // it is at the depth of what moves there
-  kGone      // one sees through its place to what is behind
+  kClear,    // nothing contradicts seeing the landmark
+  kHidden,   // occluded by a moving object, or possibly so
+  kOnMover,  // at the depth of a moving object
+  kGone      // the frame sees through the landmark's position to a surface behind it
 };
 
-// `p`: the landmark in the camera's frame, at depth z. With t = DepthTolerance(z), of the nine
-// cells around where it should be seen: kClear when one within t of z is believed to stand still,
-// kOnMover when one is that moves, kGone when all that have depth are beyond z + free_tolerances t,
-// kHidden otherwise.
+// `p`: the landmark in the camera's frame, at depth z. With t = DepthTolerance(z), considers the
+// nine cells around its projection. kClear: the landmark is outside the image, or fewer than
+// min_neighbours cells have depth, or a static cell is within t of z. Otherwise kOnMover: a moving
+// cell is within t of z; kGone: all cells with depth are beyond z + free_tolerances t; else
+// kHidden. Without depth: kHidden on a moving cell, else kClear.
 Sight SightOf(const Cells& cells, const FrameBelief& belief, const Eigen::Vector3d& p,
               const LandmarkEvidenceSettings& settings = {},
               const CellDepthSettings& depth_settings = {});

@@ -13,8 +13,8 @@ namespace {
 
 constexpr size_t kPast = FlowTracks::kHistory;
 
-// Median motion over the last `ago` frames of the tracks that `belongs` (called with where they
-// were then) lets through; none when they are fewer than `least`.
+// Median motion over the last `ago` frames of the tracks for which `belongs` (called with their
+// position then) holds; nullopt when they are fewer than `least`.
 template <typename Belongs>
 std::optional<cv::Point2f> MedianMotion(std::span<const FlowTrack> tracks, int ago, int least,
                                         Belongs&& belongs) {

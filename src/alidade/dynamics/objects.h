@@ -1,4 +1,4 @@
-// Things a detector has found, carried from frame to frame: its answers are late, and some are
+// Detected objects, tracked from frame to frame, because detector results are late and sometimes
 // missing.
 #pragma once
 
@@ -18,28 +18,29 @@ namespace alidade {
 struct MovingObject {
   int id = 0;
   int class_id = -1;
-  bool carried = false;                   // moves only when someone moves it
-  cv::Rect2f box;                         // in the present frame, raw pixels
-  std::deque<cv::Rect2f> past;            // in the frames before, the last one first
+  bool carried = false;                   // moves only when a person moves it
+  cv::Rect2f box;                         // in the current frame, raw pixels
+  std::deque<cv::Rect2f> past;            // in the previous frames, newest first
   cv::Point2f velocity;                   // of the box, pixels per frame
-  double seen = 0;                        // time of the last frame it was detected in, seconds
-  float static_log_odds = kObjectStatic;  // rises while what it covers is seen to rest
-  std::vector<int> cells;  // what of the picture it covers, sorted; found anew in every frame
+  double seen = 0;                        // time of the last frame with a detection, seconds
+  float static_log_odds = kObjectStatic;  // log-odds of being static; rises while the object rests
+  std::vector<int> cells;                 // the cells it covers, sorted; recomputed for every frame
 };
 
 class ObjectTracks {
  public:
   ObjectTracks(const DynamicsSettings& settings, std::span<const std::string> class_names);
 
-  // Moves every object on to the frame the tracks are in: by the flow of what it covers, else as it
-  // moved before. Those not detected for too long, or gone from the picture, are dropped.
+  // Moves every object to the current frame by the median flow of the cells it covers, or by its
+  // previous velocity. Drops objects without a detection for bridge_seconds and those outside the
+  // image.
   void Advance(std::span<const FlowTrack> tracks, const Cells& cells, double time, cv::Size image);
-  // An answer of the detector for the frame `ago` frames before the present one, taken at `seen`
+  // Adds a detector result for the frame `ago` frames before the current one, whose time is `seen`
   // (seconds).
   void Update(std::span<const Detection> detections, int ago, double seen,
               std::span<const FlowTrack> tracks);
-  // Belief that an object rests, by the tracks on its cells. `votes`: -1, 0, 1 of each track:
-  // moved, unknown, stood still.
+  // Updates the belief that objects rest, from the tracks on their cells. `votes`: of each track,
+  // -1 moving, 0 unknown, 1 static.
   void JudgeRest(std::span<const FlowTrack> tracks, std::span<const int8_t> votes,
                  const Cells& cells);
   std::vector<MovingObject>& objects() { return objects_; }
@@ -50,22 +51,21 @@ class ObjectTracks {
   Role RoleOf(int class_id) const;
 
   DynamicsSettings settings_;
-  std::vector<Role> roles_;  // by class
+  std::vector<Role> roles_;  // per class
   std::vector<MovingObject> objects_;
   int next_id_ = 0;
 };
 
-// The cells of the picture that an object covers, sorted: of the surface that fills the middle of
-// its box all that depth leads to without a step. `depth`: of each cell, metres, 0 = unknown.
-// `static_log_odds`: of each cell; what is known well to stand still is something else, such as the
-// floor.
+// The cells that an object covers, sorted: the surface in the middle of its box, grown over cells
+// without a depth discontinuity. `depth`: of each cell, meters, 0 = unknown. `static_log_odds`: of
+// each cell; cells well known to be static, such as the floor, are excluded.
 std::vector<int> FindForeground(const Cells& cells, std::span<const float> depth,
                                 std::span<const float> static_log_odds, const cv::Rect2f& box,
                                 const BoxSettings& settings = {});
-// All in the box.
+// All cells of the box.
 std::vector<int> CellsInBox(const Cells& cells, const cv::Rect2f& box);
-// Those of an oval in the box: all that can be said without depth.
-// `proven`: cells (nonzero) that stand still for certain, left out at the rim; may be empty.
+// The cells of an oval in the box; used without depth. `proven`: cells (nonzero) that are certainly
+// static, which are excluded near the rim; may be empty.
 std::vector<int> CellsInOval(const Cells& cells, const cv::Rect2f& box,
                              std::span<const uint8_t> proven = {},
                              const BoxSettings& settings = {});

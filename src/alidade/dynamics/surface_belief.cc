@@ -36,12 +36,13 @@ std::vector<int> SurfaceBelief::Carry(std::span<const float> depth, const Se3& T
   return from;
 }
 
-// What stands where an earlier view looked through has come since: `free`, with weight 1. What was
-// there already and was not thought to move stands still: `same`, with the weight
-//   w = max over views of min(1, age / young) × p,
-// where age is the view's and p how probably it stood still then (at least `rested` in views older
-// than `settled`, but for what a detector knew to move). It is not believed to have come where w is
-// `trusted` or more: depth beside outlines jumps.
+// Evidence from depth. A surface at a position that an earlier view saw through has appeared since:
+// log-odds `free`, weight 1. A surface that an earlier view shows at the same position, and that
+// was not moving then, is static: log-odds `same`, weight
+// w = max over views of min(1, age / young) × p,
+// where age is the view's age in frames and p its probability of being static then (at least
+// `rested` in views older than `settled`, except on detected objects). When w >= `trusted` the
+// surface is not considered new, because depth is unreliable near outlines.
 void SurfaceBelief::AddDepth(int number, std::span<const float> depth, const Se3& T_camera_world,
                              const History& history, Evidence& evidence) const {
   std::vector<float> same(cells_.count(), 0);
@@ -61,8 +62,8 @@ void SurfaceBelief::AddDepth(int number, std::span<const float> depth, const Se3
       same[i] = std::max(same[i], age * trust);
     }
   };
-  // The oldest view there can be, the one in the middle, the newest but one; and two of the last
-  // second.
+  // The oldest possible view, the one in the middle, and the second newest; and two views of the
+  // last second.
   const size_t older = history.most_older();
   for (size_t k : {older - 1, older / 2, size_t{1}}) compare(history.Older(k));
   for (int ago : {settings_.compare_far, settings_.compare_near}) compare(history.Before(ago));
@@ -74,8 +75,8 @@ void SurfaceBelief::AddDepth(int number, std::span<const float> depth, const Se3
   }
 }
 
-// The votes of tracks count for the cells around them that are on the same surface; "moved" not
-// where this frame's depth says otherwise.
+// Votes of tracks apply to the neighboring cells on the same surface. A "moved" vote is ignored
+// where this frame's depth contradicts it.
 void SurfaceBelief::AddFlow(std::span<const float> depth, std::span<const FlowTrack> tracks,
                             std::span<const int8_t> votes, Evidence& evidence) const {
   for (size_t t = 0; t < tracks.size(); ++t) {
@@ -92,7 +93,8 @@ void SurfaceBelief::AddFlow(std::span<const float> depth, std::span<const FlowTr
   }
 }
 
-// A cell without evidence of its own takes after its surface (formula: SurfaceBeliefSettings).
+// Moves the belief of a cell with little evidence toward that of its surface (formula:
+// SurfaceBeliefSettings).
 void SurfaceBelief::Spread(std::span<const float> depth, std::span<const uint8_t> suspect) {
   std::vector<float> values = log_odds_, weights(cells_.count());
   for (int i = 0; i < cells_.count(); ++i) weights[i] = certainty_[i] * certainty_[i];

@@ -1,4 +1,4 @@
-// How likely each cell of the picture shows what stands still, where depth is measured.
+// Probability of each cell to be static, where depth is measured.
 #pragma once
 
 #include <cstdint>
@@ -11,11 +11,11 @@
 
 namespace alidade {
 
-// The scale of belief: log-odds l = ln(p / (1 - p)) of standing still.
-inline constexpr float kUnknownStatic = 1.5f;    // of what nothing is known of: p = 0.82
-inline constexpr float kCertainStatic = 5;       // bound of all log-odds: p = 0.993
-inline constexpr float kObjectStatic = -4;       // of what a detector knows to move: p = 0.018 …
-inline constexpr float kRestingStatic = -0.85f;  // … at most, while it is seen to rest: p = 0.3
+// Belief is expressed as log-odds of being static, l = ln(p / (1 - p)).
+inline constexpr float kUnknownStatic = 1.5f;  // without evidence: p = 0.82
+inline constexpr float kCertainStatic = 5;     // bound of all log-odds: p = 0.993
+inline constexpr float kObjectStatic = -4;     // of a detected object of a moving class: p = 0.018
+inline constexpr float kRestingStatic = -0.85f;  // upper bound for a resting object: p = 0.3
 
 class SurfaceBelief {
  public:
@@ -23,14 +23,15 @@ class SurfaceBelief {
   explicit SurfaceBelief(const Cells& cells, const SurfaceBeliefSettings& settings = {},
                          const CellDepthSettings& depth_settings = {});
 
-  // Moves all that is believed on to the present frame: what a cell shows is believed to be what
-  // was at its place in the last one; movers are large against their motion in a frame. Returns for
-  // each cell the one of the last frame it takes after, -1: none.
+  // Carries the belief to the current frame: each cell takes over the belief of the cell of the
+  // last frame with depth that shows the same position, assuming that moving objects are large
+  // compared to their motion per frame. Returns that cell for each cell, or -1.
   std::vector<int> Carry(std::span<const float> depth, const Se3& T_camera_world,
                          const History& history);
-  // Adds what this frame says. `resting`: cells (nonzero) of what moves by itself, which may rest
-  // but is not believed to be static for it. `suspect`: cells (nonzero) where a detector sees a
-  // mover: what is only heard of them is believed. `votes`: Consensus() of the tracks.
+  // Adds the evidence of this frame. `resting`: cells (nonzero) on an object of a moving class;
+  // evidence that they are static is ignored. `suspect`: cells (nonzero) in the box of a detected
+  // object; only there can neighbors alone lower a cell below spread_least. `votes`: Consensus() of
+  // the tracks.
   void Update(int number, std::span<const float> depth, const Se3& T_camera_world,
               const History& history, std::span<const uint8_t> resting,
               std::span<const uint8_t> suspect, std::span<const FlowTrack> tracks,
@@ -40,7 +41,7 @@ class SurfaceBelief {
 
  private:
   struct Evidence {
-    std::vector<float> log_odds, weights;  // of each cell
+    std::vector<float> log_odds, weights;  // per cell
   };
   void AddDepth(int number, std::span<const float> depth, const Se3& T_camera_world,
                 const History& history, Evidence& evidence) const;
@@ -51,9 +52,9 @@ class SurfaceBelief {
   const Cells& cells_;
   SurfaceBeliefSettings settings_;
   CellDepthSettings depth_settings_;
-  int number_ = -1000;  // of the frame the belief is of
+  int number_ = -1000;  // of the frame the belief refers to
   std::vector<float> log_odds_;
-  std::vector<float> certainty_;  // of each cell, 0…1: how much it was itself held against others
+  std::vector<float> certainty_;  // of each cell, 0…1: amount of its own evidence
 };
 
 }  // namespace alidade

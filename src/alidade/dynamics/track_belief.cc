@@ -8,8 +8,8 @@
 namespace alidade {
 
 void TrackBelief::Update(std::span<const FlowTrack> tracks, std::span<const int8_t> votes) {
-  // l = (1 - forget) l + moved or stood, between least and most. Tracks come and go but keep their
-  // order.
+  // l = (1 - forget) l + moved or stood, clamped to [least, most]. Tracks appear and disappear but
+  // stay in order of id.
   std::vector<Entry> entries;
   size_t old = 0;
   for (size_t i = 0; i < tracks.size(); ++i) {
@@ -24,7 +24,8 @@ void TrackBelief::Update(std::span<const FlowTrack> tracks, std::span<const int8
 
 std::vector<float> TrackBelief::OfCells(const Cells& cells,
                                         std::span<const FlowTrack> tracks) const {
-  // The mean of the tracks in a cell, spread to its neighbours; 0 where there are none nearby.
+  // The mean of the tracks in a cell, spread to its neighbors; the unknown's log-odds where no
+  // track is near.
   std::vector<float> values(cells.count(), 0), weights(cells.count(), 0);
   for (size_t i = 0; i < tracks.size(); ++i) {
     const int cell = cells.At(tracks[i].at().x, tracks[i].at().y);

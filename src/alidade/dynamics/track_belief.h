@@ -1,5 +1,5 @@
-// How likely each track stands still, where no depth is measured, and what the picture looks like
-// around it.
+// Probability of each track to be static, where no depth is measured, and from it that of the
+// cells.
 #pragma once
 
 #include <cstdint>
@@ -16,20 +16,20 @@ class TrackBelief {
  public:
   explicit TrackBelief(const TrackBeliefSettings& settings = {}) : settings_(settings) {}
 
-  // Adds the votes of Consensus() to what is believed of each track.
+  // Adds the votes of Consensus() to the belief of each track.
   void Update(std::span<const FlowTrack> tracks, std::span<const int8_t> votes);
-  // Log-odds of each cell: what is believed of the tracks in and around it.
+  // Log-odds of each cell, from the tracks in and around it.
   std::vector<float> OfCells(const Cells& cells, std::span<const FlowTrack> tracks) const;
-  // Of each cell, nonzero: it has a track that was seen to stand still again and again.
+  // Cells (nonzero) with a track that was repeatedly static.
   std::vector<uint8_t> Proven(const Cells& cells, std::span<const FlowTrack> tracks) const;
 
  private:
   struct Entry {
     uint32_t id = 0;
-    float log_odds = 0;  // added to that of the unknown
+    float log_odds = 0;  // relative to the log-odds of an unknown track
   };
   TrackBeliefSettings settings_;
-  std::vector<Entry> entries_;  // one for each track, in order of id
+  std::vector<Entry> entries_;  // one per track, sorted by id
 };
 
 }  // namespace alidade

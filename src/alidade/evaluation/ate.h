@@ -1,5 +1,5 @@
-// Absolute trajectory error: lay the estimate on the truth, then measure the distance at each
-// matched pose. Sturm et al. 2012, section III-B; alignment by Umeyama 1991.
+// Absolute trajectory error: aligns the estimate to the ground truth and measures the distance at
+// each matched pose. Sturm et al. 2012, section III-B; alignment by Umeyama 1991.
 #pragma once
 
 #include <optional>
@@ -29,15 +29,16 @@ struct AteSettings {
 };
 
 struct AteResult {
-  ErrorStatistics error;  // metres
-  double coverage = 0;    // matched truth poses / truth poses within the source's span, at most 1
-  Sim3 T_truth_estimate;  // the alignment; its scale is 1 unless Sim(3) was asked for
-  std::vector<StampPair> pairs;   // indices into the trajectories as given
-  std::vector<double> distances;  // metres, one for each pair
+  ErrorStatistics error;  // meters
+  // Matched truth poses / truth poses within the source's time span, at most 1.
+  double coverage = 0;
+  Sim3 T_truth_estimate;          // the alignment; scale 1 unless Alignment::kSim3
+  std::vector<StampPair> pairs;   // indices into the trajectories passed in
+  std::vector<double> distances;  // meters, one per pair
 };
 
-// Trajectories in any order of time. Throws Error (input) on numbers that are not finite, on fewer
-// than 3 matched poses, and (when aligning) on poses that all lie in one point.
+// The trajectories may be in any order. Throws Error (input) when a number is not finite, when
+// fewer than 3 poses match, or (when aligning) when all poses are at one point.
 AteResult EvaluateAte(const Trajectory& truth, const Trajectory& estimate,
                       const AteSettings& settings = {});
 

@@ -25,8 +25,8 @@ void CheckFrame(const DepthFrame& frame) {
   if (estimate.empty() || truth.empty()) ThrowInput("a depth image is empty");
   if (truth.size() != image.size())
     ThrowInput("true depth of " + SizeText(truth) + " for an image of " + SizeText(image));
-  // A smaller estimate covers the same view: its height follows from its width, give or take one
-  // for rounding.
+  // A smaller estimate must cover the same view: its height follows from its width, within one
+  // pixel for rounding.
   const double height = static_cast<double>(truth.rows) * estimate.cols / truth.cols;
   if (estimate.cols > truth.cols || estimate.rows > truth.rows ||
       std::abs(estimate.rows - height) > 1) {
@@ -36,13 +36,14 @@ void CheckFrame(const DepthFrame& frame) {
 }
 
 cv::Mat1b Known(const cv::Mat1f& depth) {
-  const cv::Mat finite = depth < std::numeric_limits<float>::infinity();  // false for NaN too
+  const cv::Mat finite = depth < std::numeric_limits<float>::infinity();  // also false for NaN
   cv::Mat1b known = depth > 0;
   known &= finite;
   return known;
 }
 
-// Where the known truth around a known pixel stays close to its own.
+// Marks known pixels whose known neighborhood has similar true depth, as
+// DepthErrorSettings::continuity defines.
 cv::Mat1b Continuous(const cv::Mat1f& truth, const cv::Mat1b& known,
                      const DepthErrorSettings& settings) {
   const cv::Mat window =
@@ -60,7 +61,7 @@ cv::Mat1b Continuous(const cv::Mat1f& truth, const cv::Mat1b& known,
 
 int64_t Count(const cv::Mat& mask) { return cv::countNonZero(mask); }
 
-// The order of `values` changes.
+// Reorders `values`.
 double Median(std::vector<float>& values) {
   if (values.empty()) return kNaN;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -69,10 +70,11 @@ double Median(std::vector<float>& values) {
   return 0.5 * (double{*middle} + double{*std::max_element(values.begin(), middle)});
 }
 
-// The smallest value that a share of all does not exceed. The order of `values` changes.
+// The smallest value that is not exceeded by the given share of all values. Reorders `values`.
 double Percentile(std::vector<float>& values, double share) {
   if (values.empty()) return kNaN;
-  const double rank = std::ceil(share * static_cast<double>(values.size()) - 1e-9);  // from 1
+  // Counted from 1.
+  const double rank = std::ceil(share * static_cast<double>(values.size()) - 1e-9);
   const auto at =
       values.begin() + std::max<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(rank) - 1, 0);
   std::nth_element(values.begin(), at, values.end());
@@ -107,7 +109,8 @@ void DepthScorer::Add(const DepthFrame& given) {
   const double step_y = static_cast<double>(truth.rows) / estimate.rows;
   for (int y = 0; y < estimate.rows; ++y) {
     const int truth_y =
-        static_cast<int>((y + 0.5) * step_y);  // the pixel this one's centre lies in
+        // The truth's pixel that contains the center of the estimate's pixel.
+        static_cast<int>((y + 0.5) * step_y);
     for (int x = 0; x < estimate.cols; ++x) {
       if (has_depth(y, x) == 0) continue;
       const int truth_x = static_cast<int>((x + 0.5) * step_x);

@@ -1,5 +1,5 @@
-// How good the depth of keyframes is, measured against true depth: relative errors, and how much of
-// the image and of its edges carries depth at all.
+// Errors of keyframes' depth relative to ground truth, and the share of the image and of its edges
+// that has depth.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,14 @@
 
 namespace ALIDADE_API alidade {
 
-// One keyframe's depth beside the truth, both along z. The estimate may be smaller than the others:
-// it is judged at its own resolution.
+// One keyframe's estimated and true depth, both along z. A smaller estimate is compared at its own
+// resolution.
 struct DepthFrame {
-  cv::Mat estimate;  // CV_32F in the map's unit; 0 (or no number) = none
-  cv::Mat truth;     // CV_32F, metres; 0 (or no number) = unknown
-  cv::Mat image;     // CV_8U, of the truth's size: its gradients and edges
-  int map = 0;       // maps that were never joined have a unit each; 0 is the main one
+  cv::Mat estimate;  // CV_32F in the map's unit; 0 or not finite: no depth
+  cv::Mat truth;     // CV_32F, meters; 0 or not finite: unknown
+  cv::Mat image;     // CV_8U, the truth's size: for gradients and edges
+  // Index of the map, as maps that were not joined have different units; 0: the main map.
+  int map = 0;
 };
 
 struct DepthErrorSettings {
@@ -34,40 +35,41 @@ struct DepthErrorSettings {
   void Check() const;          // throws Error (usage) naming the field that cannot be
 };
 
-// Of one keyframe or all together. The error is |scale * estimate - truth| / truth at each pixel
-// that has both. NaN: nothing to tell it by. Shares are from 0 to 1.
+// Scores of one keyframe or of all. The error is |scale * estimate - truth| / truth at each pixel
+// that has both. NaN: no data. Shares are between 0 and 1.
 struct DepthScore {
-  int64_t n = 0;          // pixels with both
-  double median_rel = 0;  // of an even number: the mean of the middle two
-  double p90_rel = 0;     // the smallest that 90 % do not exceed
+  int64_t n = 0;          // pixels that have both depths
+  double median_rel = 0;  // the mean of the middle two for an even number
+  double p90_rel = 0;     // the smallest value that 90 % do not exceed
   double within_2 = 0, within_5 = 0, within_10 = 0;  // share of errors up to 2, 5, 10 %
   double rmse_inv = 0;                               // of inverse depth, 1/m
-  double scale = 1;  // metres per unit; all maps: that of the main one
-  // These ask for no truth.
-  double density = 0;           // share of all image pixels that carry depth
-  double density_gradient = 0;  // the same of those with min_gradient
+  double scale = 1;  // meters per unit; for all maps: that of the main map
+  // The following do not depend on ground truth.
+  double density = 0;  // share of all image pixels with depth
+  // Share of pixels with a gradient of at least min_gradient that have depth.
+  double density_gradient = 0;
   // Share of edge pixels (local maxima of the gradient across the edge, above min_gradient) that
-  // carry depth, themselves or one of their eight neighbours.
+  // have depth themselves or at one of their eight neighbors.
   double edge_coverage = 0;
 };
 
-// The same estimates, their errors taken at all pixels or only where the truth is continuous. The
-// scale is fitted to all in either case.
+// Errors at all pixels and at pixels with continuous true depth. The scale is fitted to all pixels
+// in both cases.
 struct DepthScores {
   DepthScore all, continuous;
 };
 
 struct DepthErrorResult {
-  DepthScores overall;              // over the pixels of all frames, not the mean of their scores
-  std::vector<DepthScores> frames;  // as they were added
-  std::vector<double> scales;       // of each map, metres per unit; NaN when nothing tells it
+  DepthScores overall;  // over the pixels of all frames, not the mean of the frames' scores
+  std::vector<DepthScores> frames;  // in the order of Add()
+  std::vector<double> scales;       // of each map, meters per unit; NaN when there is no data
 };
 
-// Takes one frame after the other, so that not all images need be held at once.
+// Adds frames one after the other, so that not all images need to be in memory.
 class DepthScorer {
  public:
   explicit DepthScorer(const DepthErrorSettings& settings = {});
-  // Throws Error (input) when sizes or types do not fit.
+  // Throws Error (input) when sizes or types do not match.
   void Add(const DepthFrame& frame);
   DepthErrorResult Result() const;
 

@@ -20,7 +20,8 @@ struct Matched {
   Se3 truth, estimate;
 };
 
-// R minimising the sum of |R_i R_estimate - R_truth|² (Frobenius): Umeyama 1991 without points.
+// R that minimizes the sum of |R R_estimate - R_truth|² (Frobenius); the rotation part of Umeyama
+// 1991.
 Matrix3d TurnBetween(const std::vector<Matched>& poses) {
   Matrix3d sum = Matrix3d::Zero();
   for (const Matched& pose : poses) sum += pose.truth.R * pose.estimate.R.transpose();
@@ -30,10 +31,11 @@ Matrix3d TurnBetween(const std::vector<Matched>& poses) {
 }
 
 struct Lengths {
-  double truth = 0, estimate = 0;  // metres, the estimate's units
+  double truth = 0, estimate = 0;  // meters; in the estimate's unit
 };
 
-// From `first` up to `last`, in steps of the truth that are at least `step` long.
+// Path length from pose `first` up to, excluding, pose `last`, in steps of at least `step` meters
+// of the truth.
 Lengths Walk(const std::vector<Matched>& poses, size_t first, size_t last, double step) {
   Lengths sum;
   size_t from = first;
@@ -97,7 +99,7 @@ FalsePoses FindFalsePoses(const Trajectory& truth, const Trajectory& estimate, A
   Sim3 T_truth_estimate;
   try {
     T_truth_estimate = AlignTrajectories(truth, estimate, found.pairs, align);
-  } catch (const Error&) {  // all poses of one of them lie in one point
+  } catch (const Error&) {  // all poses of one trajectory are at one point
     T_truth_estimate = {0, turn, Vector3d::Zero()};
     for (const Matched& pose : poses)
       T_truth_estimate.t += pose.truth.t / static_cast<double>(poses.size());

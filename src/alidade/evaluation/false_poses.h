@@ -1,5 +1,4 @@
-// Which poses of a map are plainly wrong, and whether its scale held: a run is judged by the poses
-// it should not have given as much as by those it lacks.
+// Finds grossly wrong poses of a map, and measures the drift of its scale.
 #pragma once
 
 #include <vector>
@@ -20,22 +19,23 @@ struct FalsePoseSettings {
 };
 
 struct FalsePoses {
-  double path = 0;               // metres the truth goes from the map's first pose to its last
-  std::vector<int> wrong;        // indices into the estimate, ascending
-  std::vector<StampPair> pairs;  // that were compared
+  double path = 0;         // length of the true path from the map's first to its last pose, meters
+  std::vector<int> wrong;  // indices into the estimate, ascending
+  std::vector<StampPair> pairs;  // the pairs compared
   ErrorStatistics metres, degrees;
-  // Truth's lengths over the estimate's in the last third of the map's poses, divided by the same
-  // in its first third: 1 when the scale held, 2 when what is 1 m came out half as long at the end
-  // as at the beginning. NaN where a third has less than a step of way.
+  // Ratio of true to estimated path length in the last third of the map's poses, divided by the
+  // same ratio in the first third. 1: no scale drift; 2: 1 m of the truth is estimated half as long
+  // at the end as at the beginning. NaN when a third is shorter than one step.
   double scale_drift = 0;
 };
 
-// Of one map. The estimate is laid on the truth by the similarity (or motion, as `align` says) that
-// fits all its poses best in least squares; the path is that of the truth from the map's first pose
-// to its last, in steps, and no less than the largest distance of a pose's truth from that of the
-// first. Turns are compared after the rotation that fits the orientations best, not the one that
-// fits the positions: these say nothing of a roll about a straight way. Fewer than three matched
-// poses: nothing is wrong. Nor is, by its place, a pose of a camera that never moved.
+// Evaluates one map. Positions are compared after the least-squares alignment of all poses selected
+// by `align`. The path length is measured along the truth, in steps, from the map's first to its
+// last pose; it is at least the largest distance of a true position from the first one.
+// Orientations are compared after the rotation that fits the orientations best, because positions
+// on a straight path do not determine the roll about it. No pose is wrong when fewer than three
+// match; no position is wrong when the camera did not move. Throws Error (input) when a number is
+// not finite.
 FalsePoses FindFalsePoses(const Trajectory& truth, const Trajectory& estimate, Alignment align,
                           const FalsePoseSettings& settings = {});
 

@@ -6,9 +6,9 @@
 namespace alidade {
 namespace {
 
-// The neighbour that lies nearest in the gradient's direction.
+// Offset of the neighbor nearest to the gradient's direction.
 cv::Point StepAlong(float gx, float gy) {
-  constexpr float kTan22 = 0.41421356f;  // tan 22.5°
+  constexpr float kTan22 = 0.41421356f;  // tan(22.5°)
   const float ax = std::abs(gx), ay = std::abs(gy);
   if (ay <= kTan22 * ax) return {1, 0};
   if (ax <= kTan22 * ay) return {0, 1};
@@ -30,7 +30,7 @@ ImageEdges FindImageEdges(const cv::Mat& image, double min_gradient) {
       if (edges.gradient(y, x) == 0) continue;
       const cv::Point here(x, y), step = StepAlong(gx(here), gy(here));
       const float m = magnitude(here);
-      // Of two equals side by side, one is the edge.
+      // of two equal neighbors, one is the edge
       if (m > magnitude(here - step) && m >= magnitude(here + step)) edges.edge(here) = 255;
     }
   }

@@ -64,7 +64,7 @@ double Coverage(const TimeOrder& truth, const TimeOrder& estimate,
   const double last = span ? span->last : estimate.stamps.back();
   const auto within = std::upper_bound(truth.stamps.begin(), truth.stamps.end(), last) -
                       std::lower_bound(truth.stamps.begin(), truth.stamps.end(), first);
-  std::set<int> matched;  // evo's association may take one true pose twice
+  std::set<int> matched;  // kEvo may match one true pose twice
   for (const StampPair& pair : pairs) matched.insert(pair.truth);
   if (within <= 0) return 0;
   return std::min(1.0, static_cast<double>(matched.size()) / static_cast<double>(within));

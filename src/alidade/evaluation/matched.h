@@ -1,4 +1,5 @@
-// What both error measures need first: poses in order of time, checked, and matched to the truth.
+// Shared by both error measures: checks poses, sorts them by time and matches them to the ground
+// truth.
 #pragma once
 
 #include <optional>
@@ -12,18 +13,19 @@ namespace ALIDADE_API alidade {
 
 struct TimeOrder {
   std::vector<double> stamps;  // ascending, seconds
-  std::vector<int> index;      // of each in the trajectory it came from
+  std::vector<int> index;      // of each stamp in the original trajectory
 };
 
-// Throws Error (input) when a number of the trajectory (`name` in the message) is not finite.
+// Throws Error (input) when a number is not finite; `name` appears in the message.
 TimeOrder OrderByTime(const Trajectory& trajectory, const std::string& name);
 
-// Indices are those of the trajectories. Throws Error (input) on fewer than 3 pairs, saying why.
+// Indices refer to the trajectories. Throws Error (input) with the reason when there are fewer than
+// 3 pairs.
 std::vector<StampPair> MatchPoses(const TimeOrder& truth, const TimeOrder& estimate, double max_dt,
                                   Association association);
 
-// Matched poses of the truth / its poses within the span (default: the estimate's), at most 1: a
-// match just outside the span counts too.
+// Matched truth poses / truth poses within the span (default: the estimate's), at most 1, because a
+// match slightly outside the span counts.
 double Coverage(const TimeOrder& truth, const TimeOrder& estimate,
                 const std::vector<StampPair>& pairs, const std::optional<TimeSpan>& span);
 

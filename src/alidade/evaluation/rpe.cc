@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// Index of the partner of pose i, or -1 past the end.
+// Index of the partner of pose i; -1: none.
 int Partner(const TimeOrder& estimate, int i, const RpeSettings& settings) {
   const int last = static_cast<int>(estimate.stamps.size()) - 1;
   if (settings.unit == DeltaUnit::kFrames) {
@@ -72,7 +72,8 @@ RpeResult EvaluateRpe(const Trajectory& truth, const Trajectory& estimate,
     result.scale = AlignTrajectories(truth, estimate, matches, Alignment::kSim3).s;
   }
 
-  // The truth at a pose of the estimate (by place in time): its nearest, which two poses may share.
+  // Index of the truth pose nearest in time to estimate pose i; -1 when it is further than max_dt.
+  // Two poses may share one.
   const auto nearest_truth = [&](int i) {
     const int t = NearestStamp(truth_order.stamps, estimate_order.stamps[i]);
     const double difference = std::abs(truth_order.stamps[t] - estimate_order.stamps[i]);

@@ -1,5 +1,5 @@
-// Relative pose error: how much the motion over a fixed step differs from the true one, i.e. the
-// drift. Sturm et al. 2012, eq. 1-3.
+// Relative pose error: the difference of estimated and true motion over a fixed step, which
+// measures drift. Sturm et al. 2012, eq. 1-3.
 #pragma once
 
 #include "alidade/base/api.h"
@@ -9,10 +9,11 @@ namespace ALIDADE_API alidade {
 
 enum class DeltaUnit { kSeconds, kFrames };
 enum class PairSelection {
-  kAll,          // a pair from each pose of the estimate, as TUM's tool with a fixed delta
-  kConsecutive,  // a pair begins where the last one ended: no overlap, independent errors
-  kEvery,        // each pose with each, forth and back, itself included, whatever lies between:
-                 // what TUM's tool draws 10000 from when it is given no fixed delta
+  kAll,          // a pair starts at each pose of the estimate, as in TUM's tool with a fixed delta
+  kConsecutive,  // a pair starts where the previous one ended: no overlap, independent errors
+  // All ordered pairs of poses, including each pose with itself: the set from which TUM's tool
+  // draws 10000 pairs when no fixed delta is set.
+  kEvery,
 };
 
 struct RpeSettings {
@@ -26,15 +27,15 @@ struct RpeSettings {
 };
 
 struct RpeResult {
-  ErrorStatistics trans;  // metres
+  ErrorStatistics trans;  // meters
   ErrorStatistics rot;    // degrees
-  double scale = 1;       // applied to the estimate
+  double scale = 1;       // scale applied to the estimate
   double coverage = 0;    // as in AteResult
 };
 
-// The partner of a pose is the one whose stamp is nearest to the first's plus delta. With kAll a
-// pair never ends at the last pose, which stands for "past the end" (TUM's tool does the same, and
-// its numbers are the standard). Throws Error (input) like EvaluateAte, and when no pair is left.
+// The partner of a pose is the pose whose stamp is nearest to the first stamp plus delta. With kAll
+// no pair ends at the last pose, which stands for "past the end" as in TUM's tool. Throws Error
+// (input) as EvaluateAte(), and when no pair remains.
 RpeResult EvaluateRpe(const Trajectory& truth, const Trajectory& estimate,
                       const RpeSettings& settings = {});
 

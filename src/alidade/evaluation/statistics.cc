@@ -17,7 +17,8 @@ ErrorStatistics DescribeErrors(std::vector<double> errors) {
   }
   result.mean = sum / result.n;
   result.rmse = std::sqrt(sum_squares / result.n);
-  double spread = 0;  // about the mean, in a second pass: rmse² - mean² would cancel
+  // Sum of squared deviations, in a second pass, because rmse² - mean² suffers from cancellation.
+  double spread = 0;
   for (const double e : errors) spread += (e - result.mean) * (e - result.mean);
   result.std = std::sqrt(spread / result.n);
   const size_t middle = errors.size() / 2;

@@ -1,4 +1,4 @@
-// What is said of a list of errors.
+// Summary statistics of a list of errors.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace ALIDADE_API alidade {
 
-// All in the unit of the errors; std with ddof 0; the median of an even number is the mean of the
-// middle two.
+// In the unit of the errors. `std` divides by n (ddof 0); the median of an even number is the mean
+// of the middle two.
 struct ErrorStatistics {
   int n = 0;
   double rmse = 0, mean = 0, median = 0, std = 0, min = 0, max = 0;

@@ -9,11 +9,11 @@
 namespace alidade {
 namespace {
 
-constexpr float kEdgeSpread =
-    0.05f;  // share of the depth: within a surface seen at a slant it stays below
+// Share of the depth; a slanted surface stays below it.
+constexpr float kEdgeSpread = 0.05f;
 
-// Pixels; no picture is as wide. What is nearer is no reading, and its column in the right image
-// would be none that a map can be saved with.
+// Pixels, larger than any image width. A nearer reading is invalid, and its right_x would be
+// outside the range that a map file accepts.
 constexpr float kMostDisparity = 1e6f;
 
 float DepthAt(const DepthImage& depth, int x, int y) {

@@ -1,4 +1,4 @@
-// A registered depth image, read in metres whatever it is stored in.
+// Read access in meters to a registered depth image of either storage type.
 #pragma once
 
 #include <limits>
@@ -10,8 +10,8 @@ namespace alidade {
 
 class DepthImage {
  public:
-  // `image`: CV_16U in camera.depth_factor units or CV_32F metres, may be empty; the caller's, who
-  // keeps it as long as this.
+  // `image`: CV_16U in units of 1 / camera.depth_factor, or CV_32F in meters; may be empty. It is
+  // referenced, not copied, and must outlive this object.
   DepthImage(const cv::Mat& image, const Camera& camera)
       : image_(image),
         integers_(image.type() == CV_16UC1),
@@ -19,7 +19,7 @@ class DepthImage {
 
   cv::Size size() const { return image_.size(); }
 
-  // Metres along z at a pixel; 0 where there is no reading, and outside the image.
+  // Depth along z at a pixel, meters; 0 if there is no reading or the pixel is outside the image.
   float At(int x, int y) const {
     if (x < 0 || y < 0 || x >= image_.cols || y >= image_.rows) return 0;
     const float z =
@@ -30,7 +30,7 @@ class DepthImage {
  private:
   const cv::Mat& image_;
   bool integers_;
-  float unit_;  // metres
+  float unit_;  // meters per integer unit
 };
 
 }  // namespace alidade

@@ -13,20 +13,20 @@ namespace {
 constexpr int kBits = 256;
 
 struct Pair {
-  int x0, y0, x1, y1;  // pixels from the patch's centre, upright
+  int x0, y0, x1, y1;  // pixels from the patch center, unrotated
 };
 
 constexpr std::array<Pair, kBits> kPattern = {{
 #include "alidade/features/orb_pattern.inc"
 }};
 
-// The disc's pixels row by row, as weights for the moments: 32 columns from -15 to 16.
+// Weights for the intensity moments of the disc, row by row: 32 columns from -15 to 16.
 struct DiscWeights {
   static constexpr int kColumns = 32;
   using Row = std::array<uint8_t, kColumns>;
-  std::array<Row, 2 * kPatchRadius + 1> inside{};  // 1 in the disc
-  std::array<Row, 2 * kPatchRadius + 1> column{};  // there u + kBias
-  static constexpr int kBias = 16;                 // keeps weights positive
+  std::array<Row, 2 * kPatchRadius + 1> inside{};  // 1 inside the disc
+  std::array<Row, 2 * kPatchRadius + 1> column{};  // u + kBias inside the disc
+  static constexpr int kBias = 16;                 // keeps the weights positive
 };
 
 const DiscWeights& Disc() {

@@ -1,4 +1,5 @@
-// Orientation and 256-bit steered descriptor of the patch around a corner. Rublee et al. 2011, §4.
+// Orientation and 256-bit steered BRIEF descriptor of the patch around a corner (Rublee et al.
+// 2011, §4).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,22 +10,24 @@
 
 namespace ALIDADE_API alidade {
 
-inline constexpr int kPatchRadius = 15;   // pixels, of the disc that gives the orientation
-inline constexpr int kPatternReach = 18;  // pixels, of the disc that holds the sampling pattern
+inline constexpr int kPatchRadius = 15;   // pixels, disc used for the orientation
+inline constexpr int kPatternReach = 18;  // pixels, disc that contains the sampling pattern
 
-// Direction from the patch's centre to its intensity centroid, radians in (-pi, pi]. (x, y) at
+// Direction from the patch center to its intensity centroid, radians in (-π, π]. (x, y) must be at
 // least kPatchRadius + 1 pixels from the sides of `level`.
 float PatchAngle(const cv::Mat& level, int x, int y);
 
-// The sampling pattern turned to kTurns directions, as offsets into images of one row stride.
+// The sampling pattern rotated to kTurns directions, as byte offsets into images with one row
+// stride.
 class SteeredPattern {
  public:
-  // 2.8° apart: at most 0.44 pixels off at the rim, less than the rounding to whole pixels.
+  // 2.8° apart: an error of at most 0.44 pixels at the rim, less than rounding to whole pixels.
   static constexpr int kTurns = 128;
   explicit SteeredPattern(int stride);  // bytes
   int stride() const { return stride_; }
-  // Bit i: the pixel at the first end of pair i is darker than the one at the second.
-  // `centre`: at least kPatternReach pixels from the sides of a smoothed image.
+  // Bit i is set if the pixel at the first end of pair i is darker than the one at the second end.
+  // `centre` points into a smoothed image, at least kPatternReach pixels from its sides; `angle` is
+  // in radians.
   Descriptor Describe(const uint8_t* centre, float angle) const;
 
  private:

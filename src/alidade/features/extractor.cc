@@ -14,13 +14,14 @@
 namespace alidade {
 namespace {
 
-constexpr int kBandCells = 3;          // rows of cells that one thread looks through at a time
-constexpr int kChunk = 64;             // keypoints it describes at a time
-constexpr double kAvoidedShare = 0.4;  // of what avoided places would get: enough to see them move
-constexpr int kAround = 4;             // rows that FAST needs above and below
+constexpr int kBandCells = 3;  // rows of cells per task
+constexpr int kChunk = 64;     // keypoints described per task
+// Of the usual density in avoided regions: enough to detect motion there.
+constexpr double kAvoidedShare = 0.4;
+constexpr int kAround = 4;  // rows that FAST needs above and below
 
-// How many keypoints each level gets: shares fall with the level's side (1 / 1.2), and what a level
-// cannot fill goes to the others in the same proportion.
+// Number of keypoints per level: proportional to the level's side length. What a level cannot fill
+// is distributed to the others in the same proportion.
 std::array<int, kPyramidLevels> LevelBudgets(const std::array<int, kPyramidLevels>& available,
                                              int total) {
   std::array<int, kPyramidLevels> budget{};
@@ -47,14 +48,14 @@ std::array<int, kPyramidLevels> LevelBudgets(const std::array<int, kPyramidLevel
   return budget;
 }
 
-// Sum of the levels' shares of the budget.
+// Sum of the proportions of all levels.
 double ScaleSum() {
   double sum = 0;
   for (int l = 0; l < kPyramidLevels; ++l) sum += 1 / ScaleOfLevel(l);
   return sum;
 }
 
-// Takes those where `avoid` is not 0 out of `corners`.
+// Removes the corners where `avoid` is nonzero from `corners` and returns them.
 std::vector<Corner> TakeAvoided(std::vector<Corner>& corners, cv::Size level,
                                 const cv::Mat& avoid) {
   std::vector<Corner> avoided, useful;
@@ -66,7 +67,7 @@ std::vector<Corner> TakeAvoided(std::vector<Corner>& corners, cv::Size level,
   return avoided;
 }
 
-// All rows of all levels, cut where rows of cells end.
+// All rows of all levels, cut at multiples of kBandCells rows of cells.
 std::vector<Extractor::Band> CutIntoBands(const std::vector<cv::Size>& sizes,
                                           const ExtractorSettings& settings) {
   std::vector<Extractor::Band> bands;
@@ -86,7 +87,7 @@ void ExtractorSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
     if (!holds) ThrowUsage(std::string("extractor: ") + what);
   };
-  // There is room for 100 times the usual number; beyond, every pixel of a picture would be one.
+  // 100 times the usual number; beyond that nearly every pixel would be a keypoint.
   require(features >= 1 && features <= 100000, "features must be from 1 to 100000");
   require(fast_minimum >= 1 && fast_minimum <= 255, "fast_minimum must be from 1 to 255");
   require(fast_threshold >= fast_minimum && fast_threshold <= 255,
@@ -112,13 +113,14 @@ void Extractor::PrepareBuffers(const std::vector<cv::Size>& sizes) {
     first_row += size.height;
   }
   pattern_.emplace(static_cast<int>(smooth.step[0]));
-  // All of them or, where memory runs out, none.
+  // Assigned only after all allocations succeeded, so that bad_alloc leaves the buffers consistent.
   fine_ = std::move(fine_levels);
   smooth_ = std::move(smooth_levels);
 }
 
 std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& band) {
-  // The neighbours' rows that are needed too are smoothed once more: cheaper than waiting for them.
+  // The neighboring bands' rows that this band needs are smoothed again, which is cheaper than
+  // synchronizing.
   const int top = std::max(0, band.first_row - kAround);
   const int bottom = std::min(level.rows, band.end_row + kAround);
   cv::Mat fine(bottom - top, level.cols, CV_8UC1);
@@ -147,11 +149,11 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
   Frame frame;
   frame.time = time;
   frame.number = number;
-  frame.image = image.clone();  // the caller may reuse the buffer
+  frame.image = image.clone();  // the caller may reuse its buffer
   const std::vector<cv::Size> sizes = PyramidSizes(frame.image.size());
   PrepareBuffers(sizes);
 
-  // Corners and smoothed levels, in bands of rows. Meanwhile the smaller levels are made.
+  // Corners and smoothed levels, in bands of rows. Task 0 builds the smaller levels meanwhile.
   const std::vector<Band> bands = CutIntoBands(sizes, settings_);
   std::vector<std::vector<Corner>> found(bands.size());
   const int of_level_0 = static_cast<int>(
@@ -167,7 +169,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
     found[of_level_0 + i] = LookThrough(frame.pyramid[band.level], band);
   });
 
-  // The choice among them, level by level.
+  // Select corners level by level.
   std::array<std::vector<Corner>, kPyramidLevels> corners;
   for (size_t b = 0; b < bands.size(); ++b) {
     std::vector<Corner>& all = corners[bands[b].level];
@@ -194,7 +196,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
               [](const Corner& a, const Corner& b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
   });
 
-  // Direction, descriptor and position of each.
+  // Orientation, descriptor and position of each keypoint.
   std::array<int, kPyramidLevels + 1> first{};
   for (int l = 0; l < kPyramidLevels; ++l) {
     first[l + 1] = first[l] + static_cast<int>(corners[l].size());

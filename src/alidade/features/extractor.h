@@ -1,5 +1,6 @@
-// From an image to a Frame: pyramid, FAST corners spread evenly, orientation, steered binary
-// descriptors. Rublee et al. 2011 (ORB); even spread as in Mur-Artal, Montiel & Tardós 2015, §VI-A.
+// ORB feature extraction: image pyramid, evenly distributed FAST corners, orientation, steered
+// binary descriptors (Rublee et al. 2011; even distribution as in Mur-Artal, Montiel & Tardós 2015,
+// §VI-A).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -24,16 +25,17 @@ struct ExtractorSettings {
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
-// One instance per stream: keeps buffers between frames. Extract() is not re-entrant.
+// Keeps buffers between frames: one instance per image stream, used by one thread at a time.
 class Extractor {
  public:
   explicit Extractor(ExtractorSettings settings = {});
 
-  // `image`: 8 bit grey, continuous or not, of the camera's size. Keypoints are undistorted with
-  // `camera` (raw_x, raw_y keep the image position) and sorted by level, then row, then column. The
-  // result does not depend on the number of threads. A structureless image gives an empty frame.
-  // `avoid` (CV_8U, of any size, laid over the image; may be empty): where it is not 0 keypoints
-  // are of little use. All that are wanted are then found elsewhere, and only a few there.
+  // Returns the frame's keypoints, sorted by level, row, column, and their descriptors. `image` is
+  // 8-bit gray, of the camera's size, continuous or not. Keypoint positions are undistorted with
+  // `camera`; raw_x and raw_y keep the image position. `avoid` (CV_8U of any size, stretched over
+  // the image; may be empty) marks by nonzero values where keypoints are of little use: only a few
+  // are taken there, in addition to the full budget elsewhere. The result does not depend on the
+  // number of threads. An image without structure gives an empty frame.
   Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number,
                 const cv::Mat& avoid = {});
 
@@ -43,28 +45,29 @@ class Extractor {
 
  private:
   void PrepareBuffers(const std::vector<cv::Size>& sizes);
-  // Fills the band's rows of both buffers and finds its corners.
+  // Smooths the band's rows into both buffers and returns its corners.
   std::vector<Corner> LookThrough(const cv::Mat& level, const Band& band);
 
   ExtractorSettings settings_;
-  // Every level lightly smoothed, for corners, and more so, for descriptors; one row stride for
-  // all.
+  // All levels stacked in one image each, with a common row stride: lightly smoothed for corners,
+  // more strongly for descriptors.
   std::vector<cv::Mat> fine_, smooth_;
-  std::optional<SteeredPattern> pattern_;  // for that stride
+  std::optional<SteeredPattern> pattern_;  // for that row stride
 };
 
-// Gives every keypoint its depth from a registered depth image (CV_16U in depth_factor units per
-// metre or CV_32F in metres), read at its raw position, and right_x = x - bf / depth. Left without
-// depth: no reading, or a 3x3 neighbourhood that spreads more than 5 % (an edge: foreground and
-// background mix there), or farther than `range` (metres): there a depth camera measures nothing,
-// and may say so by a number.
+// Sets the depth of every keypoint from a registered depth image (CV_16U in units of 1 /
+// depth_factor, or CV_32F in meters), read at the raw position, and right_x = x - bf / depth. A
+// keypoint keeps no depth if there is no reading, if the depths of its 3x3 neighborhood differ by
+// more than 5 % (depth discontinuity), or if the depth exceeds `range` (meters), where some sensors
+// report a constant. Throws Error (input) if type, size or depth_factor do not fit.
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame,
                  double range = std::numeric_limits<double>::infinity());
 
-// Finds every keypoint of the rectified left image along its row in the right one (extracted with
-// the same settings): Hamming distance, then sum of absolute differences, then an alignment by
-// least squares for sub-pixel disparity, then outliers by the median SAD. Fills right_x and depth.
-// Needs both pyramids.
+// Sets right_x and depth of the keypoints of a rectified left image from the right one, extracted
+// with the same settings. For each keypoint: best Hamming distance along its row, sum of absolute
+// differences (SAD), least-squares alignment for sub-pixel disparity; then outliers by median SAD
+// are dropped. Both frames need their pyramids. Throws Error if they are missing (usage) or the
+// images differ in size (input).
 void MatchStereo(const Frame& right, const Camera& camera, Frame& left);
 
 }  // namespace alidade

@@ -10,7 +10,7 @@ namespace alidade {
 namespace {
 
 constexpr int kCircle = 16;
-constexpr int kLanes = 16;  // pixels looked at together
+constexpr int kLanes = 16;  // pixels processed in parallel
 constexpr std::array<int, kCircle> kCircleX = {0, 1,  2,  3,  3,  3,  2,  1,
                                                0, -1, -2, -3, -3, -3, -2, -1};
 constexpr std::array<int, kCircle> kCircleY = {-3, -3, -2, -1, 0, 1,  2,  3,
@@ -26,13 +26,14 @@ Offsets CircleOffsets(const cv::Mat& image) {
   return offsets;
 }
 
-// The largest, over the 16 runs of nine, of the smallest of the nine. Runs k and k + 1 share eight:
-// with m the smallest of those, the better of both is min(m, max(first, last)).
+// Maximum over the 16 runs of nine contiguous values of the minimum of the run. Runs k and k + 1
+// share eight values: with m their minimum, the better run of the two gives min(m, max(first,
+// last)).
 template <typename Vector>
 Vector BestRun(const std::array<Vector, kCircle>& d) {
   using cv::v_max;
   using cv::v_min;
-  std::array<Vector, kCircle / 2> two, four;  // runs that begin at odd places
+  std::array<Vector, kCircle / 2> two, four;  // runs that begin at odd positions
   for (int i = 0; i < kCircle / 2; ++i) two[i] = v_min(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
   for (int i = 0; i < kCircle / 2; ++i) four[i] = v_min(two[i], two[(i + 1) % 8]);
   Vector best;
@@ -44,15 +45,16 @@ Vector BestRun(const std::array<Vector, kCircle>& d) {
   return best;
 }
 
-// Scores plus one of 16 pixels, 0 where at most `threshold`; false when all are.
+// Scores plus one of 16 pixels, 0 where the score is at most `threshold`. Returns false if all are
+// 0.
 bool ScoreBlock(const uint8_t* p, const Offsets& circle, const cv::v_uint8x16& threshold,
                 cv::v_uint8x16& scores) {
   using cv::v_max;
   using cv::v_min;
   const cv::v_uint8x16 centre = cv::v_load(p);
   std::array<cv::v_uint8x16, kCircle> d;
-  // Nine in a row hold one of the top and bottom and one of the left and right pixel. Subtraction
-  // stops at 0.
+  // Nine contiguous pixels contain the top or bottom and the left or right pixel. Subtraction
+  // saturates at 0.
   const cv::v_uint8x16 top = cv::v_load(p + circle[0]), right = cv::v_load(p + circle[4]);
   const cv::v_uint8x16 bottom = cv::v_load(p + circle[8]), left = cv::v_load(p + circle[12]);
   const cv::v_uint8x16 bright = v_min(v_max(top, bottom), v_max(left, right)) - centre;
@@ -75,9 +77,9 @@ bool ScoreBlock(const uint8_t* p, const Offsets& circle, const cv::v_uint8x16& t
   return true;
 }
 
-// One image row of scores and the columns where they are not zero.
+// Scores of one image row, and the columns with nonzero scores.
 struct ScoreRow {
-  std::vector<uint8_t> score;  // plus one; 0 = no corner
+  std::vector<uint8_t> score;  // score plus one; 0 = no corner
   std::vector<int> columns;
 };
 
@@ -87,8 +89,8 @@ void ScoreRowOf(const cv::Mat& image, int y, int first, int end, const Offsets& 
   row.columns.clear();
   const uint8_t* pixels = image.ptr<uint8_t>(y);
   for (int x = first; x < end; x += kLanes) {
-    // The last block steps back to stay inside; what was seen already is masked by the column test
-    // below.
+    // The last block moves back to stay inside the row; the column test below masks pixels
+    // processed twice.
     const int x0 = std::min(x, end - kLanes);
     cv::v_uint8x16 scores;
     if (!ScoreBlock(pixels + x0, circle, threshold, scores)) continue;
@@ -107,9 +109,9 @@ void ScoreRowOf(const cv::Mat& image, int y, int first, int end, const Offsets& 
 std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border, int first_row,
                                 int end_row) {
   std::vector<Corner> corners;
-  // Suppression needs the scores of one column more on each side.
+  // Suppression needs scores of one more column on each side.
   const int first = border - 1, end = image.cols - border + 1;
-  // Blocks may reach past the border on narrow images, not past the image.
+  // On narrow images a block may extend past the border, but not past the image.
   if (first_row >= end_row || end - first <= 2 || end - kLanes < 3) return corners;
   const Offsets circle = CircleOffsets(image);
   const cv::v_uint8x16 over = cv::v_setall_u8(static_cast<uint8_t>(threshold));
@@ -135,11 +137,10 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
 }
 
 Eigen::Vector2d RefineCorner(const cv::Mat& image, const Corner& corner) {
-  constexpr double kFarthest =
-      0.6;  // beyond half a pixel the neighbour would have won, but for noise
+  // Half a pixel plus noise: farther away the neighbor would have the higher score.
+  constexpr double kFarthest = 0.6;
   const Offsets circle = CircleOffsets(image);
-  // Signed scores of three rows of eight pixels, of which three are used, as bright and as dark
-  // corners.
+  // Signed scores of 3 rows of 8 pixels (3 of each are used), as bright and as dark corner.
   std::array<std::array<int16_t, 8>, 3> bright, dark;
   for (int row = 0; row < 3; ++row) {
     const uint8_t* p = image.ptr<uint8_t>(corner.y + row - 1) + corner.x - 1;
@@ -154,7 +155,7 @@ Eigen::Vector2d RefineCorner(const cv::Mat& image, const Corner& corner) {
     cv::v_store(dark[row].data(), BestRun(down));
   }
   const auto& s = bright[1][1] >= dark[1][1] ? bright : dark;
-  // Derivatives by differences, smoothed across with 1 2 1.
+  // Central differences, smoothed across with 1 2 1.
   const double gx = ((s[0][2] - s[0][0]) + 2 * (s[1][2] - s[1][0]) + (s[2][2] - s[2][0])) / 8.0;
   const double gy = ((s[2][0] - s[0][0]) + 2 * (s[2][1] - s[0][1]) + (s[2][2] - s[0][2])) / 8.0;
   const double xx = ((s[0][2] + s[0][0] - 2 * s[0][1]) + 2 * (s[1][2] + s[1][0] - 2 * s[1][1]) +

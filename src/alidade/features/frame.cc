@@ -7,8 +7,8 @@
 namespace alidade {
 namespace {
 
-// Undistorted positions outside the image are still told apart up to this far, so that one wild
-// keypoint cannot make the grid huge.
+// Pixels. Undistorted positions outside the image are resolved up to this distance only, so that
+// one outlier cannot enlarge the grid.
 constexpr float kMargin = 256;  // pixels
 
 int CellOf(float v, int limit) {
@@ -46,7 +46,7 @@ KeypointGrid::KeypointGrid(std::span<const Keypoint> keypoints, int width, int h
   columns_ = static_cast<int>((right - left_) / kCell) + 1;
   rows_ = static_cast<int>((bottom - top_) / kCell) + 1;
 
-  // Counting sort: how many per cell, where each cell begins, then every index to its place.
+  // Counting sort: count per cell, start of each cell, then place every index.
   first_.assign(static_cast<size_t>(columns_) * rows_ + 1, 0);
   order_.resize(keypoints.size());
   std::vector<int> cells(keypoints.size());

@@ -14,7 +14,7 @@ Eigen::Vector2d GradientAt(const cv::Mat& image, int x, int y) {
           0.5 * (image.at<float>(y + 1, x) - image.at<float>(y - 1, x))};
 }
 
-// Where some cells lie about.
+// Mean and covariance of cell positions.
 struct Places {
   int count = 0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -74,7 +74,7 @@ double StillShare(const cv::Mat& a, const cv::Mat& b, const GlanceSettings& sett
   }
   if (!(all.determinant() > 1e-9 * all.trace() * all.trace())) return 0;
   if (at_rest.Area() < settings.min_area * everywhere.Area()) return 0;
-  // The least generalised eigenvalue of still d = λ all d.
+  // Smallest generalized eigenvalue of still d = λ all d.
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> solver(still, all);
   return std::clamp(solver.eigenvalues().minCoeff(), 0.0, 1.0);
 }

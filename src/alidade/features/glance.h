@@ -1,5 +1,5 @@
-// A small picture of a frame, to tell whether the camera stood still where keypoints cannot: all of
-// them may be on the one thing that moves, while what stays has edges only.
+// Edge thumbnail of a frame, used to detect a stationary camera where keypoints cannot: all
+// keypoints may lie on a moving object, while the static background has only edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,14 +20,16 @@ struct GlanceSettings {
   double min_area = 0.4;
 };
 
-// 240 pixels wide (or as wide as it is), lightly smoothed, CV_32F. `image`: 8 bit grey.
+// Downscales an 8-bit gray image to 240 pixels width (narrower images keep their size) and smooths
+// it lightly. CV_32F.
 cv::Mat Glance(const cv::Mat& image);
 
-// How much of the picture stayed where it was, 0…1. Each cell with structure counts by the
-// directions of its gradients, T = Σ n n' / count; the least that the cells which stand still have
-// of all, over directions d: min d' Σ_still T d / d' Σ_all T d. Edges along which a camera moves
-// stay, too, but only in one direction. Gradients are compared, so that exposure does not matter.
-// 0 when the two differ in size, show no structure, or what stands still lies in one place.
+// Share of the image that did not move between two thumbnails, 0 to 1. Each cell with structure
+// contributes the directions n of its gradients, T = Σ n n' / count. The result is the smallest
+// share that the static cells have of all, over directions d: min d' Σ_static T d / d' Σ_all T d.
+// An edge parallel to the camera's motion does not change either, but constrains only one
+// direction. Gradients are compared because they do not depend on exposure offsets. Returns 0 if
+// the sizes differ, there is no structure, or the static cells lie in one place.
 double StillShare(const cv::Mat& a, const cv::Mat& b, const GlanceSettings& settings = {});
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Finding a known descriptor near the place where it should be seen.
+// Search for a known descriptor near its expected position.
 #pragma once
 
 #include <vector>
@@ -9,21 +9,23 @@ namespace alidade {
 
 struct Sought {
   const Descriptor* descriptor = nullptr;
-  float x = 0, y = 0;                  // expected place, undistorted pixels
-  float right_x = Keypoint::kNoDepth;  // expected column in the right image; kNoDepth = not checked
-  float radius = 0;                    // pixels around it
-  int min_level = 0, max_level = kPyramidLevels - 1;  // pyramid levels it may be found on
+  float x = 0, y = 0;  // expected position, undistorted pixels
+  // Expected column in the right image; kNoDepth: not checked.
+  float right_x = Keypoint::kNoDepth;
+  float radius = 0;                                   // search radius, pixels
+  int min_level = 0, max_level = kPyramidLevels - 1;  // admissible pyramid levels
 };
 
 struct Sighting {
-  int keypoint = -1;          // index in the frame; -1: nothing there
-  int distance = 256;         // bits
-  int second_distance = 256;  // next best keypoint there, and its level
+  int keypoint = -1;   // index in the frame; -1: none found
+  int distance = 256;  // of the best match, bits
+  // Distance and pyramid level of the second-best match.
+  int second_distance = 256;
   int level = -1, second_level = -1;
 };
 
-// Best keypoint of `frame` for `sought` among those `is_free` (called with an index) lets through.
-// Ties go to the lower index within the grid's order.
+// Best match for `sought` among the keypoints of `frame` for which is_free(index) is true. On a tie
+// the first keypoint in grid order wins.
 template <typename IsFree>
 Sighting FindNear(const Frame& frame, const Sought& sought, IsFree&& is_free) {
   Sighting found;
@@ -52,8 +54,9 @@ Sighting FindNear(const Frame& frame, const Sought& sought, IsFree&& is_free) {
   return found;
 }
 
-// Pyramid level a landmark should be found on at `distance`, from the largest distance it could be
-// seen at on level 0 upwards (ORB-SLAM: ceil(log(max_distance / distance) / log 1.2), clamped).
+// Pyramid level at which a landmark is expected at `distance`; `max_distance` is the largest
+// distance at which it can be observed on level 0. ceil(log(max_distance / distance) / log 1.2),
+// clamped to the valid levels (Mur-Artal, Montiel & Tardós 2015).
 int PredictLevel(double max_distance, double distance);
 
 }  // namespace alidade

@@ -13,7 +13,7 @@ namespace alidade {
 namespace {
 
 constexpr int kNone = std::numeric_limits<int>::max();
-constexpr int kRows = 128;  // of the distance matrix one thread does at a time
+constexpr int kRows = 128;  // rows of the distance matrix per task
 
 struct Best {
   int index = -1, distance = kNone, second = kNone;
@@ -34,7 +34,8 @@ bool Passes(const Best& best, const MatchSettings& settings) {
           best.distance < settings.ratio * best.second);
 }
 
-// From the best of each a (and of each b, when cross-checking) to the list of matches.
+// Converts the best candidates of each a (and of each b for the cross-check) to the list of
+// matches.
 std::vector<IndexMatch> Choose(const Frame& a, const Frame& b, std::span<const int> of_a,
                                std::span<const Best> best_a, std::span<const Best> best_b,
                                std::span<const int> of_b, const MatchSettings& settings) {
@@ -131,7 +132,7 @@ std::vector<IndexMatch> MatchWindow(const Frame& a, const Frame& b,
 
 std::vector<bool> ConsistentTurns(std::span<const float> turns) {
   constexpr int kBins = 30;
-  constexpr double kShare = 0.1;  // a bin filled less than this share of the fullest is no peak
+  constexpr double kShare = 0.1;  // bins with less than this share of the fullest one are no peaks
   std::array<int, kBins> filled{};
   std::vector<int> bins(turns.size());
   for (size_t i = 0; i < turns.size(); ++i) {

@@ -1,4 +1,4 @@
-// Matching descriptors: brute force with ratio test and cross check.
+// Descriptor matching: brute force with ratio test and cross-check, and windowed search.
 #pragma once
 
 #include <span>
@@ -19,26 +19,27 @@ struct MatchSettings {
 };
 
 struct IndexMatch {
-  int a = -1, b = -1;  // indices into the two sets
-  int distance = 0;    // bits
+  int a = -1, b = -1;  // indices into the two frames
+  int distance = 0;    // Hamming distance, bits
 };
 
-// All against all, sorted by a. O(|a|·|b|): 1000 x 1000 takes a few milliseconds.
+// Matches all against all; the result is sorted by a. O(|a|·|b|): 1000 x 1000 takes a few
+// milliseconds.
 std::vector<IndexMatch> MatchBruteForce(const Frame& a, const Frame& b,
                                         const MatchSettings& settings = {});
-// The same, restricted to the listed keypoints of each.
+// The same for the listed keypoint indices only.
 std::vector<IndexMatch> MatchSubsets(const Frame& a, std::span<const int> of_a, const Frame& b,
                                      std::span<const int> of_b, const MatchSettings& settings = {});
 
-// Keypoints of `a` searched in `b`, one level up or down at most, within `radius` pixels (each
-// axis) of `guess` (one for each keypoint of a; the keypoint's own position on the first call): the
-// monocular start, where no pose is known.
+// Searches each keypoint of `a` in `b` within `radius` pixels (along each axis) of `guess` (one per
+// keypoint of a; initially its own position), at most one pyramid level up or down. For monocular
+// initialization, where no pose is known.
 std::vector<IndexMatch> MatchWindow(const Frame& a, const Frame& b,
                                     std::span<const Eigen::Vector2f> guess, float radius,
                                     const MatchSettings& settings = {});
 
-// Which matches have a turn of the patch unlike the rest: flags true = keep. `turn` = angle_a -
-// angle_b, radians.
+// Flags matches whose patch rotation agrees with the majority (true = keep). `turns`: angle_a -
+// angle_b per match, radians.
 std::vector<bool> ConsistentTurns(std::span<const float> turns);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// What dense work needs of an image, kept beside the keypoints when it is asked for.
+// Images of a frame for semi-dense mapping, kept only if requested.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,13 +7,14 @@
 
 namespace ALIDADE_API alidade {
 
-// All as the (left) camera took them, lens distortion and all, of the camera's size.
+// All images are as taken by the (left) camera, not undistorted, and of the camera's size.
 struct Picture {
   cv::Mat gray;        // CV_8U
-  cv::Mat color = {};  // CV_8UC3, blue green red; empty: none
-  cv::Mat depth =
-      {};  // from a sensor: CV_16U in camera.depth_factor units or CV_32F metres; or empty
-  cv::Mat mask = {};  // CV_8U, 255 = moves by itself; empty: nothing does
+  cv::Mat color = {};  // CV_8UC3, BGR; empty if not available
+  // Sensor depth: CV_16U in units of 1 / camera.depth_factor, or CV_32F in meters; empty if there
+  // is none.
+  cv::Mat depth = {};
+  cv::Mat mask = {};  // CV_8U, 255 = moving object; empty if there is none
 };
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// The image at eight sizes, each 1.2 times smaller than the one before.
+// Image pyramid of kPyramidLevels levels, each 1.2 times smaller than the previous one.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -6,15 +6,14 @@
 
 namespace alidade {
 
-// Of kPyramidLevels levels; no side gets below one pixel.
+// Sizes of all levels; every side is at least one pixel.
 std::vector<cv::Size> PyramidSizes(cv::Size image);
 
-// kPyramidLevels images, 8 bit grey. Level 0 is `image` itself (shared, not copied); no side gets
-// below one pixel.
+// All levels, 8-bit gray. Level 0 shares the data of `image`.
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image);
 
-// Pixel of level 0 that a position on a level shows, along one axis: image borders coincide, so
-// pixel centres shift.
+// Converts one coordinate between a level and level 0. Image borders coincide, hence the shift of
+// half a pixel.
 inline double ToLevelZero(double v, double scale) { return (v + 0.5) * scale - 0.5; }
 inline double FromLevelZero(double v, double scale) { return (v + 0.5) / scale - 0.5; }
 

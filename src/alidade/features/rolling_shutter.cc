@@ -3,8 +3,8 @@
 namespace alidade {
 namespace {
 
-// z of a direction (1 before the shutter is undone), below which it would be beside the camera: a
-// motion that cannot be.
+// Smallest z of a corrected direction (1 before the correction). Below it the motion is
+// implausible, and the keypoint is not corrected.
 constexpr double kLeastForward = 0.1;
 
 }  // namespace
@@ -24,7 +24,7 @@ void UndoRollingShutter(const Camera& camera, const Vector6d& motion,
     const Eigen::Vector3d p = back.R * camera.Unproject(ideal) + inverse_depth * back.t;
     if (!(p.z() > kLeastForward)) continue;
     const Eigen::Vector2d pixel = camera.Project(p);
-    // What shifts a keypoint shifts what it is seen as in the right image alike.
+    // The correction shifts the observation in the right image by the same amount.
     if (k.has_depth()) k.right_x += static_cast<float>(pixel.x()) - k.x;
     k.x = static_cast<float>(pixel.x());
     k.y = static_cast<float>(pixel.y());

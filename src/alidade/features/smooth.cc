@@ -10,8 +10,8 @@ namespace {
 
 constexpr int kColumns = 16;
 
-// Calls step(x) for x = 0, 16, 32 ... so that all of [0, width) is covered and no block ends past
-// `width`; rest(x) for each column when the row is shorter than a block.
+// Calls block(x) for overlapping blocks of 16 columns that cover [0, width) without exceeding it,
+// or one(x) per column if the row is shorter than a block.
 template <typename Block, typename One>
 void ForEachBlock(int width, const Block& block, const One& one) {
   if (width < kColumns) {
@@ -22,7 +22,7 @@ void ForEachBlock(int width, const Block& block, const One& one) {
   block(width - kColumns);
 }
 
-struct Wide {  // sixteen 16 bit numbers
+struct Wide {  // sixteen 16-bit numbers
   cv::v_uint16x8 low, high;
 };
 
@@ -42,7 +42,7 @@ Wide Times2To(const Wide& a) {
   return {cv::v_shl<n>(a.low), cv::v_shl<n>(a.high)};
 }
 
-// Column sums of one output row, with `rim` repeated columns on both sides.
+// Column sums of one output row, with `rim` replicated columns on both sides.
 class SumRow {
  public:
   SumRow(int width, int rim) : width_(width), rim_(rim), sums_(width + 2 * rim) {}
@@ -106,7 +106,7 @@ void SmoothBox(const cv::Mat& image, int first_row, cv::Mat out) {
         });
     sums.RepeatRim();
     uint8_t* row = out.ptr<uint8_t>(i);
-    // At most 25 * 255 = 6375: ten times that still fits 16 bits.
+    // The sum is at most 25 * 255 = 6375, so ten times it fits in 16 bits.
     ForEachBlock(
         image.cols,
         [&](int x) {

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kScores = 256;
 
-// Strongest first, equal ones as they stood: a counting sort.
+// Sorts by descending score, stable: a counting sort.
 std::vector<Corner> ByScore(const std::vector<Corner>& corners) {
   std::array<int, kScores + 1> first{};
   for (const Corner& c : corners) ++first[kScores - c.score];
@@ -20,14 +20,14 @@ std::vector<Corner> ByScore(const std::vector<Corner>& corners) {
   return sorted;
 }
 
-// Takes corners one by one unless one taken before lies within `distance` pixels (in the maximum
-// norm, to the precision of a grid of half that width).
+// Greedy selection: accepts a corner unless an accepted one lies within `distance` pixels (maximum
+// norm, at the resolution of a grid of half that width).
 class Apart {
  public:
   void Begin(cv::Size level, int distance) {
     cell_ = std::max(1, distance / 2);
     reach_ = distance / cell_;
-    // A rim of `reach` cells all around saves asking where the image ends.
+    // A margin of `reach_` cells on all sides avoids bounds checks.
     columns_ = level.width / cell_ + 1 + 2 * reach_;
     const int rows = level.height / cell_ + 1 + 2 * reach_;
     covered_.assign(static_cast<size_t>(columns_) * rows, 0);
@@ -46,8 +46,8 @@ class Apart {
   std::vector<uint8_t> covered_;
 };
 
-// The first `count` of `corners` under the widest distance that leaves so many, as flags; and that
-// distance.
+// Flags of the first `count` of `corners` at the largest distance that still yields that number,
+// and that distance.
 struct EvenChoice {
   std::vector<uint8_t> taken;
   int distance = 0;
@@ -57,8 +57,8 @@ EvenChoice ChooseEvenly(const std::vector<Corner>& corners, cv::Size level, int 
   EvenChoice best{std::vector<uint8_t>(corners.size(), 0), 0};
   std::fill_n(best.taken.begin(), count, uint8_t{1});
   Apart apart;
-  // Corners left to each other by `too_wide` would need more room than there is: a square of at
-  // least half of it each.
+  // Upper bound: `count` corners at this distance would need more area than the level has, since
+  // each occupies a square of at least half the distance.
   int too_wide = 2 + static_cast<int>(2 * std::sqrt(static_cast<double>(level.area()) / count));
   while (too_wide - best.distance > 1) {
     EvenChoice choice{std::vector<uint8_t>(corners.size(), 0), (best.distance + too_wide) / 2};
@@ -105,8 +105,8 @@ std::vector<Corner> SpreadCorners(const std::vector<Corner>& corners, cv::Size l
   const int even = std::clamp(static_cast<int>(std::lround(evenness * count)), 1, count);
   EvenChoice choice = ChooseEvenly(by_score, level, even);
 
-  // The rest by strength, at a share of the distance that all `count` would have if they were
-  // evenly spread.
+  // The remaining corners by strength, at a fraction of the distance that all `count` would have if
+  // distributed evenly.
   constexpr double kClose = 0.4;
   Apart apart;
   apart.Begin(level, static_cast<int>(kClose * choice.distance * std::sqrt(evenness)));

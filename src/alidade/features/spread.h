@@ -1,4 +1,4 @@
-// Which corners of a level to keep.
+// Selection of well-distributed corners on a pyramid level.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,16 +8,16 @@
 
 namespace alidade {
 
-// In each cell (squares of `cell` pixels from (border, border) on): the corners that reach
-// `strong`, or where there are none, all. So weakly textured regions still have corners, while
-// noise beside strong corners is left out.
+// For each cell (squares of `cell` pixels starting at (border, border)), keeps the corners with
+// score >= `strong`, or all corners if there are none. Weakly textured regions keep corners, while
+// noise next to strong corners is dropped.
 std::vector<Corner> StrongPerCell(const std::vector<Corner>& corners, cv::Size level, int border,
                                   int cell, int strong);
 
-// At most `count` of the corners. The share `evenness` of them is spread as evenly as can be: the
-// strongest under the widest distance that leaves so many (adaptive non-maximal suppression: Brown
-// et al. 2005, by square covering as in Bailo et al. 2018). So weak corners are kept where there is
-// nothing else. The rest are the strongest ones, not crowded. Sorted by row, then column.
+// Selects at most `count` corners. A share `evenness` of them is distributed evenly: the strongest
+// at the largest mutual distance that still yields that number (adaptive non-maximal suppression:
+// Brown et al. 2005; square covering: Bailo et al. 2018). The remaining ones are the strongest at a
+// smaller distance. Sorted by row, then column.
 std::vector<Corner> SpreadCorners(const std::vector<Corner>& corners, cv::Size level, int count,
                                   double evenness);
 

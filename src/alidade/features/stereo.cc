@@ -1,4 +1,4 @@
-// Depth of keypoints from the right image of a rectified pair.
+// Depth of keypoints from the right image of a rectified stereo pair.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,15 +15,15 @@
 namespace alidade {
 namespace {
 
-constexpr int kMaxDistance = 75;        // bits
+constexpr int kMaxDistance = 75;        // Hamming distance, bits
 constexpr float kRowTolerance = 2;      // pixels of the right keypoint's level
 constexpr int kWindow = 5;              // half side of the compared windows, pixels of the level
-constexpr int kSlide = 5;               // pixels of the level each way
-constexpr double kMinDisparity = 0.1;   // pixels: farther than bf / this is no measurement
-constexpr double kOutlier = 1.5 * 1.4;  // medians of the SAD
+constexpr int kSlide = 5;               // search range in either direction, pixels of the level
+constexpr double kMinDisparity = 0.1;   // pixels; a smaller disparity is not a depth measurement
+constexpr double kOutlier = 1.5 * 1.4;  // in medians of the SAD
 constexpr int kPairedAtATime = 64;
 
-// Right keypoints by the row they stand on, widened by the tolerance.
+// For each row, the right keypoints whose row is within the tolerance.
 std::vector<std::vector<int>> RowTable(const Frame& right, int rows) {
   std::vector<std::vector<int>> table(rows);
   for (int i = 0; i < static_cast<int>(right.keypoints.size()); ++i) {
@@ -36,7 +36,7 @@ std::vector<std::vector<int>> RowTable(const Frame& right, int rows) {
   return table;
 }
 
-// The window's rows hold 11 pixels, read 16 at a time: these count.
+// A window row has 11 pixels and is read as 16; this masks the rest.
 constexpr std::array<uint8_t, 16> kInWindow = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0};
 
 int WindowSum(const cv::Mat& image, int x, int y) {
@@ -49,13 +49,12 @@ int WindowSum(const cv::Mat& image, int x, int y) {
   return static_cast<int>(cv::v_reduce_sum(sum));
 }
 
-// Sum of absolute differences of two windows after taking out the difference of their means:
-// exposures may differ.
+// SAD of two windows after removing the difference of their means, since exposures may differ.
 int WindowDifference(const cv::Mat& left, int xl, const cv::Mat& right, int xr, int y) {
   constexpr int kPixels = (2 * kWindow + 1) * (2 * kWindow + 1);
   const int offset = static_cast<int>(
       std::lround(static_cast<double>(WindowSum(left, xl, y) - WindowSum(right, xr, y)) / kPixels));
-  // One of the two is zero; subtraction stops at 0.
+  // One of the two is zero; subtraction saturates at 0.
   const cv::v_uint8x16 from_left = cv::v_setall_u8(static_cast<uint8_t>(std::max(0, offset)));
   const cv::v_uint8x16 from_right = cv::v_setall_u8(static_cast<uint8_t>(std::max(0, -offset)));
   const cv::v_uint8x16 inside = cv::v_load(kInWindow.data());
@@ -68,14 +67,14 @@ int WindowDifference(const cv::Mat& left, int xl, const cv::Mat& right, int xr, 
   return static_cast<int>(cv::v_reduce_sum(sum));
 }
 
-// Moves the window in the right image from xr to where it is most like the one in the left:
-// Gauss-Newton steps on the squared differences less their mean (Lucas & Kanade 1981, along the row
-// only). Slopes are the left window's. Not a number when it runs off or the window has no slope
-// along the row.
+// Sub-pixel alignment of the right window to the left one along the row: Gauss-Newton steps on the
+// squared differences minus their mean (Lucas & Kanade 1981), with the left window's gradient.
+// Returns the column in the right image; NaN if it moves too far or the window has no horizontal
+// gradient.
 double Align(const cv::Mat& left, int xl, const cv::Mat& right, double xr, int y) {
   constexpr int kSteps = 4;
   constexpr int kSide = 2 * kWindow + 1;
-  constexpr double kFarthest = 1.5;  // pixels: the start is the best whole pixel
+  constexpr double kFarthest = 1.5;  // pixels from the start, which is the best whole pixel
   constexpr double kLost = std::numeric_limits<double>::quiet_NaN();
   std::array<float, kSide * kSide> slope;
   float mean_slope = 0, strength = 0;
@@ -87,7 +86,7 @@ double Align(const cv::Mat& left, int xl, const cv::Mat& right, double xr, int y
     }
   }
   for (float& s : slope) {
-    s -= mean_slope;  // so that a difference in brightness has no say
+    s -= mean_slope;  // makes the result independent of a brightness offset
     strength += s * s;
   }
   if (strength < 1) return kLost;
@@ -124,7 +123,7 @@ Disparity Refine(const Frame& left, const Keypoint& k, const Frame& right, float
   const int xl = static_cast<int>(std::lround(FromLevelZero(k.raw_x, scale_x)));
   const int y = static_cast<int>(std::lround(FromLevelZero(k.raw_y, scale_y)));
   const int xr = static_cast<int>(std::lround(FromLevelZero(right_x, scale_x)));
-  constexpr int kRead = 16 - kWindow;  // columns read to the right of a window's centre
+  constexpr int kRead = 16 - kWindow;  // columns read to the right of a window's center
   if (y < kWindow || y >= l.rows - kWindow || xl <= kWindow || xl >= l.cols - kRead) return {};
   if (xr < kWindow + kSlide || xr >= r.cols - kSlide - kRead) return {};
   std::array<int, 2 * kSlide + 1> difference;
@@ -148,7 +147,7 @@ void MatchStereo(const Frame& right, const Camera& camera, Frame& left) {
   }
   const std::vector<std::vector<int>> table = RowTable(right, left.image.rows);
   const double bf = camera.bf();
-  const double max_disparity = camera.fx;  // nothing nearer than the baseline is seen by both
+  const double max_disparity = camera.fx;  // a point nearer than the baseline is not seen by both
   const int count = static_cast<int>(left.keypoints.size());
   std::vector<Disparity> found(left.keypoints.size());
   ParallelFor((count + kPairedAtATime - 1) / kPairedAtATime, [&](int chunk) {
@@ -160,7 +159,7 @@ void MatchStereo(const Frame& right, const Camera& camera, Frame& left) {
       for (int j : table[row]) {
         const Keypoint& c = right.keypoints[j];
         const double disparity = k.x - c.x;
-        const double slack = ScaleOfLevel(k.level);  // whole pixels of the level
+        const double slack = ScaleOfLevel(k.level);  // one pixel of the level
         if (std::abs(c.level - k.level) > 1 || disparity < -slack || disparity > max_disparity) {
           continue;
         }

@@ -1,4 +1,4 @@
-// A frame with some of its keypoints only.
+// Copy of a frame with a subset of its keypoints.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-// `kept`: indices of keypoints, growing; they are numbered anew in that order.
+// `kept`: ascending keypoint indices; the copies are renumbered in that order.
 Frame KeypointSubset(const Frame& frame, std::span<const int> kept, const Camera& camera);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// A frame's keypoints under a camera that is known better than when they were found.
+// Undistorts the keypoints of an existing frame again after the camera model was improved.
 #pragma once
 
 #include "alidade/base/api.h"
@@ -7,9 +7,8 @@
 
 namespace ALIDADE_API alidade {
 
-// Puts each keypoint where `camera` sees it without distortion, from its place in the image as
-// taken. What was done to it for a rolling shutter is undone. Frames without depth only:
-// disparities stay as they are.
+// Recomputes each keypoint's undistorted position from its raw one. Removes a rolling-shutter
+// correction. Only for frames without depth, since disparities are not recomputed.
 void UndistortKeypoints(const Camera& camera, Frame& frame);
 
 }  // namespace alidade

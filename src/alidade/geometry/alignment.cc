@@ -33,7 +33,7 @@ Moments MomentsOf(std::span<const Eigen::Vector3d> points, const char* name) {
   if (!std::isfinite(moments.variance)) {
     ThrowInput(std::string("alignment: the points of the ") + name + " are too large");
   }
-  // What is left of equal points is rounding: about 1e-16 of the coordinates.
+  // The variance of coincident points is rounding noise, about 1e-16 of the coordinates.
   const double rounding = 1e-14 * largest;
   if (moments.variance <= rounding * rounding) {
     ThrowInput(std::string("alignment: all points of the ") + name +
@@ -65,15 +65,15 @@ Sim3 AlignPoints(std::span<const Eigen::Vector3d> target, std::span<const Eigen:
 
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // Eq. 39/43: turn the weakest axis over rather than return a reflection. With points on a line
-  // (rank 1) the turn about that line is whatever the decomposition picked: all are as good.
+  // Eq. 39/43: flip the weakest axis instead of returning a reflection. For collinear points (rank
+  // 1) the rotation about their line is arbitrary.
   Eigen::Vector3d sign(1, 1,
                        svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1);
   Sim3 T_target_source;
   T_target_source.R = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();  // eq. 40
   if (with_scale) {
     T_target_source.s = svd.singularValues().dot(sign) / moments_source.variance;  // eq. 42
-    // The two shapes have nothing in common: the best similarity shrinks one to a point.
+    // The two shapes are unrelated if the best similarity shrinks one to a point.
     const double unit = std::sqrt(moments_target.variance / moments_source.variance);
     if (!(T_target_source.s > 1e-12 * unit)) {
       ThrowInput("alignment: the two sets of points are unrelated; no scale fits them");

@@ -1,4 +1,4 @@
-// The rigid motion or similarity that lays one set of points on another, in least squares.
+// Least-squares rigid motion or similarity between two sets of corresponding points.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,9 +9,9 @@
 
 namespace ALIDADE_API alidade {
 
-// T minimising sum |target_i - T * source_i|² (Umeyama 1991; scale held at 1 unless asked for). At
-// least 3 pairs, not all in one point: throws Error (input) otherwise, and on numbers that are not
-// finite.
+// Returns T_target_source that minimizes sum |target_i - T * source_i|² (Umeyama 1991). The scale
+// is 1 unless `with_scale`. Throws Error (input) if the sizes differ, there are fewer than 3 pairs,
+// a coordinate is not finite, all points of a set coincide, or no scale fits.
 Sim3 AlignPoints(std::span<const Eigen::Vector3d> target, std::span<const Eigen::Vector3d> source,
                  bool with_scale);
 

@@ -11,9 +11,9 @@
 namespace alidade {
 namespace {
 
-// No camera comes near; squares and powers of such numbers are still numbers.
+// Larger than any real camera's parameters; squares and powers of such numbers stay finite.
 constexpr double kMost = 1e9;
-constexpr double kLongestReadout = 0.2;  // seconds; rolling shutters take 5 to 40 ms
+constexpr double kLongestReadout = 0.2;  // seconds; rolling shutters take 0.005 to 0.04 s
 
 }  // namespace
 
@@ -82,7 +82,8 @@ Eigen::Vector2d Camera::Undistort(const Eigen::Vector2d& distorted) const {
     if (dx * dx + dy * dy < 1e-20) break;
   }
   const Eigen::Vector2d ideal(fx * x + cx, fy * y + cy);
-  // Far outside a lens's picture its polynomial may have no solution, and the steps lead anywhere.
+  // Far outside the image the distortion polynomial may have no solution, and the iteration
+  // diverges.
   const bool found = ideal.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kMost;
   return found ? ideal : distorted;
 }
@@ -96,7 +97,7 @@ Camera Camera::ScaledToWidth(int new_width) const {
   const double scale_y = static_cast<double>(scaled.height) / height;
   scaled.fx = fx * scale;
   scaled.fy = fy * scale_y;
-  // Pixel centres are at whole numbers, image borders at ±0.5.
+  // Pixel centers are at integers, image borders at ±0.5.
   scaled.cx = (cx + 0.5) * scale - 0.5;
   scaled.cy = (cy + 0.5) * scale_y - 0.5;
   return scaled;

@@ -22,10 +22,10 @@ Eigen::Matrix3d EstimateFundamental(std::span<const Eigen::Vector2d> a,
       }
     }
   }
-  const Eigen::Matrix<double, 9, 1> f = SmallestEigenvector<9>(m);  // only reads the lower triangle
+  const Eigen::Matrix<double, 9, 1> f = SmallestEigenvector<9>(m);  // reads only the lower triangle
   Eigen::Matrix3d F;
   F << f[0], f[1], f[2], f[3], f[4], f[5], f[6], f[7], f[8];
-  // The nearest matrix of rank 2 lacks what F makes of its weakest right singular vector.
+  // Enforce rank 2: subtract the component of the weakest right singular vector.
   const Eigen::Vector3d weakest = SmallestEigenvector<3>(F.transpose() * F);
   F -= (F * weakest) * weakest.transpose();
   F = normal_b.Matrix().transpose() * F * normal_a.Matrix();

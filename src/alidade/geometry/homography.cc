@@ -13,7 +13,7 @@ Eigen::Matrix3d EstimateHomography(std::span<const Eigen::Vector2d> a,
                                    std::span<const Eigen::Vector2d> b) {
   const PointNormalisation normal_a(a), normal_b(b);
   // Each pair gives two rows of A (Hartley & Zisserman eq. 4.3): (p, 0, -u p) and (0, p, -v p) for
-  // b = (u, v), p = (a, 1). A' A is made of 3x3 blocks, all of them sums of p p'.
+  // b = (u, v), p = (a, 1). A' A consists of 3x3 blocks that are sums of p p'.
   Eigen::Matrix3d plain = Eigen::Matrix3d::Zero(), with_u = plain, with_v = plain, squared = plain;
   for (size_t i = 0; i < a.size(); ++i) {
     const Eigen::Vector3d pa = normal_a.Apply(a[i]), pb = normal_b.Apply(b[i]);
@@ -42,8 +42,8 @@ std::vector<Se3> MotionsFromHomography(const Eigen::Matrix3d& H_b_a) {
   const Eigen::Matrix3d &U = svd.matrixU(), &V = svd.matrixV();
   const Eigen::Vector3d d = svd.singularValues();
   const double d1 = d[0], d2 = d[1], d3 = d[2];
-  // All equal: a rotation. Two equal: the motion is along the plane's normal, and the formulas
-  // below still hold.
+  // All singular values equal: pure rotation. Two equal: the translation is along the plane's
+  // normal, and the formulas below still hold.
   if (!(d3 > 1e-9 * d1) || (d1 - d3) < 1e-6 * d2) return {};
   const double s = U.determinant() * V.determinant() < 0 ? -1 : 1;
 
@@ -62,7 +62,7 @@ std::vector<Se3> MotionsFromHomography(const Eigen::Matrix3d& H_b_a) {
         const Eigen::Vector3d t(e1 * x1, 0, -e3 * x3);
         motions.push_back({s * U * R * V.transpose(), (U * t).normalized()});
       }
-      {  // d' = -d2 < 0, the cameras on either side of the plane: eq. 15, 16
+      {  // d' = -d2 < 0, cameras on opposite sides of the plane: eq. 15, 16
         const double sine = e1 * e3 * root / ((d1 - d3) * d2);
         const double cosine = (d1 * d3 - d2 * d2) / ((d1 - d3) * d2);
         Eigen::Matrix3d R;

@@ -12,13 +12,14 @@ namespace alidade {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-// Widening of the first bound when refinement starts far from the answer: 20 pixels, what a turn of
-// two degrees does.
+// Widening of the first chi² bound for refinement from a distant start: about 20 pixels, the image
+// motion of a rotation by 2 degrees.
 constexpr double kFarStart = 100;
-// Cosine between directions, 20 degrees, below which motions found from afar are other answers.
+// Cosine of 20 degrees: a motion found from another direction counts as a different solution beyond
+// this angle to the best one, or if its score is higher.
 constexpr double kNear = 0.94;
 
-// Motions this close are the same answer, not rivals.
+// Motions this close are the same solution.
 bool SameMotion(const Se3& x, const Se3& y) {
   return RotationAngle(x, y) < 1.5 * kDegree && x.t.dot(y.t) > std::cos(6 * kDegree);
 }
@@ -29,8 +30,9 @@ void SortByScore(std::vector<RankedMotion>& hypotheses) {
       [](const RankedMotion& x, const RankedMotion& y) { return x.score.score > y.score.score; });
 }
 
-// Adds the motion refined from `start`. One that went far on the way adds its start too: in a flat
-// valley between two answers the lowest point says little, and the start may then be as good.
+// Adds the motion refined from `start`. If the refinement moved far away, also adds the start
+// itself: in a flat valley between two solutions the minimum is poorly determined, and the start
+// may be as good.
 void Add(const Se3& start, const RayPairs& rays, std::vector<RankedMotion>& hypotheses) {
   const auto known = [&](const Se3& T_b_a, bool refined_only) {
     return std::any_of(hypotheses.begin(), hypotheses.end(), [&](const RankedMotion& other) {
@@ -48,9 +50,9 @@ void Add(const Se3& start, const RayPairs& rays, std::vector<RankedMotion>& hypo
   }
 }
 
-// A plane seen by two cameras always allows two motions. These are the motions of the plane that
-// lies nearest to the points as this motion places them; how well they explain the matches shows
-// whether the scene was too flat to tell.
+// Two views of a plane always admit two motions. Returns the motions of the plane that best fits
+// the points placed by `hypothesis`; if they explain the matches as well, the scene is too flat to
+// decide.
 std::vector<Se3> PlanarTwins(const RankedMotion& hypothesis, const RayPairs& rays) {
   // A plane n' p = 1 has inverse depth n' a along the ray a: linear in n, with errors of equal
   // size.
@@ -59,7 +61,7 @@ std::vector<Se3> PlanarTwins(const RankedMotion& hypothesis, const RayPairs& ray
   Eigen::Vector3d g = Eigen::Vector3d::Zero();
   for (size_t i = 0; i < rays.size(); ++i) {
     if (!(hypothesis.score.gain[i] > 0)) continue;
-    // b ~ R a + t / depth: from both coordinates of b, in least squares.
+    // b ~ R a + t / depth gives one equation per coordinate of b; least squares over both.
     const Eigen::Vector3d turned = T.R * rays.a[i];
     const Eigen::Vector2d offset = turned.head<2>() - turned.z() * rays.b[i].head<2>();
     const Eigen::Vector2d slope = T.t.z() * rays.b[i].head<2>() - T.t.head<2>();
@@ -75,8 +77,8 @@ std::vector<Se3> PlanarTwins(const RankedMotion& hypothesis, const RayPairs& ray
 std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays) {
   std::vector<RankedMotion> rough;
   double most = 0;
-  // Bounds of three times the size: these motions carry the noise of the models they were taken
-  // from.
+  // A bound of three times the distance, since these motions carry the noise of the models they
+  // were derived from.
   for (const Se3& T_b_a : motions) {
     rough.push_back({T_b_a, ScoreMotion(T_b_a, rays, 9), 0, 1, true});
     most = std::max(most, rough.back().score.score);
@@ -88,7 +90,7 @@ std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const Ray
     Add(start.T_b_a, rays, ranked);
   }
   SortByScore(ranked);
-  // Twice: the twin may turn out to be the better one, and then it deserves the same test.
+  // Twice: if the twin becomes the best motion, it is tested against its own twin.
   for (int round = 0; round < 2 && !ranked.empty(); ++round) {
     for (const Se3& twin : PlanarTwins(ranked.front(), rays)) {
       if (ScoreMotion(twin, rays, 9).good < 0.5 * ranked.front().score.good) continue;
@@ -104,7 +106,7 @@ std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked, c
   if (ranked.empty()) return ranked;
   const Se3 best = ranked.front().T_b_a;
   const double needed = 0.5 * ranked.front().score.score;
-  // Half of them: Sampson's distance is the same for a direction and its opposite.
+  // 13 of the 26 directions: the Sampson distance is the same for a direction and its opposite.
   for (int code = 14; code < 27; ++code) {
     const Eigen::Vector3d direction(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
     const RefinedMotion refined = RefineMotion({best.R, direction.normalized()}, rays, kFarStart);
@@ -115,7 +117,8 @@ std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked, c
       const bool known = std::any_of(ranked.begin(), ranked.end(), [&](const RankedMotion& other) {
         return !other.unrefined && SameMotion(other.T_b_a, T_b_a);
       });
-      // A flat valley stops refinement here and there; bundle adjustment mends what is so near.
+      // Refinement can stop anywhere in a flat valley; bundle adjustment corrects a direction this
+      // close.
       if (found.score.score <= ranked.front().score.score && T_b_a.t.dot(best.t) > kNear) continue;
       if (found.score.placed < min_placed_share * found.score.good) continue;
       if (!known && found.score.score > needed) ranked.push_back(std::move(found));
@@ -133,12 +136,11 @@ bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_sha
     lost += difference;
     squares += difference * difference;
   }
-  // In the same valley: inside the region of 99.99 % confidence (chi² with 5 degrees of freedom).
+  // In the same valley: within the 99.99 % confidence region (chi² with 5 degrees of freedom).
   if (other.unrefined) return lost < 26;
-  // An answer of its own. The sum of the matches' differences has the standard deviation
-  // sqrt(squares) where neither explains more. With 3.5 of them and 4 % of the score none of 60
-  // rendered recordings (8,000 pairs were judged) began more than 30 degrees from its direction.
-  // With 5 of them bare walls and tables wait for so long that what is taken in the end is worse.
+  // A separate solution. If neither explains more, the sum of differences has standard deviation
+  // sqrt(squares). The threshold is a compromise: a lower one accepts wrong directions; a higher
+  // one (5) delays the start in scenes with little texture until worse pairs are accepted.
   return lost < 3.5 * std::sqrt(squares) || lost < 0.04 * best.score.score;
 }
 

@@ -1,4 +1,4 @@
-// Which of many motions between two views it was, and whether that can be told at all.
+// Selection among motion hypotheses between two views, including a test for ambiguity.
 #pragma once
 
 #include <vector>
@@ -11,27 +11,26 @@ namespace alidade {
 struct RankedMotion {
   Se3 T_b_a;  // |t| = 1
   MotionScore score;
-  double direction_sigma = 0;  // of t, radians
-  double noise = 1;            // of the errors (RefinedMotion)
-  bool unrefined = false;      // a start from which refinement went far away
+  double direction_sigma = 0;  // of the direction of t, radians
+  double noise = 1;            // standard deviation of the residuals, in sigma (see RefinedMotion)
+  bool unrefined = false;      // the start of a refinement that ended at another motion
 };
 
-// The distinct motions among `motions` that come near explaining the most, each refined, best
-// first. The one a plane could be mistaken for (a plane seen by two cameras always allows two)
-// competes with the best, whether or not it was among them.
+// Returns the distinct motions among `motions` whose score comes near the best, each refined,
+// sorted by descending score. The planar twin of the best motion (two views of a plane always admit
+// two motions) is added as a competitor even if it is not in `motions`.
 std::vector<RankedMotion> RankMotions(const std::vector<Se3>& motions, const RayPairs& rays);
 
-// The ranked motions and those that are found when the camera is believed to have gone elsewhere:
-// refinement started from 26 directions about it, with the best one's rotation. Where parallax is
-// small, what explains matches has valleys of its own about several directions, and models fitted
-// to eight matches each end in one of them by chance. What places less than `min_placed_share` of
-// what it explains is left out: a plane's second motion that puts nearly all of it far away is no
-// answer. Costs 13 refinements.
+// Adds motions found by refinement from 26 directions of t with the rotation of the best motion. At
+// small parallax the score has local maxima for several directions, and a model fitted to eight
+// matches ends in one of them by chance. A motion with placed < `min_placed_share` * good is
+// dropped: the second motion of a plane that puts nearly all points at infinity is not a solution.
+// Costs 13 refinements.
 std::vector<RankedMotion> AddOtherDirections(std::vector<RankedMotion> ranked, const RayPairs& rays,
                                              double min_placed_share);
 
-// Whether the matches leave open which of the two it is: `other` explains more than `max_share` of
-// what the best explains, and not clearly worse.
+// True if the matches do not decide between the two motions: `other` explains more than `max_share`
+// of the matches that `best` explains, and its score is not significantly lower.
 bool IsRival(const RankedMotion& best, const RankedMotion& other, double max_share);
 
 }  // namespace alidade

@@ -1,5 +1,5 @@
-// Points moved and scaled to lie around the origin at a mean distance of sqrt(2), without which the
-// linear methods are badly conditioned (Hartley & Zisserman 4.4.4).
+// Translates and scales points to zero mean and a mean distance of sqrt(2) from the origin. The
+// linear methods are badly conditioned without it (Hartley & Zisserman 4.4.4).
 #pragma once
 
 #include <Eigen/Core>

@@ -1,5 +1,5 @@
-// Three points as in Lambda Twist (Persson & Nordberg 2018): the distances along the rays are where
-// two conics meet, found through the member of their pencil that is a pair of lines.
+// P3P by Lambda Twist (Persson & Nordberg 2018). The distances along the rays are the intersection
+// of two conics, found through the degenerate member of their pencil, which is a pair of lines.
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
@@ -30,7 +30,8 @@ std::vector<double> CubicRoots(double b, double c, double d) {
   }
   for (double& x : roots) {
     x -= b / 3;
-    for (int i = 0; i < 2; ++i) {  // the formulas lose digits; Newton's method gets them back
+    // Two Newton steps recover the digits that the closed form loses.
+    for (int i = 0; i < 2; ++i) {
       const double slope = (3 * x + 2 * b) * x + c;
       if (slope != 0) x -= (((x + b) * x + c) * x + d) / slope;
     }
@@ -47,8 +48,8 @@ Eigen::Matrix3d Adjugate(const Eigen::Matrix3d& m) {
   return result;
 }
 
-// Normals of the two lines that D1 + gamma D2 is for some gamma; none when no member of the pencil
-// is real lines.
+// The degenerate conic D1 + gamma D2, given by the normals of its two lines. `found` is false if no
+// member of the pencil is a pair of real lines.
 struct LinePair {
   bool found = false;
   double gamma = 0;
@@ -65,8 +66,8 @@ LinePair FindLinePair(const Eigen::Matrix3d& D1, const Eigen::Matrix3d& D2) {
     Eigen::Matrix3d D0 = D1 + gamma * D2;
     D0 /= D0.norm();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spectrum(D0);
-    // One eigenvalue is zero; real lines need the others to differ in sign: the first and the last
-    // in order.
+    // One eigenvalue is zero; the lines are real if the other two (smallest and largest) differ in
+    // sign.
     const double low = spectrum.eigenvalues()[0], high = spectrum.eigenvalues()[2];
     if (!(-low * high > sharpest)) continue;
     sharpest = -low * high;
@@ -79,7 +80,8 @@ LinePair FindLinePair(const Eigen::Matrix3d& D1, const Eigen::Matrix3d& D2) {
   return best;
 }
 
-// Squared side lengths of the triangle from the distances along the rays, less the true ones.
+// Residual of the law of cosines: squared side lengths from the distances along the rays, minus the
+// true ones.
 struct Triangle {
   double a12, a13, a23;  // squared sides
   double b12, b13, b23;  // cosines between the rays
@@ -103,7 +105,7 @@ struct Triangle {
   }
 };
 
-// Right-handed axes spanned by a triangle.
+// Right-handed orthonormal axes spanned by a triangle.
 Eigen::Matrix3d Axes(const Eigen::Vector3d& p0, const Eigen::Vector3d& p1,
                      const Eigen::Vector3d& p2) {
   Eigen::Matrix3d axes;
@@ -120,9 +122,9 @@ std::vector<Se3> SolveP3p(const Eigen::Vector3d p_world[3], const Eigen::Vector3
   Triangle triangle{(x0 - x1).squaredNorm(), (x0 - x2).squaredNorm(), (x1 - x2).squaredNorm(),
                     rays[0].dot(rays[1]),    rays[0].dot(rays[2]),    rays[1].dot(rays[2])};
   const double size = std::max({triangle.a12, triangle.a13, triangle.a23});
-  // On a line, two in one place, or not numbers.
+  // Collinear, coincident or non-finite points.
   if (!((x1 - x0).cross(x2 - x0).norm() > 1e-9 * size)) return {};
-  // A triangle of unit size: the tolerances below are then plain numbers.
+  // Scale the triangle to unit size so that the tolerances below are absolute.
   const double unit = std::sqrt(size);
   triangle.a12 /= size;
   triangle.a13 /= size;
@@ -134,8 +136,8 @@ std::vector<Se3> SolveP3p(const Eigen::Vector3d p_world[3], const Eigen::Vector3
   M23 << 0, 0, 0, 0, 1, -triangle.b23, 0, -triangle.b23, 1;
   Eigen::Matrix3d D1 = triangle.a23 * M12 - triangle.a12 * M23;
   Eigen::Matrix3d D2 = triangle.a23 * M13 - triangle.a13 * M23;
-  // The cubic below needs a D2 that is not itself a pair of lines, as it is where things are
-  // symmetric. At most three members of the pencil are: one of these four is far from it.
+  // The cubic needs a D2 that is not degenerate itself, which happens in symmetric configurations.
+  // At most three members of the pencil are degenerate, so one of these four is far from it.
   const Eigen::Matrix3d first = D1, second = D2;
   for (int k = 0; k < 4; ++k) {
     const double angle = k * std::numbers::pi / 4;
@@ -146,17 +148,17 @@ std::vector<Se3> SolveP3p(const Eigen::Vector3d p_world[3], const Eigen::Vector3
   }
   const LinePair lines = FindLinePair(D1, D2);
   if (!lines.found) return {};
-  // The other conic: whichever of the two the pair of lines is less like.
+  // Intersect the lines with the conic that is less similar to the degenerate one.
   const Eigen::Matrix3d& other = std::abs(lines.gamma) > 1 ? D1 : D2;
   const double sides = triangle.a12 + triangle.a13 + triangle.a23;
 
   std::vector<Se3> poses;
   for (const Eigen::Vector3d& normal : lines.normal) {
-    // On the line, distances are f u + g v, up to scale: a quadratic equation for f : g.
+    // On the line, distances are f u + g v up to scale: a quadratic equation for f : g.
     const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.normalized().cross(u);
     const double uu = u.dot(other * u), uv = u.dot(other * v), vv = v.dot(other * v);
     const double discriminant = uv * uv - uu * vv;
-    // A camera on the edge of losing a pair of solutions: rounding must not lose it.
+    // Tangent case, where two solutions merge: rounding must not lose them.
     if (!(discriminant > -1e-12)) continue;
     const double root = std::sqrt(std::max(0.0, discriminant));
     const double q = uv > 0 ? -uv - root : -uv + root;

@@ -20,7 +20,8 @@ struct PointMatch {
   size_t index;            // in the caller's arrays
 };
 
-// 1 for a perfect match, down to 0 at the largest error and beyond, and behind the camera.
+// 1 for a perfect match, falling to 0 at the largest allowed error; 0 beyond it and behind the
+// camera.
 double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& match) {
   const Eigen::Vector3d p = T_camera_world * match.p_world;
   if (!(p.z() > 0)) return 0;
@@ -30,7 +31,7 @@ double Gain(const Camera& camera, const Se3& T_camera_world, const PointMatch& m
 
 struct ScoredPose {
   Se3 T_camera_world;
-  double score = 0;  // MSAC's (Torr & Zisserman 2000)
+  double score = 0;  // MSAC score (Torr & Zisserman 2000)
   int inliers = 0;
 };
 
@@ -64,8 +65,8 @@ Se3 Step(const Camera& camera, const Se3& T, std::span<const PointMatch> matches
   return Se3::Exp(-H.llt().solve(g)) * T;
 }
 
-// The best sample's answer is that of three points; all its inliers together know better, and then
-// have more of them (LO-RANSAC, Chum, Matas & Kittler 2003).
+// Local optimization: refines the pose over all its inliers, which usually adds inliers (LO-RANSAC,
+// Chum, Matas & Kittler 2003).
 ScoredPose Polish(const Camera& camera, ScoredPose best, std::span<const PointMatch> matches) {
   constexpr int kSteps = 5;
   for (int k = 0; k < kSteps; ++k) {

@@ -1,6 +1,5 @@
-// Pose of a camera from landmarks and where they are seen, with many wrong matches among them.
-// Three points give up to four poses (Lambda Twist, Persson & Nordberg 2018, or Grunert's quartic);
-// RANSAC around it.
+// Camera pose from 3D-2D matches with outliers: P3P (Lambda Twist, Persson & Nordberg 2018) inside
+// RANSAC.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,8 +11,8 @@
 
 namespace alidade {
 
-// Poses T_camera_world from three landmarks and the unit rays to them in the camera frame; 0 to 4
-// of them.
+// Returns the 0 to 4 poses T_camera_world for three landmarks in the world frame and the unit rays
+// to them in the camera frame. Collinear or non-finite points give none.
 std::vector<Se3> SolveP3p(const Eigen::Vector3d p_world[3], const Eigen::Vector3d rays[3]);
 
 struct PnpSettings {
@@ -31,12 +30,15 @@ struct PnpSettings {
 
 struct PnpResult {
   bool success = false;
-  Se3 T_camera_world;  // of the best sample, refined over its inliers; see optimize/pose_only.h
-  std::vector<bool> inlier;  // one for each match
+  // Best sample's pose after a few Gauss-Newton steps over its inliers; optimize/pose_only.h
+  // refines it further.
+  Se3 T_camera_world;
+  std::vector<bool> inlier;  // one per match
   int inliers = 0;
 };
 
-// `sigma_scale` (one for each match, or empty): the keypoint's pyramid scale; multiplies max_error.
+// `p_world` in meters, `pixels` undistorted, both of the same length. `sigma_scale` (one per match,
+// or empty) is the keypoint's pyramid scale and multiplies max_error.
 PnpResult SolvePnpRansac(const Camera& camera, std::span<const Eigen::Vector3d> p_world,
                          std::span<const Eigen::Vector2d> pixels,
                          std::span<const double> sigma_scale = {},

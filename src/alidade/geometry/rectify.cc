@@ -11,18 +11,20 @@
 namespace alidade {
 namespace {
 
-// Part of the plane z = 1 in the rectified frame.
+// Rectangle on the plane z = 1 of the rectified frame.
 struct PlaneRect {
   double left, right, top, bottom;
 };
 
-// The largest upright rectangle around the axis that the raw image covers, found along its borders.
+// The largest axis-aligned rectangle around the optical axis that the raw image covers, found along
+// the raw image's borders.
 PlaneRect CoveredRect(const RawCamera& raw, const Eigen::Matrix3d& R_raw_rectified, double limit) {
   PlaneRect rect{-limit, limit, -limit, limit};
   constexpr int kSteps = 64;
   const auto on_plane = [&](double x, double y) {
     const Eigen::Vector3d p = R_raw_rectified.transpose() * raw.Direction({x, y});
-    // Behind or beside the plane: so far out that it limits nothing.
+    // A direction behind or parallel to the plane is mapped so far out that it does not limit the
+    // rectangle.
     const double z = std::max(p.z(), 1e-3);
     return Eigen::Vector2d(p.x() / z, p.y() / z);
   };
@@ -36,7 +38,7 @@ PlaneRect CoveredRect(const RawCamera& raw, const Eigen::Matrix3d& R_raw_rectifi
   return rect;
 }
 
-// Pinhole of the given size whose whole image lies inside `rect`.
+// Pinhole camera of the given size whose whole image lies inside `rect`.
 Camera FittingCamera(int width, int height, const PlaneRect& rect) {
   const double wide = rect.right - rect.left, high = rect.bottom - rect.top;
   if (!(wide > 1e-3 && high > 1e-3))
@@ -57,8 +59,8 @@ RectifyMap MakeMap(const RawCamera& raw, const Camera& camera,
     auto* row = map.ptr<cv::Vec2f>(v);
     for (int u = 0; u < map.cols; ++u) {
       const Eigen::Vector3d p = R_raw_rectified * camera.Unproject(Eigen::Vector2d(u, v));
-      // A pinhole lens sees nothing behind it; its polynomial would fold such points into the
-      // picture.
+      // A pinhole lens does not see points behind it, but its distortion polynomial would map them
+      // into the image.
       const bool seen = raw.lens == Lens::kFisheye || p.z() > 1e-3;
       const Eigen::Vector2d pixel = seen ? raw.Project(p) : Eigen::Vector2d(-100, -100);
       row[u] = {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
@@ -113,8 +115,8 @@ RectifiedPair RectifyStereo(const RawCamera& left, const RawCamera& right, const
         std::to_string(T_left_right.t.x()) + " " + std::to_string(T_left_right.t.y()) + " " +
         std::to_string(T_left_right.t.z()) + " m): are the cameras swapped?");
   }
-  // Rectified axes in the left camera's frame: x along the baseline, z as near as may be to where
-  // both look.
+  // Rectified axes in the left camera's frame: x along the baseline, z as close as possible to the
+  // mean viewing direction.
   const Eigen::Vector3d x = T_left_right.t / baseline;
   const Eigen::Vector3d looking = (Eigen::Vector3d::UnitZ() + T_left_right.R.col(2)).normalized();
   const Eigen::Vector3d y = looking.cross(x).normalized();

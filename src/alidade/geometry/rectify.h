@@ -1,6 +1,5 @@
-// Images as an ideal camera would have taken them: fisheye lenses become pinholes, and the two
-// images of a stereo pair get rows that match. The maps are made once; each image is then one
-// cv::remap.
+// Rectification: resamples images to an ideal pinhole camera, and stereo pairs to matching rows.
+// The maps are computed once; each image then costs one cv::remap.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,36 +12,38 @@
 
 namespace ALIDADE_API alidade {
 
-// For each pixel of the rectified image the place in the image as taken.
+// For each pixel of the rectified image, its position in the raw image.
 struct RectifyMap {
-  cv::Mat coarse, fine;  // CV_16SC2 whole pixels and CV_16UC1 fractions, as cv::remap likes them
-  cv::Mat nearest;       // CV_16SC2, rounded
+  cv::Mat coarse, fine;  // CV_16SC2 integer and CV_16UC1 fractional part, the format of cv::remap
+  cv::Mat nearest;       // CV_16SC2, rounded to whole pixels
 
-  cv::Mat Apply(const cv::Mat& image) const;  // bilinear; black where nothing was seen
-  cv::Mat ApplyNearest(
-      const cv::Mat& depth) const;  // no blending across depth steps; 0 where nothing was seen
+  cv::Mat Apply(const cv::Mat& image) const;  // bilinear; 0 outside the raw image
+  // Nearest neighbor, so that depths are not interpolated across depth discontinuities; 0 outside
+  // the raw image.
+  cv::Mat ApplyNearest(const cv::Mat& depth) const;
 };
 
 struct RectifiedCamera {
-  Camera camera;  // pinhole without distortion, the raw image's size
+  Camera camera;  // pinhole without distortion, same size as the raw image
   RectifyMap map;
 };
 
 struct RectifiedPair {
   Camera camera;  // of both images, with the baseline; no distortion
   RectifyMap left, right;
-  Eigen::Matrix3d
-      R_left_rectified;  // rotation from the rectified camera to the left one as mounted
+  // Rotation from the rectified camera frame to the frame of the left raw camera.
+  Eigen::Matrix3d R_left_rectified;
 };
 
-// The widest picture without black borders, but not wider than `max_fov_degrees` either way:
-// towards 180° a pinhole spends all its pixels on the rim.
+// Rectifies one camera to the widest pinhole image without black borders, limited to a field of
+// view of `max_fov_degrees` in either direction: close to 180° a pinhole image spends most of its
+// pixels on the border.
 RectifiedCamera RectifyOne(const RawCamera& raw, double max_fov_degrees = 110);
 
-// Both cameras are turned about their centres until their image planes are one plane, with rows
-// along the baseline (Fusiello, Trucco & Verri 2000); the turn is shared so that each looks about
-// where it looked. Throws Error when the cameras differ in size or the right one isn't to the right
-// of the left.
+// Rotates both cameras about their centers until their image planes coincide and rows are parallel
+// to the baseline (Fusiello, Trucco & Verri 2000). The rectified optical axis is the mean of both
+// axes, made perpendicular to the baseline. Throws Error (input) if the cameras differ in size, the
+// right one is not to the right of the left one, or the images have no common part.
 RectifiedPair RectifyStereo(const RawCamera& left, const RawCamera& right, const Se3& T_left_right,
                             double max_fov_degrees = 110);
 

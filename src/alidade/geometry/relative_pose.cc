@@ -16,7 +16,7 @@ namespace {
 using Vector5d = Eigen::Matrix<double, 5, 1>;
 using Matrix5d = Eigen::Matrix<double, 5, 5>;
 
-// Signed Sampson distance, in sigmas: b' E a over the length of its gradient in the four image
+// Signed Sampson distance in sigma: b' E a divided by the norm of its gradient over the four image
 // coordinates.
 struct Sampson {
   double residual;
@@ -33,7 +33,7 @@ inline Sampson SampsonOf(const Eigen::Matrix3d& E, const Eigen::Vector3d& a,
   return {b.dot(line_b) * inverse_gradient, inverse_gradient};
 }
 
-// Two directions at right angles to t and each other.
+// Two unit vectors perpendicular to t and to each other.
 Eigen::Matrix<double, 3, 2> TangentPlane(const Eigen::Vector3d& t) {
   Eigen::Matrix<double, 3, 2> basis;
   basis.col(0) = t.unitOrthogonal();
@@ -44,13 +44,13 @@ Eigen::Matrix<double, 3, 2> TangentPlane(const Eigen::Vector3d& t) {
 struct NormalEquations {
   Matrix5d H = Matrix5d::Zero();
   Vector5d g = Vector5d::Zero();
-  double gain = 0;     // what the truncated least squares make larger
-  double squares = 0;  // of the residuals within the bound
+  double gain = 0;     // truncated least-squares objective, maximized
+  double squares = 0;  // sum of squared residuals within the bound
   int count = 0;
 };
 
-// Unknowns: rotation vector w (R <- Exp(w) R), then t <- t + basis * d. The gradient of Sampson's
-// denominator is left out: it is multiplied by the residual, which is small.
+// Unknowns: rotation vector w (R <- Exp(w) R) and d (t <- t + basis * d). The derivative of the
+// Sampson denominator is omitted: it is multiplied by the residual, which is small.
 NormalEquations Linearise(const Se3& T, const Eigen::Matrix<double, 3, 2>& basis,
                           const RayPairs& rays, double bound) {
   NormalEquations n;
@@ -79,14 +79,15 @@ MotionScore ScoreMotion(const Se3& T_b_a, const RayPairs& rays, double widening)
   MotionScore result;
   result.gain.assign(rays.size(), 0);
   const Eigen::Matrix3d E = EssentialFromMotion(T_b_a);
-  // Rays this close to parallel (noise of 3 sigma in each) meet anywhere, behind the cameras too.
+  // Rays closer to parallel than this (noise of 3 sigma in each) may intersect anywhere, even
+  // behind the cameras.
   const double sine_far = 3 * std::sqrt(2.0) * rays.sigma.maxCoeff();
   for (size_t i = 0; i < rays.size(); ++i) {
     const double residual = SampsonOf(E, rays.a[i], rays.b[i], rays.sigma).residual;
     const double gain = widening * kChi2Fundamental - residual * residual;
     if (!(gain > 0)) continue;
     ++result.consistent;
-    // Depths z_a, z_b where z_a R a + t comes closest to z_b b; only their signs matter.
+    // Depths z_a and z_b at which z_a R a + t is closest to z_b b; only their signs are used.
     const Eigen::Vector3d turned = T_b_a.R * rays.a[i];
     const Eigen::Vector3d& b = rays.b[i];
     const double aa = turned.squaredNorm(), bb = b.squaredNorm(), ab = turned.dot(b);
@@ -142,7 +143,7 @@ RefinedMotion RefineMotion(const Se3& start, const RayPairs& rays, double widest
                                   .asDiagonal() *
                               spectrum.eigenvectors().transpose();
   const auto worst = [](const auto& block) {
-    return std::sqrt(block.norm());  // Frobenius: a little above the largest eigenvalue
+    return std::sqrt(block.norm());  // Frobenius norm: slightly above the largest eigenvalue
   };
   refined.rotation_sigma = worst(covariance.topLeftCorner<3, 3>());
   refined.direction_sigma = worst(covariance.bottomRightCorner<2, 2>());
@@ -171,7 +172,7 @@ std::vector<bool> ExplainedByRotation(const Eigen::Matrix3d& start, const RayPai
       if (!explained[i]) continue;
       correlation += rays.b[i] * (rays.a[i].transpose() / (rays.a[i].norm() * rays.b[i].norm()));
     }
-    R = NearestRotation(correlation);  // Umeyama 1991
+    R = NearestRotation(correlation);  // closed form (Umeyama 1991)
   }
   return explained;
 }

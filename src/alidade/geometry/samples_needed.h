@@ -1,11 +1,12 @@
-// How often RANSAC has to draw.
+// Number of RANSAC iterations.
 #pragma once
 
 #include <cmath>
 
 namespace alidade {
 
-// Samples of three until one is free of outliers with this confidence (Fischler & Bolles 1981).
+// Number of samples of three matches until one of them is free of outliers with probability
+// `confidence` (Fischler & Bolles 1981).
 inline double SamplesNeeded(double inlier_share, double confidence) {
   const double good = inlier_share * inlier_share * inlier_share;
   if (good <= 0) return INFINITY;

@@ -5,7 +5,7 @@
 namespace alidade {
 
 namespace {
-// (1 - cos x) / x², without the difference that loses half the digits of a small angle.
+// (1 - cos x) / x², without the cancellation that loses half of the digits at small angles.
 double HalfVersine(double x) {
   const double half = x / 2, quotient = half < 1e-4 ? 1 - half * half / 6 : std::sin(half) / half;
   return quotient * quotient / 2;
@@ -14,7 +14,7 @@ double HalfVersine(double x) {
 
 Eigen::Matrix3d ExpSo3(const Eigen::Vector3d& w) {
   const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
-  // Taylor series below 1e-4 rad: the quotients lose their digits there.
+  // Taylor series below 1e-4 rad, where the quotient loses digits.
   const double a = angle < 1e-4 ? 1 - angle2 / 6 : std::sin(angle) / angle;
   const double b = HalfVersine(angle);
   const Eigen::Matrix3d W = Skew(w);
@@ -30,7 +30,7 @@ Eigen::Vector3d LogSo3(const Eigen::Matrix3d& R) {
 }
 
 namespace {
-// V of Exp: translation = V * rho (Solà et al. 2018, eq. 174).
+// V in translation(Exp(rho; w)) = V * rho (Solà et al. 2018, eq. 174).
 Eigen::Matrix3d LeftJacobian(const Eigen::Vector3d& w) {
   const double angle2 = w.squaredNorm(), angle = std::sqrt(angle2);
   const double b = HalfVersine(angle);

@@ -1,5 +1,5 @@
-// Rigid motions. T_a_b maps points of frame b into frame a: p_a = T_a_b * p_b.
-// Tangent vectors are (translation; rotation), increments act from the left: T <- Exp(xi) * T
+// Rigid motions and similarities. T_a_b maps points of frame b to frame a: p_a = T_a_b * p_b.
+// Tangent vectors are (translation; rotation); increments act from the left: T <- Exp(xi) * T
 // (Solà, Deray & Atchuthan 2018, example 4).
 #pragma once
 
@@ -23,7 +23,7 @@ inline Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
   return (Eigen::Matrix3d() << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0).finished();
 }
 
-Eigen::Matrix3d ExpSo3(const Eigen::Vector3d& rotation_vector);  // radians
+Eigen::Matrix3d ExpSo3(const Eigen::Vector3d& rotation_vector);  // rotation vector in radians
 Eigen::Vector3d LogSo3(const Eigen::Matrix3d& rotation);         // radians, norm in [0, pi]
 
 struct Se3 {
@@ -44,7 +44,7 @@ struct Se3 {
   friend Eigen::Vector3d operator*(const Se3& a, const Eigen::Vector3d& p) { return a.R * p + a.t; }
 };
 
-// Angle of the rotation between two, radians.
+// Angle of the relative rotation, radians.
 double RotationAngle(const Se3& a, const Se3& b);
 
 // Similarity: p_a = s * R * p_b + t.

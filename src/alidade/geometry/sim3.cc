@@ -6,14 +6,14 @@
 namespace alidade {
 namespace {
 
-// V: the translation of Exp is V ν. The integral of e^(στ) Exp(τ ω) over τ from 0 to 1, which is
-// c I + a [ω]x + b [ω]x².
+// V in translation(Exp(xi)) = V ν: the integral of e^(στ) Exp(τ ω) over τ from 0 to 1, equal to c I
+// + a [ω]x + b [ω]x².
 Eigen::Matrix3d TranslationFactor(const Eigen::Vector3d& w, double sigma) {
   const double angle2 = w.squaredNorm(), length2 = sigma * sigma + angle2;
   double a = 0, b = 0, c = 0;
   if (length2 < 1) {
-    // Power series of ([ω]x + σ I)ⁿ / (n + 1)!: the closed form loses its digits here. Below 1 the
-    // twentieth term is less than a rounding.
+    // Power series of ([ω]x + σ I)ⁿ / (n + 1)!, since the closed form loses digits here. For an
+    // argument below 1 the twentieth term is below rounding.
     double an = 0, bn = 0, cn = 1, real = 1, factorial = 1;
     for (int n = 0; n < 20; ++n) {
       factorial *= n + 1;
@@ -38,14 +38,14 @@ Eigen::Matrix3d TranslationFactor(const Eigen::Vector3d& w, double sigma) {
   return c * Eigen::Matrix3d::Identity() + a * W + b * (W * W);
 }
 
-// What of the left Jacobian is not zero or one: (V, Q, q; 0, J, 0; 0, 0, 1).
+// Blocks of the left Jacobian that are neither zero nor one: (V, Q, q; 0, J, 0; 0, 0, 1).
 struct JacobianBlocks {
   Eigen::Matrix3d V, Q, J;
   Eigen::Vector3d q;
 };
 
-// Sum of adⁿ / (n + 1)!, ad = ([ω]x + σ I, [ν]x, -ν; 0, [ω]x, 0; 0, 0, 0). It converges for every
-// argument: ad is large only where ν is, and what multiplies ν falls like that of ω and σ alone.
+// Sum of adⁿ / (n + 1)! with ad = ([ω]x + σ I, [ν]x, -ν; 0, [ω]x, 0; 0, 0, 0). Converges for every
+// argument: ad is large only through ν, and the factors of ν decay like the series of ω and σ.
 JacobianBlocks SumJacobian(const Vector7d& xi) {
   const Eigen::Matrix3d W = Skew(xi.segment<3>(3)), N = Skew(xi.head<3>());
   const Eigen::Matrix3d M = W + xi[6] * Eigen::Matrix3d::Identity();
@@ -66,7 +66,7 @@ JacobianBlocks SumJacobian(const Vector7d& xi) {
     const auto small = [](const auto& term, const auto& of) {
       return term.squaredNorm() <= 1e-34 * of.squaredNorm();
     };
-    // n > 1: at a turn by nothing the terms of Q may begin with a zero.
+    // Only after n = 2: for a zero rotation the first terms of Q may vanish.
     if (n > 2 && small(v, sum.V) && small(u, sum.Q) && small(j, sum.J) && small(p, sum.q)) break;
   }
   return sum;

@@ -19,13 +19,13 @@ struct Match {
   size_t index;                 // in the caller's array
 };
 
-// Squared error over the largest allowed; infinity behind the camera.
+// Squared error divided by the largest allowed one; infinity behind the camera.
 double SquaredShare(const Camera& camera, const Eigen::Vector3d& p, const Eigen::Vector2d& pixel,
                     double inverse) {
   return p.z() > 0 ? (camera.Project(p) - pixel).squaredNorm() * inverse : INFINITY;
 }
 
-// 1 for a perfect match, down to 0 at the largest error in either image and beyond.
+// 1 for a perfect match, falling to 0 at the largest allowed error in either image.
 double Gain(const Camera& camera, const Sim3& T_a_b, const Sim3& T_b_a, const Match& m) {
   const double a = SquaredShare(camera, T_a_b * m.p_b, m.pixel_a, m.inverse_a);
   if (!(a < 1)) return 0;
@@ -35,7 +35,7 @@ double Gain(const Camera& camera, const Sim3& T_a_b, const Sim3& T_b_a, const Ma
 
 struct Scored {
   Sim3 T_a_b;
-  double score = 0;  // MSAC's (Torr & Zisserman 2000)
+  double score = 0;  // MSAC score (Torr & Zisserman 2000)
   int inliers = 0;
 };
 
@@ -50,15 +50,16 @@ Scored Score(const Camera& camera, const Sim3& T_a_b, std::span<const Match> mat
   return scored;
 }
 
-// Whether three points span a plane: their triangle is at least a fiftieth as high as it is long.
+// True if three points are not collinear: the triangle's height is at least 1/50 of its longest
+// side.
 bool SpanPlane(const std::vector<Eigen::Vector3d>& p) {
   const Eigen::Vector3d u = p[1] - p[0], v = p[2] - p[0];
   const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
   return u.cross(v).norm() > 0.02 * longest;
 }
 
-// AlignPoints for what may have no answer. The last is inliers that all lie on one point, or that
-// have nothing in common.
+// AlignPoints() that returns false where it has no solution. That happens when the inliers all
+// coincide or are unrelated.
 bool Align(const std::vector<Eigen::Vector3d>& a, const std::vector<Eigen::Vector3d>& b,
            bool with_scale, Sim3& T_a_b) {
   try {
@@ -83,7 +84,7 @@ std::vector<Match> Usable(std::span<const Sim3Match> matches, double max_error) 
   return usable;
 }
 
-// The best sample's answer is that of three points; all its inliers together know better.
+// Local optimization: re-estimates the transform from all its inliers.
 Scored Polish(const Camera& camera, Scored best, std::span<const Match> matches, bool with_scale) {
   for (int round = 0; round < 3; ++round) {
     std::vector<Eigen::Vector3d> a, b;

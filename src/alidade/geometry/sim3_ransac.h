@@ -1,6 +1,6 @@
-// The similarity, or rigid motion, between two cameras' frames from points known in both, with many
-// wrong matches among them: three points in closed form (Horn 1987; here alignment.h), RANSAC
-// around it, inliers by reprojection in both images (Mur-Artal, Montiel & Tardós 2015, §VII-B).
+// Similarity or rigid motion between two camera frames from 3D-3D matches with outliers: closed
+// form on three points (Horn 1987; here alignment.h) inside RANSAC, inliers by reprojection error
+// in both images (Mur-Artal, Montiel & Tardós 2015, §VII-B).
 #pragma once
 
 #include <Eigen/Core>
@@ -14,9 +14,9 @@
 namespace alidade {
 
 struct Sim3Match {
-  Eigen::Vector3d p_a, p_b;          // the point in camera a's and in camera b's frame, map units
-  Eigen::Vector2d pixel_a, pixel_b;  // where each saw it, undistorted
-  double sigma_a = 1, sigma_b = 1;   // pixels, standard deviation with the pyramid level's scale
+  Eigen::Vector3d p_a, p_b;          // the point in the frames of cameras a and b, map units
+  Eigen::Vector2d pixel_a, pixel_b;  // observed in each image, undistorted
+  double sigma_a = 1, sigma_b = 1;   // standard deviation at the keypoint's pyramid level, pixels
 };
 
 struct Sim3RansacSettings {
@@ -31,13 +31,13 @@ struct Sim3RansacSettings {
 
 struct Sim3RansacResult {
   bool success = false;
-  Sim3 T_a_b;                // to be refined by optimize/sim3_refine.h
-  std::vector<bool> inlier;  // one for each match
+  Sim3 T_a_b;                // optimize/sim3_refine.h refines it
+  std::vector<bool> inlier;  // one per match
   int inliers = 0;
 };
 
-// Matches that are not numbers are never inliers, nor are those behind either camera. Points on one
-// line give no answer: the turn about it is anyone's guess.
+// Non-finite matches and points behind either camera are never inliers. Collinear points give no
+// result, because the rotation about their line is undetermined.
 Sim3RansacResult SolveSim3Ransac(const Camera& camera, std::span<const Sim3Match> matches,
                                  const Sim3RansacSettings& settings = {});
 

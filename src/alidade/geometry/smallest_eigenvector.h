@@ -1,5 +1,5 @@
-// The unit vector x that makes x' M x smallest: the solution of every homogeneous linear system A x
-// = 0 of this folder, with M = A' A (Hartley & Zisserman, A5.3).
+// Unit vector x that minimizes x' M x. It solves the homogeneous linear systems A x = 0 of this
+// folder, with M = A' A (Hartley & Zisserman, A5.3).
 #pragma once
 
 #include <Eigen/Core>
@@ -8,14 +8,15 @@
 
 namespace alidade {
 
-// `m` symmetric, positive semi-definite. Inverse iteration on a Cholesky factorisation: for one
-// vector of a 9x9 matrix about eight times as fast as a whole eigenvalue decomposition, and RANSAC
-// asks for hundreds. Where the two smallest eigenvalues nearly agree the vector lies between
-// theirs, which is no worse an answer. Not finite in, not finite out.
+// `m` is symmetric positive semi-definite; only its lower triangle is read. Inverse iteration on a
+// Cholesky factorization: for a 9x9 matrix about eight times as fast as a full eigenvalue
+// decomposition, and RANSAC calls it hundreds of times. If the two smallest eigenvalues are nearly
+// equal, the result lies in the span of their eigenvectors. Non-finite input gives non-finite
+// output.
 template <int N>
 Eigen::Matrix<double, N, 1> SmallestEigenvector(const Eigen::Matrix<double, N, N>& m) {
-  // M = L D L'. Pivots held away from zero: an exact solution makes the last one rounding noise of
-  // either sign.
+  // M = L D L'. Pivots are kept away from zero: for an exact solution the last one is rounding
+  // noise of either sign.
   const double smallest_pivot = 1e-15 * m.trace();
   Eigen::Matrix<double, N, N> l = m;  // lower triangle used, unit diagonal implied
   std::array<double, N> inverse_pivot;
@@ -29,7 +30,8 @@ Eigen::Matrix<double, N, 1> SmallestEigenvector(const Eigen::Matrix<double, N, N
   }
   Eigen::Matrix<double, N, 1> x;
   for (int i = 0; i < N; ++i)
-    x[i] = 1 - 0.37 * (i % 3) - 0.11 * i;  // orthogonal to nothing in particular
+    // A start that is unlikely to be orthogonal to the solution.
+    x[i] = 1 - 0.37 * (i % 3) - 0.11 * i;
   x.normalize();
   for (int iteration = 0; iteration < 20; ++iteration) {
     Eigen::Matrix<double, N, 1> y = x;
@@ -41,7 +43,7 @@ Eigen::Matrix<double, N, 1> SmallestEigenvector(const Eigen::Matrix<double, N, N
       for (int i = j + 1; i < N; ++i) sum -= l(i, j) * y[i];
       y[j] = sum;
     }
-    y /= y.cwiseAbs().maxCoeff();  // the first solves may come near the largest double
+    y /= y.cwiseAbs().maxCoeff();  // the first solves may come close to the largest double
     y.normalize();
     const double change = 1 - std::abs(x.dot(y));
     x = y;

@@ -9,8 +9,8 @@ namespace alidade {
 std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Se3& T_a_world,
                                            const Eigen::Vector2d& pixel_a, const Se3& T_b_world,
                                            const Eigen::Vector2d& pixel_b) {
-  // In the frame of a, the unit the distance between the two: the equations stay well scaled
-  // however far from the world's origin, and however small the baseline.
+  // Solve in the frame of a with the baseline as unit: well scaled at any distance from the world
+  // origin and for any baseline.
   const Se3 T_b_a = T_b_world * T_a_world.Inverse();
   const double baseline = T_b_a.t.norm();
   if (!(baseline > 0)) return std::nullopt;

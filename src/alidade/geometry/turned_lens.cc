@@ -26,7 +26,7 @@ struct Turn {
   }
 };
 
-// g pi(R u(a)) - u(b), in sigmas; far out where the point turns behind the camera.
+// g π(R u(a)) - u(b), in sigma; a large constant if the rotated point is behind the camera.
 Eigen::Vector2d ErrorOf(const Turn& turn, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                         const Eigen::Vector2d& sigma) {
   const auto [g, k] = turn.lens;
@@ -37,8 +37,8 @@ Eigen::Vector2d ErrorOf(const Turn& turn, const Eigen::Vector3d& a, const Eigen:
   return (g * p.head<2>() / p.z() - u_b).cwiseQuotient(sigma);
 }
 
-// Sum of squared errors, each at most `bound`, and the priors: of `uncertainty` on the logarithm of
-// g, of half of it on k.
+// Sum of squared errors, each truncated at `bound`, plus priors with standard deviation
+// `uncertainty` on log(g) and `uncertainty` / 2 on k.
 double CostOf(const Turn& turn, const RayPairs& rays, double uncertainty, double bound) {
   const double g = std::log(turn.lens.g) / uncertainty, k = 2 * turn.lens.k / uncertainty;
   double cost = g * g + k * k;
@@ -47,9 +47,9 @@ double CostOf(const Turn& turn, const RayPairs& rays, double uncertainty, double
   return cost;
 }
 
-// One step of Levenberg and Marquardt, with more damping until the cost falls; false: none does.
+// One Levenberg-Marquardt step; increases the damping until the cost falls. False if it never does.
 bool Improve(Turn& turn, const RayPairs& rays, double uncertainty, double bound) {
-  constexpr double kDifference = 1e-6;  // in place of derivatives
+  constexpr double kDifference = 1e-6;  // step of the numerical derivatives
   Matrix5d H = Matrix5d::Zero();
   Vector5d g = Vector5d::Zero();
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -83,8 +83,8 @@ bool Improve(Turn& turn, const RayPairs& rays, double uncertainty, double bound)
   return false;
 }
 
-// The turn that lays the rays of a onto those of b, were the focal length g times the one assumed:
-// R = argmin Σ |R a / |a| - b / |b||², by singular values of Σ b a' (Kabsch 1976).
+// Rotation from the rays of a to those of b if the focal length is g times the assumed one: R =
+// argmin Σ |R a / |a| - b / |b||², from the SVD of Σ b a' (Kabsch 1976).
 Turn TurnWith(double g, const RayPairs& rays) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -95,9 +95,9 @@ Turn TurnWith(double g, const RayPairs& rays) {
   return {NearestRotation(sum), {g, 0}};
 }
 
-// Where to begin: `R` with the lens as assumed, and the turns with a few other focal lengths. One
-// alone may lead elsewhere: with turns of 25 degrees and more and a lens 1.4 times off, to a radial
-// term that is too large.
+// Starting points: `R` with the assumed lens, and closed-form rotations for a few other focal
+// lengths. A single start can converge to a too large radial coefficient (large rotations with a
+// wrong focal length).
 std::vector<Turn> Starts(const Eigen::Matrix3d& R, const RayPairs& rays, double uncertainty) {
   constexpr int kLenses = 7;
   std::vector<Turn> starts{{R, {}}};
@@ -112,14 +112,14 @@ std::vector<Turn> Starts(const Eigen::Matrix3d& R, const RayPairs& rays, double 
 
 std::vector<bool> ExplainedByTurnedLens(const Eigen::Matrix3d& R, const RayPairs& rays,
                                         double uncertainty, LensChange* found) {
-  constexpr int kIterations = 5;  // for each gate
+  constexpr int kIterations = 5;  // per gate
   constexpr double kGate = 2 * kChi2Homography;
-  constexpr double kEnough = 0.9;  // of the matches explained: no other start is tried
+  constexpr double kEnough = 0.9;  // share of matches explained at which no other start is tried
   std::vector<bool> most;
   ptrdiff_t count = -1;
   std::vector<Turn> starts = Starts(R, rays, uncertainty);
   while (!starts.empty()) {
-    // What costs least first.
+    // Take the start with the lowest cost.
     size_t next = 0;
     double least = std::numeric_limits<double>::infinity();
     for (size_t i = 0; i < starts.size(); ++i) {

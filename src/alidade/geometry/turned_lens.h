@@ -1,5 +1,5 @@
-// What a camera that only turned would show, when its lens is not known well: a wrong focal length
-// or a lens that bends lines makes a turn on the spot look like a walk past points.
+// Pure rotation seen through an uncertain lens. A wrong focal length or radial distortion makes a
+// pure rotation look like a translation.
 #pragma once
 
 #include <vector>
@@ -8,19 +8,19 @@
 
 namespace alidade {
 
-// A lens as it may be beside the one assumed: rays as assumed are (x, y, 1); the true ones
+// Deviation of the true lens from the assumed one. A ray (x, y, 1) of the assumed lens is in truth
 //   u(x, y) = (x, y) (1 + k (x² + y²)) / g.
 struct LensChange {
-  double g = 1;  // true focal length by the assumed one
-  double k = 0;  // radial term, at unit focal length
+  double g = 1;  // true focal length / assumed focal length
+  double k = 0;  // radial coefficient, at unit focal length
 };
 
-// Matches that a camera which only turned explains too with some lens near the assumed one:
-// rotation, g and k by least squares (Levenberg-Marquardt on g pi(R u(a)) - u(b), with gates that
-// narrow to the noise of both images: 2 x 95 % of chi² with 2 degrees of freedom), from `R` on. All
-// of the matches have a say at first, so that few of them may be wrong. `uncertainty`: g stays in
-// [1 / (1 + uncertainty), 1 + uncertainty]; k in ±uncertainty / 2. `found`: the lens it took, when
-// not null.
+// One per match: true if a pure rotation explains it together with some lens near the assumed one.
+// Estimates rotation, g and k from `R` by Levenberg-Marquardt on g π(R u(a)) - u(b); the gates
+// narrow to the noise of both images (2 × the 95 % quantile of chi² with 2 degrees of freedom). The
+// first gate admits all matches, so the share of outliers must be small. `uncertainty` limits g to
+// [1 / (1 + uncertainty), 1 + uncertainty] and k to ±uncertainty / 2. `found` (may be null)
+// receives the estimated lens.
 std::vector<bool> ExplainedByTurnedLens(const Eigen::Matrix3d& R, const RayPairs& rays,
                                         double uncertainty, LensChange* found = nullptr);
 

@@ -23,7 +23,7 @@ constexpr double kOneDegree = std::numbers::pi / 180;
 const Eigen::Vector3d kNowhere =
     Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN());
 
-// The 50th largest, or the smallest when there are fewer.
+// The 50th largest value, or the smallest if there are fewer.
 double FiftiethLargest(std::vector<double> values) {
   if (values.empty()) return 0;
   const size_t rank = std::min<size_t>(50, values.size()) - 1;
@@ -55,8 +55,8 @@ void Place(const Camera& camera, std::span<const Eigen::Vector2d> a,
   result.parallax_degrees = FiftiethLargest(std::move(parallax)) / kOneDegree;
 }
 
-// Whether nearly all of the matches that `explained` picks are among those `turned` names, which a
-// camera that only turned explains.
+// True if nearly all matches selected by `explained` are also explained by a pure rotation
+// (`turned`).
 template <typename Explained>
 bool OnlyTurned(const std::vector<bool>& turned, Explained explained, double min_beyond) {
   int all = 0, beyond = 0;
@@ -68,14 +68,13 @@ bool OnlyTurned(const std::vector<bool>& turned, Explained explained, double min
   return beyond < min_beyond * all;
 }
 
-// The same rays with noise of so many pixels.
+// The same rays with a noise of `sigma` pixels.
 RayPairs WithSigma(RayPairs rays, const Eigen::Vector2d& focal, double sigma) {
   rays.sigma = focal.cwiseInverse() * sigma;
   return rays;
 }
 
-// Whether the best of the ranked motions, with the points it places (in the result), is to be
-// believed.
+// Decides whether the best motion is acceptable, and triangulates its points into `result`.
 TwoViewFailure Judge(const Camera& camera, std::span<const Eigen::Vector2d> a,
                      std::span<const Eigen::Vector2d> b, const TwoViewSettings& settings,
                      const RayPairs& rays, const std::vector<RankedMotion>& ranked,
@@ -167,7 +166,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   result.inlier.assign(a.size(), false);
   result.p_a.assign(a.size(), kNowhere);
 
-  // Pixels in units of sigma from the principal point, for the models; rays, for the motions.
+  // Models use pixels from the principal point in units of sigma; motions use rays.
   const Eigen::Vector2d centre(camera.cx, camera.cy), focal(camera.fx, camera.fy);
   std::vector<Eigen::Vector2d> centred_a, centred_b;
   RayPairs rays;
@@ -197,7 +196,7 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   const RansacModel& larger = models.homography.inliers > models.fundamental.inliers
                                   ? models.homography
                                   : models.fundamental;
-  // The usual case while a start is awaited, so the first to be told.
+  // Pure rotation is the most frequent case before initialization, so it is tested first.
   const Eigen::Matrix3d turn = NearestRotation(H.determinant() < 0 ? -H : H);
   if (OnlyTurned(
           ExplainedByRotation(turn, WithSigma(rays, focal, settings.turn_sigma)),
@@ -210,8 +209,8 @@ TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::V
   std::vector<RankedMotion> ranked = RankMotions(motions, rays);
   if (ranked.empty()) return Refuse(std::move(result), TwoViewFailure::kNoModel);
 
-  // What is believed must be believed beside other directions, too; they are looked for last, since
-  // most frames before a start fail before that.
+  // An accepted motion must also win against starts from other directions. This expensive test
+  // comes last, because most pairs fail before it.
   TwoViewFailure failure = Judge(camera, a, b, settings, rays, ranked, result);
   if (failure == TwoViewFailure::kNone) {
     ranked = AddOtherDirections(std::move(ranked), rays, settings.min_placed_share);

@@ -1,7 +1,7 @@
-// Two views of an unknown scene: relative pose and points, or the honest answer that they can't be
-// had. Homography and fundamental matrix side by side, model choice and motion hypotheses:
-// Mur-Artal, Montiel & Tardós 2015, §IV; eight points and decomposition: Hartley & Zisserman, ch.
-// 9, 11; Faugeras & Lustman 1988.
+// Relative pose and points from two views of an unknown scene, or the reason why they cannot be
+// determined. Homography and fundamental matrix in parallel, model selection and motion hypotheses:
+// Mur-Artal, Montiel & Tardós 2015, §IV. Eight-point algorithm and decomposition: Hartley &
+// Zisserman, ch. 9 and 11; Faugeras & Lustman 1988.
 #pragma once
 
 #include <Eigen/Core>
@@ -58,32 +58,33 @@ enum class TwoViewFailure {
   kTooFewMatches,
   kNoModel,
   kLowParallax,
-  kUnknownLens,  // a turn explains the matches, with another focal length or a lens that bends
+  // Pure rotation with another focal length or radial distortion explains the matches.
+  kUnknownLens,
   kAmbiguous,
   kTooFewPoints
 };
 
 struct TwoViewResult {
-  TwoViewFailure failure = TwoViewFailure::kTooFewMatches;  // kNone: the rest is filled
-  bool planar = false;                                      // the homography was chosen
+  TwoViewFailure failure = TwoViewFailure::kTooFewMatches;  // kNone: all fields are valid
+  bool planar = false;                                      // homography_share exceeds the setting
   double homography_share = 0;                              // S_H / (S_H + S_F)
-  double parallax_degrees = 0;                              // as in the settings
-  Se3 T_b_a;                 // motion from the first view to the second, |t| = 1
-  std::vector<bool> inlier;  // one for each match: triangulated well
-  std::vector<Eigen::Vector3d>
-      p_a;  // one for each match, in the first view's frame; NaN when not an inlier
+  double parallax_degrees = 0;  // as for min_parallax_degrees of the settings
+  Se3 T_b_a;                    // motion from the first to the second view, |t| = 1
+  std::vector<bool> inlier;     // one per match: triangulated with small error
+  // One per match: the point in the frame of the first view, unit |t|; NaN if not an inlier.
+  std::vector<Eigen::Vector3d> p_a;
 };
 
-// Matches are undistorted pixels; all at one camera. Matches that are not finite are never inliers.
-// Near the line between the two models neither alone can be trusted, so the motions of both are
-// candidates: each is refined on all matches, and the answer given only when no other comes near
-// it.
+// `a` and `b` are corresponding undistorted pixels of one camera; non-finite matches are never
+// inliers. Near the model-selection threshold neither model is reliable, so the motions of both are
+// candidates. Each is refined on all matches, and the result is accepted only if no other motion
+// comes near it. Throws Error (usage) if the sizes differ.
 TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::Vector2d> a,
                                   std::span<const Eigen::Vector2d> b,
                                   const TwoViewSettings& settings = {});
 
-// Point seen at undistorted pixels by two cameras, linear method (Hartley & Zisserman 12.2), in the
-// world. Not finite or behind: nullopt.
+// Linear triangulation of a point from undistorted pixels in two cameras (Hartley & Zisserman
+// 12.2). Returns the point in the world frame, or nullopt if it is not finite or behind a camera.
 std::optional<Eigen::Vector3d> Triangulate(const Camera& camera, const Se3& T_a_world,
                                            const Eigen::Vector2d& pixel_a, const Se3& T_b_world,
                                            const Eigen::Vector2d& pixel_b);

@@ -16,7 +16,8 @@ namespace {
 
 using Points = std::span<const Eigen::Vector2d>;
 
-// Four matches at a time (GCC's and clang's vector type; SSE, NEON or WebAssembly below it).
+// Four matches at a time: a vector type of GCC and clang, compiled to SSE, NEON or WebAssembly
+// SIMD.
 using Float4 = float __attribute__((vector_size(16)));
 
 Float4 Load(const float* p) {
@@ -25,8 +26,7 @@ Float4 Load(const float* p) {
   return v;
 }
 
-// Coordinates one array each, padded to whole vectors with NaN, which no comparison takes for an
-// inlier.
+// One array per coordinate, padded to whole vectors with NaN, which fails every inlier comparison.
 struct Lanes {
   std::vector<float> ax, ay, bx, by;
 
@@ -45,8 +45,8 @@ struct Lanes {
   size_t size() const { return ax.size(); }
 };
 
-// rho of eq. 2: what a squared distance below the bound adds to the score; the same maximum for
-// both models.
+// rho of eq. 2: contribution of a squared distance below the bound; both models have the same
+// maximum.
 Float4 Gain(Float4 squared, float bound) {
   const Float4 zero = {};
   return squared < bound ? static_cast<float>(kChi2Homography) - squared : zero;
@@ -131,9 +131,8 @@ std::vector<Eigen::Vector2d> Chosen(Points points, const std::vector<bool>& chos
   return result;
 }
 
-// Estimates again from the inliers, first of a wider band: a sample of eight carries the noise of
-// eight, but its model still passes near most of the inliers it misses (local optimisation, Chum,
-// Matas & Kittler 2003).
+// Re-estimates from the inliers, at first of a wider bound: the model of a sample of eight is noisy
+// but passes near most of the inliers it misses (local optimization, Chum, Matas & Kittler 2003).
 template <typename Model>
 RansacModel Polish(const RansacModel& start, const Lanes& lanes, Points a, Points b) {
   RansacModel best = start, current = start;
@@ -169,9 +168,10 @@ Candidate Try(Points a, Points b, const Lanes& lanes) {
   return candidate;
 }
 
-// The few to polish: among outliers the first of them is often not the one that polishes best.
+// The best few candidates to polish; with many outliers the top one is often not the one that
+// polishes best.
 std::vector<Candidate> MostPromising(std::vector<Candidate> candidates) {
-  // In order: the first of equals wins.
+  // Stable sort: the first of equal scores wins.
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.score > y.score; });
   if (candidates.size() > 5) candidates.resize(5);
@@ -208,7 +208,7 @@ RansacModels FitTwoViewModels(Points a, Points b, int iterations, uint64_t seed,
 
   const Lanes lanes(a, b);
   std::vector<Candidate> homographies(iterations), fundamentals(iterations);
-  constexpr int kChunk = 10;  // samples; about 20 microseconds of work
+  constexpr int kChunk = 10;  // samples per task; about 20 µs of work
   const int chunks = (iterations + kChunk - 1) / kChunk;
   const auto try_chunk = [&](int chunk) {
     for (int i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, iterations); ++i) {
@@ -224,8 +224,8 @@ RansacModels FitTwoViewModels(Points a, Points b, int iterations, uint64_t seed,
   RansacModels models;
   models.fundamental = Best<Fundamental>(MostPromising(std::move(fundamentals)), lanes, a, b);
   homographies = MostPromising(std::move(homographies));
-  // A plane's matches are among the inliers of the fundamental matrix, with hardly an outlier: a
-  // start where outliers are too many for samples of eight.
+  // The inliers of the fundamental matrix contain the matches of a plane with few outliers. This
+  // gives a start where outliers are too many for samples of eight.
   if (models.fundamental.inliers >= 8) {
     homographies.push_back(Try<Homography>(Chosen(a, models.fundamental.inlier),
                                            Chosen(b, models.fundamental.inlier), lanes));

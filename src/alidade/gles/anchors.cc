@@ -6,8 +6,8 @@
 namespace alidade::gles {
 namespace {
 
-constexpr size_t kTexels = 4;  // of a slot
-constexpr size_t kRow = 512;   // slots: 2048 texels, which every context has
+constexpr size_t kTexels = 4;  // texels per slot
+constexpr size_t kRow = 512;   // slots per row: 2048 texels, supported by every context
 
 Anchor AnchorOf(const Se3& T_world_camera, double scale, float strength) {
   Anchor anchor;
@@ -69,7 +69,7 @@ void Anchors::Update(const StreamScene& scene, MapId active) {
     unused_.push_back(slot->second);
     slot = slots_.erase(slot);
   }
-  // The order of an unordered map decides which slot is used again, and nothing else.
+  // The iteration order of an unordered map affects only which free slot is reused.
   for (const auto& [id, keyframe] : scene.keyframes) {
     auto [place, is_new] = slots_.try_emplace(id.value, static_cast<uint32_t>(anchors_.size()));
     if (is_new && !unused_.empty()) {
@@ -109,7 +109,7 @@ size_t Anchors::Bind() {
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   changed_.Take(anchors_.size(), [&](size_t first, size_t count) {
     bytes += count * sizeof(Anchor);
-    while (count > 0) {  // a part of a row, or as many whole ones as there are
+    while (count > 0) {  // one partial row, or all consecutive full rows
       const size_t column = first % kRow;
       const bool whole = column == 0 && count >= kRow;
       const size_t width = whole ? kRow : std::min(count, kRow - column);

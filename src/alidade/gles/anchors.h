@@ -1,6 +1,6 @@
-// Poses of keyframes in a texture, a slot each: what is drawn carries a slot and a place in that
-// slot's keyframe. When keyframes move (a loop was closed, the map adjusted), their poses are
-// uploaded, and no point, edge or path.
+// Poses of keyframes in a texture, one slot each. Vertices store a slot and a position in that
+// slot's keyframe. When keyframes move (loop closure, map adjustment), only their poses are
+// uploaded, not the points, edges and paths.
 #pragma once
 
 #include <GLES3/gl3.h>
@@ -14,30 +14,29 @@
 
 namespace alidade::gles {
 
-inline constexpr uint32_t kNowhere = 0;     // a slot that is not drawn
+inline constexpr uint32_t kNowhere = 0;     // a slot whose content is hidden
 inline constexpr uint32_t kCameraSlot = 1;  // the last frame's camera
 
-// Four texels: the rows of a matrix, p_world = M * (p, 1), then the logarithm of the least inverse
-// depth, that of most / least, the strength (0 hidden, 1 of the active map, 2 of another), 1 /
-// scale.
+// Four texels: the three rows of M in p_world = M * (p, 1); then log(least inverse depth), log(most
+// / least), strength (0 hidden, 1 in the active map, 2 in another), 1 / scale.
 struct Anchor {
   float rows[3][4] = {};
   float depth_least = 0, depth_span = 0, strength = 0, per_scale = 1;
 };
 
-// GLSL: Place(slot, p, strength) in the world, Range(slot) the fourth texel.
+// GLSL functions: Place(slot, p, strength) returns world coordinates, Range(slot) the fourth texel.
 extern const char* const kAnchorsGlsl;
 
 class Anchors {
  public:
   Anchors();
-  // The slots of all keyframes in the scene, and their poses. Those of keyframes that went may be
-  // given to others: whoever holds one must have looked them up again before anything is drawn.
+  // Assigns slots to all keyframes of the scene and sets their poses. Slots of removed keyframes
+  // may be reused, so callers must look up their slots again before drawing.
   void Update(const StreamScene& scene, MapId active);
   void SetCamera(const Se3& T_world_camera, bool shown);
-  uint32_t SlotOf(KeyFrameId id) const;  // kNowhere: not known
+  uint32_t SlotOf(KeyFrameId id) const;  // kNowhere: unknown keyframe
 
-  // Uploads what was changed, binds the texture to the active unit. Bytes that were uploaded.
+  // Uploads changes and binds the texture to the active unit. Returns the number of uploaded bytes.
   size_t Bind();
   void Forget() { texture_ = 0, rows_ = 0; }
   void Release();

@@ -15,7 +15,7 @@ double MedianOf(std::vector<double> values) {
   return *middle;
 }
 
-// Every n-th landmark of the active map: f(keyframe, landmark).
+// Calls f(keyframe, landmark) for a subsample of the landmarks of the active map.
 template <typename F>
 void ForSome(const StreamScene& scene, F&& f) {
   const MapId active = scene.ActiveMap();

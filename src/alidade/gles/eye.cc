@@ -4,8 +4,8 @@
 
 namespace alidade::gles {
 
-// The eye has z forward and y down, OpenGL's clip coordinates y up. Depth: 1 - 2 nearest / z, which
-// reaches to infinity.
+// The eye's z axis points forward and y down; OpenGL's clip space has y up. Depth is 1 - 2 nearest
+// / z, with the far plane at infinity.
 const char* const kEyeGlsl = R"(
 uniform mat4 eye;
 uniform vec2 focal;
@@ -24,7 +24,7 @@ void SetEye(const GlProgram& program, const ViewSettings& view, int width, int h
     columns[12 + r] = static_cast<GLfloat>(T_eye_world.t(r));
   }
   columns[15] = 1;
-  const double focal = 1 / std::tan(view.fov / 2);  // in half heights
+  const double focal = 1 / std::tan(view.fov / 2);  // in half heights of the viewport
   glUniformMatrix4fv(program.At("eye"), 1, GL_FALSE, columns);
   glUniform2f(program.At("focal"), static_cast<GLfloat>(focal * height / width),
               static_cast<GLfloat>(focal));

@@ -1,4 +1,4 @@
-// What all layers of the map need to know of the eye, and how they are told.
+// Uniforms of the virtual camera, shared by all layers of the map.
 #pragma once
 
 #include "alidade/gles/gl_program.h"
@@ -6,14 +6,14 @@
 
 namespace alidade::gles {
 
-// GLSL: Eye(p) is a point of the world before the eye, Clip(p) such a one on the screen; `area` is
-// the size of the viewport, pixels; `nearest`.
+// GLSL functions: Eye(p) transforms a world point to the eye's frame, Clip(p) projects such a
+// point. Uniforms: `area`, the viewport's size in pixels, and `nearest`.
 extern const char* const kEyeGlsl;
 
-// Tells the current program, for a viewport of that many pixels.
+// Sets the uniforms of the current program; `width`, `height`: the viewport in pixels.
 void SetEye(const GlProgram& program, const ViewSettings& view, int width, int height);
 
-// Of the current program.
+// Sets a color uniform of the current program.
 void SetColor(const GlProgram& program, const char* uniform, const Color& color);
 
 }  // namespace alidade::gles

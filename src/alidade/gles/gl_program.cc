@@ -49,7 +49,7 @@ void GlProgram::Use() {
     glAttachShader(program, vertex);
     glAttachShader(program, fragment);
     glLinkProgram(program);
-    glDeleteShader(vertex);  // when the program goes
+    glDeleteShader(vertex);  // takes effect when the program is deleted
     glDeleteShader(fragment);
     GLint linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &linked);
@@ -64,7 +64,7 @@ void GlProgram::Use() {
 }
 
 void GlProgram::Release() {
-  glDeleteProgram(name_);  // 0 is passed over
+  glDeleteProgram(name_);  // 0 is ignored
   name_ = 0;
 }
 

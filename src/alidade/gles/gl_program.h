@@ -1,4 +1,4 @@
-// A shader program: two texts until a context compiles them.
+// A shader program, compiled on first use in a context.
 #pragma once
 
 #include <GLES3/gl3.h>
@@ -10,17 +10,17 @@ namespace alidade::gles {
 
 class GlProgram {
  public:
-  // What follows "#version 300 es" and the precision.
+  // The shaders without "#version 300 es" and the precision statement.
   GlProgram(std::string vertex, std::string fragment)
       : vertex_(std::move(vertex)), fragment_(std::move(fragment)) {}
 
-  // Current from now on; compiled when it is not yet. Throws Error (input) with what the driver
-  // says.
+  // Makes the program current; compiles it if necessary. Throws Error (input) with the driver's
+  // message.
   void Use();
-  // Of a uniform of the current program. Unused ones are -1, which OpenGL passes over.
+  // Location of a uniform of the current program; -1 if unused, which OpenGL ignores.
   GLint At(const char* uniform) const { return glGetUniformLocation(name_, uniform); }
 
-  void Forget() { name_ = 0; }  // the context is gone
+  void Forget() { name_ = 0; }  // call when the context was lost
   void Release();
 
  private:

@@ -1,5 +1,5 @@
-// Values that the GPU reads from a vertex buffer. They are kept here too: what was changed is
-// uploaded before it is drawn, and all of it into a context that is new.
+// An array with a copy in a vertex buffer. Changed pages are uploaded before drawing; after a
+// context loss everything is.
 #pragma once
 
 #include <GLES3/gl3.h>
@@ -11,17 +11,17 @@
 
 namespace alidade::gles {
 
-// Which pages of an array were changed since the last upload.
+// Pages of an array that changed since the last upload.
 class ChangedPages {
  public:
-  explicit ChangedPages(size_t page) : page_(page) {}  // values of a page
+  explicit ChangedPages(size_t page) : page_(page) {}  // values per page
   void Add(size_t value) {
     const size_t page = value / page_;
     if (page >= changed_.size()) changed_.resize(page + 1, false);
     changed_[page] = true;
   }
-  // `upload(first, count)`: values in pages side by side, of `size` there are; none is changed
-  // then.
+  // Calls upload(first, count) for each run of consecutive changed pages in an array of `size`
+  // values, and marks all as unchanged.
   template <typename Upload>
   void Take(size_t size, Upload&& upload) {
     for (size_t page = 0; page < changed_.size(); ++page) {
@@ -49,7 +49,7 @@ class GpuArray {
   size_t size() const { return values_.size(); }
   const T& operator[](size_t i) const { return values_[i]; }
 
-  // i up to size(): the array grows by one.
+  // `i` may equal size(): then the array grows by one.
   void Set(size_t i, const T& value) {
     if (i == values_.size()) {
       values_.push_back(value);
@@ -63,7 +63,7 @@ class GpuArray {
   void Add(const T& value) { Set(size(), value); }
   void Shrink(size_t size) { values_.resize(std::min(size, values_.size())); }
 
-  // The buffer is bound to GL_ARRAY_BUFFER and holds the values. Bytes that were uploaded.
+  // Binds the buffer to GL_ARRAY_BUFFER and updates it. Returns the number of uploaded bytes.
   size_t Upload() {
     size_t bytes = 0;
     if (name_ == 0) {
@@ -85,7 +85,7 @@ class GpuArray {
     return bytes;
   }
 
-  void Forget() { name_ = 0, room_ = 0; }  // the context is gone
+  void Forget() { name_ = 0, room_ = 0; }  // call when the context was lost
   void Release() {
     glDeleteBuffers(1, &name_);
     Forget();
@@ -96,7 +96,7 @@ class GpuArray {
   std::vector<T> values_;
   ChangedPages changed_{kPage};
   GLuint name_ = 0;
-  size_t room_ = 0;  // values the buffer has room for
+  size_t room_ = 0;  // capacity of the buffer in values
 };
 
 }  // namespace alidade::gles

@@ -8,8 +8,9 @@
 namespace alidade::gles {
 namespace {
 
-// A strip of four: gl_VertexID says which end and which side. What is behind the eye is cut off at
-// `nearest`, or it would turn over. Half a pixel more on each side is for the soft edge.
+// A line as a strip of four vertices; gl_VertexID selects the end and the side. The part behind the
+// eye is clipped at `nearest`, because its projection would be mirrored. An extra half pixel per
+// side gives a soft edge.
 constexpr const char* kWidenGlsl = R"(
 uniform float line_width;
 out float across;
@@ -44,8 +45,8 @@ void main() {
 }
 )";
 
-// Eight lines of six vertices: from the camera to the picture's corners, and around it. A
-// keyframe's scale is no matter of its frustum.
+// Eight lines with six vertices each: from the camera to the image corners, and around the image.
+// The keyframe's scale does not affect the frustum's size.
 constexpr const char* kFrustumGlsl = R"(
 layout(location = 0) in uint slot;
 uniform vec2 corners[4];

@@ -1,5 +1,5 @@
-// The path, and the frusta of keyframes and camera. OpenGL ES promises lines of one pixel only, so
-// each is two triangles, as wide on the screen as is asked for, with soft edges.
+// Draws the path and the frusta of the keyframes and the camera. OpenGL ES guarantees lines of one
+// pixel only, so each line consists of two triangles with the requested width and soft edges.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@
 
 namespace alidade::gles {
 
-// From frame to frame, where both are known and in one map.
+// Connects consecutive frames that both have a pose in the same map.
 class PathLayer {
  public:
   PathLayer();
-  // `anew`: the map is other than it was, so that frames may hang on other keyframes; else only
-  // frames that came are added.
+  // `anew`: the map changed, so frames may refer to other keyframes, and all segments are rebuilt.
+  // Otherwise only new frames are added.
   void Update(const StreamScene& scene, const Anchors& anchors, bool anew);
   size_t Draw(const ViewSettings& view, int width, int height);
   size_t count() const { return segments_.size(); }
@@ -34,20 +34,20 @@ class PathLayer {
   };
   GlProgram program_;
   GpuArray<Segment> segments_;
-  size_t done_ = 0, used_ = 0;  // frames of the path, segments made of them
-  bool joined_ = false;         // the last frame done can be gone on from
+  size_t done_ = 0, used_ = 0;  // frames processed, and segments made from them
+  bool joined_ = false;         // the last processed frame can be continued
   End last_{};
   MapId last_map_;
   GLuint layout_ = 0;
 };
 
-// Each frustum is an instance that knows its slot and nothing else.
+// Each frustum is an instance whose only attribute is its slot.
 class FrustumLayer {
  public:
   FrustumLayer();
   void Update(const StreamScene& scene, const Anchors& anchors);
-  // `deep`: the frustum of a keyframe, world units. The camera's own is drawn when it has a place,
-  // twice as large.
+  // `deep`: depth of a keyframe's frustum, world units. The camera's frustum is drawn if its pose
+  // is known, twice as large.
   size_t Draw(const ViewSettings& view, double deep, bool lost, int width, int height);
   size_t count() const { return slots_.size(); }
   void Forget();
@@ -57,8 +57,8 @@ class FrustumLayer {
   void DrawSome(const Color& color, double deep, GLsizei count);
   GlProgram program_;
   GpuArray<uint32_t> slots_;        // of keyframes
-  GpuArray<uint32_t> camera_slot_;  // one
-  float corners_[4][2] = {};        // of the picture, at depth 1
+  GpuArray<uint32_t> camera_slot_;  // one element
+  float corners_[4][2] = {};        // of the image, at depth 1
   GLuint layout_ = 0, camera_layout_ = 0;
 };
 

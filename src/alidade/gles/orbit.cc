@@ -6,14 +6,14 @@
 namespace alidade::gles {
 namespace {
 
-constexpr double kSteepest = 1.5;  // radians: before yaw means nothing
+constexpr double kSteepest = 1.5;  // radians; near the pole yaw is undefined
 constexpr double kHalfTurn = 3.14159265358979323846;
 
-// Where up is in a camera whose picture is upright when turned clockwise.
+// Up direction in the frame of a camera whose image is upright after a clockwise rotation.
 Eigen::Vector3d UpInCamera(int rotation) {
   switch (rotation) {
     case 90:
-      return {-1, 0, 0};  // what was left comes to the top
+      return {-1, 0, 0};  // the left side becomes the top
     case 180:
       return {0, 1, 0};
     case 270:
@@ -47,7 +47,7 @@ void Orbit::Fit(const StreamScene& scene, int rotation) {
   axes.row(2) = up;
   const Extent extent = ExtentOf(scene);
   centre = extent.centre;
-  distance = 2.5 * extent.radius;  // fills a view of 0.9 radians
+  distance = 2.5 * extent.radius;  // fits a field of view of 0.9 radians
 }
 
 void Orbit::Turn(double right, double down, double height) {
@@ -56,7 +56,7 @@ void Orbit::Turn(double right, double down, double height) {
 }
 
 void Orbit::Pan(double right, double down, double height, double fov) {
-  const double step = 2 * distance * std::tan(fov / 2) / height;  // world units of a pixel
+  const double step = 2 * distance * std::tan(fov / 2) / height;  // world units per pixel
   const Se3 eye = T_world_eye();
   centre -= step * (right * eye.R.col(0) + down * eye.R.col(1));
 }
@@ -66,7 +66,7 @@ void Orbit::Zoom(double factor) {
 }
 
 Se3 Orbit::T_world_eye() const {
-  // In the axes right, forward, up: looks along z.
+  // Viewing direction z in the axes right, forward, up.
   const double cy = std::cos(yaw), sy = std::sin(yaw), cp = std::cos(pitch), sp = std::sin(pitch);
   const Eigen::Vector3d z(-sy * cp, cy * cp, -sp), x(cy, sy, 0);
   Eigen::Matrix3d R;

@@ -13,7 +13,7 @@
 namespace alidade::gles {
 namespace {
 
-// Shares of the picture's width and height, from its top left, to the screen.
+// Maps positions in the image, as shares of width and height from the top left, to the screen.
 constexpr const char* kTurnGlsl = R"(
 uniform mat3 turn;
 vec4 Turn(vec2 share) { return vec4((turn * vec3(share, 1.0)).xy, 0.0, 1.0); }
@@ -33,7 +33,7 @@ out vec4 result;
 void main() { result = vec4(texture(luma, share).rrr, 1.0); }
 )";
 
-// Uses: 0 free, 1 matched, 2 fresh, 3 moving (stream.fbs).
+// Values of `use`: 0 free, 1 matched, 2 fresh, 3 moving (stream.fbs).
 constexpr const char* kFeatureGlsl = R"(
 layout(location = 0) in vec2 place;
 layout(location = 1) in uint use;
@@ -59,8 +59,9 @@ void main() {
 
 bool IsAcross(int rotation) { return rotation == 90 || rotation == 270; }
 
-// Columns of a matrix: of a share's x, its y, and the constant. Clockwise by 90 degrees the top
-// left corner comes to the top right: (x, y) -> (1 - y, x). Then to -1…1, y up.
+// Columns of the matrix: for the share's x, its y, and the constant. A clockwise rotation by 90
+// degrees moves the top left corner to the top right: (x, y) -> (1 - y, x). The result is scaled to
+// -1…1 with y up.
 std::array<GLfloat, 9> TurnOf(int rotation) {
   switch (rotation) {
     case 90:
@@ -133,7 +134,7 @@ void PictureLayer::Update(const StreamScene& scene) {
   features_.Shrink(used);
 }
 
-// A picture with more pixels than a texture may have is shown by every n-th.
+// Uploads the image; one that exceeds the maximum texture size is subsampled.
 size_t PictureLayer::Upload() {
   {
     const std::lock_guard lock(mutex_);
@@ -194,7 +195,7 @@ size_t PictureLayer::Draw(const ViewSettings& view, const PixelArea& area) {
   glUniformMatrix3fv(program_.At("turn"), 1, GL_FALSE, turn.data());
   glUniform1i(program_.At("luma"), 0);
   if (layout_ == 0) glGenVertexArrays(1, &layout_);
-  glBindVertexArray(layout_);  // without attributes: corners are numbered
+  glBindVertexArray(layout_);  // without attributes: gl_VertexID selects the corner
   glDisable(GL_BLEND);
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
   if (!view.features || features_.size() == 0) return uploaded;

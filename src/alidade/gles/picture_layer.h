@@ -1,4 +1,4 @@
-// The camera's picture, turned upright and fitted into its area, with the last frame's features.
+// Draws the camera image upright, fitted into its area, with the last frame's features.
 #pragma once
 
 #include <array>
@@ -13,24 +13,24 @@
 
 namespace alidade::gles {
 
-// In pixels of the screen, from its lower left corner, as OpenGL counts.
+// Pixels of the screen, from the lower left corner as in OpenGL.
 struct PixelArea {
   int left = 0, bottom = 0, width = 0, height = 0;
   bool none() const { return width <= 0 || height <= 0; }
 };
 PixelArea PixelsOf(const Area& area, int width, int height);
 
-// Where a picture turned clockwise by 0, 90, 180 or 270 degrees lies when it is as large as fits
-// into `area`, in its middle.
+// The largest centered area within `area` for an image of this size rotated clockwise by 0, 90, 180
+// or 270 degrees.
 PixelArea FitPicture(const PixelArea& area, int width, int height, int rotation);
 
 class PictureLayer {
  public:
   PictureLayer();
-  // Any thread; copies the picture. Throws Error (usage) on what cannot be.
+  // Any thread. Copies the image. Throws Error (usage) for invalid arguments.
   void Set(const uint8_t* luma, int width, int height, size_t stride, int rotation);
   void Update(const StreamScene& scene);
-  // Sets the viewport to what is left of `area` when the picture is fitted into it.
+  // Sets the viewport to the part of `area` that the image covers.
   size_t Draw(const ViewSettings& view, const PixelArea& area);
   bool any() const { return !shown_.pixels.empty(); }
   void Forget();
@@ -38,17 +38,17 @@ class PictureLayer {
 
  private:
   struct Plane {
-    std::vector<uint8_t> pixels;  // rows without gaps
+    std::vector<uint8_t> pixels;  // rows without padding
     int width = 0, height = 0, rotation = 0;
   };
   struct Vertex {
-    float x, y;  // shares of the picture's width and height
+    float x, y;  // shares of the image's width and height
     uint32_t use;
   };
   size_t Upload();
   void DrawFeatures(const ViewSettings& view);
 
-  std::mutex mutex_;  // of next_ and fresh_
+  std::mutex mutex_;  // guards next_ and fresh_
   Plane next_;
   bool fresh_ = false;
   Plane shown_;

@@ -25,7 +25,8 @@ void main() {
 }
 )";
 
-// K: of the picture's 65536ths, x and y: p = (place * K.xy + K.zw, 1) / inverse depth.
+// K maps image positions, in 65536ths, to normalized coordinates: p = (place * K.xy + K.zw, 1) /
+// inverse depth.
 constexpr const char* kCloudGlsl = R"(
 layout(location = 0) in uvec4 told;
 layout(location = 1) in uint slot;
@@ -57,7 +58,7 @@ LandmarkLayer::LandmarkLayer()
     : program_(std::string(kAnchorsGlsl) + kEyeGlsl + kLandmarkGlsl, kPointGlsl) {}
 
 void LandmarkLayer::Update(const StreamScene& scene, const Anchors& anchors) {
-  // Both are sorted by id: one walk finds what came, changed and went.
+  // Both lists are sorted by id, so one pass finds added, changed and removed landmarks.
   std::vector<std::pair<LandmarkId, uint32_t>> ids;
   ids.reserve(scene.landmarks.size());
   auto known = ids_.begin();
@@ -82,7 +83,7 @@ void LandmarkLayer::Update(const StreamScene& scene, const Anchors& anchors) {
     vertices_.Set(
         at, {landmark.p.x(), landmark.p.y(), landmark.p.z(), anchors.SlotOf(landmark.keyframe)});
   }
-  drop_before({});  // none is the largest id
+  drop_before({});  // the invalid id is the largest
   ids_ = std::move(ids);
 }
 
@@ -134,7 +135,7 @@ void CloudLayer::Hide(Cloud& cloud) {
 }
 
 void CloudLayer::Show(const SceneKeyFrame& keyframe, uint32_t slot, Cloud& cloud) {
-  constexpr size_t kTold = 8;  // bytes of a point
+  constexpr size_t kTold = 8;  // bytes per point
   cloud.told = keyframe.depth_told;
   cloud.points = keyframe.depth.size() / kTold;
   count_ += cloud.points;

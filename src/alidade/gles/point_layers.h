@@ -1,4 +1,4 @@
-// Landmarks, and the semi-dense points of keyframes: one call each, whatever their number.
+// Draws landmarks and the keyframes' semi-dense points, with one draw call each.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace alidade::gles {
 class LandmarkLayer {
  public:
   LandmarkLayer();
-  // Takes over what the scene's map has other than what is known; no GL call.
+  // Applies the changes of the scene's map; makes no GL calls.
   void Update(const StreamScene& scene, const Anchors& anchors);
-  // For a viewport of that many pixels. Bytes that were uploaded.
+  // `width`, `height`: the viewport in pixels. Returns the number of uploaded bytes.
   size_t Draw(const ViewSettings& view, int width, int height);
   size_t count() const { return ids_.size(); }
   void Forget();
@@ -31,14 +31,14 @@ class LandmarkLayer {
   };
   GlProgram program_;
   GpuArray<Vertex> vertices_;
-  std::vector<std::pair<LandmarkId, uint32_t>> ids_;  // and where their vertices are; by id
+  // Landmarks and their vertex index, sorted by id.
+  std::vector<std::pair<LandmarkId, uint32_t>> ids_;
   std::vector<uint32_t> unused_;
   GLuint layout_ = 0;
 };
 
-// A keyframe's points lie in blocks that may be anywhere; blocks of one that went are used again.
-// Vertices are what the stream tells (8 bytes: place in the picture, inverse depth, colour) and a
-// slot.
+// A keyframe's points are stored in blocks anywhere in the buffer; blocks of removed keyframes are
+// reused. A vertex holds the stream's 8 bytes (image position, inverse depth, color) and a slot.
 class CloudLayer {
  public:
   CloudLayer();

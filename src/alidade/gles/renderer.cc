@@ -33,7 +33,7 @@ struct Renderer::Layers {
     glDepthMask(GL_TRUE);
     if (view.points) uploaded += points.Draw(view, area.width, area.height);
     if (view.landmarks) uploaded += landmarks.Draw(view, area.width, area.height);
-    // Lines have soft edges: hidden by points, but not by each other's.
+    // Soft-edged lines are occluded by points, but not by each other's edges.
     glEnable(GL_BLEND);
     glDepthMask(GL_FALSE);
     if (view.path) uploaded += path.Draw(view, area.width, area.height);
@@ -63,7 +63,8 @@ void Renderer::SetCameraPicture(const uint8_t* luma, int width, int height, size
 
 void Renderer::Show(const StreamScene& scene) {
   Layers& layers = *layers_;
-  const MapId active = scene.ActiveMap();  // found again in another one, no map has changed
+  // May change without a change of the map, when the camera is relocalized in another one.
+  const MapId active = scene.ActiveMap();
   const bool anew = scene.told != told_ || active != active_;
   if (anew) {
     layers.anchors.Update(scene, active);
@@ -83,7 +84,8 @@ void Renderer::Show(const StreamScene& scene) {
 
 DrawStats Renderer::Draw(const ViewSettings& view) {
   view.Check();
-  // Others' errors are not ours to tell. Some drivers report a lost context for ever.
+  // Discard errors from before this call; limited, because some drivers report a lost context for
+  // ever.
   for (int i = 0; i < 16 && glGetError() != GL_NO_ERROR; ++i) {
   }
   GLint most[2] = {1, 1};

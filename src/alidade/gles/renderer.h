@@ -1,8 +1,8 @@
-// Draws a scene of the stream and the camera's picture into whatever framebuffer is current, with
-// OpenGL ES 3.0 and nothing else: no window, no context of its own, no library to load.
+// Draws a stream scene and the camera image into the current framebuffer with OpenGL ES 3.0.
+// Creates no window and no context, and needs no other library.
 //
-// One thread (that of the context) at a time, but for SetCameraPicture(). Only Draw() and Release()
-// call OpenGL; the others may be called before there is a context, and after it was lost.
+// Use from the context's thread only, except SetCameraPicture(). Only Draw() and Release() call
+// OpenGL; the other methods may be called before a context exists and after it was lost.
 #pragma once
 
 #include <cstddef>
@@ -14,50 +14,51 @@
 
 namespace alidade::gles {
 
-// What the last Draw() did.
+// Statistics of one Draw().
 struct DrawStats {
-  size_t uploaded = 0;                                            // bytes that went to the GPU
-  size_t landmarks = 0, points = 0, segments = 0, keyframes = 0;  // there are
+  size_t uploaded = 0;                                            // bytes sent to the GPU
+  size_t landmarks = 0, points = 0, segments = 0, keyframes = 0;  // totals
 };
 
 class Renderer {
  public:
   Renderer();
-  // Names in the context stay: they go with it. Release() first when it lives on.
+  // Does not delete OpenGL objects. Call Release() first if the context lives on.
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  // Of the framebuffer, pixels; what is more than the context can do is cut to that when it is
-  // drawn. Throws Error (usage) on sizes below 1.
+  // Size of the framebuffer in pixels; limited to the context's maximum when drawing. Throws Error
+  // (usage) for sizes below 1.
   void Resize(int width, int height);
 
-  // A picture of 8 bit grey, or the luma plane of one in colours, rows `stride` bytes apart; it is
-  // shown turned clockwise by `rotation` degrees (0, 90, 180 or 270). Any thread; the bytes are
-  // copied. Throws Error (usage) on what cannot be.
+  // Sets the camera image: 8-bit gray, or the luma plane of a color image, with rows `stride` bytes
+  // apart. It is shown rotated clockwise by `rotation` degrees (0, 90, 180 or 270). Any thread;
+  // copies the bytes. Throws Error (usage) for invalid arguments.
   void SetCameraPicture(const uint8_t* luma, int width, int height, size_t stride, int rotation);
 
-  // Takes over what the scene has other than what was shown last. Costs what is new; when the map
-  // has changed, a look at each keyframe and landmark (some ms for 100,000).
+  // Applies the changes of the scene since the last call. The cost is proportional to the new
+  // frames; when the map changed, it also visits every keyframe and landmark (a few milliseconds
+  // for 100,000).
   void Show(const StreamScene& scene);
 
-  // Everything, over all of the framebuffer. Sets all OpenGL state it needs and restores none of
-  // it. Throws Error (usage) on settings that cannot be, and (input) when the context refuses the
-  // shaders or reports an error, an exhausted memory for one.
+  // Draws over the whole framebuffer. Sets the OpenGL state it needs and does not restore it.
+  // Throws Error (usage) for invalid settings, and Error (input) when the context rejects the
+  // shaders or reports an error such as out of memory.
   DrawStats Draw(const ViewSettings& view);
 
-  // The context is gone, and all in it: the next Draw() builds everything anew. To be called
-  // whenever a context is made (Android: onSurfaceCreated).
+  // Call whenever a new context replaces the old one (Android: onSurfaceCreated). The next Draw()
+  // recreates all objects.
   void ContextLost();
-  // Deletes what is in the context, which must be current. Draw() builds it anew.
+  // Deletes all objects of the context, which must be current. Draw() recreates them.
   void Release();
 
  private:
   struct Layers;
   std::unique_ptr<Layers> layers_;
   int width_ = 1, height_ = 1;
-  uint64_t told_ = 0;   // StreamScene::told of what was shown
-  MapId active_;        // of what was shown
+  uint64_t told_ = 0;   // StreamScene::told of the scene shown last
+  MapId active_;        // of the scene shown last
   double frustum_ = 0;  // world units
   bool lost_ = false;
 };

@@ -1,4 +1,4 @@
-// From where and what the renderer draws, in which colours, and where on the screen.
+// Viewpoint, layers, colors and layout of the renderer.
 #pragma once
 
 #include <array>

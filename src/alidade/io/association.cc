@@ -8,18 +8,19 @@
 namespace alidade {
 namespace {
 
-// All that happened at one time, as indices into the list it is of; ascending.
+// All items of the two lists that have the same time: ascending indices into list `a` and list `b`.
 struct Moment {
   double time;
   std::vector<int> a, b;
-  size_t next_a = 0, next_b = 0;  // those before them have partners
-  int earlier = -1, later = -1;   // moments with something left
+  size_t next_a = 0, next_b = 0;  // indices before these are already paired
+  // Neighboring moments in the chain of those with unpaired items; -1: none.
+  int earlier = -1, later = -1;
   bool HasA() const { return next_a < a.size(); }
   bool HasB() const { return next_b < b.size(); }
 };
 
 std::vector<Moment> MomentsOf(std::span<const double> a, std::span<const double> b) {
-  std::vector<std::tuple<double, bool, int>> sorted;  // time, whether it is of b, index
+  std::vector<std::tuple<double, bool, int>> sorted;  // time, whether it belongs to list b, index
   for (const bool of_b : {false, true}) {
     const std::span<const double> times = of_b ? b : a;
     for (size_t i = 0; i < times.size(); ++i) {
@@ -35,9 +36,10 @@ std::vector<Moment> MomentsOf(std::span<const double> a, std::span<const double>
   return moments;
 }
 
-// Takes the closest pairs off a chain of moments. The closest pair of all that are left is always
-// of neighbours: whatever lay between the two would be closer to one of them. So only neighbours
-// need a place in the queue, and n times take n log n steps however close they lie.
+// Greedily pairs the closest items of a chain of moments. The closest remaining pair always belongs
+// to neighboring moments: an item between them in time would be closer to one of the two. The queue
+// therefore holds neighboring pairs only, and pairing n items takes O(n log n) steps for any
+// distribution of times.
 class Pairing {
  public:
   Pairing(std::vector<Moment> moments, double max_dt)
@@ -65,16 +67,16 @@ class Pairing {
  private:
   struct Offered {
     double dt;
-    int a, b;  // indices of the pair
+    int a, b;  // indices in the two lists
     int moment_a, moment_b;
-    bool operator<(const Offered& other) const {  // the queue's first is the closest
+    bool operator<(const Offered& other) const {  // makes the closest pair the first of the queue
       return std::tie(dt, a, b) > std::tie(other.dt, other.a, other.b);
     }
   };
 
   Moment& At(int moment) { return moments_[static_cast<size_t>(moment)]; }
 
-  // Afterwards no moment has both.
+  // Afterwards no moment has unpaired items of both lists.
   void PairEqualTimes() {
     for (Moment& moment : moments_) {
       while (moment.HasA() && moment.HasB())
@@ -104,8 +106,9 @@ class Pairing {
     for (const int moment : {pair.moment_a, pair.moment_b}) Link(moment);
   }
 
-  // Takes a moment off the chain when nothing is left of it, and offers the pairs this makes
-  // neighbours; else those it is part of with what comes next in it.
+  // Updates the queue after an item of `moment` was paired. An empty moment is unlinked from the
+  // chain, and its two neighbors are queued as a pair. Otherwise the moment's next item is queued
+  // with both neighbors.
   void Link(int moment) {
     const Moment& now = At(moment);
     if (now.HasA() || now.HasB()) {

@@ -1,4 +1,4 @@
-// Which items of two stamped lists belong together.
+// Association of two lists of times by nearest time.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace ALIDADE_API alidade {
 
-// Pairs (index in a, index in b) of the nearest times less than `max_dt` seconds apart, one to one,
-// best first as in TUM's associate.py; returned in the order of a. The lists may be in any order;
-// NaN matches nothing.
+// Returns pairs (index in a, index in b) of the nearest times less than `max_dt` seconds apart.
+// Each item is used at most once; the closest pairs are taken first, as in TUM's associate.py. The
+// result is sorted by the index in a. The lists need not be sorted; a NaN is never paired.
 std::vector<std::pair<int, int>> AssociateByTime(std::span<const double> a,
                                                  std::span<const double> b, double max_dt);
 

@@ -19,7 +19,7 @@ Camera Unrectified(const Calibration& calibration) {
   return camera;
 }
 
-// Before there are maps of that size.
+// Checked first, because the rectification maps have this size.
 void CheckSize(const RawCamera& raw) {
   if (!IsPictureSize(raw.width, raw.height)) ThrowInput(TooLargeText(raw.width, raw.height));
 }
@@ -34,7 +34,7 @@ ImagePreparation::ImagePreparation(const Calibration& calibration, Sensor sensor
   CheckSize(calibration.left);
   if (calibration.right) CheckSize(*calibration.right);
   if (sensor == Sensor::kStereo && (calibration.right || Distorted(calibration.left))) {
-    // Only a baseline: two lenses of one kind, side by side.
+    // Only the baseline is given: assume two equal cameras with parallel optical axes.
     const RawCamera right = calibration.right.value_or(calibration.left);
     const Se3 beside{Eigen::Matrix3d::Identity(), {calibration.baseline, 0, 0}};
     const RectifiedPair pair = RectifyStereo(calibration.left, right,

@@ -1,5 +1,5 @@
-// What is known of a recording's cameras, and how its images become those of the `Camera` the
-// program works with.
+// Calibration of a recording's cameras, and the conversion of its images into those of the `Camera`
+// that SLAM uses.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -17,21 +17,23 @@ namespace ALIDADE_API alidade {
 
 struct Calibration {
   RawCamera left;
-  std::optional<RawCamera> right;  // of a stereo pair that is not yet rectified
-  Se3 T_left_right;                // with `right`
-  double baseline = 0;  // metres, of a pair that is rectified already; 0: no second camera
+  std::optional<RawCamera> right;  // second camera of an unrectified stereo pair
+  Se3 T_left_right;     // pose of the right camera in the left one, meters; used with `right`
+  double baseline = 0;  // meters, of an already rectified pair; 0: no second camera
   double fps = 30;      // frames per second
-  std::optional<std::array<double, 2>> readout;  // rolling shutter, see Camera; nothing: not said
-  std::optional<double> depth_factor;            // depth image value per metre; nothing: not said
-  std::string origin;  // file, for errors and warnings; empty: nothing was known
+  // Rolling shutter readout, see Camera; nullopt: not stated.
+  std::optional<std::array<double, 2>> readout;
+  std::optional<double> depth_factor;  // depth image value per meter; nullopt: not stated
+  std::string origin;  // file, for errors and warnings; empty: no calibration was found
 };
 
-// Makes frames from images as taken. Copies share the maps.
+// Converts images as recorded into the images SLAM uses. Copies share the rectification maps.
 class ImagePreparation {
  public:
-  // Stereo is rectified unless it is so already, a fisheye becomes a pinhole; a pinhole's
-  // radial-tangential distortion otherwise stays in the images and in the camera. Throws Error
-  // naming the calibration's origin.
+  // Rectifies a stereo pair unless it is already rectified, and maps a fisheye image to a pinhole
+  // image. The radial-tangential distortion of a pinhole camera stays in the image and in the
+  // camera model, except for stereo. Throws Error naming the calibration's origin when a size or a
+  // parameter is out of range.
   ImagePreparation(const Calibration& calibration, Sensor sensor);
 
   const Camera& camera() const { return camera_; }

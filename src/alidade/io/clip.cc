@@ -11,8 +11,8 @@ namespace {
 
 class ClippedSource : public FrameSource {
  public:
-  // `source` stands at frame `first`, or behind it when that was read already and is handed over as
-  // `pending`; `count` is -1 for all the rest.
+  // The next frame of `source` is frame `first`; or, when that frame was already read, it is passed
+  // as `pending`. `count` -1: all remaining frames.
   ClippedSource(std::unique_ptr<FrameSource> source, int first, int count,
                 std::optional<SourceFrame> pending)
       : source_(std::move(source)),
@@ -61,12 +61,12 @@ std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first
   int skipped = source->Seek(first) ? first : 0;
   while (skipped < first && source->Next()) ++skipped;
   std::optional<SourceFrame> pending;
-  if (frames < 0) {  // whether there is such a frame shows only when it is read
+  if (frames < 0) {  // the length is unknown: read frame `first` to find out whether it exists
     if (skipped == first) pending = source->Next();
     if (!pending)
       ThrowInput("--first " + std::to_string(first) + " lies past the end of the recording");
   }
-  // The last number there is, as good as the end, has none after it.
+  // INT_MAX means the end as well, and INT_MAX + 1 would overflow.
   const bool to_the_end = last < 0 || last == std::numeric_limits<int>::max();
   return std::make_unique<ClippedSource>(std::move(source), first,
                                          to_the_end ? -1 : last - first + 1, std::move(pending));

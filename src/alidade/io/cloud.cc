@@ -22,7 +22,7 @@ void AppendLittleEndian(std::string& out, const Eigen::Vector3f& p) {
 std::ostringstream FloatText() {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out.precision(9);  // enough to bring each float back
+  out.precision(9);  // max_digits10 of float: reads back exactly
   return out;
 }
 
@@ -33,7 +33,7 @@ void CheckLengths(const Cloud& cloud) {
   }
 }
 
-// What follows position and colour of a point, in this order.
+// Writes normal and sigma of point i, which follow position and color, and returns their count.
 size_t FloatsBehind(const Cloud& cloud, size_t i, std::array<float, 4>& floats) {
   size_t count = 0;
   if (!cloud.normals.empty()) {
@@ -81,12 +81,12 @@ std::string PcdHeader(const Cloud& cloud, CloudFormat format) {
          (format == CloudFormat::kAscii ? "ascii\n" : "binary\n");
 }
 
-// As PCL packs a colour into one number.
+// One integer 0x00RRGGBB, as PCL stores colors.
 uint32_t Packed(const std::array<uint8_t, 3>& rgb) {
   return static_cast<uint32_t>(rgb[0]) << 16 | static_cast<uint32_t>(rgb[1]) << 8 | rgb[2];
 }
 
-// PLY has a colour's channels one by one, PCD packed.
+// PLY stores the three channels separately, PCD packs them into one number.
 enum class Channels { kApart, kPacked };
 
 std::string BinaryPoints(const Cloud& cloud, Channels channels) {

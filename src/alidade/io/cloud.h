@@ -12,21 +12,21 @@
 
 namespace ALIDADE_API alidade {
 
-// What is empty is not known; else there is one for each point.
+// An empty list means unknown; otherwise it has one entry per point.
 struct Cloud {
-  std::vector<Eigen::Vector3f> points;              // metres
+  std::vector<Eigen::Vector3f> points;              // meters
   std::vector<std::array<uint8_t, 3>> colors = {};  // red green blue
-  std::vector<Eigen::Vector3f> normals = {};        // unit length, or 0: not known for this point
-  std::vector<float> sigmas = {};                   // metres, along the ray it was seen by
+  std::vector<Eigen::Vector3f> normals = {};        // unit length; 0: unknown for this point
+  std::vector<float> sigmas = {};  // meters, standard deviation along the viewing ray
 };
 
-enum class CloudFormat { kAscii, kBinary };  // binary is little endian, on any machine
+enum class CloudFormat { kAscii, kBinary };  // binary files are little endian on every machine
 
-// The file's bytes. Throw Error (usage) on a cloud whose lists differ in length.
+// Return the file's bytes. Throw Error (usage) when the lists differ in length.
 std::string EncodePly(const Cloud& cloud, CloudFormat format);
-std::string EncodePcd(const Cloud& cloud, CloudFormat format);  // colours as the field `rgb`
+std::string EncodePcd(const Cloud& cloud, CloudFormat format);  // colors in the field `rgb`
 
-// What EncodePly() wrote. Throws Error (input), naming `name`, on any other bytes.
+// Decodes what EncodePly() wrote. Throws Error (input), naming `name`, for any other bytes.
 Cloud DecodePly(std::string_view bytes, const std::string& name);
 
 }  // namespace alidade

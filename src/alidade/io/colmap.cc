@@ -10,11 +10,11 @@
 namespace alidade {
 namespace {
 
-constexpr double kHalfPixel = 0.5;  // COLMAP's origin is the corner of the image, ours the centre
-                                    // of its first pixel
+// COLMAP puts the pixel origin at the image corner, Alidade at the center of the first pixel.
+constexpr double kHalfPixel = 0.5;
 
 struct CameraModel {
-  int32_t number;  // in binary files
+  int32_t number;  // model id in binary files
   const char* name;
   std::vector<double> parameters;
 };
@@ -26,7 +26,7 @@ CameraModel ModelOf(const Camera& camera) {
   const auto& [k1, k2, p1, p2, k3] = camera.distortion;
   parameters.insert(parameters.end(), {k1, k2, p1, p2});
   if (k3 == 0) return {4, "OPENCV", parameters};
-  parameters.insert(parameters.end(), {k3, 0, 0, 0});  // k4 k5 k6, of the rational model
+  parameters.insert(parameters.end(), {k3, 0, 0, 0});  // k4 k5 k6 of the rational model
   return {6, "FULL_OPENCV", parameters};
 }
 
@@ -57,7 +57,7 @@ void Check(const ColmapModel& model) {
 std::ostringstream DoubleText() {
   std::ostringstream out;
   out.imbue(std::locale::classic());
-  out.precision(17);  // enough to bring each double back
+  out.precision(17);  // max_digits10 of double: reads back exactly
   return out;
 }
 
@@ -112,7 +112,7 @@ std::string PointsText(const ColmapModel& model) {
   return out.str();
 }
 
-// Numbers as COLMAP reads them: little endian, one after the other.
+// Integers, doubles and strings in COLMAP's binary encoding: little endian, without padding.
 class Bytes {
  public:
   template <typename Integer>
@@ -133,8 +133,8 @@ class Bytes {
 std::string CamerasBinary(const ColmapModel& model) {
   Bytes out;
   const CameraModel camera = ModelOf(model.camera);
-  out.Add(uint64_t{1});  // cameras
-  out.Add(uint32_t{1});  // id
+  out.Add(uint64_t{1});  // number of cameras
+  out.Add(uint32_t{1});  // camera id
   out.Add(camera.number);
   out.Add(static_cast<uint64_t>(model.camera.width));
   out.Add(static_cast<uint64_t>(model.camera.height));
@@ -151,7 +151,7 @@ std::string ImagesBinary(const ColmapModel& model) {
     const Eigen::Vector3d& t = image.T_camera_world.t;
     out.Add(static_cast<uint32_t>(i + 1));
     for (double value : {q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z()}) out.Add(value);
-    out.Add(uint32_t{1});  // camera
+    out.Add(uint32_t{1});  // camera id
     out.Add(image.name);
     out.Add(uint64_t{image.keypoints.size()});
     for (const ColmapModel::Keypoint& keypoint : image.keypoints) {

@@ -12,8 +12,8 @@
 
 namespace ALIDADE_API alidade {
 
-// A model of one camera as plain values. Pixels are those of the image as taken, the centre of the
-// top-left one at 0, 0 as everywhere in Alidade: COLMAP's half pixel is added when it is written.
+// A sparse model with one camera. Pixels refer to the image as recorded, with 0, 0 at the center of
+// the top-left pixel as everywhere in Alidade; encoding adds COLMAP's half pixel.
 struct ColmapModel {
   static constexpr int kNoPoint = -1;
 
@@ -22,19 +22,19 @@ struct ColmapModel {
     int point = kNoPoint;  // index in `points`
   };
   struct Image {
-    std::string name;  // no blanks
+    std::string name;  // without whitespace
     Se3 T_camera_world;
     std::vector<Keypoint> keypoints;
   };
   struct Seen {
     int image = 0;     // index in `images`
-    int keypoint = 0;  // index in that image
+    int keypoint = 0;  // index in that image's `keypoints`
   };
   struct Point {
     Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
-    std::array<uint8_t, 3> color = {128, 128, 128};  // red green blue; grey when unknown
-    double error =
-        -1;  // mean distance to its keypoints, pixels of the image as taken; -1 = unknown
+    std::array<uint8_t, 3> color = {128, 128, 128};  // red green blue; gray when unknown
+    // Mean distance to its keypoints, pixels of the recorded image; -1: unknown.
+    double error = -1;
     std::vector<Seen> track;
   };
 
@@ -48,9 +48,9 @@ struct ColmapFile {
   std::string bytes;
 };
 
-// cameras, images, points3D; ids are indices plus one. The camera is a PINHOLE when it has no
-// distortion, OPENCV when k3 is 0, FULL_OPENCV else. Throws Error (usage) when an index leads
-// nowhere.
+// Encode the files cameras, images and points3D; ids are indices plus one. The camera model is
+// PINHOLE without distortion, OPENCV when k3 is 0, otherwise FULL_OPENCV. Throw Error (usage) when
+// an index is out of range or an image name is empty or contains whitespace.
 std::vector<ColmapFile> EncodeColmapText(const ColmapModel& model);    // *.txt
 std::vector<ColmapFile> EncodeColmapBinary(const ColmapModel& model);  // *.bin
 

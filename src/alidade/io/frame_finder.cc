@@ -10,7 +10,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kSameTime = 1e-6;  // seconds: what a stamp since 1970 keeps in a double
+// Seconds; the resolution of a double that holds seconds since 1970.
+constexpr double kSameTime = 1e-6;
 
 }  // namespace
 
@@ -30,8 +31,9 @@ const SourceFrame& FrameFinder::Read(int number) {
   return last_;
 }
 
-// A frame between `low` and `high`, both left out: frames known on either side of `time`, or -1 and
-// the number of frames.
+// Index of a frame strictly between `low` and `high`, by linear interpolation of time or, with
+// `halve`, in the middle. `low` and `high` are known frames on either side of `time`; -1 and the
+// number of frames mean none is known there.
 int FrameFinder::Guess(double time, int low, int high, bool halve) const {
   const double fps = source_.Info().camera.fps;
   double guess = 0;
@@ -61,7 +63,7 @@ std::optional<SourceFrame> FrameFinder::Nearest(double time, double max_dt) {
       if (distance(nearest) > max_dt) return std::nullopt;
       return Read(nearest);
     }
-    // Where the rate is uneven, halving ends the search.
+    // Bisection every third step ends the search when the frame rate is uneven.
     Read(Guess(time, low, high, step % 3 == 0));
   }
   return std::nullopt;

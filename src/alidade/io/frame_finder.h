@@ -1,4 +1,4 @@
-// The frames of a recording that were taken at given times, without reading all of them.
+// Finds the frames of a recording taken at given times without reading all of them.
 #pragma once
 
 #include <map>
@@ -10,27 +10,27 @@ namespace alidade {
 
 class FrameFinder {
  public:
-  // `source` must outlive this; its frames come in the order of time. Throws Error (input) when it
-  // cannot seek or does not know its length.
+  // `source` must outlive this object, and its frames must be in order of time. Throws Error
+  // (input) when `source` cannot seek or its length is unknown.
   explicit FrameFinder(FrameSource& source);
 
-  // The frame nearest to `time`, at most `max_dt` seconds away; nullopt: there is none. May be one
-  // with a `problem`. Guesses where it lies from the frame rate and what it has seen: at an even
-  // rate the frame asked for is the first one read.
+  // Returns the frame nearest to `time`, at most `max_dt` seconds away, or nullopt. The frame may
+  // have a `problem`. The search starts at an index computed from the frame rate and the frames
+  // read so far; at a constant frame rate the first frame read is the result.
   std::optional<SourceFrame> Nearest(double time, double max_dt);
 
  private:
   struct Known {
     double time;  // seconds
-    bool good;    // without a problem
+    bool good;    // read without a problem
   };
   const SourceFrame& Read(int number);
   int Guess(double time, int low, int high, bool halve) const;
 
   FrameSource& source_;
   int frames_;
-  std::map<int, Known> known_;  // frames read so far, by their place in the source
-  SourceFrame last_;            // the one read last
+  std::map<int, Known> known_;  // frames read so far, by index in the source
+  SourceFrame last_;            // the last frame read
   int last_number_ = -1;
 };
 

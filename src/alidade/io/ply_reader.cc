@@ -1,4 +1,4 @@
-// Clouds read again that EncodePly() wrote.
+// Decodes point clouds that EncodePly() wrote.
 #include <cstring>
 #include <sstream>
 
@@ -9,13 +9,13 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kMostPoints = 100'000'000;  // 1.6 GB in binary
+constexpr size_t kMostPoints = 100'000'000;  // 1.6 GB in binary form
 
 struct PlyLayout {
   bool binary = false;
-  size_t count = 0;  // vertices
+  size_t count = 0;  // number of vertices
   bool colors = false, normals = false, sigmas = false;
-  size_t body = 0;  // where the vertices begin
+  size_t body = 0;  // byte offset of the first vertex
   size_t Bytes() const { return 12 + (colors ? 3u : 0) + (normals ? 12u : 0) + (sigmas ? 4u : 0); }
 };
 
@@ -42,7 +42,7 @@ PlyLayout LayoutOf(std::string_view bytes, const std::string& name) {
       refuse();
     }
   }
-  // In the order in which they are written; what is not known is left out.
+  // Properties in the order in which EncodePly() writes them; unknown ones are absent.
   std::string_view rest = properties;
   const auto next = [&](std::string_view what) {
     if (rest.substr(0, what.size()) != what) return false;
@@ -57,7 +57,7 @@ PlyLayout LayoutOf(std::string_view bytes, const std::string& name) {
   return layout;
 }
 
-// One number after the other, from text or bytes.
+// Reads one number after the other, from text or from binary data.
 class PlyNumbers {
  public:
   PlyNumbers(std::string_view bytes, bool binary) : bytes_(bytes), binary_(binary) {}
@@ -93,7 +93,7 @@ class PlyNumbers {
 
 Cloud DecodePly(std::string_view bytes, const std::string& name) {
   const PlyLayout layout = LayoutOf(bytes, name);
-  // Of text: two bytes a number at least.
+  // A text line of three numbers has at least 6 bytes: a digit and a separator each.
   const size_t least = layout.binary ? layout.Bytes() : 6;
   const size_t left = bytes.size() - layout.body;
   if (left / least < layout.count) ThrowInput(name + " ends before its last point");

@@ -34,7 +34,7 @@ ReadAhead::~ReadAhead() {
 }
 
 void ReadAhead::Run() {
-  KeepLoopsOnThisThread();  // its clock sees all the CPU that reading takes
+  KeepLoopsOnThisThread();  // so that this thread's CPU clock includes all work of reading
   std::exception_ptr failure;
   try {
     while (true) {

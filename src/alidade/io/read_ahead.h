@@ -1,4 +1,4 @@
-// Reads frames in a thread of its own, so that decoding images never counts as SLAM time.
+// Reads frames in a separate thread, so that image decoding does not count as SLAM time.
 #pragma once
 
 #include <atomic>
@@ -15,30 +15,32 @@ namespace alidade {
 
 class ReadAhead : public FrameSource {
  public:
-  // At most `capacity` frames wait to be taken.
+  // Buffers at most `capacity` frames.
   explicit ReadAhead(std::unique_ptr<FrameSource> source, int capacity = 8);
   ~ReadAhead() override;
 
   const SourceInfo& Info() const override { return info_; }
-  // Waits for the next frame. Rethrows, once, what the source threw; after that there are no more.
+  // Blocks until the next frame is available. Rethrows an exception of the source once; afterwards
+  // returns nullopt.
   std::optional<SourceFrame> Next() override;
-  bool ready() const;  // whether Next() would have a frame at once
-  // CPU time of the reading thread so far, seconds: to be taken from the process's.
+  bool ready() const;  // true when Next() would return without blocking
+  // CPU time of the reading thread so far, seconds. Subtract it from the process's CPU time to get
+  // that of SLAM.
   double ReadCpuSeconds() const { return cpu_seconds_.load(); }
 
  private:
   void Run();
 
-  std::unique_ptr<FrameSource> source_;  // the thread's alone, once it runs
+  std::unique_ptr<FrameSource> source_;  // used by the thread only once it runs
   SourceInfo info_;
   const size_t capacity_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<SourceFrame> queue_;  // guarded by mutex_, as are the next three
+  std::deque<SourceFrame> queue_;  // guarded by mutex_, like the next three members
   std::exception_ptr failure_;
   bool finished_ = false, stop_ = false;
   std::atomic<double> cpu_seconds_{0};
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last member: the thread uses all of the above
 };
 
 }  // namespace alidade

@@ -23,7 +23,7 @@ class RepeatedSource : public FrameSource {
   const SourceInfo& Info() const override { return info_; }
 
   std::optional<SourceFrame> Next() override {
-    if (leg_ == 0) {  // the first way forth, as recorded
+    if (leg_ == 0) {  // the first pass forwards: frames as recorded
       if (auto frame = source_->Next()) {
         if (played_ == 0) first_number_ = frame->number;
         ++played_;
@@ -55,7 +55,8 @@ class RepeatedSource : public FrameSource {
     return frame;
   }
 
-  // Videos seek slowly: they are read forwards in blocks even when played backwards.
+  // Reads blocks of frames forwards even when playing backwards, because seeking in a video is
+  // slow.
   std::optional<SourceFrame> Get(int index) {
     constexpr int kBlock = 32;
     if (index < block_start_ || index >= block_start_ + static_cast<int>(block_.size())) {
@@ -79,13 +80,14 @@ class RepeatedSource : public FrameSource {
 
   std::unique_ptr<FrameSource> source_;
   SourceInfo info_;
-  int legs_;        // ways forth and back in all
-  int leg_ = 0;     // even: forth
-  int length_ = 0;  // frames of the recording, known after the first way
-  int at_ = 0;      // index of the frame given last
-  int played_ = 0;  // frames given
+  int legs_;        // passes in total, forwards and backwards
+  int leg_ = 0;     // current pass; even: forwards
+  int length_ = 0;  // frames of the recording, known after the first pass
+  int at_ = 0;      // index of the last returned frame
+  int played_ = 0;  // frames returned so far
   int first_number_ = 0;
-  double time_ = 0, recorded_time_ = 0;  // seconds, of the frame given last: as played, as recorded
+  // Time of the last returned frame as played and as recorded, seconds.
+  double time_ = 0, recorded_time_ = 0;
   std::vector<SourceFrame> block_;
   int block_start_ = 0;
   int next_in_source_ = -1;
@@ -96,8 +98,8 @@ class RepeatedSource : public FrameSource {
 std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int times) {
   if (times < 0) ThrowUsage("--repeat must not be negative");
   if (times == 0) return source;
-  // Frames are numbered: 2 · times · frames must be a number. A video does not always say how many
-  // frames it has: then a day of it.
+  // Frame numbers must fit into an int: 2 · times · frames. When a video does not state its length,
+  // one day at 30 frames per second is assumed.
   constexpr int64_t kUnknown = 30 * 86400;
   const int64_t frames = source->Info().frames > 0 ? source->Info().frames : kUnknown;
   const int64_t most = (std::numeric_limits<int>::max() - 1) / (2 * frames);

@@ -41,7 +41,7 @@ void CheckIsText(std::string_view bytes, const std::string& name) {
 
 std::vector<TextLine> ContentLines(std::string_view text) {
   if (text.substr(0, 3) == "\xef\xbb\xbf")
-    text.remove_prefix(3);  // byte order mark of Windows editors
+    text.remove_prefix(3);  // byte order mark, written by Windows editors
   std::vector<TextLine> lines;
   for (int number = 1; !text.empty(); ++number) {
     const size_t end = text.find('\n');
@@ -64,8 +64,7 @@ std::vector<std::string_view> Fields(std::string_view line) {
 }
 
 std::optional<double> ParseNumber(std::string_view text) {
-  // from_chars(double) is missing in older libc++, and plain strtod follows the locale's decimal
-  // comma.
+  // Older libc++ lacks from_chars(double), and strtod depends on the locale's decimal separator.
   static const locale_t kClassic = newlocale(LC_ALL_MASK, "C", static_cast<locale_t>(nullptr));
   const std::string copy(text);
   char* end = nullptr;

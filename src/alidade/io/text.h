@@ -1,4 +1,4 @@
-// Lines, fields and numbers of text files, the same in every locale.
+// Lines, fields and numbers of text files, independent of the locale.
 #pragma once
 
 #include <cstddef>
@@ -9,28 +9,27 @@
 
 namespace alidade {
 
-// Of two bytes each, lines take a hundred times as much memory once they are read. Ten million are
-// four days at 30 frames a second.
+// Limit of lines in a file: short lines take about a hundred times their size in memory once
+// parsed. Ten million lines are four days at 30 frames per second.
 inline constexpr size_t kMostLines = 10'000'000;
-inline constexpr size_t kMostLineBytes = size_t{1} << 16;  // a path has 4096 at most
+inline constexpr size_t kMostLineBytes = size_t{1} << 16;  // a path has at most 4096
 
-// Throws Error (input), naming the file, when the bytes are none of a text we can read: UTF-16 as
-// some editors write it, no text at all (bytes of 0 in it), or beyond the limits above.
+// Throws Error (input) naming the file when `bytes` is UTF-16, contains zero bytes, or exceeds the
+// limits above.
 void CheckIsText(std::string_view bytes, const std::string& name);
 
 struct TextLine {
-  int number;             // from 1, for errors that say file:line
-  std::string_view text;  // without line end and surrounding blanks; never empty, never a # comment
+  int number;             // from 1, for errors of the form file:line
+  std::string_view text;  // without line end and surrounding whitespace; never empty or a # comment
 };
 
-// The lines that say something. `text` must outlive the result.
+// Returns all lines except empty ones and comments. `text` must outlive the result.
 std::vector<TextLine> ContentLines(std::string_view text);
 
-// Fields between blanks, tabs and commas.
+// Splits at whitespace and commas.
 std::vector<std::string_view> Fields(std::string_view line);
 
-// The whole of `text` as a number; nullopt when it is something else. NaN and infinities count as
-// numbers.
+// Parses all of `text` as a number; nullopt when it is not one. NaN and infinities are numbers.
 std::optional<double> ParseNumber(std::string_view text);
 
 }  // namespace alidade

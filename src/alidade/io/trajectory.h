@@ -1,4 +1,4 @@
-// Trajectories as lists of stamped poses, and the text formats they are kept in.
+// Trajectories as lists of stamped poses, and their text formats.
 #pragma once
 
 #include <string>
@@ -13,31 +13,33 @@ namespace ALIDADE_API alidade {
 struct StampedPose {
   double time = 0;  // seconds
   Se3 T_world_camera;
-  std::string
-      stamp;  // the time as text where it is to be kept verbatim; empty: written with 9 digits
+  // Time as text, written verbatim; empty: `time` is written with 9 decimals.
+  std::string stamp;
 };
 using Trajectory = std::vector<StampedPose>;
 
-// In all of them `name` is used in errors (file:line); what is not a finite number, not a unit
-// quaternion (to 5 %) or not a rotation throws Error. The order is the file's.
+// `name` appears in errors as file:line. The parsers throw Error (input) for a value that is not
+// finite, a quaternion whose length is not 1 (within 5 %), or a matrix that is not a rotation.
+// Poses keep the file's order.
 
-// TUM format: `timestamp tx ty tz qx qy qz qw`, # comments.
+// TUM format: `timestamp tx ty tz qx qy qz qw`, with # comments.
 Trajectory ParseTumTrajectory(std::string_view text, const std::string& name);
 std::string FormatTumTrajectory(const Trajectory& trajectory);
 
-// EuRoC's state_groundtruth csv: nanoseconds, position, quaternion (w first) of the body; more
-// columns are ignored.
+// EuRoC's state_groundtruth csv: nanoseconds, position and quaternion (w first) of the body;
+// further columns are ignored. `T_body_camera` converts body poses to camera poses.
 Trajectory ParseEurocTrajectory(std::string_view text, const std::string& name,
                                 const Se3& T_body_camera);
 
-// KITTI odometry: one row-major 3x4 [R t] per line, and the times of the same lines from another
-// file.
+// KITTI odometry: a row-major 3x4 matrix [R t] per line in `poses`, and the time of the same line
+// in `times`.
 Trajectory ParseKittiTrajectory(std::string_view poses, const std::string& poses_name,
                                 std::string_view times, const std::string& times_name);
 
-// "1403715273262142976" -> "1403715273.262142976". What is not all digits comes back as it is.
+// "1403715273262142976" -> "1403715273.262142976". Text that is not all digits is returned
+// unchanged.
 std::string StampFromNanoseconds(std::string_view nanoseconds);
 
-std::string FormatTime(double seconds);  // 9 digits after the point
+std::string FormatTime(double seconds);  // 9 decimals
 
 }  // namespace alidade

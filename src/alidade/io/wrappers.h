@@ -1,5 +1,5 @@
-// Sources made of other sources: a part of one, or one played forth and back. (read_ahead.h has a
-// third.)
+// Frame sources that wrap another source: a clip of it, or repeated playback. See also
+// read_ahead.h.
 #pragma once
 
 #include <memory>
@@ -8,14 +8,14 @@
 
 namespace alidade {
 
-// Frames `first` to `last` (-1: the end), both included. Throws Error: kUsage for numbers that
-// cannot be, kInput when `first` lies past the end.
+// Frames `first` to `last`, both included; `last` -1: to the end. Throws Error: kUsage for a
+// negative or reversed range, kInput when `first` is past the end.
 std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first, int last);
 
-// Plays a recording to its end and back to its start, `times` times; 0: `source` as it is. Frames
-// at the turning points come once. Frame numbers and times go on growing: played backwards, frames
-// lie as far apart as they did forwards; beyond the first pass the stamps are written anew. Throws
-// Error (usage) when `source` cannot seek.
+// Plays a recording forwards and backwards `times` times; 0 returns `source` unchanged. The frame
+// at a turning point is returned once. Frame numbers and times keep increasing: backwards, the
+// intervals between frames are those of the forward pass. After the first pass the stamps are
+// generated from the times. Throws Error (usage) when `source` cannot seek.
 std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int times);
 
 }  // namespace alidade

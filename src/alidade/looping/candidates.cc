@@ -14,9 +14,9 @@ bool AreCovisible(const KeyFrame& keyframe, KeyFrameId other) {
                      [&](const Neighbour& n) { return n.id == other; });
 }
 
-// What mapping ties together anyway: neighbours that share enough of what a keyframe sees, and
-// theirs. Less may be far things alone: in a corridor the far end, where neither way nor scale
-// show.
+// Keyframes that local mapping already connects: covisible ones with at least `tied_share` of the
+// keyframe's landmarks, and theirs. Fewer shared landmarks may all be distant ones (the far end of
+// a corridor), which constrain neither translation nor scale.
 IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe,
                                double tied_share) {
   IdSet<KeyFrameId> near;
@@ -28,7 +28,7 @@ IdSet<KeyFrameId> Surroundings(const MapSnapshot& map, const KeyFrame& keyframe,
   return near;
 }
 
-// Radians between the optical axes.
+// Angle between the optical axes, radians.
 double AngleOfViews(const KeyFrame& a, const KeyFrame& b) {
   const Eigen::Vector3d of_a = a.T_camera_world.R.row(2), of_b = b.T_camera_world.R.row(2);
   return std::atan2(of_a.cross(of_b).norm(), of_a.dot(of_b));

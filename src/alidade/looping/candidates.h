@@ -1,4 +1,5 @@
-// Which keyframes may show the place a new keyframe shows (ORB-SLAM §VII-A).
+// Loop candidates: keyframes that may show the same place as a new keyframe (Mur-Artal et al. 2015,
+// §VII-A).
 #pragma once
 
 #include <functional>
@@ -10,9 +11,10 @@
 
 namespace alidade {
 
-// Best first. Left out: what is covisible with `id`, directly or over one keyframe between, what is
-// much less like it than its best covisible keyframe, and all but the likest of a group of
-// covisible ones. `may_be` (empty: any) narrows them down; it must not call back into the index.
+// Best first. Excludes keyframes connected to `id` by covisibility, directly or via one other
+// keyframe; those much less similar than its best covisible keyframe; and all but the most similar
+// one of a group of covisible candidates. `may_be` (empty: any) filters further; it must not call
+// the index.
 std::vector<KeyFrameId> FindLoopCandidates(const MapSnapshot& map, const PlaceIndex& places,
                                            KeyFrameId id, const LoopSettings& settings,
                                            const std::function<bool(KeyFrameId)>& may_be = {});

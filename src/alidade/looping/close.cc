@@ -8,15 +8,16 @@
 namespace alidade {
 namespace {
 
-constexpr int kMinVotes = 15;  // landmarks of the place two keyframes must share to be tied
+constexpr int kMinVotes = 15;  // landmarks that connect two keyframes
 
-// A keyframe of the window where the match puts it.
+// A keyframe of the window with its pose according to the match.
 struct Placed {
   KeyFrameId id;
   Se3 T_camera_world;
 };
 
-// In a loop, keyframes that share but few landmarks (far ones) may be the place's own: they stay.
+// The keyframe and its covisible ones, moved by the match. For a loop, neighbors that share few
+// (distant) landmarks are excluded, because they may belong to the old place.
 std::vector<Placed> PlaceWindow(const MapSnapshot& map, const LoopMatch& match,
                                 const LoopSettings& settings) {
   const KeyFrame& keyframe = *map.Find(match.keyframe);
@@ -51,7 +52,7 @@ class EssentialGraph {
       node_[id] = static_cast<int>(ids_.size());
       ids_.push_back(id);
       before_.push_back(NodeOf(keyframe.T_camera_world));
-      graph_.fixed.push_back(!keyframe.parent.valid());  // holds the world's frame
+      graph_.fixed.push_back(!keyframe.parent.valid());  // defines the world frame
     }
     graph_.T_camera_world = before_;
     for (const Placed& placed : window) {
@@ -82,7 +83,7 @@ class EssentialGraph {
     graph_.edges.push_back({*i, *j, poses[*i] * poses[*j].Inverse(), 1.0});
   }
 
-  // What keyframes knew of each other goes on to hold. Each pair once, by its younger one.
+  // Edges with relative poses before the correction. Each pair once, added by the younger keyframe.
   void TieAsBefore(const KeyFrame& keyframe) {
     if (keyframe.parent.valid()) Tie(keyframe.id, keyframe.parent, before_);
     for (KeyFrameId other : keyframe.loops) {
@@ -96,7 +97,8 @@ class EssentialGraph {
     }
   }
 
-  // To the keyframes that see what was found in it, from where it is now.
+  // Edges to the keyframes that observe the landmarks found in it, with relative poses after the
+  // match.
   void TieToThePlace(KeyFrameId id, const std::vector<FusedSighting>& fused) {
     IdMap<KeyFrameId, int> votes;
     for (const FusedSighting& s : fused) {
@@ -117,7 +119,9 @@ class EssentialGraph {
 
   const MapSnapshot& map_;
   const LoopSettings& settings_;
-  double depth_;  // of what the cameras look at: errors of a turn and of a shift weigh alike there
+  // Median depth, the graph's length scale: there, rotation and translation errors have equal
+  // weight.
+  double depth_;
   IdMap<KeyFrameId, int> node_;  // of this map
   std::vector<KeyFrameId> ids_;
   std::vector<Sim3> before_;

@@ -1,4 +1,4 @@
-// What a recognised place makes of the map: worked out on a snapshot, entered in one commit.
+// Correction of the map after place recognition: computed on a snapshot, applied in one commit.
 #pragma once
 
 #include <vector>
@@ -12,21 +12,22 @@ namespace alidade {
 
 struct LoopCorrection {
   LoopMatch match;
-  std::vector<KeyFrameId> window;               // the keyframe and those around it, by id
-  std::vector<FusedSighting> fused;             // landmarks of the place in the window
-  std::vector<KeyFrameCorrection> corrections;  // a loop: all keyframes of the map, by id
-  MapId older, younger;                         // a merge: two maps …
-  Sim3 T_older_younger;                         // … and how their worlds lie
+  std::vector<KeyFrameId> window;    // the keyframe and its neighbors, by id
+  std::vector<FusedSighting> fused;  // landmarks of the place found in the window
+  // Loop: new poses of all keyframes of the map, by id.
+  std::vector<KeyFrameCorrection> corrections;
+  MapId older, younger;  // merge: the two maps
+  Sim3 T_older_younger;  // merge: transform between their worlds
   bool merges() const { return younger.valid(); }
 };
 
-// In one map: puts the window where the match says, and spreads the difference over the map by
-// optimising its essential graph: spanning tree, strong covisibility, loops (ORB-SLAM §VII-C, D).
-// Between two: lays the younger map's world on the older's.
+// Loop within a map: moves the window to the matched pose and distributes the difference by
+// optimizing the essential graph (spanning tree, strong covisibility, loop edges; Mur-Artal et al.
+// 2015, §VII-C, D). Two maps: computes the transform from the younger map's world to the older's.
 LoopCorrection CorrectLoop(const MapSnapshot& map, const LoopMatch& match, const Camera& camera,
                            const LoopSettings& settings);
 
-// False, and nothing done, when the keyframe or the place is gone.
+// Returns false without any effect if the keyframe or the place no longer exists.
 bool CommitLoop(MapCommit& commit, const LoopCorrection& correction);
 
 }  // namespace alidade

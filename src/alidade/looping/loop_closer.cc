@@ -8,10 +8,10 @@ namespace alidade {
 
 namespace {
 
-// Whether two matches put the keyframe in about the same place of one map.
+// True if two matches give the keyframe about the same pose in one map.
 bool AgreeOnPlace(const MapSnapshot& map, const LoopMatch& a, const LoopMatch& b) {
   constexpr double kTurn = 0.35;   // radians
-  constexpr double kShift = 0.35;  // of the mean distance of the landmarks found
+  constexpr double kShift = 0.35;  // relative to the mean distance of the landmarks found
   const Eigen::Vector3d centre = a.T_camera_world.Inverse().t;
   double distance = 0;
   for (const FusedSighting& s : a.found) {
@@ -32,8 +32,9 @@ LoopCloser::LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera,
   if (camera.StereoBaseline() > 0) settings_.tied_share = 0;
 }
 
-// In its own map a place is held against the way since; in another map only against other places:
-// where several would do, as along a corridor of equal doors, none is taken.
+// Within a map, a match is checked against the path since the place. A match in another map is only
+// checked against other matches: if several poses are possible (a corridor of equal doors), none is
+// returned.
 std::optional<LoopMatch> LoopCloser::Recognise(
     const MapSnapshot& map, KeyFrameId id, const std::function<bool(KeyFrameId)>& may_be) const {
   std::optional<LoopMatch> elsewhere;
@@ -89,10 +90,11 @@ void LoopCloser::AdjustAll(
   }
   Adjustment adjusted =
       AdjustKeyFrames(map, free, fixed, camera_, {settings_.noise, settings_.bundle}, stop);
-  adjusted.outliers.clear();  // the mapper will find those that stay
+  adjusted.outliers.clear();  // left to the mapper
   while_mapper_rests([&] {
     map_.CommitAside([&](MapCommit& commit) {
-      if (commit.state().corrections != map.corrections()) return;  // another loop came
+      // Another loop was closed meanwhile.
+      if (commit.state().corrections != map.corrections()) return;
       CommitAdjustment(commit, map, adjusted);
       commit.CountCorrection();
     });

@@ -1,4 +1,4 @@
-// Notices that a place comes back, and makes the map agree with it (ORB-SLAM §VII).
+// Loop closure and map merging (Mur-Artal et al. 2015, §VII).
 #pragma once
 
 #include <atomic>
@@ -15,31 +15,33 @@
 
 namespace alidade {
 
+// Add() and Close() belong to one thread; AdjustAll() may run on another.
 class LoopCloser {
  public:
-  // `camera`: as the frames are; depth_factor and baseline 0 for monocular use.
+  // `camera`: of the frames; depth_factor and baseline are 0 for monocular use.
   LoopCloser(MapStore& map, PlaceIndex& places, const Camera& camera, LoopSettings settings);
 
-  // The place a keyframe sees again, among keyframes of the index that `may_be` (empty: any) lets
-  // pass; nothing when it is not certain.
+  // The place that a keyframe shows again, among keyframes of the index accepted by `may_be`
+  // (empty: any); nullopt if it is not certain.
   std::optional<LoopMatch> Recognise(const MapSnapshot& map, KeyFrameId id,
                                      const std::function<bool(KeyFrameId)>& may_be = {}) const;
-  // Keyframes from `first` on are of one clock: the camera cannot have leapt between them. Any
-  // thread's. Before the first call nothing is known of when keyframes were.
+  // Keyframes from `first` on have times of one clock, so the motion gate applies between them.
+  // Thread-safe. Before the first call, keyframe times are not used.
   void BeginRecording(KeyFrameId first) { recording_ = first; }
-  // Enters a mapped keyframe into the index; a match when it sees an old place again.
+  // Adds a mapped keyframe to the index; returns a match if it shows an old place.
   std::optional<LoopMatch> Add(KeyFrameId id);
-  void SetEntered(std::vector<KeyFrameId> ids) { entered_ = std::move(ids); }  // of a loaded map
-  // Closes the loop, or merges the two maps. The mapper must rest meanwhile, the tracker need not.
-  // False when keyframe or place are gone.
+  // Keyframes of a loaded map that are already in the index.
+  void SetEntered(std::vector<KeyFrameId> ids) { entered_ = std::move(ids); }
+  // Closes the loop or merges the two maps. The mapper must be idle, tracking may continue. Returns
+  // false if the keyframe or the place no longer exists.
   bool Close(const LoopMatch& match);
-  // Full bundle adjustment of the map `id` is in. What is mapped meanwhile follows. `stop` (may be
-  // null) cuts it short. `while_mapper_rests` runs what it is given at such a time: the commit,
-  // which is dropped when another loop was closed meanwhile.
+  // Bundle adjustment of the whole map that contains `id`; objects created meanwhile follow. `stop`
+  // (may be null) ends it early. `while_mapper_rests` runs its argument while the mapper is idle;
+  // the commit is dropped if another loop was closed meanwhile.
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop,
                  const std::function<void(const std::function<void()>&)>& while_mapper_rests);
 
-  // The map is of this camera from now on. Nothing else may be at work.
+  // Changes the camera model of the map. No other thread may be using the map.
   void SetCamera(const Camera& camera) { camera_ = camera; }
 
   int loops() const { return loops_; }
@@ -50,7 +52,8 @@ class LoopCloser {
   PlaceIndex& places_;
   Camera camera_;
   LoopSettings settings_;
-  std::vector<KeyFrameId> entered_;  // into the index, and not seen to be culled yet; by id
+  // Keyframes entered into the index, by id; may contain some that were culled since.
+  std::vector<KeyFrameId> entered_;
   std::atomic<KeyFrameId> recording_{KeyFrameId{}};
   std::atomic<int> loops_{0}, merges_{0};
 };

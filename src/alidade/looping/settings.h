@@ -37,7 +37,7 @@ struct LoopSettings {
   // Of the landmarks that have a keypoint at their very place, so many must look alike to it: where
   // only the shapes are the same (rooms of one make with other pictures), corners are where they
   // should be, but show something else. Measured: at most 0.38 there, 0.59 and more at the best
-  // keyframe of one room (docs/merge.md). Between two maps.
+  // keyframe of one room, docs/development/decisions/0014-merge-by-appearance.md. Two maps only.
   double min_merge_alike = 0.45;
   int min_known_scale = 20;      // landmarks of known scale (Landmark::scale_known) both keyframes
                                  // must see for two maps of one camera to be merged

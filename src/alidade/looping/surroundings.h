@@ -1,4 +1,4 @@
-// What makes up a place: all that is seen from around a keyframe.
+// The surroundings of a keyframe: nearby landmarks and keyframes.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,8 @@
 
 namespace alidade {
 
-// Landmarks the keyframe and its ten best covisible ones see, each once, by id.
+// Landmarks observed by the keyframe and its ten best covisible keyframes, without duplicates, by
+// id.
 inline std::vector<LandmarkId> LandmarksAround(const MapSnapshot& map, const KeyFrame& place) {
   constexpr size_t kKeyFrames = 10;
   std::vector<LandmarkId> landmarks;
@@ -26,7 +27,7 @@ inline std::vector<LandmarkId> LandmarksAround(const MapSnapshot& map, const Key
   return landmarks;
 }
 
-// The neighbours that share at least `tied_share` of the landmarks a keyframe sees, most first
+// Covisible keyframes that share at least `tied_share` of the keyframe's landmarks, most first
 // (LoopSettings::tied_share).
 inline std::vector<KeyFrameId> TiedTo(const KeyFrame& keyframe, double tied_share) {
   const auto seen = std::count_if(keyframe.landmarks.begin(), keyframe.landmarks.end(),

@@ -14,12 +14,16 @@
 namespace alidade {
 namespace {
 
-constexpr int kPlainFound = 3;        // times the landmarks asked for, and …
-constexpr double kPlainShare = 0.35;  // … of those in sight: a place beyond doubt
-constexpr double kBrokenDrift = 0.6;  // of the way, when scale broke down
-constexpr size_t kPoseKeyFrames = 4;  // around the place, whose landmarks tell a pose
-constexpr int kMinRatios = 10;        // landmarks known in both, to tell a scale …
-constexpr double kMaxSpread = 1.3;    // … and how far their quartiles may lie apart
+// Unmistakable place: landmarks found, as a multiple of min_found.
+constexpr int kPlainFound = 3;
+// Unmistakable place: landmarks found, as a share of those expected.
+constexpr double kPlainShare = 0.35;
+// Drift limit as a share of the path length when the monocular scale has failed.
+constexpr double kBrokenDrift = 0.6;
+constexpr size_t kPoseKeyFrames = 4;  // additional keyframes around the place used for the pose
+constexpr int kMinRatios = 10;        // landmarks known in both maps, needed for a scale estimate
+// Largest ratio of the upper to the lower quartile of the depth ratios.
+constexpr double kMaxSpread = 1.3;
 
 std::vector<int> Known(const KeyFrame& keyframe) {
   std::vector<int> known;
@@ -47,7 +51,7 @@ std::vector<int> All(const KeyFrame& keyframe) {
   return all;
 }
 
-// The pose of camera a, among the landmarks b sees, and how its own surroundings must grow.
+// Pose of camera a in the world frame of b's landmarks, and the scale factor for a's surroundings.
 struct Alignment {
   Se3 T_camera_world;
   double growth = 1;
@@ -115,7 +119,8 @@ class Verifier {
     matching.ratio = 0.8;
     const std::vector<int> of_a = Known(a_), of_b = Known(b_);
     for (const IndexMatch& m : MatchSubsets(*a_.frame, of_a, *b_.frame, of_b, matching)) {
-      if (a_.landmarks[m.a] == b_.landmarks[m.b]) continue;  // says what the map says
+      // Both observe one landmark: no new information.
+      if (a_.landmarks[m.a] == b_.landmarks[m.b]) continue;
       matches_.push_back(MatchOf(map_, a_, m.a, b_, m.b, settings_));
     }
     if (static_cast<int>(matches_.size()) < Scaled(settings_.min_matches)) return false;
@@ -130,8 +135,8 @@ class Verifier {
     return true;
   }
 
-  // A fresh keyframe knows few landmarks of its own: all its keypoints against the landmarks of the
-  // place, and the pose they tell.
+  // For a recent keyframe with few landmarks: matches all its keypoints with the landmarks of the
+  // place and estimates the pose from them.
   bool AlignByPose() {
     MatchSettings matching;
     matching.ratio = 0.8;
@@ -176,7 +181,8 @@ class Verifier {
     if (pose.inliers < Scaled(settings_.min_aligned)) return false;
     alignment_.T_camera_world = pose.T_camera_world;
     if (!with_scale_) return true;
-    // How much deeper the place has what the keyframe knows by itself.
+    // Scale factor: depths of the keyframe's own landmarks in the place's map relative to its own
+    // map.
     std::vector<double> ratios;
     for (size_t i = 0; i < matches.size(); ++i) {
       const LandmarkId own = a_.landmarks[match_.found[i].keypoint];
@@ -198,11 +204,12 @@ class Verifier {
                                  &match_.visible);
   }
 
-  // Of the place's landmarks where the keyframe has a keypoint, whatever it looks like: how many
-  // look like it. Something else in a landmark's place speaks against the two being one; a landmark
-  // without a keypoint may be hidden, and says nothing.
+  // Of the place's landmarks that project onto some keypoint, the share whose descriptor matches
+  // it. A different descriptor at the landmark's position is evidence against the match; a landmark
+  // without a keypoint may be occluded and is not counted.
   double AlikeShare() const {
-    const LandmarkSearch any{settings_.alike_radius, 256, {}};  // bits: all of them
+    // Hamming distance 256: any descriptor
+    const LandmarkSearch any{settings_.alike_radius, 256, {}};
     const std::vector<FusedSighting> there =
         FindLandmarks(map_, around_, a_, alignment_.T_camera_world, camera_, any);
     const auto alike = std::count_if(there.begin(), there.end(), [&](const FusedSighting& s) {
@@ -212,7 +219,8 @@ class Verifier {
     return there.empty() ? 0 : static_cast<double>(alike) / static_cast<double>(there.size());
   }
 
-  // Landmarks found that both cameras see, in both maps.
+  // Refines the alignment with the landmarks found that are observed by both keyframes in both
+  // maps.
   void Refine() {
     std::vector<Sim3Match> matches;
     for (const FusedSighting& s : match_.found) {
@@ -230,8 +238,7 @@ class Verifier {
     alignment_ = AlignmentOf(T_a_b_, b_);
   }
 
-  // Most of the place is there: then even a monocular scale that broke down on the way is no
-  // objection.
+  // Most of the place was found: evidence strong enough to accept even a failed monocular scale.
   bool IsPlain() const {
     const int found = DifferentKeypoints(match_.found);
     return found >= kPlainFound * Scaled(settings_.min_found) &&
@@ -250,16 +257,16 @@ class Verifier {
                        settings_.max_drift_floor * MedianDepth(map_, a_).value_or(0);
   }
 
-  // Where another keyframe of `a_`'s map is in the place's world.
+  // Pose of another keyframe of `a_`'s map in the world frame of the place.
   Se3 InWorldOfPlace(const KeyFrame& other) const {
     Se3 T_other_a = other.T_camera_world * a_.T_camera_world.Inverse();
     T_other_a.t *= alignment_.growth;
     return T_other_a * alignment_.T_camera_world;
   }
 
-  // Both keyframes of one camera must know the scale by which the maps are laid together. And the
-  // farther it must have leapt from one to the other, the more must be found of the place, and look
-  // like it.
+  // Monocular: both keyframes need landmarks of known scale to determine the scale between the
+  // maps. The closer the implied camera motion between the maps is to the motion gate, the more
+  // landmarks must be found and match by descriptors.
   bool CanMerge() const {
     const int least = Scaled(settings_.min_known_scale);
     if (with_scale_ && (CountOfKnownScale(map_, a_) < least || CountOfKnownScale(map_, b_) < least))
@@ -271,8 +278,8 @@ class Verifier {
            AlikeShare() >= settings_.min_merge_alike + doubt * (alike - settings_.min_merge_alike);
   }
 
-  // Of two maps of one recording: DoubtOf() the camera having gone from the last keyframe of the
-  // place's map to the next one of the other map.
+  // DoubtOf() of the camera's motion from the last keyframe of the place's map to the next one of
+  // the other map, for two maps of one recording.
   double Doubt() const {
     if (!recording_.valid()) return 0;
     const KeyFrame* next = &a_;
@@ -296,7 +303,7 @@ class Verifier {
     return DoubtOf(way, there, depth, gone, settings_.reach);
   }
 
-  // Whether the keyframes around see the place, too. All of them where there are fewer than asked.
+  // True if enough covisible keyframes also observe the place, or all of them if there are fewer.
   bool Confirmed() const {
     const LandmarkSearch search{settings_.search_radius, settings_.max_distance, {}};
     int asked = 0, agreed = 0;
@@ -322,7 +329,7 @@ class Verifier {
   const LoopSettings& settings_;
   const KeyFrameId recording_;
   bool with_scale_ = true;
-  std::vector<Sim3Match> matches_;  // by descriptors alone
+  std::vector<Sim3Match> matches_;  // matched by descriptors alone
   std::vector<LandmarkId> around_;  // landmarks of the place
   Sim3 T_a_b_;
   Alignment alignment_;

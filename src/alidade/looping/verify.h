@@ -1,4 +1,4 @@
-// What an old place must show before it is believed to be the one in view.
+// Geometric verification of a loop candidate.
 #pragma once
 
 #include <optional>
@@ -11,21 +11,22 @@
 
 namespace alidade {
 
-// `keyframe` sees what `place` saw.
+// `keyframe` shows the same place as `place`.
 struct LoopMatch {
   KeyFrameId keyframe, place;
-  Se3 T_camera_world;  // of `keyframe` by the place's landmarks, in the place's world and scale
-  double depth = 1;    // median, of what `keyframe` sees, in the place's scale
-  double growth = 1;   // lengths around `keyframe` must be multiplied by this (monocular)
-  std::vector<FusedSighting> found;  // landmarks of the place, in `keyframe`
-  int visible = 0;                   // of them that should have been found
+  Se3 T_camera_world;                // of `keyframe`, in the place's world frame and scale
+  double depth = 1;                  // median depth of `keyframe`'s landmarks, in the place's scale
+  double growth = 1;                 // scale factor for lengths around `keyframe` (monocular)
+  std::vector<FusedSighting> found;  // landmarks of the place found in `keyframe`
+  int visible = 0;                   // landmarks that were expected to be found
 };
 
-// nullopt: not the same place, or not certain enough. Alignment of matched landmarks by RANSAC, all
-// landmarks of the place looked for from there, covisible keyframes asked whether they see it, too;
-// at last, whether tracking can have drifted so far (ORB-SLAM §VII-B; Campos et al. 2021, §VI-A),
-// or the camera have gone from one map to the other (DoubtOf(), for keyframes from
-// `recording` on, whose times are of one clock; invalid: not asked).
+// Returns nullopt if the places differ or the match is not certain. Aligns matched landmarks by
+// RANSAC, searches all landmarks of the place from there, and requires that covisible keyframes
+// observe the place too. Finally checks that tracking can have drifted this far (Mur-Artal et al.
+// 2015, §VII-B; Campos et al. 2021, §VI-A), or that the camera can have moved from one map to the
+// other (DoubtOf(), for keyframes from `recording` on, whose times are of one clock; invalid: not
+// checked).
 std::optional<LoopMatch> VerifyLoop(const MapSnapshot& map, KeyFrameId keyframe, KeyFrameId place,
                                     const Camera& camera, const LoopSettings& settings,
                                     KeyFrameId recording = {});

@@ -13,14 +13,15 @@
 namespace alidade {
 namespace {
 
-// Noise of what one camera saw, as a share of what is assumed: the median of chi² with 2 degrees of
-// freedom is 2 ln 2. 1 where it is larger (or nothing was seen): then the state is not near enough.
+// Measured noise of a single camera divided by the assumed one; the median of chi² with 2 degrees
+// of freedom is 2 ln 2. Clamped to [least, 1]: a larger value means that the state is not near the
+// optimum.
 double NoiseShare(const BundleProblem& problem, int cameras, double least) {
   const double median_of_chi2 = 2 * std::numbers::ln2;
   std::vector<double> chi2;
   chi2.reserve(problem.observations.size());
   for (const BundleObservation& o : problem.observations) {
-    if (o.camera >= cameras) continue;  // assumed
+    if (o.camera >= cameras) continue;  // virtual observation, see AssumeDepth()
     chi2.push_back(
         ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o));
   }
@@ -30,7 +31,8 @@ double NoiseShare(const BundleProblem& problem, int cameras, double least) {
 
 double Gate(const BundleObservation& o) { return std::isnan(o.pixel.z()) ? 5.991 : 7.815; }
 
-// Whether its depth can hardly be told: no ray to it is farther than `degrees` off the reference's.
+// True if the depth is poorly observable: all rays to the landmark are within `degrees` of the
+// reference keyframe's.
 bool HasNoParallax(const MapSnapshot& map, const Landmark& landmark, const KeyFrame& reference,
                    double degrees) {
   const double least_cosine = std::cos(degrees * std::numbers::pi / 180);
@@ -42,7 +44,7 @@ bool HasNoParallax(const MapSnapshot& map, const Landmark& landmark, const KeyFr
       });
 }
 
-// Cameras that are not there, each beside a keyframe, to its right by its median depth.
+// Virtual fixed cameras, one beside each keyframe, offset to the right by its median depth.
 struct BesideCameras {
   IdMap<KeyFrameId, int> index;
   int Of(const MapSnapshot& map, const KeyFrame& keyframe, BundleProblem& problem) {
@@ -55,9 +57,10 @@ struct BesideCameras {
   }
 };
 
-// The depth z of the problem's last point in its reference keyframe as that is to start with, with
-// a standard deviation of z `error`, as what a camera beside it would see: a disparity of d = f b /
-// z, so that with a baseline b near z the disparity's is σ_d = d σ_z / z = f error.
+// Depth prior of the problem's last point at its current depth z in the reference keyframe, with
+// standard deviation z × `error`. Implemented as an observation in a virtual camera beside the
+// keyframe: disparity d = f b / z, so for a baseline b near z the standard deviation is σ_d = d σ_z
+// / z = f × error.
 void AssumeDepth(const MapSnapshot& map, const KeyFrame& reference, double error,
                  BesideCameras& beside, BundleProblem& problem) {
   const int camera = beside.Of(map, reference, problem);
@@ -134,7 +137,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   for (size_t i = 0; i < points.size(); ++i)
     result.points.push_back({points[i], problem.points[i]});
   for (const BundleObservation& o : problem.observations) {
-    if (o.camera >= static_cast<int>(cameras.size())) continue;  // assumed
+    if (o.camera >= static_cast<int>(cameras.size())) continue;  // virtual observation
     const double chi2 =
         ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
     if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});
@@ -143,7 +146,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
 }
 
 void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustment& result) {
-  // Corrections in the world: T_new_old of every keyframe that moved.
+  // T_new_old in the world frame for every keyframe that moved.
   std::vector<std::pair<KeyFrameId, Se3>> moved;
   for (const auto& [id, T_camera_world] : result.poses) {
     KeyFrame* keyframe = commit.Edit(id);

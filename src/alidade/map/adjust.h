@@ -1,4 +1,4 @@
-// Part of the map as a bundle adjustment problem, and back.
+// Bundle adjustment of a part of the map.
 #pragma once
 
 #include <atomic>
@@ -33,18 +33,19 @@ struct AdjustSettings {
 
 struct Adjustment {
   std::vector<std::pair<KeyFrameId, Se3>> poses;               // T_camera_world, by id
-  std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points;  // adjusted
-  std::vector<std::pair<LandmarkId, KeyFrameId>> outliers;     // observations that do not fit
+  std::vector<std::pair<LandmarkId, Eigen::Vector3d>> points;  // adjusted positions, world frame
+  // Observations rejected by the chi² test.
+  std::vector<std::pair<LandmarkId, KeyFrameId>> outliers;
   BundleReport report;
 };
 
-// Adjusts `free` and all they see, `fixed` held; both sorted. `map` is not changed. `stop` (may be
-// null) cuts it short.
+// Adjusts the poses of `free` and all landmarks they observe; the poses of `fixed` are constant.
+// Both lists are sorted. `map` is not changed. `stop` (may be null) ends it early.
 Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
                            const std::vector<KeyFrameId>& fixed, const Camera& camera,
                            const AdjustSettings& settings, const std::atomic<bool>* stop);
 
-// Enters the result object by object, where it still lives. What was born since `base` follows:
+// Applies the result to the objects that still exist. Objects created since `base` follow:
 // keyframes their parent, landmarks their reference keyframe.
 void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustment& result);
 

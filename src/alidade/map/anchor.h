@@ -1,4 +1,4 @@
-// A place told by a keyframe: follows it through every correction, of place and of scale.
+// A camera pose relative to a keyframe. It stays valid when corrections move or scale the keyframe.
 #pragma once
 
 #include "alidade/map/map_store.h"
@@ -6,16 +6,16 @@
 namespace alidade {
 
 struct Anchor {
-  KeyFrameId keyframe;    // none: T_camera_keyframe is T_camera_world
-  Se3 T_camera_keyframe;  // as it was then …
-  double scale = 1;       // … when the keyframe had this scale
+  KeyFrameId keyframe;    // invalid: T_camera_keyframe is T_camera_world
+  Se3 T_camera_keyframe;  // at the time of anchoring
+  double scale = 1;       // KeyFrame::scale at the time of anchoring
 };
 
 inline Anchor AnchorTo(const MapState& map, KeyFrameId keyframe, const Se3& T_camera_world) {
   return {keyframe, T_camera_world * map.PoseOf(keyframe).Inverse(), map.ScaleOf(keyframe)};
 }
 
-// T_camera_world now.
+// Current T_camera_world.
 inline Se3 PoseOf(const MapState& map, const Anchor& anchor) {
   if (!anchor.keyframe.valid()) return anchor.T_camera_keyframe;
   Se3 T_camera_keyframe = anchor.T_camera_keyframe;
@@ -23,11 +23,10 @@ inline Se3 PoseOf(const MapState& map, const Anchor& anchor) {
   return T_camera_keyframe * map.PoseOf(anchor.keyframe);
 }
 
-// The same place told by the living keyframe that a culled one follows; a living one's stays as it
-// is. With no keyframe when there is none: its map was dropped.
-//   T_camera_parent = T_camera_keyframe(lengths × s_keyframe) · T_keyframe_parent(lengths ×
-//   s_parent),
-// kept as of a parent of scale 1, so that no scale of the day enters it.
+// Re-expresses an anchor relative to the nearest live ancestor of a culled keyframe; an anchor to a
+// live keyframe is returned unchanged. Returns an anchor without a keyframe if the map was dropped.
+//   T_camera_parent = T_camera_keyframe · T_keyframe_parent, translations scaled by s_keyframe and
+// s_parent. Stored for a parent of scale 1, so that it does not depend on the current scale.
 inline Anchor Reanchored(const MapState& map, Anchor anchor) {
   const CulledKeyFrame* gone = map.culled.At(anchor.keyframe.value);
   if (gone) {

@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// 1 / map units, of each keypoint's landmark; 0: it shows none.
+// Inverse depth of each keypoint's landmark, 1 / map units; 0: no landmark.
 std::vector<float> InverseDepths(const MapCommit& commit, const KeyFrame& keyframe) {
   std::vector<float> inverse_depths(keyframe.landmarks.size(), 0.0f);
   for (size_t i = 0; i < inverse_depths.size(); ++i) {
@@ -45,7 +45,7 @@ void CommitShutter(MapCommit& commit, const Camera& camera) {
     const Vector6d motion = frame->motion;
     UndoRollingShutter(camera, MotionOf(*keyframe), inverse_depths,
                        known.empty() ? 0 : UpperMedian(known), *frame);
-    frame->motion = motion;  // in lengths of its birth
+    frame->motion = motion;  // stays in map units at the keyframe's creation
     commit.Edit(KeyFrameId{i})->frame = std::move(frame);
   }
 }

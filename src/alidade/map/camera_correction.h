@@ -1,4 +1,4 @@
-// A camera that is known better than when the map was begun.
+// Applies improved camera parameters to the keyframes of a map.
 #pragma once
 
 #include "alidade/geometry/camera.h"
@@ -6,17 +6,17 @@
 
 namespace alidade {
 
-// Places the keypoints of all keyframes anew, from where they are in their images: as `camera`'s
-// rolling shutter would have seen them read at once (features/rolling_shutter.h), each with the
-// depth of its landmark. Poses and landmarks stay as they are, for an adjustment to follow.
+// Recomputes the rolling-shutter correction of all keyframes from their raw keypoint positions
+// (features/rolling_shutter.h), with each keypoint's landmark depth. Poses and landmarks are
+// unchanged; run an adjustment afterwards.
 void CommitShutter(MapCommit& commit, const Camera& camera);
 
-// Places them anew as `camera` sees them: another focal length, another distortion, and its rolling
-// shutter. Of one camera only (UndistortKeypoints()).
+// Undistorts all keypoints again with `camera` (focal length, distortion and rolling shutter).
+// Monocular maps only, see UndistortKeypoints().
 void CommitCamera(MapCommit& commit, const Camera& camera);
 
-// How the camera moved when the keyframe was taken (Frame::motion), in lengths of today. Zero: not
-// known.
+// Camera motion during the keyframe's readout (Frame::motion) in current map units per second; zero
+// if unknown.
 Vector6d MotionOf(const KeyFrame& keyframe);
 
 }  // namespace alidade

@@ -12,7 +12,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kLeastTold = 3;  // sigmas of a readout, below which there is none
+// In sigmas of the readout time; below it the readout counts as zero.
+constexpr double kLeastTold = 3;
 
 LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframes,
                     const Camera& camera, const MeasurementNoise& noise,
@@ -80,7 +81,7 @@ std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Ca
   const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
   const size_t all = keyframes.size();
   if (all < static_cast<size_t>(settings.min_keyframes)) return {};
-  // As many windows as it takes to hold all keyframes, of one size.
+  // Number of windows of equal size that cover all keyframes.
   const size_t there =
       (all + static_cast<size_t>(settings.window) - 1) / static_cast<size_t>(settings.window);
   const size_t used = std::min(there, static_cast<size_t>(settings.max_windows));
@@ -138,7 +139,7 @@ CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& cam
   estimate.camera.fx = found.lens.focal;
   estimate.camera.fy = found.lens.focal * camera.fy / camera.fx;
   estimate.camera.distortion = {found.lens.k1, found.lens.k2, 0, 0, 0};
-  // Rows were stretched about the old centre.
+  // Rows were scaled about the old center.
   estimate.camera.cx = found.lens.centre.x();
   estimate.camera.cy = camera.cy + (found.lens.centre.y() - camera.cy) * camera.fy / camera.fx;
   estimate.centre_sigma = sigma.segment<2>(3);

@@ -1,4 +1,5 @@
-// What a map says of the camera that it was made with: focal length and radial distortion.
+// Self-calibration: estimates focal length, radial distortion and readout time of a camera from a
+// map.
 #pragma once
 
 #include <vector>
@@ -33,34 +34,36 @@ struct CameraEstimateSettings {
 };
 
 struct CameraEstimate {
-  Camera camera;           // of the images that the map was made from
-  double focal_sigma = 0;  // standard deviation of log focal: relative, unitless
+  Camera camera;           // of the images from which the map was built
+  double focal_sigma = 0;  // standard deviation of the log focal length: relative, unitless
   double k1_sigma = 0, k2_sigma = 0;
   Eigen::Vector2d centre_sigma = Eigen::Vector2d::Zero();  // pixels
-  // Of camera.readout, seconds; zero for a direction that was not looked for, or found to be none.
+  // Standard deviation of camera.readout, seconds; zero for a direction that was not estimated or
+  // found insignificant.
   Eigen::Vector2d readout_sigma = Eigen::Vector2d::Zero();
-  int keyframes = 0, observations = 0;  // that had a say; 0: nothing is said
-  double noise = 0;                     // of keypoints on the finest level, pixels
-  bool known = false;                   // focal_sigma is small enough
+  int keyframes = 0, observations = 0;  // number used; 0: no estimate
+  double noise = 0;                     // of keypoints on level 0, pixels
+  bool known = false;                   // focal_sigma is below max_focal_sigma
 };
 
-// Views of one map, or several of one camera, for AdjustLens(). Pixels are as in the image (with
-// hold_lens: undistorted), for square pixels: rows are stretched about the centre by fx / fy.
+// Windows of one map for AdjustLens(); windows of several maps of one camera can be joined. Pixels
+// are raw (with hold_lens: undistorted), scaled vertically about the center by fx / fy to square
+// pixels.
 std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Camera& camera,
                                       const MeasurementNoise& noise,
                                       const CameraEstimateSettings& settings);
 
-// `camera`: what the windows' maps were made with; where the search starts. Readout is looked for
-// along Camera::ReadAlong(), and is none where it is not more than 3 sigma.
+// `camera`: with which the windows' maps were built; start of the search. The readout time is
+// estimated along Camera::ReadAlong() and set to zero if below 3 sigma.
 CameraEstimate EstimateCamera(std::vector<LensWindow> windows, const Camera& camera,
                               const MeasurementNoise& noise,
                               const CameraEstimateSettings& settings = {});
 
-// How far two cameras differ, as a share of a pixel's distance from the middle: the larger of that
-// near the middle and that at the corners.
+// Difference between two cameras: displacement relative to a pixel's distance from the center, the
+// larger of the values near the center and at the corners.
 double Apart(const Camera& a, const Camera& b);
-// The camera that lies so far (0…1) from `a` to `b`: log focal length, distortion, centre and
-// readout of each.
+// Interpolates between `a` (share 0) and `b` (share 1): log focal length, distortion, principal
+// point and readout time.
 Camera Between(const Camera& a, const Camera& b, double share);
 
 }  // namespace alidade

@@ -9,7 +9,7 @@ namespace {
 
 struct Move {
   Se3 T_old;  // T_camera_world before
-  Se3 T_new;  // and after
+  Se3 T_new;  // T_camera_world after
   double growth = 1;
 };
 
@@ -18,7 +18,7 @@ struct Move {
 void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>& corrections) {
   IdMap<KeyFrameId, Move> moves;
   auto next = corrections.begin();
-  commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {  // parents before their children
+  commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {  // parents come first
     while (next != corrections.end() && next->id < keyframe.id) ++next;
     if (next != corrections.end() && next->id == keyframe.id) {
       moves[keyframe.id] = {keyframe.T_camera_world, next->T_camera_world, next->growth};
@@ -54,7 +54,7 @@ void CommitMerge(MapCommit& commit, MapId younger, MapId older, const Sim3& T_ol
   std::vector<KeyFrameCorrection> corrections;
   commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {
     if (keyframe.map != younger) return;
-    Se3 T;  // the camera stays where it is among its points
+    Se3 T;  // keep the camera's position relative to its points
     T.R = keyframe.T_camera_world.R * T_older_younger.R.transpose();
     T.t = T_older_younger.s * keyframe.T_camera_world.t - T.R * T_older_younger.t;
     corrections.push_back({keyframe.id, T, T_older_younger.s});

@@ -1,4 +1,4 @@
-// Moving large parts of the map at once: what a closed loop or a merge asks for.
+// Commits that move large parts of the map, for a loop closure or a merge.
 #pragma once
 
 #include <vector>
@@ -9,16 +9,17 @@ namespace alidade {
 
 struct KeyFrameCorrection {
   KeyFrameId id;
-  Se3 T_camera_world;  // its new place
-  double growth = 1;   // lengths around it are multiplied by this
+  Se3 T_camera_world;  // new pose
+  double growth = 1;   // scale factor of lengths around the keyframe
 };
 
-// `corrections` sorted by id. Keyframes that are not among them follow their parent (those born
-// since the corrections were worked out), landmarks their reference keyframe, all with their scale.
+// Moves the given keyframes (`corrections` is sorted by id). All other keyframes (created since the
+// corrections were computed) follow their parent, landmarks their reference keyframe, including the
+// scale.
 void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>& corrections);
 
-// Puts all of `younger` into the world of `older`: p_older = T_older_younger * p_younger. Its first
-// keyframe becomes a descendant of `anchor`, which is in `older`.
+// Moves the map `younger` into the world frame of `older`: p_older = T_older_younger * p_younger.
+// Its first keyframe becomes a descendant of `anchor`, a keyframe of `older`.
 void CommitMerge(MapCommit& commit, MapId younger, MapId older, const Sim3& T_older_younger,
                  KeyFrameId anchor);
 

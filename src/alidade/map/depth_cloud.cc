@@ -9,10 +9,10 @@
 namespace alidade {
 namespace {
 
-// One point of the world, as a keyframe knows it.
+// One point in the world frame.
 struct Sample {
-  Eigen::Vector3d p_world;  // metres
-  double sigma = 0;         // metres, along the ray
+  Eigen::Vector3d p_world;  // meters
+  double sigma = 0;         // along the ray, meters
   std::array<uint8_t, 3> rgb{};
 };
 
@@ -83,10 +83,10 @@ Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& ca
     ForEachSample(keyframes, camera, [&](const Sample& sample) { Append(cloud, sample); });
     return cloud;
   }
-  std::unordered_map<Voxel, size_t, VoxelHash> places;  // of each voxel in `sums`
+  std::unordered_map<Voxel, size_t, VoxelHash> places;  // index of each voxel in `sums`
   std::vector<Sums> sums;
   ForEachSample(keyframes, camera, [&](const Sample& sample) {
-    constexpr double kFarthest = 1e15;  // voxels: beyond, there is no telling them apart
+    constexpr double kFarthest = 1e15;  // voxels; beyond it indices lose precision
     const Eigen::Vector3d index = sample.p_world / voxel;
     if (!(index.cwiseAbs().maxCoeff() < kFarthest)) return;
     Voxel key{};
@@ -94,8 +94,7 @@ Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& ca
       key[static_cast<size_t>(axis)] = static_cast<int64_t>(std::floor(index[axis]));
     const size_t place = places.try_emplace(key, sums.size()).first->second;
     if (place == sums.size()) sums.emplace_back();
-    // Nothing is known better than a millionth of a voxel: a sigma of 0 must not be infinite
-    // weight.
+    // Lower limit of a millionth of a voxel: a sigma of 0 would give infinite weight.
     const double sigma = std::max(sample.sigma, 1e-6 * voxel);
     const double weight = 1 / (sigma * sigma);
     Sums& sum = sums[place];

@@ -1,4 +1,4 @@
-// The depth of keyframes as a cloud in the world, and as pictures.
+// Semi-dense depth of keyframes as a point cloud in the world frame, and as depth images.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,23 +14,22 @@ namespace ALIDADE_API alidade {
 struct PlacedDepth {
   const DepthMap* depth = nullptr;
   Se3 T_world_camera;
-  double scale = 1;  // lengths are those of `depth` times this
+  double scale = 1;  // lengths = those of `depth` × scale
 };
 
-// Where the depth of a keyframe lies now. It must have one, and live as long as what comes back.
+// Current placement of a keyframe's depth. The keyframe must have a depth map and outlive the
+// result.
 PlacedDepth PlaceDepth(const KeyFrame& keyframe);
 
-// Every pixel as a point, with its colour and its sigma along the ray. With `voxel` > 0 (metres)
-// all that fall into one cube of that edge (its corner at a multiple of it) become one point: the
-// mean by inverse variance, whose sigma is that of a mean of independent errors. Points come in the
-// order in which their cubes are first met.
+// One point per depth pixel, with color and sigma along the ray. If `voxel` > 0 (meters), all
+// points in one cube with that edge length are merged into their inverse-variance weighted mean,
+// whose sigma assumes independent errors. Points are in the order in which their cubes first occur.
 Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& camera, double voxel);
 
-inline constexpr double kDepthPictureFactor = 5000;  // per metre (map unit), as TUM's depth images
+inline constexpr double kDepthPictureFactor = 5000;  // per meter (map unit), as in TUM depth images
 
-// CV_16U of the camera's size, kDepthPictureFactor per metre, 0 = not known or beyond 13.1 m;
-// registered to the image as taken, lens distortion and all. Where two pixels of `depth` fall on
-// one, the nearer holds.
+// CV_16U of the camera's size, kDepthPictureFactor per meter, 0 = unknown or beyond 13.1 m.
+// Registered to the raw (distorted) image. The nearer of two points that fall on one pixel wins.
 cv::Mat DrawDepth(const DepthMap& depth, double scale, const Camera& camera);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Depth of a keyframe where it is known: at pixels with structure.
+// Semi-dense depth of a keyframe.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@ namespace ALIDADE_API alidade {
 
 struct DepthPixel {
   uint16_t x = 0, y = 0;  // undistorted pixel of the keyframe's camera
-  float inverse_depth = 0,
-        sigma = 0;               // along z, 1/m (mono: 1/map unit), and its standard deviation
-  std::array<uint8_t, 3> rgb{};  // red green blue
+  // Inverse depth along z, 1/m (mono: 1/map unit), and its standard deviation.
+  float inverse_depth = 0, sigma = 0;
+  std::array<uint8_t, 3> rgb{};  // red, green, blue
 };
 
-// Depth stays in its keyframe and so moves with the pose. Lengths now are those here times
-// KeyFrame::scale / `scale`.
+// Stored relative to the keyframe, so it moves with the keyframe's pose. Current lengths are those
+// stored × KeyFrame::scale / `scale`.
 struct DepthMap {
-  int width = 0, height = 0;       // pixels, the camera's
-  double scale = 1;                // KeyFrame::scale when it was estimated
+  int width = 0, height = 0;       // size of the camera's image, pixels
+  double scale = 1;                // KeyFrame::scale at the time of estimation
   std::vector<DepthPixel> pixels;  // by row, then column
 };
 

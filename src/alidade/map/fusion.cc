@@ -8,8 +8,8 @@
 namespace alidade {
 namespace {
 
-// Whether a keypoint lies where the landmark should be seen: chi² of the pixel, and of the
-// disparity where there is one, at 95 %.
+// True if the keypoint is at the landmark's predicted position: chi² test (95 %) of the pixel, and
+// of the disparity if there is one.
 bool Fits(const LandmarkView& view, const Keypoint& keypoint, const MeasurementNoise& noise,
           bool has_depth) {
   const Measurement m = Measure(keypoint, noise);

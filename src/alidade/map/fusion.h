@@ -1,4 +1,4 @@
-// Finding known landmarks in a keyframe, and making one of two that are the same thing.
+// Searches landmarks in a keyframe and merges duplicate landmarks.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,8 @@
 
 namespace alidade {
 
-// `landmark` is what `keyframe` shows at `keypoint`, whatever that keypoint was thought to be.
+// `landmark` was found at `keypoint` of `keyframe`; the keypoint may already observe another
+// landmark.
 struct FusedSighting {
   LandmarkId landmark;
   KeyFrameId keyframe;
@@ -19,21 +20,23 @@ struct FusedSighting {
 };
 
 struct LandmarkSearch {
-  double radius = 3;      // pixels on level 0, around the place where it should be seen
-  int max_distance = 50;  // bits of 256
-  std::optional<MeasurementNoise> gate;  // chi² test of the place (95 %); none: the radius alone
+  double radius = 3;      // search radius around the predicted position, pixels on level 0
+  int max_distance = 50;  // Hamming distance, bits of 256
+  // Noise for a chi² test of the position (95 %); none: the radius only.
+  std::optional<MeasurementNoise> gate;
 };
 
-// Landmarks the keyframe does not show yet, where a camera at `T_camera_world` should see them.
-// `visible` (may be null) is set to how many of them it should.
+// Finds landmarks that the keyframe does not observe yet in a camera at `T_camera_world`. `visible`
+// (may be null) receives the number of landmarks predicted to be visible.
 std::vector<FusedSighting> FindLandmarks(const MapSnapshot& map,
                                          std::span<const LandmarkId> landmarks,
                                          const KeyFrame& keyframe, const Se3& T_camera_world,
                                          const Camera& camera, const LandmarkSearch& search,
                                          int* visible = nullptr);
 
-// Enters them: adds the observation, or merges the two landmarks into the one seen more often. What
-// no longer fits is passed over. Returns the landmarks touched, sorted.
+// Commits the matches: adds the observation, or merges two landmarks into the one with more
+// observations. Skips matches that are no longer possible. Returns the ids of the changed
+// landmarks, sorted.
 std::vector<LandmarkId> CommitFusion(MapCommit& commit,
                                      const std::vector<FusedSighting>& sightings);
 

@@ -9,7 +9,7 @@ void IdTree::Set(uint32_t id, std::shared_ptr<const void> object, uint64_t versi
   const bool there = At(id) != nullptr;
   if (!there && !object) return;
   size_ += (object != nullptr) - there;
-  while ((static_cast<uint64_t>(id) >> (kBits * levels_)) != 0) {  // a level more on top
+  while ((static_cast<uint64_t>(id) >> (kBits * levels_)) != 0) {  // add a level on top
     if (root_) {
       auto top = std::make_shared<Node>();
       top->version = version;
@@ -24,7 +24,7 @@ void IdTree::Set(uint32_t id, std::shared_ptr<const void> object, uint64_t versi
   root_ = std::static_pointer_cast<const Node>(std::move(root));
 }
 
-// Returns whether the slot is empty afterwards.
+// Returns true if the slot is empty afterwards.
 bool IdTree::SetBelow(std::shared_ptr<const void>& slot, int level, uint32_t id,
                       std::shared_ptr<const void> object, uint64_t version) {
   auto* node = const_cast<Node*>(static_cast<const Node*>(slot.get()));

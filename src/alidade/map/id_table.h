@@ -1,7 +1,7 @@
-// Objects by id, in a tree of nodes with 64 branches that versions of the map share: changing one
-// object copies the nodes on the way to it, nodes without objects are let go. So memory and the
-// cost of a change depend on what is in the table, not on how many ids were ever given. (Path
-// copying: Driscoll, Sarnak, Sleator & Tarjan 1989.)
+// Table of objects by id: a persistent tree with 64 branches per node whose nodes are shared
+// between versions of the map. A change copies the nodes on the path to the object; empty nodes are
+// freed. Memory and the cost of a change depend on the number of objects, not on the largest id.
+// (Path copying: Driscoll, Sarnak, Sleator & Tarjan 1989.)
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace ALIDADE_API alidade {
 
-// The tree for objects of any type. Reading is thread-safe; a copy shares all nodes.
+// Type-erased tree. Reading is thread-safe; a copy shares all nodes.
 class IdTree {
  public:
   const void* At(uint32_t id) const {
@@ -29,11 +29,12 @@ class IdTree {
   }
   int size() const { return size_; }
 
-  // Puts an object there, or takes away what is there (null). Nodes that `version` did not make are
-  // copied first; those it made belong to the caller alone until he gives the tree away.
+  // Sets or (null) erases the object. Nodes not created by `version` are copied first; those
+  // created by it are exclusive to the caller until the tree is published.
   void Set(uint32_t id, std::shared_ptr<const void> object, uint64_t version);
 
-  // visit(object) for all, in order of id; from the last to the first, until it returns false.
+  // Calls visit(object) in order of ids; ForEachFromLast() in reverse order until visit returns
+  // false.
   template <typename Visit>
   void ForEach(Visit&& visit) const {
     if (root_) Walk(*root_, levels_ - 1, visit);
@@ -43,8 +44,8 @@ class IdTree {
     if (root_) WalkBack(*root_, levels_ - 1, visit);
   }
 
-  // visit(object in `before`, object here) for all ids where these differ, null where there is
-  // none, in order of id. What both share is skipped by whole nodes: costs what has changed.
+  // Calls visit(object in `before`, object here) in order of ids for all ids where they differ
+  // (null: absent). Shared nodes are skipped, so the cost is proportional to the number of changes.
   template <typename Visit>
   void ForEachChange(const IdTree& before, Visit&& visit) const {
     WalkChanges({before.root_.get(), before.levels_}, {root_.get(), levels_},
@@ -52,21 +53,22 @@ class IdTree {
   }
 
   int CountNodes() const;                          // for tests
-  int CountNodesNotIn(const IdTree& other) const;  // that `other` does not share
+  int CountNodesNotIn(const IdTree& other) const;  // nodes not shared with `other`
 
  private:
   static constexpr int kBits = 6, kSlots = 1 << kBits;
   static constexpr uint32_t kMask = kSlots - 1;
   struct Node {
-    std::array<std::shared_ptr<const void>, kSlots> slots;  // nodes, on the lowest level objects
-    int used = 0;                                           // slots that are not empty
+    // Child nodes; on the lowest level objects.
+    std::array<std::shared_ptr<const void>, kSlots> slots;
+    int used = 0;  // number of nonempty slots
     uint64_t version = 0;
   };
 
   struct Subtree {
     const Node* node = nullptr;
     int levels = 0;
-    // Its part in slot `i` of a tree of `high` levels: a lower tree lies in the first slot.
+    // The part in slot `i` of a tree of `high` levels; a lower tree is entirely in slot 0.
     Subtree Part(int i, int high) const {
       if (levels < high) return i == 0 ? *this : Subtree{};
       if (!node) return {};
@@ -120,7 +122,7 @@ class IdTree {
   int size_ = 0;
 };
 
-// The same for one type.
+// The same for one object type.
 template <typename Object>
 class IdTable {
  public:

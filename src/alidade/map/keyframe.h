@@ -1,4 +1,4 @@
-// A frame the map remembers.
+// A keyframe of the map.
 #pragma once
 
 #include <memory>
@@ -14,25 +14,27 @@ namespace ALIDADE_API alidade {
 
 struct Neighbour {
   KeyFrameId id;
-  int shared = 0;  // landmarks both see
+  int shared = 0;  // landmarks observed by both
 };
 
 struct KeyFrame {
   KeyFrameId id;
   std::shared_ptr<const Frame> frame;  // never null in a map
   Se3 T_camera_world;
-  MapId map;          // whose world the pose is in
-  KeyFrameId parent;  // spanning tree; none for the first of a map. Always the older of the two
-  // What lengths around it were multiplied by since its birth: loops of a monocular map correct the
-  // scale.
+  MapId map;  // map whose world frame the pose refers to
+  // Parent in the spanning tree, always the older of the two; none for the first keyframe of a map.
+  KeyFrameId parent;
+  // Product of all scale corrections of the lengths around it since its creation (loops of a
+  // monocular map correct the scale).
   double scale = 1;
-  std::vector<KeyFrameId> loops;          // keyframes a closed loop ties it to, sorted
-  std::vector<LandmarkId> landmarks;      // one for each keypoint; none where nothing is known
-  std::vector<Neighbour> covisible;       // most shared landmarks first, then by id
-  std::shared_ptr<const DepthMap> depth;  // semi-dense; null: not (yet) known
-  uint64_t version = 0;                   // commit that wrote it
+  std::vector<KeyFrameId> loops;          // keyframes connected by loop closures, sorted
+  std::vector<LandmarkId> landmarks;      // one per keypoint; invalid: none
+  std::vector<Neighbour> covisible;       // by descending number of shared landmarks, then by id
+  std::shared_ptr<const DepthMap> depth;  // semi-dense depth; null: not available (yet)
+  uint64_t version = 0;                   // commit that last changed it
 
-  Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }  // in the world
+  // Camera center, world frame.
+  Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }
 };
 
 }  // namespace alidade

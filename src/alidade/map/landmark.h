@@ -1,4 +1,4 @@
-// A point of the world that keyframes see.
+// A 3D point observed by keyframes.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,24 +17,29 @@ struct Observation {
 
 struct Landmark {
   LandmarkId id;
-  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  // metres (mono: map units)
+  Eigen::Vector3d p_world = Eigen::Vector3d::Zero();  // meters (mono: map units)
   std::vector<Observation> observations;              // sorted by keyframe
-  KeyFrameId reference;  // keyframe it was made in; it moves with that one
-  uint64_t version = 0;  // commit that wrote it
+  KeyFrameId reference;  // keyframe it was created in, and which it follows in corrections
+  uint64_t version = 0;  // commit that last changed it
 
-  // What tracking needs to look for it (ORB-SLAM §III-C); kept by RefreshLandmark().
-  Descriptor descriptor;  // the observation nearest to all others
-  Eigen::Vector3f normal =
-      Eigen::Vector3f::Zero();               // mean viewing direction, camera to landmark, unit
-  float min_distance = 0, max_distance = 0;  // metres: where its scale is within the pyramid
+  // Search data of tracking (Mur-Artal, Montiel & Tardós 2015, §III-C), updated by
+  // RefreshLandmark().
+  Descriptor descriptor;  // the observation with the smallest median distance to all others
+  // Mean viewing direction from camera to landmark, unit length, world frame.
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();
+  // Range of distances in which its scale is within the pyramid, meters.
+  float min_distance = 0, max_distance = 0;
 
-  // How likely it stands still, 0…1: weighs what is seen of it in poses and adjustments.
+  // Probability of being static, 0 to 1; weight of its observations in poses and adjustments.
   float static_probability = 1;
-  // One camera: whether it was ever measured from keyframes whose distance from each other is known
-  // (mapping/scale_hold.h). Not saved: those of a loaded map count as known.
+  // Monocular: true if it was measured between keyframes whose baseline is known
+  // (mapping/scale_hold.h). Not saved; true for loaded maps.
   bool scale_known = true;
-  bool depth_assumed = false;  // MapTurn() made it, that knows no depth. Not saved either
-  KeyFrameId born;             // newest keyframe when it was made: young ones are on trial
+  // Its depth is an assumption, because it was created during a pure rotation (MapTurn()). Not
+  // saved.
+  bool depth_assumed = false;
+  // Newest keyframe at its creation; recent landmarks are on probation (mapping/cull.h).
+  KeyFrameId born;
 };
 
 }  // namespace alidade

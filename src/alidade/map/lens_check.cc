@@ -87,9 +87,9 @@ LensCheck CheckLens(const MapSnapshot& map, MapId id, const Camera& camera,
   check.k1 = UpperMedian(k1);
   std::vector<double> apart;
   for (double k : k1) apart.push_back(std::abs(k - check.k1));
-  // Of Gaussian noise the median absolute deviation is 0.6745 standard deviations, and the median
-  // of n has 1.2533 / sqrt(n) of them. Few windows may agree by chance, but not better than each
-  // knows by itself.
+  // For Gaussian noise, the median absolute deviation is 0.6745 standard deviations, and the
+  // standard deviation of a median of n is 1.2533 / sqrt(n). Few windows may agree by chance, so
+  // their own uncertainty is added.
   const double of_one = std::hypot(UpperMedian(apart) / 0.6745, UpperMedian(sigma));
   check.sigma = 1.2533 * of_one / std::sqrt(static_cast<double>(k1.size()));
   const double corner = std::hypot(camera.width / camera.fx, camera.height / camera.fy) / 2;

@@ -1,4 +1,4 @@
-// Changes of the map, one object at a time.
+// Changes of single objects of the map.
 #include <algorithm>
 
 #include "alidade/base/error.h"
@@ -7,7 +7,7 @@
 namespace alidade {
 namespace {
 
-// The id of the next one. 40 landmarks a frame, 30 frames a second: enough for 41 days.
+// Issues the next id. At 40 landmarks per frame and 30 frames/s the ids last 41 days.
 template <typename IdType>
 IdType Issue(uint32_t& next) {
   if (next == IdType::kNone) ThrowInput("the map has given all its ids (4294967295)");
@@ -36,7 +36,7 @@ Object* MapCommit::EditIn(IdTable<Object>& table, uint32_t id) {
     object = copy.get();
     table.Set(id, std::move(copy), state_.version);
   }
-  return const_cast<Object*>(object);  // ours alone until published
+  return const_cast<Object*>(object);  // exclusive to this commit until it is published
 }
 
 KeyFrame* MapCommit::Edit(KeyFrameId id) { return EditIn(state_.keyframes, id.value); }
@@ -45,7 +45,7 @@ Landmark* MapCommit::Edit(LandmarkId id) { return EditIn(state_.landmarks, id.va
 
 KeyFrameId MapCommit::Add(KeyFrame keyframe) {
   keyframe.landmarks.resize(keyframe.frame->keypoints.size());
-  // The parent was chosen on a snapshot, and may have been removed since.
+  // The parent was chosen from a snapshot and may have been removed since.
   while (keyframe.parent.valid() && !Find(keyframe.parent)) {
     const CulledKeyFrame* gone = state_.culled.At(keyframe.parent.value);
     keyframe.parent = gone ? gone->parent : KeyFrameId{};
@@ -127,7 +127,7 @@ void MapCommit::Replace(LandmarkId old, LandmarkId by) {
 
 void MapCommit::Remove(KeyFrameId id) {
   KeyFrame* keyframe = Edit(id);
-  if (!keyframe || !keyframe->parent.valid()) return;  // the first one holds the world's frame
+  if (!keyframe || !keyframe->parent.valid()) return;  // the first keyframe defines the world frame
   const std::vector<LandmarkId> landmarks = keyframe->landmarks;
   for (LandmarkId landmark : landmarks) {
     if (landmark.valid()) RemoveObservation(landmark, id);
@@ -137,7 +137,7 @@ void MapCommit::Remove(KeyFrameId id) {
       std::erase_if(other->covisible, [&](const Neighbour& n) { return n.id == id; });
     }
   }
-  std::vector<KeyFrameId> children;  // are younger
+  std::vector<KeyFrameId> children;  // always younger than their parent
   state_.keyframes.ForEachFromLast([&](const KeyFrame& other) {
     if (other.parent == id) children.push_back(other.id);
     return other.id > id;
@@ -168,7 +168,8 @@ void MapCommit::Remove(MapId id) {
   state_.keyframes.ForEach([&](const KeyFrame& keyframe) {
     if (keyframe.map == id) keyframes.push_back(keyframe.id);
   });
-  std::vector<KeyFrameId> culled;  // gathered first: a culled one's map is its parent's
+  // Collected first, because the map of a culled keyframe is found through its parent.
+  std::vector<KeyFrameId> culled;
   state_.culled.ForEach([&](const CulledKeyFrame& gone) {
     if (state_.MapOf(gone.parent) == id) culled.push_back(gone.id);
   });

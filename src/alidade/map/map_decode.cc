@@ -16,11 +16,11 @@
 namespace alidade {
 namespace {
 
-// Objects that come with their ids, until they are put into a table.
+// Decoded objects by id, before they are put into a table.
 template <typename Object>
 class Objects {
  public:
-  // A new one; complains when there is one of that id.
+  // Creates an object; throws Error with `complaint` if the id already exists.
   Object& Add(uint32_t id, uint32_t next, const char* complaint) {
     Require(id < next, "an id was never given");
     const auto [place, is_new] = by_id_.try_emplace(id);
@@ -48,8 +48,8 @@ class Decoder {
  public:
   Decoder(const fb::Map& file, size_t file_size)
       : file_(file), budget_(file_size), camera_(DecodeCamera(*file.camera())) {
-    // Each keyframe gets a grid over the image and the margin around it, of some bytes for each
-    // cell.
+    // Every keyframe gets a grid over the image plus margin, with a few bytes per cell. Limits the
+    // total size of the grids relative to the file size.
     constexpr size_t kSlack = 1 << 24, kCellsPerByte = 16, kMargins = 512;  // pixels
     const size_t area = (static_cast<size_t>(camera_.width) + kMargins) *
                         (static_cast<size_t>(camera_.height) + kMargins);
@@ -95,7 +95,7 @@ class Decoder {
   }
 
  private:
-  // Files of version 1 hold one map.
+  // Files of version 1 contain one map.
   uint32_t NextMap() const {
     return file_.version() == 1 ? (file_.next_keyframe() > 0) : file_.next_map();
   }
@@ -123,7 +123,7 @@ class Decoder {
     }
   }
 
-  // Parents come first, so that there are no rings, and each map is one tree.
+  // Requires parents to precede their children (which excludes cycles) and one tree per map.
   void CheckTree() {
     std::set<MapId> rooted;
     for (const auto& [id, keyframe] : keyframes_.by_id()) {
@@ -194,14 +194,14 @@ class Decoder {
 }  // namespace
 
 void CheckMapStart(std::string_view start) {
-  constexpr size_t kSmallest = 16;  // to look at the identifier at all
+  constexpr size_t kSmallest = 16;  // bytes needed to read the identifier
   if (start.size() < kSmallest || !fb::MapBufferHasIdentifier(start.data()))
     ThrowInput("not a map of Alidade");
 }
 
 SavedMap DecodeMap(std::string_view bytes) {
   CheckMapStart(bytes);
-  // Numbers are read where they lie, which must be a multiple of their size.
+  // FlatBuffers reads numbers in place, which requires aligned data.
   std::vector<uint64_t> aligned;
   const auto* data = reinterpret_cast<const uint8_t*>(bytes.data());
   if (reinterpret_cast<uintptr_t>(data) % sizeof(uint64_t) != 0) {

@@ -11,16 +11,16 @@ namespace alidade {
 namespace {
 
 constexpr int kMaxImageSide = 1 << 15;      // pixels
-constexpr int64_t kMaxImageArea = 1 << 27;  // 134 megapixels
-constexpr float kMaxPixel = 1e9f;           // undistorted ones may lie far outside the image
-constexpr int kMaxFrameNumber =
-    1 << 30;  // a year at 30 frames a second; counting on from there stays in an int
-constexpr float kMaxAngle = 3.2f;  // pi, and a little for rounding
+constexpr int64_t kMaxImageArea = 1 << 27;  // pixels
+constexpr float kMaxPixel = 1e9f;           // undistorted positions may lie far outside the image
+// A year at 30 frames/s; leaves room to continue counting within an int.
+constexpr int kMaxFrameNumber = 1 << 30;
+constexpr float kMaxAngle = 3.2f;  // π plus rounding
 
 Keypoint DecodeKeypoint(const fb::Keypoint& from) {
   const Keypoint keypoint{from.x(),        from.y(),       from.raw_x(), from.raw_y(), from.angle(),
                           from.response(), from.right_x(), from.depth(), from.level()};
-  const auto near = [](float v, float most) { return v >= -most && v <= most; };  // NaN is not
+  const auto near = [](float v, float most) { return v >= -most && v <= most; };  // false for NaN
   Require(near(keypoint.x, kMaxPixel) && near(keypoint.y, kMaxPixel) &&
               near(keypoint.raw_x, kMaxPixel) && near(keypoint.raw_y, kMaxPixel) &&
               near(keypoint.right_x, kMaxPixel) && near(keypoint.angle, kMaxAngle) &&
@@ -31,8 +31,7 @@ Keypoint DecodeKeypoint(const fb::Keypoint& from) {
   return keypoint;
 }
 
-// The verifier sees to it that a list lies inside, at a multiple of 4 bytes, but numbers of 8 may
-// be read only at a multiple of 8.
+// The verifier guarantees alignment to 4 bytes, but 8-byte numbers need alignment to 8.
 template <typename Items>
 void RequireAligned(const Items* items) {
   const auto place = items == nullptr ? 0 : reinterpret_cast<uintptr_t>(items->Data());
@@ -42,7 +41,7 @@ void RequireAligned(const Items* items) {
 
 constexpr const char* kFarPoint = "a point is not a number, or farther away than can be";
 
-bool IsNear(const Eigen::Vector3d& p) {  // NaN is not
+bool IsNear(const Eigen::Vector3d& p) {  // false for NaN
   return p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest;
 }
 
@@ -61,7 +60,7 @@ void Require(bool holds, const char* what) {
 Eigen::Vector3d PointOf(const fb::Vec3& from) { return {from.x(), from.y(), from.z()}; }
 
 const char* ComplaintOf(const Landmark& landmark) {
-  // Written so that NaN is complained of.
+  // Conditions are written so that NaN fails them.
   if (!IsNear(landmark.p_world)) return kFarPoint;
   if (!(landmark.normal.norm() <= 1.001f)) return "a landmark's normal is no direction";
   if (!(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
@@ -85,7 +84,7 @@ Se3 DecodePose(const fb::Pose* from) {
 }
 
 double DecodeScale(double from) {
-  constexpr double kMost = 1e6;  // what a loop could correct, by far
+  constexpr double kMost = 1e6;  // far beyond any loop correction
   Require(from >= 1 / kMost && from <= kMost, "a keyframe's scale cannot be");
   return from;
 }
@@ -156,7 +155,7 @@ SavedPlaces DecodePlaces(const fb::Places* from, ByteBudget& budget) {
   places.grown_at = from->grown_at();
   Require(places.nodes.empty() == (places.grown_at == 0),
           "its vocabulary was never grown, or grown to nothing");
-  Vocabulary checked(places.nodes);  // throws when they are no tree
+  Vocabulary checked(places.nodes);  // throws if the nodes are not a tree
   return places;
 }
 

@@ -1,5 +1,5 @@
-// Parts of a saved map, checked one by one. For map_decode.cc, and for map_encode.cc to write only
-// what can be read.
+// Decoding and validation of the parts of a saved map. Used by map_decode.cc, and by map_encode.cc
+// to write only what can be read.
 #pragma once
 
 #include <memory>
@@ -21,12 +21,12 @@ struct Pose;
 struct Vec3;
 }  // namespace fb
 
-// What is read has passed the verifier of FlatBuffers: every offset points inside. Whether it makes
-// sense is looked at here. Throws Error (input).
+// Throws Error (input) unless `holds`. The FlatBuffers verifier has already checked that all
+// offsets are inside the buffer; this checks the contents.
 void Require(bool holds, const char* what);
 
-// Lists in a FlatBuffer may overlap, so that a small file could ask for all memory: together they
-// may not be larger than the file.
+// Limits the total size of lists to the file size. FlatBuffer lists may overlap, so a small file
+// could otherwise request unlimited memory.
 class ByteBudget {
  public:
   explicit ByteBudget(size_t file_size) : left_(file_size) {}
@@ -39,18 +39,18 @@ class ByteBudget {
   size_t left_;
 };
 
-// Nothing is farther away; so that products and squares stay numbers too.
-inline constexpr double kFarthest = 1e12;  // metres
+// Largest coordinate, meters; products and squares stay finite.
+inline constexpr double kFarthest = 1e12;
 
 template <typename Vector>
 size_t SizeOf(const Vector* vector) {
   return vector ? vector->size() : 0;
 }
 
-Eigen::Vector3d PointOf(const fb::Vec3& from);  // whatever it says
+Eigen::Vector3d PointOf(const fb::Vec3& from);  // not validated
 Se3 DecodePose(const fb::Pose* from);
 double DecodeScale(double from);
-// What is wrong with its numbers; null when nothing is.
+// Returns what is wrong with its values; null if nothing is.
 const char* ComplaintOf(const Landmark& landmark);
 Descriptor DecodeDescriptor(const fb::Descriptor& from);
 Camera DecodeCamera(const fb::Camera& from);

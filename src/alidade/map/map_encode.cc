@@ -37,7 +37,7 @@ fb::PlaceNode Encode(const Vocabulary::Node& node) {
   return {Encode(node.centre), node.first_child, node.children};
 }
 
-// A list of things as a vector of structs.
+// Encodes a list as a vector of structs.
 template <typename Struct, typename Thing>
 Offset<flatbuffers::Vector<const Struct*>> EncodeList(FlatBufferBuilder& builder,
                                                       const std::vector<Thing>& things) {
@@ -78,10 +78,10 @@ Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera
                           camera.readout[0], camera.readout[1]);
 }
 
-// A FlatBuffer holds 2 GB at most, some 25,000 keyframes of 1000 keypoints; its builder does not
-// say when it is full.
+// Checks the FlatBuffers limit of 2 GB (about 25,000 keyframes with 1000 keypoints), since the
+// builder does not report an overflow.
 void CheckSize(const MapState& state) {
-  constexpr size_t kKeyFrame = 512, kLandmark = 256;  // bytes besides lists; generous
+  constexpr size_t kKeyFrame = 512, kLandmark = 256;  // bytes in addition to lists, upper bounds
   size_t bytes = 0;
   state.keyframes.ForEach([&](const KeyFrame& keyframe) {
     bytes += kKeyFrame + keyframe.loops.size() * sizeof(uint32_t) +
@@ -103,7 +103,7 @@ void CheckSize(const MapState& state) {
 std::string EncodeMap(const SavedMap& saved) {
   const MapState& state = saved.map.state();
   CheckSize(state);
-  FlatBufferBuilder builder(1 << 16);  // bytes to begin with
+  FlatBufferBuilder builder(1 << 16);  // initial size, bytes
   std::vector<Offset<fb::KeyFrame>> keyframes;
   state.keyframes.ForEach(
       [&](const KeyFrame& keyframe) { keyframes.push_back(EncodeKeyFrame(builder, keyframe)); });

@@ -1,5 +1,5 @@
-// A map as bytes (map.alidade) and back. No files here: the portable core has none.
-// The format is map.fbs; equal maps give equal bytes.
+// Serialization of a map (map.alidade) to and from bytes; no file access. The format is map.fbs.
+// Equal maps give equal bytes.
 #pragma once
 
 #include <string>
@@ -14,33 +14,34 @@
 
 namespace ALIDADE_API alidade {
 
-// All that is saved. Images are not: the frames of a map read back have none.
+// Contents of a map file. Images are not saved, so the frames of a loaded map have none.
 struct SavedMap {
-  MapSnapshot map;     // MapStore::Restore() makes it the map to go on with; ids are kept
-  Camera camera;       // that of the keypoints: after rectifying and scaling
+  MapSnapshot map;     // MapStore::Restore() continues with it; ids are kept
+  Camera camera;       // camera of the keypoints: after rectification and scaling
   std::string sensor;  // "mono", "stereo" or "rgbd"
-  std::vector<std::pair<std::string, std::string>> settings;  // name and value
+  std::vector<std::pair<std::string, std::string>> settings;  // names and values
   SavedPlaces places = {};  // for PlaceIndex::Restore(), with the keyframes of all maps
-  uint32_t version = 0;     // of the format it was read from; it is always written in the newest
+  uint32_t version = 0;     // format version it was read from; EncodeMap() always writes the newest
 };
 
-// Only what is alive: keyframes that were culled and landmarks that were fused are not in it. What
-// is written was read again before it is returned. Throws Error (input) when it is larger than a
-// file can be (2 GB), std::logic_error when it could not be read (a bug of ours).
+// Encodes live objects only: no records of culled keyframes or fused landmarks. The result is
+// decoded once as a check before it is returned. Throws Error (input) if it exceeds the format's
+// limit (2 GB), std::logic_error if the check fails (a bug).
 std::string EncodeMap(const SavedMap& saved);
 
-// Throws Error (input) when a file that begins like this is no map. A look at it before a sparse
-// file of 2 GB is read.
+// Throws Error (input) if a file that begins with `start` is not a map. Checked before reading the
+// whole file.
 void CheckMapStart(std::string_view start);
 
-// Throws Error (input) that says what is wrong when these are not the bytes of a map, when they are
-// damaged, or when they come from a newer program.
+// Throws Error (input) saying what is wrong if the bytes are not a map, are damaged, or were
+// written by a newer version.
 SavedMap DecodeMap(std::string_view bytes);
 
-// Throws Error (input) naming what differs when `now` cannot go on in a map made by `saved`:
-// another image size, a point seen half a pixel elsewhere or more by focal lengths, principal point
-// and distortion together, or depth (baseline, depth_factor where both have one) off by 0.5 % or
-// more. Files of the same calibration differ by rounding, calibrations of one camera often by more.
+// Throws Error (input) naming the differences if `now` is not the camera of a map built with
+// `saved`: another image size; a displacement of at least 0.5 pixels by focal lengths, principal
+// point and distortion together; or a depth scale (baseline, depth_factor where both have one) that
+// differs by at least 0.5 %. Files of one calibration differ by rounding only, repeated
+// calibrations of one camera often by more.
 void CheckSameCamera(const Camera& saved, const Camera& now);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// What follows from observations: how a landmark is looked for, which keyframes see the same.
+// Data derived from observations: search data of landmarks, covisibility of keyframes.
 #include <algorithm>
 #include <limits>
 
@@ -8,8 +8,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kMinShared =
-    15;  // landmarks two keyframes must share to count as covisible (ORB-SLAM §III-D)
+// Landmarks that two keyframes must share to be covisible (Mur-Artal, Montiel & Tardós 2015,
+// §III-D).
+constexpr int kMinShared = 15;
 
 bool MoreShared(const Neighbour& a, const Neighbour& b) {
   return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
@@ -29,7 +30,7 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
     descriptors.push_back(&keyframe->frame->descriptors[seen.keypoint]);
     direction += (landmark->p_world - keyframe->Centre()).normalized();
   }
-  // The descriptor with the least median distance to the others stands for all.
+  // Representative descriptor: the one with the smallest median distance to the others.
   size_t best = 0;
   int best_median = std::numeric_limits<int>::max();
   std::vector<int> distances(descriptors.size());

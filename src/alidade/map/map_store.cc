@@ -39,7 +39,7 @@ MapId MapState::MapOf(KeyFrameId id) const {
 }
 
 Se3 MapState::PoseOf(KeyFrameId id) const {
-  std::vector<const CulledKeyFrame*> way;  // from `id` up to the first that lives
+  std::vector<const CulledKeyFrame*> way;  // from `id` up to its first live ancestor
   while (const CulledKeyFrame* gone = culled.At(id.value)) {
     way.push_back(gone);
     id = gone->parent;
@@ -60,7 +60,8 @@ Se3 MapState::PoseOf(KeyFrameId id) const {
 std::vector<MapId> MapSnapshot::Maps() const {
   std::vector<MapId> maps;
   keyframes().ForEach([&](const KeyFrame& keyframe) {
-    if (!keyframe.parent.valid()) maps.push_back(keyframe.map);  // each map has one first keyframe
+    // Each map has exactly one first keyframe.
+    if (!keyframe.parent.valid()) maps.push_back(keyframe.map);
   });
   std::sort(maps.begin(), maps.end());
   return maps;

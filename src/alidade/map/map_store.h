@@ -1,6 +1,6 @@
-// The map: read through snapshots that never change, written through commits, one at a time.
-// Objects sit behind shared pointers in trees (id_table.h); a commit copies what it touches and
-// publishes new trees, so that readers never wait and never see half a change.
+// The map. Readers use immutable snapshots; writers make commits, one at a time. Objects are held
+// by shared pointers in trees (id_table.h); a commit copies what it changes and publishes new
+// trees, so readers never wait and never see a partial change.
 #pragma once
 
 #include <atomic>
@@ -16,62 +16,61 @@
 
 namespace ALIDADE_API alidade {
 
-// What is left of a keyframe the map can do without: where it was, told by its parent, for those
-// who were placed against it.
+// Record of a culled keyframe: its pose relative to its parent, for poses anchored to it.
 struct CulledKeyFrame {
   KeyFrameId id;
-  KeyFrameId parent;     // living or culled itself
-  Se3 T_camera_parent;   // had the parent scale 1
-  double scale = 1;      // relative to the parent's, see KeyFrame::scale
+  KeyFrameId parent;     // live or culled
+  Se3 T_camera_parent;   // for a parent of scale 1
+  double scale = 1;      // relative to the parent's KeyFrame::scale
   uint64_t version = 0;  // commit that removed it
 };
 
-// A landmark that was fused into another.
+// A landmark that was merged into another.
 struct Forward {
   LandmarkId old, by;
-  uint64_t version = 0;  // commit that fused them
+  uint64_t version = 0;  // commit that merged them
 };
 
-// All there is. Ids are given forever, the tables hold what lives: their memory, and what a commit
-// costs, does not depend on the past.
+// The complete state. Ids are never reused, but the tables hold only existing objects, so memory
+// and the cost of a commit do not depend on the history.
 struct MapState {
-  IdTable<KeyFrame> keyframes;  // alive
+  IdTable<KeyFrame> keyframes;  // live
   IdTable<Landmark> landmarks;
   IdTable<CulledKeyFrame> culled;
-  std::vector<Forward> forwards;  // by old id; until nobody holds that, see MapStore
-  uint32_t next_keyframe = 0, next_landmark = 0, next_map = 0;  // ids the next ones get
-  uint64_t corrections = 0;  // how often loops, merges and full adjustments moved large parts
+  std::vector<Forward> forwards;  // sorted by old id; kept until released, see MapStore
+  uint32_t next_keyframe = 0, next_landmark = 0, next_map = 0;  // next ids to issue
+  uint64_t corrections = 0;  // number of loop closures, merges and full adjustments so far
   uint64_t version = 0;
 
-  // Of any keyframe that is or was culled; a culled one's follow its parent.
-  Se3 PoseOf(KeyFrameId id) const;      // identity when its map was dropped
+  // Of a live or culled keyframe; a culled one follows its parent.
+  Se3 PoseOf(KeyFrameId id) const;      // identity if its map was dropped
   double ScaleOf(KeyFrameId id) const;  // see KeyFrame::scale
-  MapId MapOf(KeyFrameId id) const;     // none when its map was dropped
+  MapId MapOf(KeyFrameId id) const;     // invalid if its map was dropped
 };
 
-// A consistent view of the map at one moment. Cheap to copy, safe to keep.
+// Consistent view of the map at one moment. Cheap to copy; may be kept for any time.
 class MapSnapshot {
  public:
   MapSnapshot() : state_(std::make_shared<const MapState>()) {}
   explicit MapSnapshot(std::shared_ptr<const MapState> state) : state_(std::move(state)) {}
 
-  // Null when there is none, or it was culled or fused away.
+  // Null if it never existed, or was culled or merged.
   const KeyFrame* Find(KeyFrameId id) const { return state_->keyframes.At(id.value); }
   const Landmark* Find(LandmarkId id) const { return state_->landmarks.At(id.value); }
-  // The landmark it was fused into, itself, or none when culled. Ids older than what
-  // MapStore::ReleaseLandmarkIds() was told are forwarded no more.
+  // Follows merges: the id of the landmark now, or invalid if it was culled. Ids from snapshots
+  // released by MapStore::ReleaseLandmarkIds() are not resolved.
   LandmarkId Current(LandmarkId id) const;
-  Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // as in MapState
+  Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // see MapState
   double ScaleOf(KeyFrameId id) const { return state_->ScaleOf(id); }
   MapId MapOf(KeyFrameId id) const { return state_->MapOf(id); }
 
-  std::vector<MapId> Maps() const;                       // that have keyframes, in order of id
-  std::vector<KeyFrameId> KeyFramesOf(MapId map) const;  // alive, in order of id
-  std::vector<KeyFrameId> KeyFrames() const;             // alive, in order of id
-  std::vector<LandmarkId> Landmarks() const;             // alive, in order of id
+  std::vector<MapId> Maps() const;                       // maps with keyframes, in order of ids
+  std::vector<KeyFrameId> KeyFramesOf(MapId map) const;  // live, in order of ids
+  std::vector<KeyFrameId> KeyFrames() const;             // live, in order of ids
+  std::vector<LandmarkId> Landmarks() const;             // live, in order of ids
   int keyframe_count() const { return state_->keyframes.size(); }
   int landmark_count() const { return state_->landmarks.size(); }
-  const IdTable<KeyFrame>& keyframes() const { return state_->keyframes; }  // to walk through
+  const IdTable<KeyFrame>& keyframes() const { return state_->keyframes; }  // for iteration
   const IdTable<Landmark>& landmarks() const { return state_->landmarks; }
   uint32_t next_keyframe() const { return state_->next_keyframe; }
   uint32_t next_landmark() const { return state_->next_landmark; }
@@ -84,51 +83,56 @@ class MapSnapshot {
   std::shared_ptr<const MapState> state_;
 };
 
-// Up to which commits nobody holds ids any more, see MapStore.
+// Versions up to which no ids are held any more, see MapStore.
 struct ReleasedIds {
   std::atomic<uint64_t> landmarks{0}, keyframes{0};
 };
 
-// One change of the map, seen by others only as a whole. Made by MapStore::Commit.
+// One atomic change of the map. Created by MapStore::Commit().
 class MapCommit {
  public:
-  // As in MapSnapshot, but with the changes made so far.
+  // As in MapSnapshot, including the changes made so far.
   const KeyFrame* Find(KeyFrameId id) const { return state_.keyframes.At(id.value); }
   const Landmark* Find(LandmarkId id) const { return state_.landmarks.At(id.value); }
   uint32_t next_keyframe() const { return state_.next_keyframe; }
   uint32_t next_landmark() const { return state_.next_landmark; }
 
-  KeyFrame* Edit(KeyFrameId id);  // null when it is not alive
+  KeyFrame* Edit(KeyFrameId id);  // null if it is not alive
   Landmark* Edit(LandmarkId id);
 
   const MapState& state() const { return state_; }
 
-  // Sets its id; a parent removed meanwhile gives way to its own. Without a parent it is the first
-  // of a new map.
+  // Adds a keyframe and sets its id. A parent removed meanwhile is replaced by its own parent.
+  // Without a parent it starts a new map.
   KeyFrameId Add(KeyFrame keyframe);
-  LandmarkId Add(
-      Landmark landmark);  // sets its id; its observations are entered in the keyframes too
+  // Adds a landmark, sets its id, and enters its observations in the keyframes.
+  LandmarkId Add(Landmark landmark);
 
-  // Both sides of an observation. A keyframe sees a landmark at most once, a keypoint shows at most
-  // one: does nothing and returns false when that would break, or one of them is gone.
+  // Adds both sides of an observation. A keyframe observes a landmark at most once, and a keypoint
+  // at most one landmark: returns false and changes nothing if that would be violated or an object
+  // does not exist.
   bool AddObservation(LandmarkId landmark, KeyFrameId keyframe, int keypoint);
   void RemoveObservation(LandmarkId landmark, KeyFrameId keyframe);
 
-  void Remove(LandmarkId id);                   // and all its observations
-  void Replace(LandmarkId old, LandmarkId by);  // moves the observations that fit, forwards the id
-  void Remove(KeyFrameId id);  // hands its children to its parent; its observations go
-  void Remove(MapId id);       // all that is in that map, without a trace
-  // Makes a map of its own of a keyframe and all younger ones of its map; returns it. Nothing
-  // moves. Landmarks stay with the side their reference is on: the other side's observations of
-  // them go, and with them the covisibility and the loops between the two. Nothing is done, and the
-  // map as it is returned, when `first` is a map's first keyframe or isn't there.
+  void Remove(LandmarkId id);  // with its observations
+  // Moves the observations that fit to `by`, removes `old` and forwards its id.
+  void Replace(LandmarkId old, LandmarkId by);
+  // Removes a keyframe and its observations; its children get its parent. The first keyframe of a
+  // map stays.
+  void Remove(KeyFrameId id);
+  void Remove(MapId id);  // the whole map, including records of culled keyframes
+  // Splits a map: `first` and all younger keyframes of its map form a new map, whose id is
+  // returned. Nothing moves. A landmark stays in the part of its reference keyframe; its
+  // observations from the other part, and covisibility and loops between the parts, are removed. If
+  // `first` is the first keyframe of a map, nothing is changed and its map's id is returned; if it
+  // does not exist, an invalid id.
   MapId Split(KeyFrameId first);
   void AddLoop(KeyFrameId a, KeyFrameId b);
   void CountCorrection() { ++state_.corrections; }
 
-  // Recomputes what tracking needs to look for it. Removes it when no observation is left.
+  // Recomputes the search data of a landmark. Removes it if it has no observations.
   void RefreshLandmark(LandmarkId id);
-  // Recomputes the covisible list of one keyframe, and its entry in the others'.
+  // Recomputes the covisible list of a keyframe and its entries in other keyframes' lists.
   void RefreshCovisibility(KeyFrameId id);
 
  private:
@@ -140,6 +144,7 @@ class MapCommit {
   MapState state_;
 };
 
+// Thread-safe.
 class MapStore {
  public:
   MapStore() : current_(std::make_shared<const MapState>()) {}
@@ -149,8 +154,7 @@ class MapStore {
     return MapSnapshot(current_);
   }
 
-  // Runs change(MapCommit&) and publishes its result. Writers wait for each other, readers for
-  // nobody.
+  // Runs change(MapCommit&) and publishes the result. Writers are serialized; readers do not wait.
   template <typename Change>
   MapSnapshot Commit(Change&& change) {
     std::lock_guard<std::mutex> writer(writer_mutex_);
@@ -158,8 +162,8 @@ class MapStore {
     change(commit);
     return Publish(std::move(commit.state_));
   }
-  // The same, but worked out beside other writers, who need not wait for a long change: done anew
-  // on what they left when one of them was quicker, and at last with all of them waiting.
+  // Like Commit(), but without blocking other writers during `change`. If another commit was
+  // published meanwhile, `change` is repeated on the new state; the fourth attempt blocks.
   template <typename Change>
   MapSnapshot CommitAside(Change&& change) {
     for (int attempt = 0; attempt < 3; ++attempt) {
@@ -171,10 +175,12 @@ class MapStore {
     }
     return Commit(change);
   }
-  // Makes `saved` the map; its ids go on, versions of this store too.
+  // Replaces the map by `saved`; ids continue after those of `saved`, versions after the larger of
+  // both.
   void Restore(const MapSnapshot& saved);
-  // Nobody holds landmark ids (ids of culled keyframes) of snapshots before `version` any more:
-  // forwards (CulledKeyFrames) made up to then go with the next commit. Never told, they stay.
+  // Declares that no landmark ids (ids of culled keyframes) from snapshots before `version` are
+  // held any more. The next commit drops the corresponding forwards (CulledKeyFrames). Without
+  // these calls they are kept.
   void ReleaseLandmarkIds(uint64_t version) { released_.landmarks = version; }
   void ReleaseCulledKeyFrames(uint64_t version) { released_.keyframes = version; }
 

@@ -13,7 +13,7 @@ IdType Moved(IdType id, uint32_t by) {
   return id.valid() ? IdType{id.value + by} : id;
 }
 
-// `first` + `count`: the end of a range of ids.
+// End of the id range [first, first + count).
 template <typename IdType>
 uint32_t EndOf(uint32_t first, uint32_t count) {
   if (count >= IdType::kNone - first) ThrowInput("the maps have more objects than there are ids");

@@ -1,4 +1,4 @@
-// Several maps in one: each keeps its own world, ids are moved apart.
+// Combines several maps into one store. Each keeps its own world frame; ids are shifted.
 #pragma once
 
 #include <span>
@@ -9,24 +9,25 @@
 
 namespace ALIDADE_API alidade {
 
-// Where the objects of one map have come to: id there + first = id here.
+// Position of one map's objects in the union: new id = old id + first.
 struct UnitedPart {
   uint32_t first_keyframe = 0, end_keyframe = 0;  // [first, end)
   uint32_t first_landmark = 0;
   uint32_t first_map = 0, end_map = 0;
-  int first_frame = 0;  // added to Frame::number: those of the parts do not overlap
+  // Added to Frame::number, so that frame numbers of different maps are distinct.
+  int first_frame = 0;
 };
 
 struct MapUnion {
   MapSnapshot map;
-  std::vector<UnitedPart> parts;  // one for each map given
-  // Which of the maps given a keyframe comes from.
+  std::vector<UnitedPart> parts;  // one per input map
+  // Index of the input map that contains a keyframe.
   size_t PartOf(KeyFrameId id) const;
 };
 
-// Only what is alive is taken over: who still holds ids of what was culled or fused must not use
-// them with the union. Frames are copied (without images) where their number changes. Throws Error
-// (input) when there are more objects than ids.
+// Copies live objects only; ids of culled keyframes and merged landmarks must not be used with the
+// union. Frames are copied (without images) if their number changes. Throws Error (input) if there
+// are more objects than ids.
 MapUnion Unite(std::span<const MapSnapshot> maps);
 
 }  // namespace alidade

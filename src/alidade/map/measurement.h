@@ -1,4 +1,4 @@
-// A keypoint as what the optimisers take: pixel, right column, weights.
+// Converts a keypoint to a measurement for the optimizers: pixel, right column, weights.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,7 +10,7 @@
 
 namespace ALIDADE_API alidade {
 
-// How well a keypoint is placed, pixels on level 0.
+// Measurement noise of a keypoint, pixels on level 0.
 struct MeasurementNoise {
   double sigma_px = 0.8;  // of u and v; grows with the level's scale
   double sigma_right_px =
@@ -22,7 +22,7 @@ struct MeasurementNoise {
 };
 
 struct Measurement {
-  Eigen::Vector3d pixel;                        // u, v, right column (u - disparity) or NaN
+  Eigen::Vector3d pixel;                        // u, v, and right column (u - disparity) or NaN
   double inv_sigma2 = 1, inv_sigma2_right = 1;  // 1/px²
 };
 
@@ -36,8 +36,8 @@ inline Measurement Measure(const Keypoint& keypoint, const MeasurementNoise& noi
           1 / (right * right)};
 }
 
-// Standard deviation of what a keypoint says of its depth, as a share of it: sigma_z / z. Of a
-// stereo pair z = f b / d, so that sigma_z = z² sigma_d / (f b); of a depth camera sensor_noise z².
+// Relative standard deviation sigma_z / z of a keypoint's depth. Stereo: z = f b / d, hence sigma_z
+// = z² sigma_d / (f b). Depth camera: sigma_z = sensor_noise z².
 inline double DepthErrorShare(const Keypoint& keypoint, const Camera& camera,
                               const MeasurementNoise& noise) {
   if (noise.right_from_sensor) return noise.sensor_noise * keypoint.depth;

@@ -8,8 +8,8 @@
 namespace alidade {
 namespace {
 
-// Fastest in the last `span` seconds of a way, between places far enough apart in time for their
-// noise not to count; none: there are no such two.
+// Highest speed in the last `span` seconds of the path, between positions at least 0.2 s apart so
+// that their noise is negligible; nullopt if there are no two such positions.
 std::optional<double> FastestOf(std::span<const TimedPlace> way, double span) {
   constexpr double kApart = 0.2;  // seconds
   std::optional<double> fastest;

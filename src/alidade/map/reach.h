@@ -1,5 +1,6 @@
-// How far a camera can have come while nothing told where it went. A place that only looks like
-// another (the two ends of a corridor) is told from it by that: cameras do not leap.
+// Motion gate for relocalization and loop closure: how far the camera can have moved while its pose
+// was unknown. Distinguishes places that look alike (the two ends of a corridor), since a camera
+// moves continuously.
 #pragma once
 
 #include <span>
@@ -9,11 +10,11 @@
 
 namespace ALIDADE_API alidade {
 
-// From where a camera was last, it can be as far as
-//   floor * depth + (speed * fastest + depth_speed * depth) * seconds + drift * gone:
-// `fastest` in the `span` seconds before, `depth` the median depth where it is found, `gone` what
-// it went since that place was seen. The farther of that a place is, the more of it must be seen
-// for it to be believed.
+// Limits the distance from the last known position to
+//   floor * depth + (speed * fastest + depth_speed * depth) * seconds + drift * gone,
+// with `fastest` the highest speed in the last `span` seconds, `depth` the median depth at the
+// candidate place and `gone` the length of the path since that place was last observed. The closer
+// a place is to this limit, the more of it must be matched.
 struct ReachSettings {
   double speed = 2;          // times the fastest the camera was just before
   double span = 2;           // seconds that "just before" is
@@ -35,17 +36,17 @@ struct ReachSettings {
 
 struct TimedPlace {
   double time = 0;         // seconds
-  Eigen::Vector3d centre;  // of the camera, in the world
+  Eigen::Vector3d centre;  // camera center, world frame
 };
 
-// What speaks against the camera being at `to`: the square of its distance from where it was, as a
-// share of how far it can be; 1 at most. `way`: where the camera was, oldest first, in the world of
-// `to`; when it is shorter than .2 s, or ends after `to`, nothing does: 0. `depth`: median, at
-// `to`. `gone`: what it went since the place was seen; all in map units.
+// Squared ratio of the distance from the last position to the limit, at most 1: 0 means no
+// objection to a camera at `to`. `way`: past positions, oldest first, in the world frame of `to`;
+// returns 0 if it spans less than 0.2 s or ends after `to`. `depth`: median depth at `to`. `gone`:
+// path length since the place was observed. All in map units.
 double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
                const ReachSettings& settings);
 
-// Length of the way from one keyframe to another of its map, along the keyframes between, by id.
+// Length of the path between two keyframes of a map, along the keyframes with ids in between.
 double WayBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b);
 
 }  // namespace alidade

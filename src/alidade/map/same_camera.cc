@@ -10,14 +10,15 @@ namespace {
 
 constexpr double kMaxShift = 0.5;         // pixels
 constexpr double kMaxDepthError = 0.005;  // relative
-constexpr int kSteps = 8;  // of the grid of pixels that are compared, in each direction
+// Steps of the grid of compared pixels, in each direction.
+constexpr int kSteps = 8;
 
-// The largest distance between where the two see the same direction, pixels.
+// Largest displacement between the two cameras for the same viewing direction, pixels.
 double LargestShift(const Camera& saved, const Camera& now) {
   const Camera &a = saved, &b = now;
   if (a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
       a.distortion == b.distortion) {
-    return 0;  // whatever the numbers are
+    return 0;  // also if the parameters are not finite
   }
   double largest = 0;
   for (int row = 0; row <= kSteps; ++row) {
@@ -27,7 +28,7 @@ double LargestShift(const Camera& saved, const Camera& now) {
       const Eigen::Vector3d direction = saved.Unproject(saved.Undistort(pixel));
       const Eigen::Vector2d there = saved.Distort(saved.Project(direction));
       const double shift = (now.Distort(now.Project(direction)) - there).norm();
-      if (!(shift <= largest)) largest = shift;  // NaN too
+      if (!(shift <= largest)) largest = shift;  // also for NaN
     }
   }
   return largest;
@@ -37,7 +38,7 @@ bool DepthDiffers(double saved, double now) {
   return saved > 0 && now > 0 && !(std::abs(now / saved - 1) < kMaxDepthError);
 }
 
-// "fx 525 there, 520 here" of all that is not the same.
+// Lists all differing parameters, e.g. "fx 525 there, 520 here".
 std::string Differences(const Camera& saved, const Camera& now) {
   std::ostringstream out;
   out.imbue(std::locale::classic());

@@ -13,7 +13,7 @@ std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera&
   if (p.z() <= 0.01) return {};
   LandmarkView view;
   view.pixel = camera.Project(p);
-  // Written so that NaN falls through to "outside".
+  // Written so that NaN counts as outside.
   const bool inside = view.pixel.x() >= -margin && view.pixel.x() < camera.width + margin &&
                       view.pixel.y() >= -margin && view.pixel.y() < camera.height + margin;
   if (!inside) return {};

@@ -1,4 +1,4 @@
-// A landmark as a camera at a given pose would see it.
+// Predicted observation of a landmark in a camera with a given pose.
 #pragma once
 
 #include <optional>
@@ -13,24 +13,25 @@ namespace ALIDADE_API alidade {
 struct LandmarkView {
   Eigen::Vector2d pixel;  // undistorted
   double right_x = -1;    // column in the right image; -1 for a monocular camera
-  double distance = 0;    // metres, from the camera's centre
-  double cosine = 1;      // between the line of sight and the mean viewing direction
-  int level = 0;          // pyramid level it should be found on
+  double distance = 0;    // from the camera center, meters
+  // Of the angle between the line of sight and the landmark's mean viewing direction.
+  double cosine = 1;
+  int level = 0;  // expected pyramid level
 };
 
-// nullopt: behind the camera, outside the image (by more than `margin` pixels), outside the range
-// of distances where its scale is in the pyramid, or seen from more than 60° off its mean direction
-// (ORB-SLAM §V-D).
+// nullopt if the landmark is behind the camera, more than `margin` pixels outside the image,
+// outside the range of distances in which its scale is in the pyramid, or viewed more than 60° off
+// its mean direction (Mur-Artal, Montiel & Tardós 2015, §V-D).
 std::optional<LandmarkView> ViewLandmark(const Landmark& landmark, const Camera& camera,
                                          const Se3& T_camera_world, double margin = 0);
 
-// The map with most keyframes, of several as large the first; invalid: there is none.
+// The map with the most keyframes, the first of equals; invalid if there is none.
 MapId LargestMap(const MapSnapshot& map);
 
-// Of the landmarks a keyframe shows, along its optical axis; nullopt when it shows none.
+// Median depth of the keyframe's landmarks along its optical axis; nullopt if it has none.
 std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyframe);
 
-// Landmarks of the keyframe whose scale is known (Landmark::scale_known).
+// Number of the keyframe's landmarks with known scale (Landmark::scale_known).
 int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe);
 
 }  // namespace alidade

@@ -38,7 +38,7 @@ std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameI
     return std::find(redundant.begin(), redundant.end(), k) != redundant.end();
   };
   for (const Neighbour& n : map.Find(id)->covisible) {
-    if (n.id > id) continue;  // yet to be processed, and the tracker still counts on it
+    if (n.id > id) continue;  // not processed yet, and in use by the tracker
     const KeyFrame* keyframe = map.Find(n.id);
     if (!keyframe || !keyframe->parent.valid() || !keyframe->loops.empty()) continue;
     int counted = 0, covered = 0;

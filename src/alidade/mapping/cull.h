@@ -1,4 +1,4 @@
-// What the map can do without.
+// Selection of landmarks and keyframes to remove.
 #pragma once
 
 #include <vector>
@@ -13,12 +13,12 @@ namespace alidade {
 // How often a landmark was expected in a frame, and found.
 struct SightingTally {
   uint32_t expected = 0, found = 0;
-  bool doubted = false;       // since the mapper last looked
-  float static_log_odds = 0;  // what was seen since it was born says so, or against it
+  bool doubted = false;       // evidence was added since the last Process()
+  float static_log_odds = 0;  // accumulated evidence since its creation
 };
 
-// Landmarks on trial that failed: seldom found, or seen by too few keyframes since (ORB-SLAM
-// §VI-B). `still_young` gets those whose trial goes on.
+// Recent landmarks that fail their probation: rarely found, or observed by too few keyframes
+// (Mur-Artal et al. 2015, §VI-B). `still_young` receives those that remain on probation.
 std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
                                           const std::vector<LandmarkId>& young,
                                           const IdMap<LandmarkId, SightingTally>& tallies,
@@ -26,9 +26,9 @@ std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
                                           const MapperSettings& settings,
                                           std::vector<LandmarkId>& still_young);
 
-// Covisible keyframes of `id` nearly all of whose landmarks are seen by three others at the same or
-// a finer scale (ORB-SLAM §VI-E). Judged one after the other, each without those already named;
-// younger ones are not judged.
+// Covisible keyframes of `id` of whose landmarks nearly all are observed by three other keyframes
+// at the same or a finer scale (Mur-Artal et al. 2015, §VI-E). Evaluated one after the other, not
+// counting those already selected; younger keyframes than `id` are not considered.
 std::vector<KeyFrameId> FindRedundantKeyFrames(const MapSnapshot& map, KeyFrameId id,
                                                bool has_depth, const MapperSettings& settings);
 

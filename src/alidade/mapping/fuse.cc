@@ -14,7 +14,7 @@ std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id,
     if (const KeyFrame* target = map.Find(n.id)) targets.push_back(target);
   }
   const LandmarkSearch search{settings.fuse_radius, settings.fuse_distance, settings.noise};
-  // Into each neighbour, and (the last one) all of theirs into this keyframe.
+  // One search per neighbor, and one (the last) for all of their landmarks in this keyframe.
   std::vector<std::vector<FusedSighting>> found(targets.size() + 1);
   ParallelFor(static_cast<int>(found.size()), [&](int i) {
     if (i < static_cast<int>(targets.size())) {

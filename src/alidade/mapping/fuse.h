@@ -1,4 +1,4 @@
-// Landmarks that are the same thing twice, and sightings nobody noticed.
+// Search for duplicate landmarks and missing observations.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,8 @@
 
 namespace alidade {
 
-// Projects the landmarks of `id` into its covisible keyframes, and theirs into it (ORB-SLAM §VI-C).
+// Projects the landmarks of `id` into its covisible keyframes, and theirs into it (Mur-Artal et al.
+// 2015, §VI-C).
 std::vector<FusedSighting> FindDuplicates(const MapSnapshot& map, KeyFrameId id,
                                           const Camera& camera, const MapperSettings& settings);
 

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// What a keyframe's worth is multiplied by where the camera is; 1 for those not in the list.
+// Weight of keyframes close to the camera; keyframes not listed have weight 1.
 IdMap<KeyFrameId, double> Nearness(const MapSnapshot& map, KeyFrameId newest) {
   constexpr double kBeside = 4, kNextToThat = 2;
   IdMap<KeyFrameId, double> nearness;
@@ -25,7 +25,7 @@ IdMap<KeyFrameId, double> Nearness(const MapSnapshot& map, KeyFrameId newest) {
 
 std::vector<KeyFrameId> FindLeastUseful(const MapSnapshot& map, KeyFrameId newest, int count) {
   const IdMap<KeyFrameId, double> nearness = Nearness(map, newest);
-  IdMap<LandmarkId, int> lost;  // views, with the keyframes named so far
+  IdMap<LandmarkId, int> lost;  // observations lost with the keyframes selected so far
   const auto worth = [&](const KeyFrame& keyframe) {
     double sum = 0;
     for (LandmarkId id : keyframe.landmarks) {
@@ -38,8 +38,8 @@ std::vector<KeyFrameId> FindLeastUseful(const MapSnapshot& map, KeyFrameId newes
     const double* near = nearness.Find(keyframe.id);
     return sum * (1 - 0.5 * age) * (near ? *near : 1);
   };
-  // What is named makes others worth more, never less: the least of the queue, judged anew, is the
-  // least of all when it is still below the next.
+  // Lazy evaluation: a selection can only raise the value of the others. If the reevaluated front
+  // of the queue is still below the next entry, it is the minimum.
   using Entry = std::pair<double, KeyFrameId>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   for (KeyFrameId id : map.KeyFrames()) {

@@ -1,4 +1,4 @@
-// Which keyframes go when there are more than may be (mapper.max_keyframes).
+// Selection of keyframes to remove when there are more than mapper.max_keyframes.
 #pragma once
 
 #include <vector>
@@ -7,11 +7,11 @@
 
 namespace alidade {
 
-// The `count` least useful keyframes, in order, each judged without those already named; fewer when
-// there are not so many that may go. A keyframe is worth the sightings it holds: the sum of
-// 1 / (keyframes left that see it) over its landmarks, times a half for the oldest to one for the
-// newest, times four when it shares landmarks with `newest`, two when it does over one other: that
-// is the place where the camera is. Never named: the first of a map, `newest` and what is younger.
+// The `count` least valuable keyframes in order, each evaluated without those already selected;
+// fewer if not enough may be removed. The value is the sum of 1 / (number of remaining keyframes
+// that observe it) over its landmarks, times 0.5 (oldest) to 1 (newest), times 4 if covisible with
+// `newest`, or 2 if covisible via one other keyframe (the camera's current surroundings). Never
+// selects the first keyframe of a map, `newest`, or younger ones.
 std::vector<KeyFrameId> FindLeastUseful(const MapSnapshot& map, KeyFrameId newest, int count);
 
 }  // namespace alidade

@@ -7,11 +7,11 @@
 namespace alidade {
 namespace {
 
-// Fills `window` with those that share most landmarks with one that is in it, best first.
+// Extends `window` by keyframes that share the most landmarks with any keyframe in it, best first.
 void Widen(const MapSnapshot& map, const MapperSettings& settings,
            std::vector<KeyFrameId>& window) {
   IdSet<KeyFrameId> within;
-  std::vector<Neighbour> around;  // of those in the window; may name one more than once
+  std::vector<Neighbour> around;  // neighbors of the window's keyframes, may contain duplicates
   const auto enter = [&](KeyFrameId id) {
     within.Enter(id);
     for (const Neighbour& n : map.Find(id)->covisible) {
@@ -45,7 +45,8 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
   if (one_camera) Widen(map, settings, free);
   std::sort(free.begin(), free.end());
 
-  // Votes for the fixed ones: landmarks of the window each outsider sees.
+  // Candidates for fixed keyframes: number of the window's landmarks that each outside keyframe
+  // observes.
   IdMap<KeyFrameId, int> votes;
   IdSet<LandmarkId> counted;
   for (KeyFrameId keyframe : free) {
@@ -69,8 +70,8 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
     if (static_cast<int>(fixed.size()) >= settings.window_fixed) break;
     fixed.push_back(n.id);
   }
-  // The world's own frame stays; something must hold a young map's gauge (and a monocular one's
-  // scale).
+  // Gauge: the first keyframe of a map stays fixed, and at least one keyframe (two if monocular,
+  // for the scale).
   const size_t wanted = one_camera ? 2 : 1;
   while (fixed.size() < wanted && free.size() > 1) {
     fixed.push_back(free.front());

@@ -1,4 +1,4 @@
-// The part of the map that a new keyframe can improve.
+// Local bundle adjustment around a new keyframe.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,9 @@
 
 namespace alidade {
 
-// Adjusts `id`, its best covisible keyframes and all they see; keyframes that see the same
-// landmarks from outside hold the gauge (ORB-SLAM §VI-D). `map` is not changed. `stop` may be null.
+// Adjusts `id`, its best covisible keyframes and all landmarks they observe; outside keyframes that
+// observe the same landmarks are fixed (Mur-Artal et al. 2015, §VI-D). `map` is not changed. `stop`
+// (may be null) ends it early.
 Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
                         const MapperSettings& settings, const std::atomic<bool>* stop);
 

@@ -14,7 +14,7 @@
 namespace alidade {
 namespace {
 
-// Keyframes of `within`, counted no further than `most`.
+// Number of keyframes of a map, counting stops at `most`.
 size_t CountUpTo(size_t most, const MapSnapshot& map, MapId within) {
   size_t count = 0;
   map.keyframes().ForEachFromLast([&](const KeyFrame& keyframe) {
@@ -47,7 +47,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     keyframe.parent = anchor.keyframe;
     id = commit.Add(std::move(keyframe));
     for (size_t i = 0; i < matches.size(); ++i) {
-      // Its map may have been split since it was matched.
+      // Its map may have been split since the match.
       const Landmark* landmark = matches[i].valid() ? commit.Find(matches[i]) : nullptr;
       if (landmark && commit.Find(landmark->reference)->map == commit.Find(id)->map)
         commit.AddObservation(matches[i], id, static_cast<int>(i));
@@ -142,7 +142,8 @@ void Mapper::Restore(const MapSnapshot& map) {
 }
 
 void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
-  constexpr float kBound = 4;  // what was believed for long can be unlearnt in a second
+  // Log-odds; bounds the time to revise a long-held belief to about 1 s.
+  constexpr float kBound = 4;
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   for (const auto& [id, log_odds] : evidence) {
     SightingTally& tally = tallies_[id];
@@ -152,7 +153,7 @@ void Mapper::Doubt(std::span<const std::pair<LandmarkId, float>> evidence) {
   }
 }
 
-// Probabilities of standing still of all that were doubted since, in order of id.
+// Returns the static probabilities of all landmarks with new evidence, by id.
 std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   std::sort(doubted_.begin(), doubted_.end());
@@ -166,12 +167,13 @@ std::vector<std::pair<LandmarkId, float>> Mapper::TakeBelief() {
   return belief;
 }
 
-// When most are of landmarks that are no more, so that each is looked at a few times on average.
+// Removes tallies of deleted landmarks once they are the majority, which keeps the amortized cost
+// low.
 void Mapper::ForgetTalliesOfTheGone(const MapSnapshot& map) {
   constexpr size_t kSpare = 1024;
   std::lock_guard<std::mutex> lock(tallies_mutex_);
   if (tallies_.size() < 2 * static_cast<size_t>(map.landmark_count()) + kSpare) return;
-  // What was counted since `map` was taken may be of younger landmarks; what waits is read soon.
+  // Keep ids newer than `map`, and unread evidence.
   tallies_.EraseIf([&](LandmarkId id, const SightingTally& tally) {
     return !map.Find(id) && id.value < map.next_landmark() && !tally.doubted;
   });
@@ -183,7 +185,7 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   if (!map.Find(id)) return report;
 
   ForgetTalliesOfTheGone(map);
-  // Those the keyframe itself brought are on trial too.
+  // Landmarks created with the keyframe are on probation too.
   for (LandmarkId landmark : map.Find(id)->landmarks) {
     if (landmark.valid() && map.Find(landmark)->born == id) young_.push_back(landmark);
   }
@@ -281,8 +283,9 @@ MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
   const auto knows = [&](const KeyFrame& keyframe) {
     return CountOfKnownScale(map, keyframe) >= settings_.min_known_scale;
   };
-  // What was mapped one after the other without a scale, newest first: a split takes all from one
-  // keyframe on. Anew when the oldest is culled: where the camera stays, little is new.
+  // Consecutive keyframes without known scale, newest first, because a split moves all keyframes
+  // from one on. The interval restarts when its oldest keyframe is culled, which happens while the
+  // camera stays in place.
   std::vector<const KeyFrame*> unknown;
   for (uint32_t i = id.value + 1; i-- > 0;) {
     const KeyFrame* keyframe = map.Find(KeyFrameId{i});
@@ -293,8 +296,8 @@ MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
   if (unknown.empty() ||
       newest->frame->time - unknown.back()->frame->time < settings_.max_unknown_scale_seconds)
     return {};
-  // Where the camera left what it knows: up the spanning tree, as it may have been found again
-  // among what was mapped without a scale before.
+  // Keyframe of known scale where this stretch began. Found via the spanning tree, because the
+  // camera may have been relocalized in an earlier part without scale.
   const KeyFrame* known = newest;
   while (known && !knows(*known)) known = map.Find(known->parent);
   if (!known) return {};

@@ -1,4 +1,5 @@
-// Turns keyframes into landmarks: triangulates, fuses, adjusts, culls (ORB-SLAM §VI).
+// Local mapping of keyframes: triangulates, fuses, adjusts and culls landmarks (Mur-Artal et al.
+// 2015, §VI).
 #pragma once
 
 #include <atomic>
@@ -15,61 +16,64 @@ namespace alidade {
 
 struct MapperReport {
   int triangulated = 0, fused = 0, landmarks_culled = 0, keyframes_culled = 0;
-  MapId split;  // where the keyframe and some before it became a map of their own
+  MapId split;  // new map that the keyframe and some before it were split into; invalid: no split
   BundleReport bundle;
 };
 
+// Insert() and InsertTwoViews() may run on the tracking thread while another thread runs Process()
+// and KeepWithinLimit().
 class Mapper {
  public:
-  // `camera`: as the frames are; depth_factor and baseline 0 for monocular use.
+  // `camera`: of the frames; depth_factor and baseline are 0 for monocular use.
   Mapper(MapStore& map, const Camera& camera, MapperSettings settings);
 
-  // Enters a keyframe and the landmarks its depth gives, at once: quick, on the tracker's thread.
-  // `matches`: one for each keypoint. `anchor`: where it is, told by its parent, which may have
-  // been corrected since; without a keyframe it begins a map.
+  // Adds a keyframe and the landmarks from its depth immediately; fast enough for the tracking
+  // thread. `matches`: one per keypoint. `anchor`: pose relative to the parent keyframe, which may
+  // have been corrected since; without a keyframe it starts a new map. Returns the new id.
   KeyFrameId Insert(std::shared_ptr<const Frame> frame, const Anchor& anchor,
                     std::span<const LandmarkId> matches);
-  // Whether a keypoint's depth is known well enough for Insert() to make a landmark of it.
+  // True if a keypoint's depth is accurate enough for Insert() to create a landmark.
   bool MakesLandmark(const Keypoint& keypoint) const;
-  // Enters two keyframes and the points between them: a monocular map begins.
+  // Initial monocular map: two keyframes and the points between them.
   struct TwoViewMap {
     std::shared_ptr<const Frame> a, b;
-    Se3 T_b_a;
+    Se3 T_b_a;  // |t| = 1
     struct Point {
-      Eigen::Vector3d p_a;
+      Eigen::Vector3d p_a;  // in the frame of a
       int keypoint_a, keypoint_b;
     };
     std::vector<Point> points;
   };
-  // Adjusted and scaled to a median depth of 1 in a. Returns b's id.
+  // Creates a map, adjusts it and scales it to a median depth of 1 in a. Returns b's id.
   KeyFrameId InsertTwoViews(const TwoViewMap& start);
 
-  // What the tracker looked for and found since the last call. Thread-safe.
+  // Adds the tracker's sightings since the last call: expected landmarks, and whether found.
+  // Thread-safe.
   void Count(std::span<const std::pair<LandmarkId, bool>> sightings);
 
-  // A loaded map: what was believed of its landmarks. Before the first frame.
+  // Restores the static probabilities of a loaded map's landmarks. Call before the first frame.
   void Restore(const MapSnapshot& map);
-  // What frames said of landmarks, as log-odds of standing still, to be added up. Thread-safe; the
-  // next Process() enters it in the map, and removes those that are likely to move.
+  // Adds evidence from frames for landmarks being static, as log-odds. Thread-safe. The next
+  // Process() applies it to the map and removes landmarks that are likely to move.
   void Doubt(std::span<const std::pair<LandmarkId, float>> evidence);
 
-  // Everything else one keyframe asks for; commits as it goes. `stop` (may be null) cuts the
-  // adjustment short.
+  // Performs the remaining mapping steps of a keyframe, committing after each. `stop` (may be null)
+  // ends the adjustment early.
   MapperReport Process(KeyFrameId id, const std::atomic<bool>* stop = nullptr);
 
-  // MapperSettings::young_static, of landmarks from now on. Thread-safe.
+  // Changes MapperSettings::young_static for landmarks created from now on. Thread-safe.
   void SetYoungStatic(float probability) { young_static_ = probability; }
 
-  // The map is of this camera from now on. Nothing else may be at work.
+  // Changes the camera model of the map. No other thread may be using the map.
   void SetCamera(const Camera& camera) { camera_ = camera; }
 
-  // When there are more than settings.max_keyframes: removes the least useful, and returns how
-  // many. `newest`: the keyframe processed last.
+  // Removes the least useful keyframes if there are more than settings.max_keyframes; returns their
+  // number. `newest`: the keyframe processed last.
   int KeepWithinLimit(KeyFrameId newest);
 
  private:
-  void Remove(std::span<const KeyFrameId> keyframes);  // what they alone show goes with them
-  // The map of their own that keyframes became, if so: MapperSettings::min_known_scale.
+  void Remove(std::span<const KeyFrameId> keyframes);  // with landmarks that only they observe
+  // Returns the new map if keyframes were split off: MapperSettings::min_known_scale.
   MapId SplitWhereScaleIsUnknown(KeyFrameId id);
   std::vector<std::pair<LandmarkId, float>> TakeBelief();
   void ForgetTalliesOfTheGone(const MapSnapshot& map);
@@ -79,10 +83,10 @@ class Mapper {
   MapperSettings settings_;
   bool has_depth_;
   std::atomic<float> young_static_;
-  std::vector<LandmarkId> young_;  // on trial
+  std::vector<LandmarkId> young_;  // on probation
   std::mutex tallies_mutex_;
   IdMap<LandmarkId, SightingTally> tallies_;
-  std::vector<LandmarkId> doubted_;  // since the last Process()
+  std::vector<LandmarkId> doubted_;  // evidence added since the last Process()
 };
 
 }  // namespace alidade

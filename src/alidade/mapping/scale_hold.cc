@@ -11,8 +11,8 @@ namespace alidade {
 
 Eigen::Matrix3d CentreCovariance(const MapSnapshot& map, const KeyFrame& keyframe,
                                  const Camera& camera, const MeasurementNoise& noise) {
-  constexpr double kLeast = 1e-9;  // invertible without any landmark
-  // Information of the centre, of both, and of the rotation.
+  constexpr double kLeast = 1e-9;  // keeps it invertible without landmarks
+  // Information matrices: center (A), center–rotation (B), rotation (C).
   Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * kLeast, B = Eigen::Matrix3d::Zero(), C = A;
   for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
     if (!keyframe.landmarks[i].valid()) continue;
@@ -22,9 +22,9 @@ Eigen::Matrix3d CentreCovariance(const MapSnapshot& map, const KeyFrame& keyfram
     if (p.z() <= 0) continue;
     const double sigma = noise.sigma_px * ScaleOfLevel(keyframe.frame->keypoints[i].level);
     const double u = camera.fx / (sigma * p.z()), v = camera.fy / (sigma * p.z());
-    Eigen::Matrix<double, 2, 3> of_point;  // d pixel / d p, by sigma
+    Eigen::Matrix<double, 2, 3> of_point;  // d pixel / d p, in sigma
     of_point << u, 0, -u * p.x() / p.z(), 0, v, -v * p.y() / p.z();
-    // p = R (p_world - centre), turned by a small angle w: dp = -R d centre - [p]x w.
+    // p = R (p_world - centre), rotated by a small angle w: dp = -R d centre - [p]x w.
     const Eigen::Matrix<double, 2, 3> of_centre = of_point * keyframe.T_camera_world.R;
     const Eigen::Matrix<double, 2, 3> of_turn = of_point * Skew(p);
     A += of_centre.transpose() * of_centre;

@@ -16,11 +16,11 @@ constexpr double kChiSquared1 = 3.84;  // 95 % with 1 degree of freedom
 constexpr double kChiSquared2 = 5.991;
 
 struct Partner {
-  int a = -1, b = -1;  // keypoints
+  int a = -1, b = -1;  // keypoint indices
   int distance = 0;
 };
 
-// Fundamental matrix: x_b^T F x_a = 0 (Hartley & Zisserman 9.1).
+// Fundamental matrix: x_b' F x_a = 0 (Hartley & Zisserman 9.1).
 Eigen::Matrix3d FundamentalOf(const Camera& camera, const Se3& T_b_a) {
   Eigen::Matrix3d K_inverse;
   K_inverse << 1 / camera.fx, 0, -camera.cx / camera.fx, 0, 1 / camera.fy, -camera.cy / camera.fy,
@@ -36,7 +36,7 @@ std::vector<int> WithoutLandmark(const KeyFrame& keyframe) {
   return free;
 }
 
-// Best descriptor partner along the epipolar line, clearly better than the second.
+// Matches by descriptor along epipolar lines, with a ratio test.
 std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& free_a,
                                      const KeyFrame& b, const std::vector<int>& free_b,
                                      const Camera& camera, const MapperSettings& settings) {
@@ -53,7 +53,7 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
     y[j] = keypoint.y;
     const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
     reach[j] = static_cast<float>(kChiSquared1 * sigma * sigma);
-    // Next to the epipole every direction fits and the depth is not determined.
+    // Close to the epipole all directions are consistent and the depth is undetermined.
     if ((keypoint.pixel() - epipole).squaredNorm() < 100 * ScaleOfLevel(keypoint.level))
       reach[j] = -1;
   }
@@ -135,7 +135,7 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
     return has_depth || std::find(at_known_distance.begin(), at_known_distance.end(), b->id) !=
                             at_known_distance.end();
   };
-  // Known distances first, each in order of what is shared.
+  // Keyframes at known distance first, each group by descending covisibility.
   std::vector<const KeyFrame*> unknown;
   std::erase_if(others, [&](const KeyFrame* b) {
     if (known(b)) return false;
@@ -169,7 +169,7 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
       const Eigen::Vector3d ray_a = *p - centre_a, ray_b = *p - centre_b;
       const double distance_a = ray_a.norm(), distance_b = ray_b.norm();
       if (ray_a.dot(ray_b) > max_cosine * distance_a * distance_b) continue;
-      // Its size in the two images must change as its distance does.
+      // The ratio of the scales must agree with the ratio of the distances.
       const double change =
           distance_b / distance_a * ScaleOfLevel(key_b.level) / ScaleOfLevel(key_a.level);
       constexpr double kTolerance = 1.5 * kPyramidScale;

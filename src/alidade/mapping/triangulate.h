@@ -1,4 +1,4 @@
-// New landmarks from keypoints two keyframes share but nobody knew.
+// New landmarks by triangulation between keyframes.
 #pragma once
 
 #include <vector>
@@ -14,18 +14,18 @@ struct NewLandmark {
   Eigen::Vector3d p_world;
   Observation first, second;
   bool scale_known = true;
-  bool depth_assumed = false;  // by MapTurn()
+  bool depth_assumed = false;  // created by MapTurn()
 };
 
-// Whether a point projects to where a keyframe has the keypoint: 95 % of chi² with 2 degrees of
-// freedom.
+// True if the point projects to the keypoint: 95 % of chi² with 2 degrees of freedom.
 bool FitsKeypoint(const Camera& camera, const KeyFrame& keyframe, const Keypoint& keypoint,
                   const Eigen::Vector3d& p_world, const MapperSettings& settings);
 
-// Keypoints of `id` without a landmark, matched along epipolar lines in its best covisible
-// keyframes and triangulated where parallax, reprojection and scale agree (ORB-SLAM §VI-C). A
-// keypoint is used at most once. One camera: keyframes at a known distance come first, the
-// others only where they must (MapperSettings::max_baseline_error, enough_known_scale).
+// Matches keypoints of `id` without a landmark along epipolar lines in its best covisible
+// keyframes, and triangulates those with sufficient parallax and consistent reprojection and scale
+// (Mur-Artal et al. 2015, §VI-C). Each keypoint is used at most once. Monocular: keyframes at a
+// known distance come first, others are used only if necessary (MapperSettings::max_baseline_error,
+// enough_known_scale).
 std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
                                         const std::vector<KeyFrameId>& at_known_distance,
                                         const Camera& camera, const MapperSettings& settings);

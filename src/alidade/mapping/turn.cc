@@ -9,12 +9,12 @@ namespace alidade {
 namespace {
 
 struct Lookalike {
-  int keypoint = -1;   // none
-  int distance = 256;  // bits that differ
+  int keypoint = -1;   // keypoint index; -1: none
+  int distance = 256;  // Hamming distance, bits
 };
 
-// The keypoint without a landmark in keyframe `in` that looks like `descriptor`, clearly more than
-// any other within settings.turn_radius of `pixel`.
+// The keypoint of keyframe `in` without a landmark that matches `descriptor` within
+// settings.turn_radius of `pixel`, clearly better than any other there.
 Lookalike LookFor(const Keypoint& key, const Descriptor& descriptor, const Eigen::Vector2d& pixel,
                   const KeyFrame& in, const MapperSettings& settings) {
   Lookalike best;
@@ -68,7 +68,7 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
     if (!b) continue;
     if ((b->Centre() - a.Centre()).norm() >= settings.min_baseline_ratio * depth) continue;
     if (++searched > settings.triangulate_keyframes_mono) break;
-    // For each keypoint of b the one of a that is most like it.
+    // For each keypoint of b, its best match in a.
     std::vector<Lookalike> in_a(b->landmarks.size());
     for (int i = 0; i < static_cast<int>(used.size()); ++i) {
       if (used[i]) continue;

@@ -1,4 +1,5 @@
-// One camera that turns on the spot past little that is known: landmarks without a depth.
+// Landmarks with an assumed depth, for a monocular camera in pure rotation with few known
+// landmarks.
 #pragma once
 
 #include <vector>
@@ -9,10 +10,11 @@
 
 namespace alidade {
 
-// For a keyframe with fewer than settings.turn_landmarks (by match_scale), those in `made` counted:
-// what it shares with covisible keyframes too near to triangulate from (min_baseline_ratio),
-// assumed as deep as the median of what it sees. Such landmarks hold the rotation; they say next to
-// nothing of the position, and their scale is not known. Keypoints that `made` uses are left alone.
+// Only for a keyframe with fewer than settings.turn_landmarks (scaled by match_scale), including
+// those in `made`. Matches keypoints with covisible keyframes at too small a baseline to
+// triangulate (min_baseline_ratio), and assumes the keyframe's median depth. Such landmarks
+// constrain the rotation, but hardly the position, and their scale is unknown. Keypoints used by
+// `made` are skipped.
 std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
                                  const std::vector<NewLandmark>& made, const Camera& camera,
                                  const MapperSettings& settings);

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// Place of each block row: approximate minimum degree, on the pattern of blocks.
+// Position of each block row: approximate minimum degree ordering of the block pattern.
 std::vector<int> MinimumDegree(int rows, std::span<const BlockPlace> below) {
   std::vector<Eigen::Triplet<double>> triplets;
   for (int i = 0; i < rows; ++i) triplets.emplace_back(i, i, 1.0);
@@ -25,8 +25,7 @@ std::vector<int> MinimumDegree(int rows, std::span<const BlockPlace> below) {
   return order;
 }
 
-// kColumns columns of C -= A B', from the even column j on: as many as keep their sums in
-// registers.
+// kColumns columns of C -= A B', starting at the even column j; as many as fit in registers.
 template <int kColumns, int kSize>
 [[gnu::always_inline]] inline void SubtractColumns(const SquareBlock<kSize>& A,
                                                    const SquareBlock<kSize>& B, int j,
@@ -61,7 +60,8 @@ template <int kSize>
   if constexpr (kSize % 2 != 0) SubtractColumns<1>(A, B, kSize - 1, C);
 }
 
-// The lower half becomes L of L L', its diagonal inverted; false where there is none.
+// Replaces the lower half by L of L L', with inverted diagonal. Returns false if not positive
+// definite.
 template <int kSize>
 bool FactoriseDense(SquareBlock<kSize>& block) {
   double a[kSize][kSize];
@@ -104,12 +104,12 @@ template <int kSize>
 void BlockCholesky<kSize>::Analyse(int block_rows, std::span<const BlockPlace> below) {
   rows_ = block_rows;
   order_ = MinimumDegree(rows_, below);
-  std::vector<std::vector<int>> columns(rows_);  // rows below the diagonal
+  std::vector<std::vector<int>> columns(rows_);  // rows below the diagonal, by column
   for (const BlockPlace& place : below) {
     const auto [low, high] = std::minmax({order_[place.row], order_[place.column]});
     columns[low].push_back(high);
   }
-  // What a column eliminates, it fills in the column of its first row (its parent in the
+  // Fill-in: the rows of a column are added to the column of its first row (its parent in the
   // elimination tree).
   for (std::vector<int>& rows : columns) {
     std::sort(rows.begin(), rows.end());

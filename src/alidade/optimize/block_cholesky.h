@@ -1,6 +1,7 @@
-// Cholesky factor of a sparse symmetric matrix made of square blocks: cameras that see the same
-// points, nodes that share an edge. What Eigen's sparse factor does number by number is done block
-// by block here, in registers. Left-looking, ordered by minimum degree (Davis 2006, §4.8, 7.1).
+// Cholesky factorization of a sparse symmetric matrix of square blocks, as in the reduced system of
+// bundle adjustment (cameras that share points) or a pose graph (nodes that share an edge). Works
+// on whole blocks in registers, where Eigen's sparse factorization works on single numbers.
+// Left-looking, minimum-degree ordering (Davis 2006, §4.8, 7.1).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,7 +13,7 @@
 
 namespace alidade {
 
-// Column by column, two rows at a time; with an odd size the last row is padding.
+// Column-major in pairs of rows; for an odd size the last row is padding.
 template <int kSize>
 struct SquareBlock {
   static constexpr int kPairs = (kSize + 1) / 2;
@@ -27,7 +28,7 @@ struct SquareBlock {
   }
 };
 
-struct BlockPlace {  // below the diagonal: row > column
+struct BlockPlace {  // position below the diagonal: row > column
   int row, column;
 };
 
@@ -36,23 +37,24 @@ class BlockCholesky {
  public:
   using Block = SquareBlock<kSize>;
 
-  // Which blocks below the diagonal are not zero, each named once; all on the diagonal are there.
+  // Sets the pattern: the nonzero blocks below the diagonal, each listed once. All diagonal blocks
+  // are present.
   void Analyse(int block_rows, std::span<const BlockPlace> below);
-  // Multiplications of one factorisation.
+  // Number of multiplications of one factorization.
   double Work() const { return work_; }
 
-  // The matrix, anew before each Factorise: cleared, then block by block. `index`: as given to
-  // Analyse.
+  // Sets the values before each Factorise(): Clear(), then block by block. `index` is that of the
+  // block in Analyse().
   void Clear();
   void SetDiagonal(int block_row, const Block& block);
   void SetBelow(size_t index, const Block& block);
 
-  // False: not positive definite.
+  // Returns false if the matrix is not positive definite.
   bool Factorise();
   void Solve(Eigen::VectorXd& x) const;  // in place
 
  private:
-  struct Source {  // a block of the factor left of the diagonal, and the column it is in
+  struct Source {  // block of the factor left of the diagonal, and the end of its column
     int at, column_end;
   };
   struct Target {
@@ -62,14 +64,14 @@ class BlockCholesky {
 
   int rows_ = 0;
   double work_ = 0;
-  std::vector<int> order_;         // place of each block row in the factor
+  std::vector<int> order_;         // position of each block row in the factor
   std::vector<int> column_begin_;  // first block of each column of the factor: the diagonal one
-  std::vector<int> row_;           // of each block
+  std::vector<int> row_;           // row of each block
   std::vector<int> source_begin_;
-  std::vector<Source> sources_;  // row by row
-  std::vector<Target> targets_;  // of the blocks below the matrix's diagonal
+  std::vector<Source> sources_;  // ordered by row
+  std::vector<Target> targets_;  // one per block below the matrix's diagonal
   std::vector<Block> blocks_;
-  std::vector<int> block_of_row_;  // in the column under work
+  std::vector<int> block_of_row_;  // in the current column
 };
 
 extern template class BlockCholesky<6>;

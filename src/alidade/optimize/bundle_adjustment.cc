@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// Beyond this damping a step is nothing against the rounding of what it is added to.
+// With larger damping a step is below the rounding error of the variables.
 constexpr double kMaxLambda = 1e16;
 constexpr double kMinLambda = 1e-12;
 

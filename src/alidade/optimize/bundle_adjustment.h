@@ -1,5 +1,5 @@
-// Bundle adjustment: camera poses and points that agree best with what was seen. Flat arrays, no
-// map. Levenberg–Marquardt on the Schur complement (Triggs et al. 2000, §6), landmark-major.
+// Bundle adjustment: jointly optimizes camera poses and points on flat arrays. Levenberg–Marquardt
+// on the Schur complement (Triggs et al. 2000, §6), ordered by landmark.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,18 +14,18 @@ namespace ALIDADE_API alidade {
 
 struct BundleObservation {
   int camera = -1, point = -1;  // indices
-  Eigen::Vector3d
-      pixel;  // u, v (undistorted) and u in the right image (NaN when there is none), pixels
+  // u, v (undistorted), and u in the right image (NaN if there is none), pixels.
+  Eigen::Vector3d pixel;
   double inv_sigma2 = 1;        // 1 / variance of u and v, 1/px²
-  double inv_sigma2_right = 1;  // the same of the disparity u - u_right, 1/px²
-  double trust = 1;             // 0…1: its say in the result; its chi² does not change with it
+  double inv_sigma2_right = 1;  // 1 / variance of the disparity u - u_right, 1/px²
+  double trust = 1;  // 0 to 1, weight in the cost; does not change the observation's chi²
 };
 
 struct BundleProblem {
-  Camera camera;                        // one camera took all pictures; its distortion is not used
-  std::vector<Se3> T_camera_world;      // start, and result
-  std::vector<uint8_t> fixed;           // one per camera: nonzero = held where it is
-  std::vector<Eigen::Vector3d> points;  // in the world; start, and result
+  Camera camera;                                // common to all images; its distortion is not used
+  std::vector<Se3> T_camera_world;              // initial values and result
+  std::vector<uint8_t> fixed;                   // one per camera; nonzero: held constant
+  std::vector<Eigen::Vector3d> points;          // in the world frame; initial values and result
   std::vector<BundleObservation> observations;  // sorted by point
 };
 
@@ -46,18 +46,17 @@ struct BundleSettings {
 };
 
 struct BundleReport {
-  double initial_cost = 0, final_cost = 0;  // ½ sum of losses by trust, unitless
+  double initial_cost = 0, final_cost = 0;  // ½ sum of weighted losses, unitless
   int iterations = 0;
-  bool converged = false;  // stopped by the decrease, not by the count or `stop`
+  bool converged = false;  // stopped by the decrease, not by the iteration limit or `stop`
 };
 
-// Improves `problem` in place; its cost never rises. Points and cameras that nothing usable was
-// seen of stay as they are. Observations that are not numbers, not trusted at all, or whose point
-// starts behind the camera, are left out for good. A point whose step would take it behind one of
-// its cameras stays where it was in that step; a step in which the cameras alone would do that is
-// rejected. Without a fixed camera the damping holds the gauge. `stop` (may be null) is looked at
-// between iterations. The result is the same with any number of threads. Throws Error on indices
-// that aren't there.
+// Improves `problem` in place; the cost never rises. Points and cameras without usable observations
+// are unchanged. Observations that are not finite, have zero trust, or whose point starts behind
+// the camera are ignored. A point that a step would move behind one of its cameras is not moved in
+// that step; a step in which the camera motion alone would cause that is rejected. Without a fixed
+// camera the damping fixes the gauge. `stop` (may be null) is polled between iterations. The result
+// does not depend on the number of threads. Throws Error (usage) on indices out of range.
 BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);
 

@@ -1,12 +1,12 @@
-// The small dense products that bundle adjustment spends its time in: one point and one camera at a
-// time, all sizes known, all inline.
+// Small dense products in the inner loop of bundle adjustment: one point and one camera at a time,
+// fixed sizes, all inline.
 //
-// A point has H (3x3, symmetric) and the gradient g; with each free camera that sees it the block
-// G N, where G = [I; [Y]x] is 6x3 (see bundle_linearise.h). Eliminating the point takes
-//   S -= (G_a N_a) H^-1 (G_b N_b)'   and   r += (G_a N_a) H^-1 g
-// from the reduced system S δ = r of its cameras a, b. With H = L L' and E_a = G_a N_a L'^-1 that
-// is S -= E_a E_b' and r += E_a L^-1 g: one triangular solve per camera, one product per pair
-// (Triggs et al. 2000, §6.1).
+// A point has the block H (3x3, symmetric) and the gradient g; with each free camera that observes
+// it, it has the coupling block G N, where G = [I; [Y]x] is 6x3 (see bundle_linearise.h).
+// Eliminating the point updates the reduced system S δ = r of its cameras a, b:
+//   S -= (G_a N_a) H^-1 (G_b N_b)'   and   r += (G_a N_a) H^-1 g.
+// With H = L L' and E_a = G_a N_a L'^-1 this is S -= E_a E_b' and r += E_a L^-1 g: one triangular
+// solve per camera and one product per pair (Triggs et al. 2000, §6.1).
 #pragma once
 
 #include <Eigen/Core>
@@ -19,21 +19,20 @@
 
 namespace alidade {
 
-// What is added to a diagonal entry d (Marquardt), `largest` being the largest of its kind.
-// Directions that nothing was seen of have no scale of their own; the last term keeps them
-// invertible.
+// Marquardt damping added to a diagonal entry d; `largest` is the largest entry of the same kind.
+// The last term keeps unobserved directions invertible.
 inline double DampingOfEntry(double lambda, double d, double largest) {
   return std::max(lambda * std::max(d, 1e-6 * largest), 1e-12 * largest);
 }
 
-// Of the diagonal of a point's H: x, y, z are of one kind.
+// Damping of a point's H; x, y, z are of one kind.
 inline std::array<double, 3> DampingOf(const Symmetric3& H, double lambda) {
   const double largest = std::max({H[0], H[3], H[5]});
   return {DampingOfEntry(lambda, H[0], largest), DampingOfEntry(lambda, H[3], largest),
           DampingOfEntry(lambda, H[5], largest)};
 }
 
-// Of the diagonal of a camera's block: translations are of one kind, rotations of another.
+// Damping of a camera's block; translations are of one kind, rotations of another.
 inline Vector6d DampingOf(const CameraBlock& block, double lambda) {
   const Vector6d d = block.Hessian().diagonal();
   const double t = d.head<3>().maxCoeff(), r = d.tail<3>().maxCoeff();
@@ -42,8 +41,8 @@ inline Vector6d DampingOf(const CameraBlock& block, double lambda) {
   return damping;
 }
 
-// Of one point: H + diag(damping) = L L', with 1 / l00, 1 / l11, 1 / l22 in place of the pivots.
-// Not finite where the sum is not positive definite.
+// Factor of one point: H + diag(damping) = L L'. Stores 1 / l00, 1 / l11, 1 / l22 instead of the
+// pivots. Not finite if the sum is not positive definite.
 struct PointFactor {
   double l00, l10, l11, l20, l21, l22;
 };
@@ -76,7 +75,7 @@ inline Eigen::Vector3d SolveUpper(const PointFactor& L, const std::array<double,
   return x;
 }
 
-// E = G N L'^-1 of one coupling: 6x3, column by column, and as the compiler's vectors.
+// E = G N L'^-1 of one coupling: 6x3, column-major, aligned for vector loads.
 struct alignas(16) CouplingFactor {
   double column[3][6];
 
@@ -85,8 +84,8 @@ struct alignas(16) CouplingFactor {
   }
 };
 
-// N is symmetric, so that the rows of E's upper half are L^-1 times the columns of N; below it
-// stands Y × each of its columns.
+// N is symmetric, so the rows of E's upper half are L^-1 times the columns of N; the lower half is
+// Y × each of its columns.
 inline void MakeFactor(const Coupling& c, const PointFactor& L, CouplingFactor& factor) {
   const Symmetric3& N = c.N;
   const double n[3][3] = {{N[0], N[1], N[2]}, {N[1], N[3], N[4]}, {N[2], N[4], N[5]}};
@@ -116,7 +115,7 @@ inline void AddProduct(const CouplingFactor& E, const std::array<double, 3>& y, 
 // S -= A B'
 [[gnu::always_inline]] inline void SubtractProduct(const CouplingFactor& A, const CouplingFactor& B,
                                                    SquareBlock<6>& S) {
-  for (int j = 0; j < 6; j += 2) {  // two columns at a time: as many as stay in registers
+  for (int j = 0; j < 6; j += 2) {  // two columns at a time: as many as fit in registers
     Double2 sum[2][3];
 #pragma GCC unroll 3
     for (int i = 0; i < 3; ++i) {
@@ -141,7 +140,7 @@ inline void AddProduct(const CouplingFactor& E, const std::array<double, 3>& y, 
   }
 }
 
-// r -= N G' δ = N (ρ + θ × Y), for the camera's step δ = (ρ, θ).
+// r -= N G' δ = N (ρ + θ × Y) for the camera's step δ = (ρ, θ).
 inline void SubtractStep(const Coupling& c, const Vector6d& d, std::array<double, 3>& r) {
   const double m0 = d[0] + d[4] * c.Y[2] - d[5] * c.Y[1];
   const double m1 = d[1] + d[5] * c.Y[0] - d[3] * c.Y[2];

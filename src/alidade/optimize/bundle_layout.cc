@@ -10,7 +10,7 @@
 namespace alidade {
 namespace {
 
-// Enough for a handful of threads; each costs one copy of the reduced system.
+// Enough for a few threads; each chunk needs its own copy of the reduced system.
 constexpr int kMaxChunks = 4;
 constexpr int kSightingsPerChunk = 1000;
 
@@ -56,7 +56,7 @@ BundleSighting Sight(const Intrinsics& k, const BundleObservation& o, int slot,
   return s;
 }
 
-// Fixed cameras behind all free ones.
+// Orders by slot; fixed cameras (slot -1) come last.
 bool SlotBefore(const BundleSighting& a, const BundleSighting& b) {
   return static_cast<unsigned>(a.slot) < static_cast<unsigned>(b.slot);
 }
@@ -81,7 +81,7 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
   BundleLayout layout;
   layout.intrinsics = Intrinsics::Of(problem.camera);
 
-  // Counting sort by point: works whatever the order, and keeps it within a point.
+  // Counting sort by point: accepts any order and keeps the order within a point.
   std::vector<int> start(problem.points.size() + 1, 0);
   std::vector<uint8_t> usable(problem.observations.size());
   std::vector<int> slot(problem.T_camera_world.size(), -1);

@@ -1,6 +1,5 @@
-// A bundle problem in the order the solver walks it: point by point, each with the free cameras
-// that see it in ascending order, then the fixed ones. Observations that cannot be used are left
-// out here, once.
+// A bundle problem in the solver's order: point by point, with the free cameras that observe it in
+// ascending order, then the fixed ones. Unusable observations are removed here.
 #pragma once
 
 #include <vector>
@@ -12,34 +11,34 @@ namespace alidade {
 
 struct BundleSighting {
   int camera;               // index in the problem
-  int slot;                 // index among the free cameras, -1: fixed
-  double u, v, right;       // pixels; right = 0 without
-  double weight, weight_r;  // 1/px²; weight_r = 0 without
-  double huber;             // standard deviations; infinite where the loss is another
-  double inv_c2;            // of Geman & McClure's loss, 1 / variances; 0: Huber's
-  double trust;             // above 0, up to 1
+  int slot;                 // index among the free cameras; -1: fixed
+  double u, v, right;       // pixels; right = 0 if there is none
+  double weight, weight_r;  // 1/px²; weight_r = 0 if there is no right
+  double huber;             // standard deviations; infinite if the loss is not Huber's
+  double inv_c2;            // Geman & McClure's 1 / c², in 1 / variance; 0: Huber's loss
+  double trust;             // in (0, 1]
 };
 
 struct BundlePoint {
   int index;  // in the problem
-  int begin, free_end,
-      end;       // sightings: [begin, free_end) by free cameras, [free_end, end) by fixed ones
-  int coupling;  // sum of (free_end - begin) over the points before
+  // Sightings: [begin, free_end) by free cameras, [free_end, end) by fixed ones.
+  int begin, free_end, end;
+  int coupling;  // number of sightings by free cameras of all preceding points
 };
 
 struct BundleLayout {
   Intrinsics intrinsics;
-  std::vector<int> free_cameras;    // index in the problem, by slot; only those that see something
-  std::vector<BundlePoint> points;  // only those that are seen
+  std::vector<int> free_cameras;    // index in the problem, by slot; only cameras with sightings
+  std::vector<BundlePoint> points;  // only points with sightings
   std::vector<BundleSighting> sightings;
-  std::vector<int>
-      chunks;         // bounds of runs of points with about as much work; set by the problem alone
-  int couplings = 0;  // sightings by free cameras
+  // Bounds of runs of points with about equal work; a function of the problem only.
+  std::vector<int> chunks;
+  int couplings = 0;  // number of sightings by free cameras
 
   int chunk_count() const { return static_cast<int>(chunks.size()) - 1; }
 };
 
-// Throws Error when an index is out of range.
+// Throws Error (usage) if an index is out of range.
 BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings);
 
 }  // namespace alidade

@@ -7,11 +7,11 @@
 namespace alidade {
 namespace {
 
-// Two sightings of one point, side by side.
+// Terms of two sightings of one point, computed in parallel.
 struct Terms {
-  Double2 Y[3];  // point from the camera's centre, world axes
-  // B' W B, W with trust, and the loss's weight at this state (iteratively reweighted least
-  // squares)
+  Double2 Y[3];  // point minus camera center, world axes
+  // B' W B; W contains trust and the loss's weight at this state (iteratively reweighted least
+  // squares).
   Double2 N[6];
   Double2 g[3];  // B' W r
   Double2 cost;
@@ -24,7 +24,7 @@ struct Terms {
                                          Double2 counts) {
   Terms t;
   Double2 R[9];
-  for (int i = 0; i < 9; ++i) R[i] = Double2{c0.R.data()[i], c1.R.data()[i]};  // column by column
+  for (int i = 0; i < 9; ++i) R[i] = Double2{c0.R.data()[i], c1.R.data()[i]};  // column-major
   for (int i = 0; i < 3; ++i) t.Y[i] = X[i] - Double2{c0.centre[i], c1.centre[i]};
   const Double2 x = R[0] * t.Y[0] + R[3] * t.Y[1] + R[6] * t.Y[2];
   const Double2 y = R[1] * t.Y[0] + R[4] * t.Y[1] + R[7] * t.Y[2];
@@ -38,13 +38,13 @@ struct Terms {
   const Double2 huber{s0.huber, s1.huber};
   const Double2 root = Sqrt(chi2), inner = Min(root, huber);
   const Double2 trust{s0.trust, s1.trust};
-  // Huber's loss by Geman & McClure's factor: one of the two is always without effect.
+  // Huber's loss times Geman & McClure's factor; one of the two is always inactive.
   const Double2 q = 1 / (1 + chi2 * Double2{s0.inv_c2, s1.inv_c2});
   t.cost = trust * (inner * (root - 0.5 * inner)) * q;
   const Double2 say = trust * (root > huber ? huber / root : Both(1)) * (q * q);
   w *= say;
   wr *= say;
-  // Rows of B = A R.
+  // Rows of B = A R, with A the derivative by the point in the camera frame.
   Double2 U[3], V[3], S[3];
   for (int i = 0; i < 3; ++i) {
     U[i] = e.u_x * R[3 * i] + e.u_z * R[3 * i + 2];
@@ -59,7 +59,7 @@ struct Terms {
   return t;
 }
 
-// Adds G N G' and G g of each of the two to its camera.
+// Adds G N G' and G g of both sightings to their cameras.
 [[gnu::always_inline]] inline void AddToCameras(const Terms& t, CameraBlock& first,
                                                 CameraBlock* second) {
   const Double2 x = t.Y[0], y = t.Y[1], z = t.Y[2];
@@ -116,7 +116,7 @@ class Worker {
     sums.cameras.resize(layout.free_cameras.size());
   }
 
-  // False, and nothing done, if the point is behind one of its cameras.
+  // Returns false without any effect if the point is behind one of its cameras.
   bool Add(int j, const Eigen::Vector3d& X) {
     const BundlePoint& point = layout_.points[j];
     const int pairs = (point.end - point.begin + 1) / 2;
@@ -124,7 +124,7 @@ class Worker {
     Mask2 in_front{-1, -1};
     for (int n = 0; n < pairs; ++n) {
       const int i = point.begin + 2 * n;
-      const bool alone = i + 1 == point.end;  // seen twice then, counted once
+      const bool alone = i + 1 == point.end;  // processed twice, counted once
       const BundleSighting& s0 = layout_.sightings[i];
       const BundleSighting& s1 = layout_.sightings[alone ? i : i + 1];
       terms_[n] = Look(layout_.intrinsics, state_.cameras[s0.camera], state_.cameras[s1.camera], X,
@@ -160,7 +160,7 @@ class Worker {
   const BundleState& state_;
   Linearisation& result_;
   ChunkSums& sums_;
-  std::vector<Terms> terms_;  // of one point
+  std::vector<Terms> terms_;  // of the current point
 };
 
 }  // namespace

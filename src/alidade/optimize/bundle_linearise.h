@@ -1,9 +1,9 @@
-// Normal equations of bundle adjustment, before anything is eliminated.
+// Normal equations of bundle adjustment before elimination.
 //
-// Cameras are held as rotation R and centre c: a point is seen at p = R (X - c). A step turns a
-// camera about its own centre, in world axes: p(ρ, θ) = R Exp(θ) (X - c + ρ). With Y = X - c and B
-// = dr/dX the camera's Jacobian is B [I, -[Y]x], so that one symmetric matrix N = B' W B serves all
-// blocks of J' W J:
+// A camera is stored as rotation R and center c, and observes a point at p = R (X - c). A step
+// rotates the camera about its center, in world axes: p(ρ, θ) = R Exp(θ) (X - c + ρ). With Y = X -
+// c and B = dr/dX, the camera's Jacobian is B [I, -[Y]x], so one symmetric matrix N = B' W B gives
+// all blocks of J' W J:
 //   point–point N,   camera–point G N,   camera–camera G N G',   G = [I; [Y]x].
 #pragma once
 
@@ -16,19 +16,19 @@
 namespace alidade {
 
 struct BundleCamera {
-  Eigen::Matrix3d R;       // camera from world
-  Eigen::Vector3d centre;  // in the world
+  Eigen::Matrix3d R;       // R_camera_world
+  Eigen::Vector3d centre;  // in the world frame
 };
 
 struct BundleState {
-  std::vector<BundleCamera> cameras;    // all of the problem
-  std::vector<Eigen::Vector3d> points;  // as in the layout
+  std::vector<BundleCamera> cameras;    // one per camera of the problem
+  std::vector<Eigen::Vector3d> points;  // in the layout's order
 };
 
 // Symmetric 3x3: xx, xy, xz, yy, yz, zz.
 using Symmetric3 = std::array<double, 6>;
 
-struct Coupling {  // of a free camera and a point
+struct Coupling {  // between a free camera and a point
   Symmetric3 N;
   std::array<double, 3> Y;
   int slot;
@@ -39,12 +39,12 @@ struct PointBlock {
   std::array<double, 3> g;
 };
 
-// Lower triangle of the camera's own block, and its gradient. Kept two by two, as they are summed.
+// Lower triangle of a camera's own block, and its gradient; stored as pairs for vector sums.
 struct CameraBlock {
   static constexpr int kTt = 0;   // translation–translation, as Symmetric3
-  static constexpr int kRt = 6;   // rotation–translation, row by row
+  static constexpr int kRt = 6;   // rotation–translation, row-major
   static constexpr int kRr = 15;  // rotation–rotation, as Symmetric3
-  static constexpr int kG = 21;   // gradient by translation, rotation
+  static constexpr int kG = 21;   // gradient: translation, rotation
   static constexpr int kSize = 27;
   std::array<Double2, (kSize + 1) / 2> sums;
 
@@ -54,15 +54,15 @@ struct CameraBlock {
 };
 
 struct Linearisation {
-  std::vector<Coupling> couplings;  // point by point, in the order of the layout
+  std::vector<Coupling> couplings;  // point by point, in the layout's order
   std::vector<PointBlock> points;
   std::vector<CameraBlock> cameras;  // by slot
-  double cost = 0;                   // ½ sum of losses by trust
-  bool valid = true;                 // no point behind a camera that should see it
+  double cost = 0;                   // ½ sum of weighted losses
+  bool valid = true;                 // false: a point is behind a camera that observes it
 };
 
-// A point of `state` that is behind one of its cameras is put back to where `before` has it, if
-// given; where that does not help either, the result is not valid.
+// Linearizes at `state`. A point of `state` that is behind one of its cameras is reset to its
+// position in `before`, if given; if that does not help, the result is not valid.
 void Linearise(const BundleLayout& layout, const BundleState* before, BundleState& state,
                Linearisation& result);
 

@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// Time of the sparse factor's multiplications against the dense one's, measured.
+// Measured ratio of time per multiplication: sparse to dense factorization.
 constexpr double kSparseCost = 1.5;
 
 }  // namespace
@@ -24,8 +24,8 @@ SchurSolver::SchurSolver(const BundleLayout& layout, ReducedFactor kind)
       eliminated_(layout.points.size()) {
   FindBlocks();
   if (!sparse_) return;
-  // Where everybody saw the same, what the sparse factor saves it loses by working in small
-  // pieces.
+  // If most cameras share points, the sparse factorization loses more by small blocks than it
+  // saves.
   const double size = 6.0 * cameras_, all_blocks = 0.5 * cameras_ * (cameras_ + 1.0);
   const bool may_pay = column_.size() < 0.5 * all_blocks;
   if (kind == ReducedFactor::kSparse || may_pay) Analyse();
@@ -59,11 +59,11 @@ void SchurSolver::FindBlocks() {
   }
 }
 
-// `hint`: a block of the same row at or before the one looked for.
+// `hint`: a block of the same row at or before the requested one.
 inline int SchurSolver::FindBlock(int row, int column, int hint) const {
   if (!sparse_) return row_begin_[row] + column;
-  // Cameras that share a point are mostly consecutive: no block between them is missing, and the
-  // one looked for is as far behind the hint as their columns are apart.
+  // Cameras that share a point are mostly consecutive, so no block between them is missing: try the
+  // position `column - column_[hint]` after the hint first.
   const int end = row_begin_[row + 1], guess = hint + column - column_[hint];
   if (guess < end && column_[guess] == column) return guess;
   return static_cast<int>(std::lower_bound(column_.begin() + hint, column_.begin() + end, column) -
@@ -94,7 +94,7 @@ void SchurSolver::Eliminate(const Linearisation& system, double lambda, int chun
         at = FindBlock(row, couplings[b].slot, at);
         SquareBlock<6>& S = reduced.blocks[at];
         SubtractProduct(E, factors[b], S);
-        // A point seen twice by one camera.
+        // The same camera observes the point twice.
         if (b < a && couplings[b].slot == row) SubtractProduct(factors[b], E, S);
       }
     }
@@ -112,7 +112,8 @@ void SchurSolver::AddCameras(const Linearisation& system, double lambda) {
     const CameraBlock& c = system.cameras[i];
     Matrix6d H = c.Hessian();
     H.diagonal() += DampingOf(c, lambda);
-    SquareBlock<6>& S = sum.blocks[row_begin_[i + 1] - 1];  // the last of a row is on the diagonal
+    // The last block of a row is on the diagonal.
+    SquareBlock<6>& S = sum.blocks[row_begin_[i + 1] - 1];
     for (int j = 0; j < 6; ++j) {
       for (int n = 0; n < 3; ++n) S.column[j][n] += Double2{H(2 * n, j), H(2 * n + 1, j)};
     }
@@ -162,7 +163,7 @@ bool SchurSolver::SolveSparse(Eigen::VectorXd& x) {
   return true;
 }
 
-// Points: (H + D) δ = -g - sum N G' δ_camera.
+// Points: (H + D) δ = -g - Σ N G' δ_camera.
 void SchurSolver::Substitute(const Linearisation& system, BundleStep& step) {
   step.points.resize(layout_.points.size());
   ParallelFor(layout_.chunk_count(), [&](int chunk) {
@@ -180,7 +181,7 @@ void SchurSolver::Substitute(const Linearisation& system, BundleStep& step) {
   });
 }
 
-// ½ (δ' D δ - g' δ): what -g' δ - ½ δ' H δ is where (H + D) δ = -g.
+// ½ (δ' D δ - g' δ), which equals -g' δ - ½ δ' H δ because (H + D) δ = -g.
 double SchurSolver::Predicted(const Linearisation& system, double lambda,
                               const BundleStep& step) const {
   double twice = 0;

@@ -1,5 +1,5 @@
-// One damped Gauss–Newton step of bundle adjustment: points eliminated first, the reduced camera
-// system solved dense or sparse, points by back-substitution (Triggs et al. 2000, §6.1).
+// One damped Gauss–Newton step of bundle adjustment: eliminates the points, solves the reduced
+// camera system dense or sparse, and back-substitutes the points (Triggs et al. 2000, §6.1).
 #pragma once
 
 #include <vector>
@@ -11,16 +11,16 @@
 namespace alidade {
 
 struct BundleStep {
-  std::vector<Vector6d> cameras;        // ρ, θ by slot
-  std::vector<Eigen::Vector3d> points;  // as in the layout
-  double predicted = 0;                 // decrease of the cost, were it quadratic
+  std::vector<Vector6d> cameras;        // (ρ, θ) by slot
+  std::vector<Eigen::Vector3d> points;  // in the layout's order
+  double predicted = 0;                 // decrease of the cost in the quadratic model
   bool valid = false;                   // false: the system could not be factored
 };
 
 enum class ReducedFactor { kDense, kSparse, kFastest };
 
-// Remembers what does not change from step to step: which blocks of the reduced system are not
-// zero, and in which order to eliminate them.
+// Keeps what is constant between steps: the nonzero blocks of the reduced system and the
+// elimination order.
 class SchurSolver {
  public:
   SchurSolver(const BundleLayout& layout, ReducedFactor kind);
@@ -28,8 +28,8 @@ class SchurSolver {
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
 
  private:
-  struct Reduced {                       // lower blocks of the reduced system, and its right side
-    std::vector<SquareBlock<6>> blocks;  // row by row, ascending columns
+  struct Reduced {  // lower blocks of the reduced system, and its right-hand side
+    std::vector<SquareBlock<6>> blocks;  // row by row, in ascending columns
     std::vector<Vector6d> right;
   };
 
@@ -47,9 +47,9 @@ class SchurSolver {
   bool sparse_;
   int cameras_;
   std::vector<int> row_begin_;           // first block of each block row
-  std::vector<int> column_;              // of each block
-  std::vector<Reduced> reduced_;         // one per chunk; the first takes the sum
-  std::vector<PointFactor> eliminated_;  // of each point's damped H
+  std::vector<int> column_;              // column of each block
+  std::vector<Reduced> reduced_;         // one per chunk; the first holds the sum
+  std::vector<PointFactor> eliminated_;  // factor of each point's damped H
   Eigen::MatrixXd dense_;
   BlockCholesky<6> factor_;
 };

@@ -5,10 +5,10 @@
 
 namespace alidade {
 
-// Follows how well the quadratic model foretold the cost (Nielsen 1999).
+// Adapts the damping to how well the quadratic model predicted the cost (Nielsen 1999).
 struct Damping {
   double lambda;   // relative to the diagonal
-  double minimum;  // below this it does nothing, and takes long to come back from
+  double minimum;  // a smaller value has no effect and takes many rejections to grow again
   double growth = 2;
 
   void Accepted(double actual, double predicted) {

@@ -1,6 +1,6 @@
-// Two doubles worked on at once: one SSE2, NEON or WebAssembly instruction each, with the same bits
-// as one after the other. GCC's and clang's vector types give arithmetic, comparisons (lanes of all
-// ones or zeros) and `?:`.
+// Two doubles in one SSE2, NEON or WebAssembly register, with bitwise the same results as scalar
+// code. The vector types of GCC and clang support arithmetic, comparisons (lanes of all ones or
+// zeros) and `?:`.
 #pragma once
 
 #include <cmath>

@@ -15,10 +15,11 @@ namespace {
 
 constexpr int kUnknowns = LensAdjustment::kParameters;
 
-// Of a residual's chi²: with 2 degrees of freedom its median is 2 ln 2.
+// Median of a residual's chi² with 2 degrees of freedom: 2 ln 2.
 constexpr double kMedianChi2 = 1.3862943611198906;
-constexpr size_t kLeastClusters = 3;    // windows whose differences say how far they are off
-constexpr double kGaugeDamping = 1e-8;  // of the diagonal; of a covariance, too
+constexpr size_t kLeastClusters = 3;  // windows needed for the sandwich estimator
+// Relative to the diagonal; also added before inverting for the covariance.
+constexpr double kGaugeDamping = 1e-8;
 
 RadialLens Moved(RadialLens lens, const LensVector& step) {
   lens.focal *= std::exp(step.x());
@@ -53,7 +54,7 @@ double NoiseOf(const std::vector<LensWindow>& windows, const RadialLens& lens) {
   return all.empty() ? 1 : std::max(1e-3, std::sqrt(UpperMedian(all) / kMedianChi2));
 }
 
-// Where the lens is believed to be beforehand, as equations.
+// Prior of the lens parameters as normal equations.
 struct LensPrior {
   RadialLens start;
   Eigen::Vector2d centre;
@@ -119,7 +120,7 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
   std::vector<WindowSystem> systems(windows.size());
   std::vector<LensSystem> alone(windows.size());
   const double spread = settings.inflation * settings.inflation;
-  // J'WJ of the lens, all else eliminated, and J'Wr; held parameters are left out by the identity.
+  // J'WJ and J'Wr of the lens with all else eliminated. Identity rows replace fixed parameters.
   const auto gather = [&](const LensLoss& loss, double damping) {
     ParallelFor(count, [&](int i) {
       const auto at = static_cast<size_t>(i);
@@ -151,7 +152,7 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
     auto [H, g] = gather(loss, damping);
     H.diagonal() *= 1 + damping;
     LensVector step = -H.ldlt().solve(g);
-    // A lens is not believed to leap: what is linear near by is not, far away.
+    // Limit the step of the lens to the range where the linearization holds.
     const double most = std::max({std::abs(step.x()) / 0.3, std::abs(step.y()) / 0.3,
                                   step.tail<2>().cwiseAbs().maxCoeff() / 0.02});
     if (!step.allFinite()) break;
@@ -190,7 +191,8 @@ LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& st
     for (const LensSystem& system : alone) meat += system.g * system.g.transpose();
     const auto n = static_cast<double>(windows.size());
     const LensMatrix sandwich = inverse * (n / (n - 1) * meat) * inverse;
-    for (int k = 0; k < kUnknowns; ++k) {  // scaled as a whole, so that it stays a covariance
+    // Scaled as a whole, so that it remains a valid covariance.
+    for (int k = 0; k < kUnknowns; ++k) {
       const double more = std::sqrt(std::max(1.0, sandwich(k, k) / result.covariance(k, k)));
       result.covariance.row(k) *= more;
       result.covariance.col(k) *= more;

@@ -1,5 +1,5 @@
-// Bundle adjustment with the camera's lens among the unknowns: focal length and radial distortion
-// are found from nothing but what a moving camera saw (self-calibration).
+// Bundle adjustment with intrinsics: estimates focal length, radial distortion, principal point and
+// rolling-shutter readout time from images only (self-calibration).
 #pragma once
 
 #include <Eigen/Core>
@@ -12,31 +12,34 @@
 
 namespace ALIDADE_API alidade {
 
-// Square pixels: a point at (x, y, 1) is seen at
+// Camera with square pixels. A point at (x, y, 1) is observed at
 //   (u, v) = centre + f (1 + k1 r² + k2 r⁴) (x, y),  r² = x² + y²  (Brown's radial terms).
 struct RadialLens {
   double focal = 0;                                  // pixels
   double k1 = 0, k2 = 0;                             // unitless
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();  // pixels
-  // Rolling shutter: seconds from the first to the last column, and row (see Camera::readout).
+  // Rolling-shutter readout time, seconds from the first to the last column and row (see
+  // Camera::readout).
   Eigen::Vector2d readout = Eigen::Vector2d::Zero();
 };
 
 struct LensObservation {
   int camera = -1, point = -1;  // indices within the window
-  Eigen::Vector2d pixel;        // as in the image, distortion and all
-  double inv_sigma2 = 1;        // 1 / variance, up to a factor that all have in common; 1/px²
-  // Where in the image's reading it was taken: seconds after the middle, per second of readout.
+  Eigen::Vector2d pixel;        // raw (distorted) position in the image
+  double inv_sigma2 = 1;        // 1 / variance up to a common factor, 1/px²
+  // Readout position: seconds relative to the middle of the image per second of readout, by column
+  // and row.
   Eigen::Vector2d read = Eigen::Vector2d::Zero();
 };
 
-// Views that share points with each other, but none with those of other windows: a stretch of a
-// recording. Each has a gauge of its own.
+// A part of a recording whose views share points with each other but not with other windows. Each
+// window has its own gauge.
 struct LensWindow {
-  std::vector<Se3> T_camera_world;  // start, and result
-  // Of each camera, units of its T_camera_world per second (see Frame::motion); empty: none moved.
+  std::vector<Se3> T_camera_world;  // initial values and result
+  // Motion of each camera, units of its T_camera_world per second (see Frame::motion). Empty: none
+  // moved during the readout.
   std::vector<Vector6d> motions;
-  std::vector<Eigen::Vector3d> points;        // in the window's world; start, and result
+  std::vector<Eigen::Vector3d> points;  // in the window's world frame; initial values and result
   std::vector<LensObservation> observations;  // sorted by point
 };
 
@@ -55,9 +58,9 @@ struct LensAdjustmentSettings {
   bool hold_focal = false;  // the focal length stays as it starts, whatever its sigma
   // About which the centre is believed to be, pixels; else its start.
   std::optional<Eigen::Vector2d> centre = {};
-  // Standard deviations that residuals tell of are those of independent noise. What they do not
-  // tell (keypoints that creep along edges, blur, a rolling shutter) makes errors so many times as
-  // large: against the prior, and in the covariance. Measured, docs/calibration.md.
+  // Factor on the standard deviations that residuals give: those assume independent noise, and
+  // keypoints that move along edges, blur and rolling shutter are correlated. Used in the prior
+  // and the covariance (docs/development/decisions/0005-offline-self-calibration.md).
   double inflation = 3.0;
   // Bound c of Geman & McClure's loss ½ r² / (1 + r² / c²), in standard deviations of the noise
   // seen: matches that are no points pull no more. The noise is the median of all residuals'.
@@ -69,23 +72,24 @@ struct LensAdjustment {
   static constexpr int kParameters = 7;  // log focal, k1, k2, centre, readout
   using Parameters = Eigen::Matrix<double, kParameters, 1>;
   RadialLens lens;
-  // Of the parameters, all else unknown; the prior is in it. What is held has 0. By the noise
-  // seen, times inflation²; or, of three windows and more, by what the windows differ where that is
-  // more: H⁻¹ (Σ g g') H⁻¹ with each window's own gradient g (sandwich estimator for clusters:
-  // Liang & Zeger 1986), which knows of all errors that change from window to window.
+  // Covariance of the parameters with poses and points marginalized, prior included; 0 for fixed
+  // parameters. From the measured noise times inflation². With three or more windows the sandwich
+  // estimator for clusters is used where it is larger: H⁻¹ (Σ g g') H⁻¹ with each window's gradient
+  // g (Liang & Zeger 1986). It accounts for all errors that vary between windows.
   Eigen::Matrix<double, kParameters, kParameters> covariance =
       Eigen::Matrix<double, kParameters, kParameters>::Zero();
-  double noise = 0;      // of a residual, in the units of sqrt(1 / inv_sigma2)
-  int observations = 0;  // that had a say
+  double noise = 0;      // standard deviation of a residual, in units of sqrt(1 / inv_sigma2)
+  int observations = 0;  // number of observations used
   int iterations = 0;
   bool converged = false;
 };
 
-// Improves `windows` and `start` together by Levenberg–Marquardt: points are eliminated first
-// (Triggs et al. 2000, §6), then each window's poses, which leaves few equations for the lens.
-// Motions that tell nothing of the focal length (no turning, straight ahead, a flat scene seen
-// head-on) leave it to the prior: the covariance says so. The result is the same with any number of
-// threads. Throws Error on indices that aren't there.
+// Refines `windows` in place together with the lens, starting at `start`. Levenberg–Marquardt;
+// eliminates the points (Triggs et al. 2000, §6), then the poses of each window, which leaves a
+// small system for the lens. Motions that do not constrain the focal length (no rotation, straight
+// ahead, a fronto-parallel plane) leave it at the prior, which the covariance shows. `stop` (may be
+// null) is polled between iterations. The result does not depend on the number of threads. Throws
+// Error (usage) on indices out of range.
 LensAdjustment AdjustLens(std::vector<LensWindow>& windows, const RadialLens& start,
                           const LensAdjustmentSettings& settings = {},
                           const std::atomic<bool>* stop = nullptr);

@@ -9,12 +9,13 @@
 namespace alidade {
 namespace {
 
-constexpr double kHuber = 2.447;   // sqrt(5.991): 95 % of chi² with 2 degrees of freedom
-constexpr double kDamping = 1e-8;  // of the diagonal: holds the gauge, and points without parallax
-constexpr int kLens = 2;           // parameters of the lens: log of the focal length, k1
+constexpr double kHuber = 2.447;  // sqrt(5.991): 95 % of chi² with 2 degrees of freedom
+// Relative to the diagonal: fixes the gauge and points without parallax.
+constexpr double kDamping = 1e-8;
+constexpr int kLens = 2;  // parameters of the lens: log of the focal length, k1
 using Lens = Eigen::Matrix<double, 3, kLens>;
 
-// One observation: two residuals, and that of the disparity, which may have no weight.
+// One observation: two residuals, and that of the disparity (weight 0 if there is none).
 struct Row {
   int camera;
   Eigen::Matrix<double, 3, 6> by_camera;  // translation, rotation: left-multiplied
@@ -23,7 +24,7 @@ struct Row {
   Eigen::Vector3d residual, weight;
 };
 
-// False behind the camera.
+// Returns false if the point is behind the camera.
 bool Linearise(const BundleProblem& problem, const Intrinsics& k, const BundleObservation& o,
                Row& row) {
   const Se3& T = problem.T_camera_world[static_cast<size_t>(o.camera)];
@@ -37,7 +38,7 @@ bool Linearise(const BundleProblem& problem, const Intrinsics& k, const BundleOb
   row.weight << o.inv_sigma2, o.inv_sigma2, right ? o.inv_sigma2_right : 0;
   const double chi = std::sqrt(row.residual.cwiseAbs2().dot(row.weight));
   row.weight *= o.trust * (chi > kHuber ? kHuber / chi : 1);
-  Eigen::Matrix3d by_p;  // by the point in the camera frame
+  Eigen::Matrix3d by_p;  // derivative by the point in the camera frame
   by_p << e.u_x, 0, e.u_z, 0, e.v_y, e.v_z, 0, 0, e.d_z;
   Eigen::Matrix3d cross;
   cross << 0, -p.z(), p.y(), p.z(), 0, -p.x(), -p.y(), p.x(), 0;
@@ -49,8 +50,7 @@ bool Linearise(const BundleProblem& problem, const Intrinsics& k, const BundleOb
   return true;
 }
 
-// J' W J and J' W r of poses and lens, points eliminated one by one as they come (Triggs et al.
-// 2000, §6).
+// J' W J and J' W r of poses and lens; points are eliminated one by one (Triggs et al. 2000, §6).
 class Normal {
  public:
   explicit Normal(size_t cameras)
@@ -58,18 +58,18 @@ class Normal {
         H_(Eigen::MatrixXd::Zero(lens_ + kLens, lens_ + kLens)),
         g_(Eigen::VectorXd::Zero(lens_ + kLens)) {}
 
-  // All that was seen of one point; each camera sees it once at most.
+  // Adds all observations of one point; each camera may observe it at most once.
   void Add(const std::vector<Row>& rows);
   std::optional<LensBend> Solve();
 
  private:
   void Eliminate(const std::vector<Row>& rows);
 
-  Eigen::Index lens_;  // where its parameters begin
+  Eigen::Index lens_;  // index of the first lens parameter
   Eigen::MatrixXd H_;  // lower triangle
   Eigen::VectorXd g_;
-  double squares_ = 0;   // of the residuals, by weight
-  double freedoms_ = 0;  // residuals, less the points' parameters
+  double squares_ = 0;   // weighted sum of squared residuals
+  double freedoms_ = 0;  // number of residuals minus the points' parameters
 };
 
 void Normal::Add(const std::vector<Row>& rows) {

@@ -1,4 +1,4 @@
-// How much a lens bends what its camera is taken to see straight: a distortion nobody told of.
+// Estimates radial distortion that the camera model does not include.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 namespace ALIDADE_API alidade {
 
 struct LensBend {
-  // Radial distortion on top of what the observations were undistorted with: ideal image points at
-  // distance r from the axis (focal length 1) are seen at r (1 + k1 r²). Unitless.
+  // Radial distortion in addition to that of the camera model: ideal image points at distance r
+  // from the axis (focal length 1) are observed at r (1 + k1 r²). Unitless.
   double k1 = 0;
-  double sigma = 0;  // its standard deviation, from the residuals
+  double sigma = 0;  // standard deviation of k1, from the residuals
 };
 
-// One Gauss–Newton step from an adjusted bundle with two parameters more, the focal length and k1;
-// all cameras (`fixed` is not looked at), points and the focal length are eliminated. A residual
-// alone says little: most of a bend is taken up by poses and points. A focal length that is off
-// bends what is seen from a turning camera, too, and is kept apart by being free. Residuals have
-// Huber's weight. Nothing where what was seen does not tell a bend from everything else.
+// One Gauss–Newton step from an adjusted bundle with two more parameters, log focal length and k1.
+// All cameras (`fixed` is ignored), points and the focal length are eliminated. The residuals
+// themselves reveal little, because poses and points absorb most of the distortion. A wrong focal
+// length also causes apparent distortion in a rotating camera; as a free parameter it is separated
+// from k1. Residuals have Huber weights. Returns nullopt if k1 is not observable.
 std::optional<LensBend> EstimateLensBend(const BundleProblem& problem);
 
 }  // namespace alidade

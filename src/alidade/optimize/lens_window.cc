@@ -11,7 +11,8 @@ namespace {
 
 using ByLens = Eigen::Matrix<double, 2, LensAdjustment::kParameters>;
 
-constexpr double kLeastSlope = 0.1;  // of seen radius by ideal radius: beyond, a lens folds over
+// Derivative of distorted by ideal radius. Below this the distortion model is not invertible.
+constexpr double kLeastSlope = 0.1;
 
 struct LensRow {
   int camera = -1;
@@ -22,7 +23,8 @@ struct LensRow {
   double weight = 0;
 };
 
-// Of one observation in pixels; false behind the camera or where the lens has no picture.
+// Residual of one observation, pixels. Returns false behind the camera or outside the valid range
+// of the distortion model.
 bool Residual(const RadialLens& lens, const Eigen::Vector3d& p, const Eigen::Vector2d& seen,
               Eigen::Vector2d& residual) {
   if (!(p.z() > kMinDepth)) return false;
@@ -33,7 +35,7 @@ bool Residual(const RadialLens& lens, const Eigen::Vector3d& p, const Eigen::Vec
   return true;
 }
 
-// From the camera at the image's middle to where it was when the observation's row was read.
+// Motion from the middle of the image to the readout time of the observation's row.
 Se3 WhenRead(const RadialLens& lens, const LensWindow& window, const LensObservation& o) {
   if (window.motions.empty() || lens.readout.isZero(0)) return {};
   return Se3::Exp(lens.readout.dot(o.read) * window.motions[static_cast<size_t>(o.camera)]);
@@ -50,7 +52,7 @@ bool LineariseLens(const RadialLens& lens, const LensWindow& window, const LensO
   const double d = 1 + r2 * (lens.k1 + r2 * lens.k2), slope = lens.k1 + 2 * r2 * lens.k2;
   Eigen::Matrix2d by_ideal;
   by_ideal << d + 2 * x * x * slope, 2 * x * y * slope, 2 * x * y * slope, d + 2 * y * y * slope;
-  Eigen::Matrix<double, 2, 3> of_point;  // ideal by p
+  Eigen::Matrix<double, 2, 3> of_point;  // derivative of the ideal point by p
   of_point << 1 / p.z(), 0, -x / p.z(), 0, 1 / p.z(), -y / p.z();
   const Eigen::Matrix<double, 2, 3> by_p = lens.focal * by_ideal * of_point;
   const auto cross = [](const Eigen::Vector3d& v) {
@@ -142,10 +144,11 @@ WindowSystem SystemOf(const LensWindow& window, const RadialLens& lens, const Le
 LensSystem LensAlone(const WindowSystem& system, double damping) {
   LensSystem alone;
   Eigen::MatrixXd H = system.H;
-  // A pose that nothing was seen from stays; the others keep their gauge.
+  // Keeps the pose of a camera without observations constant; the damping fixes the gauge of the
+  // others.
   const double least = 1e-12 * std::max(1.0, H.diagonal().maxCoeff());
   H.diagonal() = (H.diagonal() * (1 + damping)).cwiseMax(least);
-  alone.poses.compute(H);  // of the lower triangle
+  alone.poses.compute(H);  // uses only the lower triangle
   alone.H = system.lens - system.lens_by_pose * alone.poses.solve(system.lens_by_pose.transpose());
   alone.g = system.g_lens - system.lens_by_pose * alone.poses.solve(system.g);
   return alone;

@@ -12,7 +12,7 @@
 namespace alidade {
 namespace {
 
-// Beyond this damping a step is nothing against the rounding of what it is added to.
+// With larger damping a step is below the rounding error of the variables.
 constexpr double kMaxLambda = 1e16;
 constexpr double kMinLambda = 1e-15;
 
@@ -45,7 +45,7 @@ void CheckGraph(const PoseGraph& graph) {
   }
 }
 
-// Which nodes can be told where they are: 1 for those connected to a fixed one.
+// 1 for nodes connected to a fixed node.
 std::vector<uint8_t> Anchored(const PoseGraph& graph) {
   std::vector<std::vector<int>> neighbours(graph.T_camera_world.size());
   for (const PoseGraphEdge& edge : graph.edges) {
@@ -68,7 +68,7 @@ std::vector<uint8_t> Anchored(const PoseGraph& graph) {
   return anchored;
 }
 
-// 10 × the median length of those edges that have one; 1 when none has.
+// 10 × the median edge length, ignoring zero lengths; 1 if there are none.
 double LengthScale(const PoseGraph& graph, const std::vector<int>& edges) {
   std::vector<double> lengths;
   for (const int edge : edges) {
@@ -94,7 +94,7 @@ PoseGraphReport Minimise(PoseGraph& graph, const std::vector<int>& slot,
   PoseGraphReport report;
   double cost = system.Cost(nodes);
   report.initial_cost = report.final_cost = cost;
-  // Errors of 1e-13 are rounding: nothing is left to do.
+  // Residuals of 1e-13 are rounding errors: nothing left to optimize.
   const double nothing = 1e-26 * total_weight;
   report.converged = cost <= nothing;
   bool linearised = false;
@@ -118,7 +118,7 @@ PoseGraphReport Minimise(PoseGraph& graph, const std::vector<int>& slot,
     }
     const double predicted = system.Predicted(damping.lambda, step);
     const double next = system.Cost(trial), actual = cost - next;
-    const bool better = actual > 0;  // false too where it is no number
+    const bool better = actual > 0;  // also false for NaN
     report.converged = predicted <= 1e-14 * cost || next <= nothing ||
                        (better && actual < settings.min_relative_decrease * cost);
     if (better) {

@@ -1,7 +1,6 @@
-// Pose graph: camera poses that agree best with relative poses measured between them, after a loop
-// was closed or two maps were joined (the "essential graph" of Strasdat, Montiel & Davison 2010;
-// Mur-Artal, Montiel & Tardós 2015, §VII-D). Seven degrees of freedom where scale drifts, six where
-// it is known. Flat arrays, no map.
+// Pose graph optimization: camera poses from relative pose measurements, after a loop closure or a
+// merge of two maps (the essential graph of Strasdat, Montiel & Davison 2010; Mur-Artal, Montiel &
+// Tardós 2015, §VII-D). Seven degrees of freedom if scale drifts, six if it is known. Flat arrays.
 #pragma once
 
 #include <atomic>
@@ -15,15 +14,15 @@ namespace ALIDADE_API alidade {
 
 struct PoseGraphEdge {
   int a = -1, b = -1;  // indices of nodes
-  Sim3 T_a_b;          // measured: camera b's frame to a's
-  double weight = 1;   // inverse of a variance, against the other edges'; 0: left out
+  Sim3 T_a_b;          // measured: maps camera b's frame to camera a's
+  double weight = 1;   // inverse variance relative to the other edges; 0: ignored
 };
 
 struct PoseGraph {
-  std::vector<Sim3> T_camera_world;  // start, and result
-  std::vector<uint8_t> fixed;        // one per node: nonzero = held where it is
+  std::vector<Sim3> T_camera_world;  // initial values and result
+  std::vector<uint8_t> fixed;        // one per node; nonzero: held constant
   std::vector<PoseGraphEdge> edges;
-  bool with_scale = true;  // false: s of all nodes and edges is taken as 1, and comes out as 1
+  bool with_scale = true;  // false: s of all nodes and edges is 1
 };
 
 struct PoseGraphSettings {
@@ -40,16 +39,16 @@ struct PoseGraphSettings {
 };
 
 struct PoseGraphReport {
-  double initial_cost = 0, final_cost = 0;  // ½ sum of weight × squared residual (or Huber's loss)
+  double initial_cost = 0, final_cost = 0;  // ½ sum of weight × squared residual (or Huber loss)
   int iterations = 0;
-  bool converged = false;  // stopped by the decrease, not by the count or `stop`
+  bool converged = false;  // stopped by the decrease, not by the iteration limit or `stop`
 };
 
-// Minimises, in place, the sum over the edges of weight × |Log(T_a_b T_b_world T_world_a)|², its
-// translation divided by the length scale. The cost never rises. Nodes that no edges connect to a
-// fixed one stay where they are, and their edges count for nothing. `stop` (may be null) is looked
-// at between iterations. The result is the same with any number of threads. Throws Error (usage) on
-// indices that aren't there, edges from a node to itself, and numbers that are none.
+// Minimizes, in place, the sum over edges of weight × |Log(T_a_b T_b_world T_world_a)|², with the
+// translation divided by the length scale. The cost never rises. Nodes not connected to a fixed
+// node are unchanged, and their edges are ignored. `stop` (may be null) is polled between
+// iterations. The result does not depend on the number of threads. Throws Error (usage) on indices
+// out of range, self-edges and non-finite numbers.
 PoseGraphReport OptimizePoseGraph(PoseGraph& graph, const PoseGraphSettings& settings = {},
                                   const std::atomic<bool>* stop = nullptr);
 

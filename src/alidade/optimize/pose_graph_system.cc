@@ -9,11 +9,11 @@
 namespace alidade {
 namespace {
 
-constexpr int kChunk = 128;  // edges worked on as one piece
+constexpr int kChunk = 128;  // edges per task
 
 int Chunks(size_t edges) { return static_cast<int>((edges + kChunk - 1) / kChunk); }
 
-// Half of Huber's loss of a squared length, and the weight that makes its gradient.
+// Half of the Huber loss of a squared length, and the corresponding weight of the gradient.
 double Loss(double squared, double huber, double* weight) {
   const double root = std::sqrt(squared);
   const bool within = huber <= 0 || root <= huber;
@@ -30,7 +30,8 @@ Vector7d EdgeResidual(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_
 PoseGraphResidual LineariseEdge(const Sim3& T_a_b, const Sim3& T_a_world, const Sim3& T_b_world) {
   PoseGraphResidual e;
   e.r = EdgeResidual(T_a_b, T_a_world, T_b_world);
-  const Matrix7d right = LeftJacobianInverseSim3(-e.r);  // the right Jacobian is the left one at -r
+  // Right Jacobian at r = left Jacobian at -r.
+  const Matrix7d right = LeftJacobianInverseSim3(-e.r);
   e.J_a = -right;
   e.J_b = right * AdjointSim3(T_a_world * T_b_world.Inverse());
   return e;
@@ -163,7 +164,7 @@ bool PoseGraphSystem<kDof>::Solve(double lambda, std::vector<Vector>& step) {
   return true;
 }
 
-// ½ (λ δ' diag(H) δ - g' δ): what -g' δ - ½ δ' H δ is where (H + D) δ = -g.
+// ½ (λ δ' diag(H) δ - g' δ), which equals -g' δ - ½ δ' H δ because (H + D) δ = -g.
 template <int kDof>
 double PoseGraphSystem<kDof>::Predicted(double lambda, const std::vector<Vector>& step) const {
   double twice = 0;

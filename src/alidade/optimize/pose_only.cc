@@ -11,17 +11,19 @@
 namespace alidade {
 namespace {
 
-// Side by side.
+// Two matches, processed in parallel.
 struct MatchPair {
-  Double2 x, y, z;           // landmark, world
-  Double2 u, v, right;       // seen, pixels
-  Double2 weight, weight_r;  // 1/px²; 0: the match, or its u_right, cannot be used
+  Double2 x, y, z;           // landmark, world frame
+  Double2 u, v, right;       // observed position, pixels
+  Double2 weight, weight_r;  // 1/px²; 0: the match, or its u_right, is not usable
   Double2 huber;             // standard deviations
-  Double2 trust;             // 0…1
-  Mask2 active;              // ones: counts in this round
+  Double2 trust;             // 0 to 1
+  Mask2 active;              // all ones: used in this round
 };
 
-constexpr double kMostCut = 2;  // times: with heavier noise the gate says nothing of its size
+// Limit of the truncation correction: with heavier noise the truncated residuals do not determine
+// the noise level.
+constexpr double kMostCut = 2;
 
 struct NormalEquations {
   Matrix6d H = Matrix6d::Zero();
@@ -59,9 +61,9 @@ std::vector<MatchPair> Pack(const Intrinsics& k, std::span<const PoseMatch> matc
   return pairs;
 }
 
-// One pair seen from a pose.
+// A pair observed from a pose.
 struct Seen {
-  Double2 x, y, z;  // camera frame, z clamped to be positive
+  Double2 x, y, z;  // camera frame; z clamped to be positive
   Reprojection<Double2> e;
   Double2 chi2;
   Mask2 in_front;
@@ -79,13 +81,13 @@ struct Seen {
   return s;
 }
 
-// Errors beyond this say nothing about where to go: the loss is flat from there on, and behind the
-// camera too. So a wrong match that slips behind can neither stop a step nor reward it.
+// Cap on chi² per weight: the loss is constant beyond it and behind the camera. A wrong match that
+// moves behind the camera therefore neither blocks nor favors a step.
 double FarChi2PerWeight(const Intrinsics& k) { return 16 * k.fx * k.fx; }
 
-// J of the left increment (translation; rotation) is A [I, -[p]x], A the derivative by the
-// camera-frame point: with M = A' W A all blocks of J' W J are M, -M [p]x and [p]x M [p]x' (Solà et
-// al. 2018, eq. 182).
+// The Jacobian of the left increment (translation; rotation) is A [I, -[p]x], with A the derivative
+// by the point in the camera frame. With M = A' W A the blocks of J' W J are M, -M [p]x and [p]x M
+// [p]x' (Solà et al. 2018, eq. 182).
 NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<MatchPair>& pairs,
                           bool robust) {
   const Double2 zero = Both(0);
@@ -104,8 +106,8 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     if (robust) {
       const Double2 root = Sqrt(chi2);
       const Double2 irls = Min(m.huber / Max(root, Both(1e-9)), Both(1));
-      // Half of Huber's loss, both branches in one: root² / 2 below the bound, huber (root - huber
-      // / 2) above.
+      // Half of the Huber loss, both branches in one: root² / 2 below the bound, huber (root -
+      // huber / 2) above.
       const Double2 inner = Min(root, m.huber);
       loss = inner * (root - 0.5 * inner);
       w *= irls;
@@ -138,7 +140,7 @@ NormalEquations Linearise(const Intrinsics& k, const Se3& T, const std::vector<M
     c20 += k20;
     c21 += k21;
     c22 += k22;
-    // [p]x C, upper half.
+    // [p]x C, upper triangle.
     r00 += s.y * k20 - s.z * k10;
     r01 += s.y * k21 - s.z * k11;
     r02 += s.y * k22 - s.z * k12;
@@ -170,8 +172,8 @@ struct Descent {
   NormalEquations at_end;
 };
 
-// Levenberg–Marquardt with almost no damping: Gauss–Newton as long as the cost falls. Ends when a
-// step would gain less than `tolerance` of the cost.
+// Levenberg–Marquardt with minimal damping: Gauss–Newton while the cost falls. Ends when the
+// predicted gain is less than `tolerance` of the cost.
 Descent Descend(const Intrinsics& k, const Se3& start, const std::vector<MatchPair>& pairs,
                 bool robust, int max_iterations, double tolerance) {
   Descent d{start, Linearise(k, start, pairs, robust)};
@@ -185,7 +187,8 @@ Descent Descend(const Intrinsics& k, const Se3& start, const std::vector<MatchPa
     const double gain = -0.5 * d.at_end.g.dot(step);
     if (!step.allFinite() || !(gain >= 0)) break;
     const Se3 trial = Se3::Exp(step) * d.T;
-    if (gain < tolerance * d.at_end.cost + 1e-12) {  // so little can be taken unseen
+    // Accept such a small step without evaluating it.
+    if (gain < tolerance * d.at_end.cost + 1e-12) {
       d.T = trial;
       d.at_end.cost -= gain;
       break;
@@ -202,7 +205,7 @@ Descent Descend(const Intrinsics& k, const Se3& start, const std::vector<MatchPa
   return d;
 }
 
-// Sets aside what is beyond the gate. Returns whether anything changed.
+// Updates the inlier flags by the gate. Returns true if any changed.
 bool Reclassify(const Intrinsics& k, const Se3& T, std::vector<MatchPair>& pairs, int& inliers) {
   bool changed = false;
   inliers = 0;
@@ -234,16 +237,17 @@ double Measured(const std::vector<MatchPair>& pairs) {
 Matrix6d PoseCovariance(const Matrix6d& information, double cost, double measured, double gate) {
   const double free = measured - 6;
   if (!(free > 0)) return Matrix6d::Zero();
-  // Scaled to a diagonal of ones: metres and radians may differ by orders of magnitude.
+  // Scale to unit diagonal: meters and radians may differ by orders of magnitude.
   const Vector6d scale = information.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Matrix6d scaled = scale.asDiagonal() * information * scale.asDiagonal();
   const Eigen::LDLT<Matrix6d> solver(scaled);
-  constexpr double kSingular = 1e-10;  // of the largest: below, rounding is all there is
+  constexpr double kSingular = 1e-10;  // of the largest pivot; below it only rounding remains
   const Vector6d pivots = solver.vectorD();
   if (!(pivots.minCoeff() > kSingular * pivots.maxCoeff())) return Matrix6d::Zero();
   const double raw = 2 * cost / free;
   double factor = raw;
-  for (int i = 0; i < 20; ++i) {  // fixed point; the cut grows with the noise
+  // Fixed-point iteration: the truncation correction depends on the noise.
+  for (int i = 0; i < 20; ++i) {
     const double half = 0.5 * gate / factor;
     const double kept = half < 500 ? 1 - half / std::expm1(half) : 1;
     factor = std::min(raw / std::max(kept, 1e-3), kMostCut * raw);
@@ -275,7 +279,7 @@ PoseOnlyResult OptimizePose(const Camera& camera, const Se3& T_camera_world,
   for (const MatchPair& m : pairs) usable -= static_cast<int>(m.active[0] + m.active[1]);
   if (usable < 3) return result;
 
-  // Until the inliers are known, a pose within a fraction of its standard deviation will do.
+  // Before the inliers are final, a pose within a fraction of its standard deviation suffices.
   Se3 T = T_camera_world;
   for (int round = 0; round < settings.rounds; ++round) {
     const bool robust = round == 0 || round + 1 < settings.rounds;

@@ -1,7 +1,7 @@
-// The residual all of this folder minimises: where a point would be seen minus where it was, and
-// its derivative by the point in the camera frame. Pixel u, v as in Mur-Artal & Tardós 2017, eq. 2
-// and 4, but depth as disparity u - u_right, not as u_right: what shifts a keypoint (blur, a
-// rolling shutter) shifts both columns alike, so that disparity is known far better than either.
+// The reprojection residual used in this folder, predicted minus observed position, and its
+// derivative by the point in the camera frame. u and v as in Mur-Artal & Tardós 2017, eq. 2 and 4.
+// Depth enters as disparity u - u_right instead of u_right: blur or rolling shutter shifts both
+// columns equally, so the disparity is much more accurate than either column.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace alidade {
 
-// Points nearer than this, or behind, have no projection. Map units.
+// Smallest depth with a valid projection, map units.
 inline constexpr double kMinDepth = 1e-6;
 
 struct Intrinsics {
@@ -22,15 +22,15 @@ struct Intrinsics {
   }
 };
 
-// Derivative rows by (x, y, z): u: (u_x, 0, u_z); v: (0, v_y, v_z); disparity: (0, 0, d_z).
+// Derivatives by (x, y, z): u: (u_x, 0, u_z); v: (0, v_y, v_z); disparity: (0, 0, d_z).
 template <typename T>
 struct Reprojection {
   T u, v, d;  // residuals, pixels
   T u_x, v_y, u_z, v_z, d_z;
 };
 
-// T: double, or an Eigen array of several points side by side. z > 0. Inlined whatever the compiler
-// thinks: as a call it is most of the time of the loops around it.
+// T is double or a vector of several points. Requires z > 0. Inlining is forced: a call would
+// dominate the loops around it.
 template <typename T>
 [[gnu::always_inline]] inline Reprojection<T> Reproject(const Intrinsics& k, const T& x, const T& y,
                                                         const T& z, const T& seen_u,
@@ -49,8 +49,8 @@ template <typename T>
   return e;
 }
 
-// Whether a measured u_right counts: NaN says there is none, and without a baseline it says
-// nothing.
+// True if a measured u_right is usable: it is finite (NaN means none) and the camera has a
+// baseline.
 inline bool HasRight(const Intrinsics& k, double seen_right) {
   return std::isfinite(seen_right) && k.bf > 0;
 }

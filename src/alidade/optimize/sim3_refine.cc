@@ -16,10 +16,10 @@ struct NormalEquations {
   double cost = 0;
 };
 
-// One image's view of one match.
+// Residual of one match in one image.
 struct Seen {
-  Eigen::Vector3d p;  // the other camera's point, in this one's frame
-  Eigen::Vector2d r;  // standard deviations
+  Eigen::Vector3d p;  // point of the other camera, in this camera's frame
+  Eigen::Vector2d r;  // in standard deviations
   double chi2;        // infinity behind the camera
 };
 
@@ -33,8 +33,7 @@ Seen Look(const Camera& camera, const Sim3& T, const Eigen::Vector3d& p_other,
   return seen;
 }
 
-// Errors beyond this say nothing about where to go: the loss is flat from there on, and behind the
-// camera too, as in pose_only.cc.
+// Cap on chi²: the loss is constant beyond it and behind the camera, as in pose_only.cc.
 double FarChi2(const Camera& camera, double sigma) {
   return 16 * camera.fx * camera.fx / (sigma * sigma);
 }
@@ -44,7 +43,7 @@ void Add(const Camera& camera, const Seen& seen, double sigma, double huber,
          const Eigen::Matrix<double, 3, 7>& D, NormalEquations& n) {
   const double far = FarChi2(camera, sigma), root = std::sqrt(std::min(seen.chi2, far));
   const double inner = std::min(root, huber);
-  n.cost += inner * (root - 0.5 * inner);  // half of Huber's loss
+  n.cost += inner * (root - 0.5 * inner);  // half of the Huber loss
   if (!(seen.chi2 < far)) return;
   const double weight = root > huber ? huber / root : 1;
   const double inv_z = 1 / seen.p.z(), u_x = camera.fx * inv_z, v_y = camera.fy * inv_z;
@@ -71,8 +70,8 @@ class Refiner {
   const std::vector<bool>& active() const { return active_; }
   void UseAll() { active_ = usable_; }
 
-  // A point in a moves by (I, -[p]x, p) δ when T_a_b <- Exp(δ) T_a_b; one in b, where T_b_a <-
-  // T_b_a Exp(-δ), by -Rᵀ/s (I, -[p_a]x, p_a) δ.
+  // A point in a moves by (I, -[p]x, p) δ for T_a_b <- Exp(δ) T_a_b; a point in b, where T_b_a <-
+  // T_b_a Exp(-δ), moves by -Rᵀ/s (I, -[p_a]x, p_a) δ.
   NormalEquations Linearise(const Sim3& T_a_b, bool robust) const {
     NormalEquations n;
     const Sim3 T_b_a = T_a_b.Inverse();
@@ -97,7 +96,7 @@ class Refiner {
     return n;
   }
 
-  // Sets aside what is beyond the gate in either image. Returns whether anything changed.
+  // Updates the inlier flags by the gate in both images. Returns true if any changed.
   bool Reclassify(const Sim3& T_a_b, int& inliers) {
     const Sim3 T_b_a = T_a_b.Inverse();
     bool changed = false;
@@ -123,8 +122,8 @@ class Refiner {
   std::vector<bool> usable_, active_;
 };
 
-// Levenberg–Marquardt with almost no damping: Gauss–Newton as long as the cost falls. Ends when a
-// step would gain less than `tolerance` of the cost.
+// Levenberg–Marquardt with minimal damping: Gauss–Newton while the cost falls. Ends when the
+// predicted gain is less than `tolerance` of the cost.
 NormalEquations Descend(const Refiner& refiner, bool robust, int max_iterations, double tolerance,
                         Sim3& T) {
   NormalEquations at = refiner.Linearise(T, robust);
@@ -171,7 +170,7 @@ Sim3RefineResult RefineSim3(const Camera& camera, const Sim3& T_a_b,
   Refiner refiner(camera, matches, with_scale, settings.huber);
   if (std::count(refiner.active().begin(), refiner.active().end(), true) < 3) return result;
 
-  // Until the inliers are known, a fraction of the standard deviation will do.
+  // Before the inliers are final, an accuracy of a fraction of the standard deviation suffices.
   Sim3 T = result.T_a_b;
   for (int round = 0; round < settings.rounds; ++round) {
     Descend(refiner, true, settings.max_iterations, 1e-3, T);

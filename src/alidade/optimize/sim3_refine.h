@@ -1,5 +1,5 @@
-// The similarity, or rigid motion, between two cameras' frames by robust least squares on the
-// reprojection errors in both images.
+// Similarity or rigid motion between two camera frames: robust least squares on the reprojection
+// errors in both images.
 #pragma once
 
 #include <span>
@@ -21,18 +21,18 @@ struct Sim3RefineSettings {
 
 struct Sim3RefineResult {
   Sim3 T_a_b;
-  std::vector<bool> inlier;  // one for each match: within the gate in both images
+  std::vector<bool> inlier;  // one per match: within the gate in both images
   int inliers = 0;
   double cost = 0;  // ½ sum of chi² over the inliers, unitless
-  // At the optimum, of the left increment (t, rotation, log s), inliers only; without scale the
-  // last row and column are zero.
+  // Of the left increment (t, rotation, log s) at the optimum, inliers only; without scale the last
+  // row and column are zero.
   Matrix7d information = Matrix7d::Zero();
 };
 
-// Starts at `T_a_b`. Each round minimises Huber's loss over the inliers so far (all at first), then
-// counts as inliers what is within `huber` of the result; at the end plain squares over the
-// inliers. Fewer than 3 usable matches: returns the start with no inliers. Without scale, s comes
-// out as 1. Increments from the left, as in sim3.h.
+// Starts at `T_a_b`. Each round minimizes the Huber loss over the current inliers (all matches at
+// first), then reclassifies as inliers the matches within `huber` of the result; finally minimizes
+// plain squares over the inliers. Fewer than 3 usable matches: returns the start with no inliers.
+// Without scale, s is 1. Left increments as in sim3.h.
 Sim3RefineResult RefineSim3(const Camera& camera, const Sim3& T_a_b,
                             std::span<const Sim3Match> matches, bool with_scale,
                             const Sim3RefineSettings& settings = {});

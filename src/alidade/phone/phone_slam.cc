@@ -14,10 +14,11 @@
 namespace alidade {
 namespace {
 
-constexpr double kAssumedFov = 66;  // degrees, along the longer side: most phones' main camera
+// Degrees along the longer side; typical of phones' main cameras.
+constexpr double kAssumedFov = 66;
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr size_t kMostWaiting = 32 << 20;  // bytes of messages that nobody took
-constexpr int kMostKeyFrames = 2000;       // some 200 MB
+constexpr size_t kMostWaiting = 32 << 20;  // bytes of messages that were not taken
+constexpr int kMostKeyFrames = 2000;       // about 200 MB
 
 Camera AssumedCamera(int width, int height, double fov) {
   if (fov > 0) return Camera::FromFieldOfView(width, height, fov);
@@ -104,21 +105,21 @@ PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
   return frame;
 }
 
-// Of the pictures as they come.
+// Field of view of the images as passed to Track().
 void PhoneSlam::TellLens(PhoneFrame& frame) const {
   const Camera used = slam_->camera();
   frame.fov = 2 / kDegree * std::atan(used.width / (2 * used.fx));
   if (known_) return;
   const std::optional<CameraEstimate> found = slam_->camera_found();
   const double focal_sigma = found ? found->focal_sigma : settings_.slam.refine.focal_sigma;
-  // d fov / d log f = -sin fov.
+  // d fov / d log f = -sin fov
   frame.fov_sigma = focal_sigma * std::sin(frame.fov * kDegree) / kDegree;
   frame.camera_changes = slam_->camera_changes();
 }
 
 void PhoneSlam::Detected(int number, std::vector<Detection> detections) {
   if (!detector_) return;
-  // From pixels of the picture as it came to those that are worked on.
+  // Convert from pixels of the images passed to Track() to pixels of the images SLAM works on.
   const Camera used = slam_->camera();
   const float x = static_cast<float>(used.width) / static_cast<float>(camera_.width);
   const float y = static_cast<float>(used.height) / static_cast<float>(camera_.height);

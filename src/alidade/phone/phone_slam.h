@@ -1,5 +1,5 @@
-// The core as a page or a phone's app wants it: pictures in, a few numbers and the viewer's
-// messages out; a camera nobody calibrated is found on the way.
+// Interface of the core for web pages and phone apps: images in; a few numbers and the viewer's
+// messages out. An uncalibrated camera is self-calibrated online.
 #pragma once
 
 #include <cstdint>
@@ -28,45 +28,47 @@ struct PhoneSettings {
   static PhoneSettings Default(bool threaded);
 };
 
-// What is known after a frame.
+// Status after a frame.
 struct PhoneFrame {
   TrackResult result;
   int number = 0;  // counted from 0
   int keyframes = 0, landmarks = 0, maps = 0;
-  int features = 0, matches = 0;  // of the frame
-  double milliseconds = 0;        // it took
-  double fov = 0;                 // horizontal, degrees, as it is believed to be
-  double fov_sigma = 0;           // degrees; 0: it was given
-  int camera_changes = 0;         // how often the map was changed to another, found from it
+  int features = 0, matches = 0;  // in this frame
+  double milliseconds = 0;        // processing time of this frame
+  double fov = 0;                 // current estimate of the horizontal field of view, degrees
+  double fov_sigma = 0;           // degrees; 0: the field of view was given
+  int camera_changes = 0;  // number of times the map was rebuilt with a new estimate of the camera
 };
 
 class PhoneSlam {
  public:
-  // `fov`: horizontal, degrees; 0: nothing is known, 66 along the longer side is where it begins.
-  // Throws Error on what cannot be.
+  // `fov`: horizontal field of view, degrees; 0: unknown, then self-calibration starts from 66
+  // degrees along the longer side. Throws Error for invalid arguments.
   PhoneSlam(int width, int height, double fov, PhoneSettings settings);
   // The same with a calibrated camera.
   PhoneSlam(const Camera& camera, PhoneSettings settings);
   ~PhoneSlam();
 
-  // One picture: 1 (grey) or 4 (red green blue alpha) bytes a pixel, rows without gaps. `time` in
-  // seconds. Throws Error on what Slam::Track() refuses.
+  // Processes one image: 1 (gray) or 4 (red green blue alpha) bytes per pixel, rows without
+  // padding. `time` in seconds. Throws Error as Slam::Track() does.
   PhoneFrame Track(const uint8_t* pixels, int channels, double time);
   void Finish();
-  // What a detector found in an earlier picture (PhoneFrame::number), in its pixels; it may come
-  // many pictures late. Throws Error (input) on classes that were not named.
+  // Passes the detections in an earlier image (PhoneFrame::number), in its pixels. They may be many
+  // images late. Throws Error (input) for a class that is not in PhoneSettings::detector_classes.
+  // Ignored without detector_classes.
   void Detected(int number, std::vector<Detection> detections);
   Slam& slam() { return *slam_; }
 
-  // The viewer's messages since they were taken last (src/alidade/stream). The first call begins
-  // them; who takes none for long gets all that is known, anew.
+  // Returns the viewer's messages (src/alidade/stream) since the previous call; the first call
+  // starts the stream. After more than 32 MB were not taken, returns messages that restate the
+  // whole map instead.
   std::vector<std::string> TakeMessages();
-  // For one who joins now: hello and all that is known. What TakeMessages() gives next goes on
-  // from it.
+  // Messages for a viewer that joins now: hello and the whole state. Later messages of
+  // TakeMessages() continue from there.
   std::vector<std::string> WholeState();
-  // TUM format: every frame that has a pose.
+  // TUM format; all frames with a pose.
   std::string Trajectory() const;
-  // Landmarks as a binary PLY point cloud.
+  // The landmarks as a binary PLY point cloud.
   std::string Cloud() const;
 
  private:
@@ -78,15 +80,15 @@ class PhoneSlam {
   PhoneSettings settings_;
   Camera camera_;
   bool known_;
-  LatestTimes latest_;  // as the last frame left them
+  LatestTimes latest_;  // values after the previous frame
   int frames_ = 0;
   std::unique_ptr<Slam> slam_;
-  std::shared_ptr<LateDetector> detector_;  // null: there is none
+  std::shared_ptr<LateDetector> detector_;  // null: no external detector
   StreamSource source_;
-  std::unique_ptr<StreamEncoder> encoder_;  // null: nobody asked
+  std::unique_ptr<StreamEncoder> encoder_;  // null until messages are requested
   std::vector<std::string> messages_;
-  size_t waiting_ = 0;   // bytes of messages_
-  bool behind_ = false;  // some were dropped: nobody took them
+  size_t waiting_ = 0;   // size of messages_, bytes
+  bool behind_ = false;  // messages were dropped because they were not taken
 };
 
 }  // namespace alidade

@@ -1,4 +1,5 @@
-// Growing the tree: each node's descriptors are parted among at most `branching` centres.
+// Growing a vocabulary tree: clusters the descriptors of each node into at most `branching`
+// children.
 #include <algorithm>
 #include <numeric>
 #include <utility>
@@ -11,11 +12,11 @@ namespace {
 
 struct Clusters {
   std::vector<Descriptor> centres;
-  std::vector<int> of;  // the centre of each member
+  std::vector<int> of;  // index of the center of each member
 };
 
-// How many of many descriptors have each bit, 256 counters at once: plane p holds bit p of every
-// counter, so adding a descriptor is a ripple of carries from plane to plane.
+// Counts for each bit how many descriptors have it set. Bit-sliced: plane p holds bit p of all 256
+// counters, so adding a descriptor is a ripple carry over the planes.
 class BitCounter {
  public:
   void Add(const Descriptor& descriptor) {
@@ -31,7 +32,8 @@ class BitCounter {
     }
   }
   int count() const { return count_; }
-  // The bits more than half of them have: counters compared with count / 2, highest plane first.
+  // Bits set in more than half of the descriptors. Compares all counters with count / 2, highest
+  // plane first.
   Descriptor Majority() const {
     const int half = count_ / 2;
     Descriptor majority;
@@ -50,12 +52,12 @@ class BitCounter {
 
  private:
   int count_ = 0;
-  std::vector<Descriptor> planes_;  // lowest first
+  std::vector<Descriptor> planes_;  // least significant first
 };
 
-// Far apart from each other: each next one is drawn with a chance that grows with the square of
-// its distance to those there are (k-means++, Arthur & Vassilvitskii 2007). Fewer when there are
-// not as many different ones.
+// k-means++ seeding (Arthur & Vassilvitskii 2007): draws each next center with probability
+// proportional to the squared distance to the nearest existing one. Returns fewer centers if there
+// are fewer distinct descriptors.
 std::vector<Descriptor> DrawCentres(std::span<const Descriptor> sample,
                                     std::span<const int> members, int count, Random& random) {
   std::vector<Descriptor> centres;
@@ -79,7 +81,8 @@ std::vector<Descriptor> DrawCentres(std::span<const Descriptor> sample,
   }
 }
 
-// Assigns each member to its nearest centre, the first of equals; true when any changed.
+// Assigns each member to its nearest center (the first on a tie). Returns true if any assignment
+// changed.
 bool Assign(std::span<const Descriptor> sample, std::span<const int> members, Clusters& clusters) {
   bool changed = false;
   for (size_t i = 0; i < members.size(); ++i) {
@@ -125,7 +128,7 @@ Vocabulary Vocabulary::Grow(std::span<const Descriptor> sample, const Vocabulary
     int level = 0;
     std::vector<int> members;  // indices into the sample
   };
-  std::vector<Branch> branches(1);  // one for each node
+  std::vector<Branch> branches(1);  // one per node
   branches[0].members.resize(sample.size());
   std::iota(branches[0].members.begin(), branches[0].members.end(), 0);
   vocabulary.nodes_.emplace_back();
@@ -144,7 +147,7 @@ Vocabulary Vocabulary::Grow(std::span<const Descriptor> sample, const Vocabulary
     const auto empty = [](const Branch& child) { return child.members.empty(); };
     if (std::count_if(children.begin(), children.end(), empty) + 2 >
         static_cast<int>(children.size())) {
-      continue;  // all went to one
+      continue;  // fewer than two nonempty children: no split
     }
     vocabulary.nodes_[i].first_child = static_cast<uint32_t>(vocabulary.nodes_.size());
     for (size_t c = 0; c < children.size(); ++c) {

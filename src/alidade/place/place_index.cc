@@ -31,7 +31,7 @@ void PlaceIndex::Remove(KeyFrameId id) {
   index_->Erase(id);
 }
 
-// Only the writer changes index_, and it holds writer_: it may read without the other lock.
+// Reads index_ without content_: only the writer changes it, and the caller holds writer_.
 void PlaceIndex::GrowWhenDoubled() {
   if (index_->size() == 0 || static_cast<uint64_t>(index_->size()) < uint64_t{2} * grown_at_)
     return;
@@ -47,7 +47,7 @@ std::unique_ptr<WordIndex> PlaceIndex::Grown() const {
   Random random(seed_, keyframes.size());
   std::vector<Descriptor> sample;
   for (const auto& keyframe : keyframes) {
-    // The first `share` of the descriptors in an order that is drawn (Fisher & Yates).
+    // A random subset of `share` descriptors (partial Fisher–Yates shuffle).
     std::vector<Descriptor> descriptors = keyframe.second->descriptors;
     const size_t count = std::min(descriptors.size(), static_cast<size_t>(share));
     for (size_t i = 0; i < count; ++i) {

@@ -1,5 +1,5 @@
-// Finds the keyframes that show the place a frame shows. Its vocabulary is learnt from the
-// keyframes themselves: no file, nothing to load, ready with the first of them.
+// Place recognition: finds the keyframes that show the same place as a frame. The vocabulary is
+// trained on the keyframes themselves, so no vocabulary file is needed.
 #pragma once
 
 #include <functional>
@@ -19,38 +19,38 @@
 
 namespace ALIDADE_API alidade {
 
-// What a saved map keeps: words are found anew on load.
+// The part of the index that a map file stores; the words of keyframes are recomputed on load.
 struct SavedPlaces {
   std::vector<Vocabulary::Node> nodes;
-  uint32_t grown_at = 0;  // keyframes there were when the vocabulary was grown; 0: never
+  uint32_t grown_at = 0;  // number of keyframes when the vocabulary was grown; 0: never
 };
 
-// May be asked from one thread while another adds. The same keyframes added and removed in the same
-// order give the same answers, on any machine and after any restoring.
+// Thread-safe: queries may run while another thread adds or removes. The same sequence of additions
+// and removals gives the same results on any machine, also after Restore().
 class PlaceIndex {
  public:
   explicit PlaceIndex(PlaceSettings settings = {}, uint64_t seed = 1);
 
-  // An id that is in already is replaced. When keyframes have doubled since the vocabulary was
-  // grown, it is grown anew: tens of milliseconds, in which queries go on with the old one.
+  // Adds or replaces a keyframe. When the number of keyframes has doubled since the vocabulary was
+  // grown, regrows it, which takes tens of milliseconds; queries use the old one meanwhile.
   void Add(KeyFrameId id, std::shared_ptr<const Frame> frame);
   void Remove(KeyFrameId id);
 
-  // The `most` likest of the keyframes that `may_be` (empty: all) lets pass; best first, ties by
-  // id. `may_be` must not call back into the index.
+  // Up to `most` keyframes with the highest scores among those accepted by `may_be` (empty: all);
+  // best first, ties by id. `may_be` must not call the index.
   std::vector<PlaceMatch> Query(const Frame& frame, const std::function<bool(KeyFrameId)>& may_be,
                                 size_t most) const;
-  // The same score for the keyframes named; 0 for one that is not in.
+  // The score of each given keyframe; 0 if it is not in the index.
   std::vector<double> Scores(const Frame& frame, std::span<const KeyFrameId> ids) const;
   double Score(const Frame& frame, KeyFrameId id) const { return Scores(frame, {&id, 1})[0]; }
   int size() const;
 
   SavedPlaces Save() const;
-  // Replaces all there was. Throws Error (input) on nodes that make no vocabulary, leaving the
-  // index as it was.
+  // Replaces the contents. Throws Error (input) if the nodes are not a valid vocabulary; the index
+  // is then unchanged.
   void Restore(const SavedPlaces& saved, const std::vector<PlaceKeyFrame>& keyframes);
 
-  size_t MemoryBytes() const;  // of words and index, the frames' own descriptors apart
+  size_t MemoryBytes() const;  // of words and index, without the frames' descriptors
 
  private:
   void GrowWhenDoubled();
@@ -58,8 +58,9 @@ class PlaceIndex {
 
   PlaceSettings settings_;
   uint64_t seed_ = 1;
-  std::mutex writer_;                  // held by whoever changes the index, from start to end
-  mutable std::shared_mutex content_;  // of what follows: held by the writer while it changes it
+  std::mutex writer_;  // held during a whole change; serializes writers
+  // Guards all members below; held exclusively while they change.
+  mutable std::shared_mutex content_;
   std::unique_ptr<WordIndex> index_;
   uint32_t grown_at_ = 0;
 };

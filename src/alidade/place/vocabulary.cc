@@ -19,7 +19,7 @@ void VocabularySettings::Check() const {
 
 Vocabulary::Vocabulary(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
   if (nodes_.size() > kMaxNodes) ThrowInput("vocabulary: more nodes than there can be");
-  uint64_t next = 1;  // the node that has no parent yet
+  uint64_t next = 1;  // index of the first node without a parent so far
   std::vector<uint8_t> level(nodes_.size(), 0);
   for (size_t i = 0; i < nodes_.size(); ++i) {
     const Node& node = nodes_[i];
@@ -42,7 +42,8 @@ Vocabulary::Vocabulary(std::vector<Node> nodes) : nodes_(std::move(nodes)) {
 
 void Vocabulary::NumberWords() {
   if (nodes_.empty()) return;
-  std::vector<uint32_t> words(nodes_.size(), 0);  // below each node, which its parent precedes
+  // Number of words below each node; parents precede their children.
+  std::vector<uint32_t> words(nodes_.size(), 0);
   for (size_t i = nodes_.size(); i-- > 0;) {
     const Node& node = nodes_[i];
     if (node.children == 0) words[i] = 1;

@@ -1,5 +1,5 @@
-// A tree of binary words, grown from the descriptors of the place itself: Gálvez-López & Tardós
-// 2012, §III; the centre of a cluster is the majority of its members' bits (Grana et al. 2013).
+// Vocabulary tree of binary words, grown from the map's own descriptors (Gálvez-López & Tardós
+// 2012, §III). A cluster's center is the bitwise majority of its members (Grana et al. 2013).
 #pragma once
 
 #include <cstdint>
@@ -20,32 +20,34 @@ struct VocabularySettings {
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
-// Immutable once made.
+// Immutable after construction.
 class Vocabulary {
  public:
-  // Breadth first: the children of a node lie side by side, after those of all nodes before it.
+  // Stored breadth-first: the children of a node are contiguous, after those of all preceding
+  // nodes.
   struct Node {
     Descriptor centre;
-    uint32_t first_child = 0;  // index of a node; 0 for a leaf
-    uint32_t children = 0;     // 0: a leaf, which is a word
+    uint32_t first_child = 0;  // node index; 0 for a leaf
+    uint32_t children = 0;     // 0: a leaf, i.e. a word
   };
   static constexpr uint32_t kMaxNodes = 1 << 20;
-  static constexpr int kMaxChildren = 64;  // with kMaxLevels, what finding one word may cost
+  // With kMaxLevels, bounds the cost of looking up one word.
+  static constexpr int kMaxChildren = 64;
   static constexpr int kMaxLevels = 8;
 
-  Vocabulary() = default;  // one word, which everything is
-  // Depends on its arguments only. Takes branching · levels · rounds distances per descriptor.
+  Vocabulary() = default;  // a single word for all descriptors
+  // Deterministic. Computes about branching · levels · rounds distances per descriptor.
   static Vocabulary Grow(std::span<const Descriptor> sample, const VocabularySettings& settings,
                          uint64_t seed);
-  // From a saved map. Throws Error (input) when the nodes do not make one tree in the order above.
+  // From a saved map. Throws Error (input) if the nodes are not a tree in breadth-first order.
   explicit Vocabulary(std::vector<Node> nodes);
 
-  // The leaf reached by going to the nearest child, the first of equals. Words are numbered from
-  // the left to the right of the tree, so those below one node follow each other.
+  // The leaf reached by descending to the nearest child (the first on a tie). Words are numbered
+  // from left to right, so the words below a node are consecutive.
   uint32_t WordOf(const Descriptor& descriptor) const;
   uint32_t word_count() const { return word_count_; }
-  // For each word the first word below the node above it that lies `level` levels below the root;
-  // itself when it is nearer to the root. Words with the same one are neighbours in the tree.
+  // For each word, the first word below its ancestor at depth `level` below the root; the word
+  // itself if it is not deeper. Words with the same value are in the same subtree.
   std::vector<uint32_t> GroupsAt(int level) const;
   const std::vector<Node>& nodes() const { return nodes_; }
 
@@ -53,7 +55,7 @@ class Vocabulary {
   void NumberWords();
 
   std::vector<Node> nodes_;           // empty: one word
-  std::vector<uint32_t> first_word_;  // below each node; of a leaf, its own
+  std::vector<uint32_t> first_word_;  // first word below each node; a leaf's own word
   uint32_t word_count_ = 1;
 };
 

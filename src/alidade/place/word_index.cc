@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-// Calls visit(word, count) for each word there is, in order.
+// Calls visit(word, count) for each distinct word in order.
 template <typename Visit>
 void VisitWords(const std::vector<KeypointWord>& words, Visit&& visit) {
   for (size_t begin = 0, end = 0; begin < words.size(); begin = end) {
@@ -63,7 +63,7 @@ void WordIndex::Erase(KeyFrameId id) {
   });
   slots_.erase(found);
   entries_[slot] = {};
-  free_.push_back(slot);  // last: where memory runs out a slot is lost, and nothing else
+  free_.push_back(slot);  // last: if this allocation fails, only the slot is lost
 }
 
 std::vector<PlaceKeyFrame> WordIndex::KeyFrames() const {
@@ -72,8 +72,8 @@ std::vector<PlaceKeyFrame> WordIndex::KeyFrames() const {
   return keyframes;
 }
 
-// Words both have, weighted by how few keyframes have them (inverse document frequency, of the
-// keyframes that are in now). Not normalised by the keyframe's words: it only sorts.
+// Ranks keyframes by common words, weighted by the inverse document frequency over the current
+// keyframes. Not normalized by the keyframe's number of words, because it is only a preselection.
 std::vector<PlaceMatch> WordIndex::Shortlist(const std::vector<KeypointWord>& words,
                                              const std::function<bool(KeyFrameId)>& may_be,
                                              size_t most) const {
@@ -130,7 +130,7 @@ std::vector<double> WordIndex::Scores(const Frame& frame, std::span<const KeyFra
 }
 
 size_t WordIndex::MemoryBytes() const {
-  constexpr size_t kMapNode = 48;  // of std::map: three pointers, a colour, key and value
+  constexpr size_t kMapNode = 48;  // estimated size of a std::map node
   size_t bytes = vocabulary_.nodes().size() * (sizeof(Vocabulary::Node) + sizeof(uint32_t)) +
                  groups_.size() * sizeof(groups_[0]) + entries_.capacity() * sizeof(Entry) +
                  postings_.capacity() * sizeof(std::vector<Posting>) + slots_.size() * kMapNode;

@@ -1,4 +1,4 @@
-// Keyframes by their words: which show what a frame shows, for one vocabulary.
+// Inverted index: keyframes by their words, for one vocabulary.
 #pragma once
 
 #include <functional>
@@ -19,18 +19,18 @@ namespace ALIDADE_API alidade {
 
 struct PlaceMatch {
   KeyFrameId id;
-  double score = 0;  // matches found / geometric mean of the keypoints of both: 0…1
+  double score = 0;  // matches / geometric mean of both keypoint counts, 0 to 1
 };
 
 using PlaceKeyFrame = std::pair<KeyFrameId, std::shared_ptr<const Frame>>;
 
-// One writer or many readers at a time. What it answers depends on the vocabulary and on which
-// keyframes are in, not on the order they came in.
+// Not synchronized: one writer or several readers at a time. Results depend on the vocabulary and
+// the set of keyframes, not on the order of insertion.
 class WordIndex {
  public:
   WordIndex(Vocabulary vocabulary, const PlaceSettings& settings);
 
-  // `words` are WordsOf(*frame, vocabulary()); the id must not be in yet.
+  // `words`: WordsOf(*frame, vocabulary()). The id must not be present yet.
   void Insert(KeyFrameId id, std::shared_ptr<const Frame> frame,
               const std::vector<KeypointWord>& words);
   void Erase(KeyFrameId id);
@@ -50,11 +50,11 @@ class WordIndex {
   struct Entry {
     KeyFrameId id;
     std::shared_ptr<const Frame> frame;
-    std::vector<KeypointWord> groups;  // of words: what matching needs
+    std::vector<KeypointWord> groups;  // group of each word, for matching
   };
-  struct Posting {  // small: a query reads 200 of them for each keyframe there is
+  struct Posting {  // kept small: a query reads about 200 per keyframe
     uint32_t slot : 24;
-    uint32_t count : 8;  // keypoints of the word, at most 255
+    uint32_t count : 8;  // keypoints with the word, at most 255
   };
   std::vector<PlaceMatch> Shortlist(const std::vector<KeypointWord>& words,
                                     const std::function<bool(KeyFrameId)>& may_be,
@@ -65,10 +65,10 @@ class WordIndex {
   Vocabulary vocabulary_;
   PlaceSettings settings_;
   std::vector<uint32_t> groups_;  // of each word
-  std::vector<Entry> entries_;    // by slot; a free one has no frame
+  std::vector<Entry> entries_;    // by slot; a free slot has no frame
   std::vector<uint32_t> free_;
   std::map<KeyFrameId, uint32_t> slots_;
-  std::vector<std::vector<Posting>> postings_;  // of each word
+  std::vector<std::vector<Posting>> postings_;  // by word
 };
 
 }  // namespace alidade

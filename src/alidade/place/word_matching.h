@@ -1,6 +1,6 @@
-// How many keypoints of two frames match, looking only among those whose words are near each other
-// in the tree: nearly what matching all against all finds, for a tenth of the time. The direct
-// index of Gálvez-López & Tardós 2012, §IV-D.
+// Number of keypoint matches between two frames, comparing only keypoints whose words are close in
+// the vocabulary tree. Finds nearly the same matches as brute force in a tenth of the time. The
+// direct index of Gálvez-López & Tardós 2012, §IV-D.
 #pragma once
 
 #include <cstdint>
@@ -27,14 +27,14 @@ struct KeypointWord {
   uint32_t keypoint = 0;  // index in its frame
 };
 
-// One for each keypoint, sorted by word, then keypoint.
+// One per keypoint, sorted by word, then keypoint.
 std::vector<KeypointWord> WordsOf(const Frame& frame, const Vocabulary& vocabulary);
 
-// The same with the group in place of each word; `groups`: vocabulary.GroupsAt(level).
+// Replaces each word by its group. `groups`: vocabulary.GroupsAt(level).
 std::vector<KeypointWord> GroupsOf(std::vector<KeypointWord> words,
                                    std::span<const uint32_t> groups);
 
-// One-to-one matches whose turns agree.
+// Number of one-to-one matches with consistent patch rotation.
 int CountMatches(const Frame& a, std::span<const KeypointWord> groups_a, const Frame& b,
                  std::span<const KeypointWord> groups_b, const WordMatchSettings& settings);
 

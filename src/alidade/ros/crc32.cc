@@ -5,7 +5,7 @@
 namespace alidade {
 namespace {
 
-// What each value of a byte does to the remainder.
+// Remainder of each byte value.
 constexpr std::array<uint32_t, 256> RemaindersOfBytes() {
   std::array<uint32_t, 256> table{};
   for (uint32_t byte = 0; byte < 256; ++byte) {

@@ -27,7 +27,7 @@ enum Opcode : uint8_t {
 template <typename T>
 void Append(T value, std::string& out) {
   char raw[sizeof value];
-  std::memcpy(raw, &value, sizeof value);  // little-endian, as all machines this is compiled for
+  std::memcpy(raw, &value, sizeof value);  // little-endian, as all supported machines are
   out.append(raw, sizeof value);
 }
 
@@ -36,7 +36,7 @@ void AppendText(std::string_view text, std::string& out) {
   out.append(text);
 }
 
-// Opcode and length, then what is in it.
+// A record: opcode, length, content.
 std::string Record(Opcode opcode, std::string_view content) {
   std::string record(1, static_cast<char>(opcode));
   Append(static_cast<uint64_t>(content.size()), record);
@@ -44,7 +44,7 @@ std::string Record(Opcode opcode, std::string_view content) {
   return record;
 }
 
-// Pairs behind the length of all of them.
+// A map in MCAP's encoding: total length, then the pairs.
 std::string MapOf(const std::map<uint16_t, uint64_t>& pairs) {
   std::string out;
   Append(static_cast<uint32_t>(pairs.size() * (sizeof(uint16_t) + sizeof(uint64_t))), out);
@@ -114,8 +114,8 @@ void McapWriter::Write(uint16_t channel, uint64_t time, std::string_view data) {
   Append(uint64_t{sizeof channel + sizeof(uint32_t) + 2 * sizeof time + data.size()}, chunk_);
   Append(channel, chunk_);
   Append(static_cast<uint32_t>(counts_[channel]++), chunk_);
-  Append(time, chunk_);  // logged
-  Append(time, chunk_);  // published
+  Append(time, chunk_);  // log time
+  Append(time, chunk_);  // publish time
   chunk_.append(data);
   if (chunk_.size() >= chunk_bytes_) EndChunk();
 }
@@ -181,8 +181,8 @@ std::string McapWriter::Statistics() const {
   Append(messages, content);
   Append(schema_count_, content);
   Append(uint32_t{channel_count_}, content);
-  Append(uint32_t{0}, content);  // attachments
-  Append(uint32_t{0}, content);  // metadata
+  Append(uint32_t{0}, content);  // number of attachments
+  Append(uint32_t{0}, content);  // number of metadata records
   Append(static_cast<uint32_t>(chunks_.size()), content);
   Append(messages > 0 ? first : uint64_t{0}, content);
   Append(last, content);
@@ -227,7 +227,7 @@ void McapWriter::Close() {
   std::string footer;
   Append(summary_start, footer);
   Append(uint64_t{summary_start + summary.size()}, footer);
-  // The checksum is of all from the summary on to itself.
+  // The CRC covers everything from the summary up to the CRC itself.
   std::string last = summary + offsets;
   last.push_back(static_cast<char>(kFooter));
   Append(uint64_t{footer.size() + sizeof(uint32_t)}, last);

@@ -1,6 +1,6 @@
-// Messages as an MCAP file: chunks with their checksums and indexes, and a summary at the end
-// (version 0 of the format). What was handed on so far is a file that readers can repair when the
-// program is killed; Close() makes it whole.
+// Writes messages to an MCAP file (version 0 of the format): chunks with checksums and indexes, and
+// a summary at the end. If the program is killed, readers can recover the chunks written so far;
+// Close() completes the file.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace alidade {
 
-// How the records of a chunk are made smaller. No name: not at all.
+// Compression of a chunk's records. Empty name: none.
 struct McapCompression {
   std::string name;  // "zstd" or "lz4"
   std::function<std::string(std::string_view)> compress;
@@ -21,10 +21,10 @@ struct McapCompression {
 
 class McapWriter {
  public:
-  using Sink = std::function<void(std::string_view)>;  // takes the file's bytes in order
+  using Sink = std::function<void(std::string_view)>;  // receives the file's bytes in order
   using Metadata = std::vector<std::pair<std::string, std::string>>;
-  // Of records in a chunk: what is lost when the program is killed, and what a reader unpacks to
-  // get at one message. Foxglove's tools and rosbag2 have 0.75 to 4 MB.
+  // Uncompressed size of a chunk, bytes. It is what is lost when the program is killed, and what a
+  // reader must unpack to get one message. Foxglove's tools and rosbag2 use 0.75 to 4 MB.
   static constexpr size_t kChunkBytes = size_t{1} << 20;
 
   McapWriter(Sink sink, const std::string& profile, const std::string& library,
@@ -35,9 +35,9 @@ class McapWriter {
   uint16_t AddSchema(const std::string& name, const std::string& encoding, const std::string& data);
   uint16_t AddChannel(uint16_t schema, const std::string& topic, const std::string& encoding,
                       const Metadata& metadata);
-  // `time`: nanoseconds. Those of a channel are numbered from 0.
+  // `time`: nanoseconds. The messages of a channel are numbered from 0.
   void Write(uint16_t channel, uint64_t time, std::string_view data);
-  void Close();  // nothing after it
+  void Close();  // must be the last call
 
  private:
   struct IndexEntry {
@@ -55,17 +55,17 @@ class McapWriter {
   Sink sink_;
   McapCompression compression_;
   size_t chunk_bytes_;
-  uint64_t position_ = 0;  // bytes so far
-  uint32_t crc_ = 0;       // of them
+  uint64_t position_ = 0;  // bytes written so far
+  uint32_t crc_ = 0;       // CRC of the bytes written so far
 
-  std::string chunk_;  // records of the one being filled
+  std::string chunk_;  // records of the current chunk
   std::map<uint16_t, std::vector<IndexEntry>> index_;
-  uint64_t first_time_ = UINT64_MAX, last_time_ = 0;  // of it
+  uint64_t first_time_ = UINT64_MAX, last_time_ = 0;  // of the current chunk, nanoseconds
 
   std::vector<ChunkRecord> chunks_;
-  std::string schemas_, channels_;  // records, for the summary
+  std::string schemas_, channels_;  // encoded records, for the summary
   uint16_t schema_count_ = 0, channel_count_ = 0;
-  std::map<uint16_t, uint64_t> counts_;  // messages of each channel
+  std::map<uint16_t, uint64_t> counts_;  // number of messages per channel
 };
 
 }  // namespace alidade

@@ -34,7 +34,7 @@ size_t RosLog::Write(const char* topic, RosType type, double time, const std::st
       const uint16_t id = writer_.AddSchema(NameOf(type), "ros2msg", SchemaOf(type));
       schema = schemas_.emplace(type, id).first;
     }
-    // The profile wants the publishers' QoS to be told; empty: the default.
+    // The ros2 profile requires the publishers' QoS; empty: the default.
     const uint16_t id =
         writer_.AddChannel(schema->second, topic, "cdr", {{"offered_qos_profiles", ""}});
     channel = channels_.emplace(topic, id).first;
@@ -50,8 +50,8 @@ void RosLog::Pose(double time, const std::optional<Se3>& T_world_camera) {
         EncodePose(HeaderIn(kRosWorld, time), *T_world_camera));
 }
 
-// What never changes is told with every frame, too: a recording is entered anywhere, and a topic of
-// its own (/tf_static) would have to be remembered from its begin.
+// Static transforms are repeated with every frame. With a separate topic (/tf_static) readers would
+// have to read the recording from its beginning.
 void RosLog::Transforms(double time, const std::optional<Se3>& T_world_camera) {
   const RosTime stamp = RosTime::FromSeconds(time);
   std::vector<RosTransform> transforms;

@@ -1,4 +1,4 @@
-// A run told to ROS: what is on which topic, in which frame (docs/mcap.md), in one MCAP file.
+// Writes a run as ROS 2 messages to one MCAP file. docs/reference/mcap.md lists topics and frames.
 #pragma once
 
 #include <map>
@@ -15,33 +15,33 @@
 
 namespace alidade {
 
-// Poses and points are told in the world they are known in, that of trajectory.txt: x right, y
-// down, z forward as the first camera looked (REP 103 calls such frames optical). `map` is the same
-// place with x forward, y left, z up, which viewers expect of it.
+// Poses and points refer to `map_optical`, the world of trajectory.txt: x right, y down, z forward
+// of the first camera (an optical frame in REP 103). `map` has the same origin with x forward, y
+// left, z up, as viewers expect.
 inline constexpr char kRosMap[] = "map";
 inline constexpr char kRosWorld[] = "map_optical";
 inline constexpr char kRosCamera[] = "camera_optical";
-// That of the pictures, where they were turned to be rectified (stereo); else they are the
-// camera's.
+// Frame of the images if they were rotated by stereo rectification; otherwise they are in the
+// camera's frame.
 inline constexpr char kRosRectified[] = "camera_rectified_optical";
 
 class RosLog {
  public:
-  // `library`: who wrote it. `R_camera_rectified`: see SourceInfo.
+  // `library`: name of the writing program. `R_camera_rectified`: see SourceInfo.
   RosLog(McapWriter::Sink sink, McapCompression compression, const std::string& library);
 
   void SetRectification(const Eigen::Matrix3d& R_camera_rectified);
 
-  // All times in seconds. A frame: where the fixed frames are and, if known, the camera.
+  // All times in seconds. Pose() writes the transforms and, if known, the camera's pose.
   void Pose(double time, const std::optional<Se3>& T_world_camera);
-  // The transform alone: what was learnt of a camera that was told before.
+  // The transforms alone, for an updated pose of an earlier frame.
   void Transforms(double time, const std::optional<Se3>& T_world_camera);
-  // These three give the bytes it took.
+  // These three return the size of the message in bytes.
   size_t Path(double time, const std::vector<RosPose>& T_world_camera);
   size_t Landmarks(double time, const Cloud& points_world);
   size_t Shape(double time, const Cloud& points_world);
   void Picture(double time, const std::string& format, const std::string& bytes);
-  void Calibration(double time, const Camera& camera);  // of the pictures
+  void Calibration(double time, const Camera& camera);  // of the images
   void Diagnostics(double time, const std::vector<RosStatus>& all);
   void Event(double time, RosLogLevel level, const std::string& text);
   void Close() { writer_.Close(); }

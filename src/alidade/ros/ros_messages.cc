@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-constexpr uint8_t kFloat32 = 7;  // sensor_msgs/PointField
+constexpr uint8_t kFloat32 = 7;  // constant FLOAT32 of sensor_msgs/PointField
 
 void AddTime(const RosTime& time, CdrWriter& out) {
   out.Add(time.sec);
@@ -21,7 +21,7 @@ void AddHeader(const RosHeader& header, CdrWriter& out) {
   out.AddText(header.frame_id);
 }
 
-// A Transform and a Pose alike: three numbers, then four.
+// Transform and Pose have the same layout: translation, then quaternion x y z w.
 void AddPlace(const Se3& place, CdrWriter& out) {
   const Eigen::Quaterniond q = place.Quaternion();
   for (const double value : {place.t.x(), place.t.y(), place.t.z(), q.x(), q.y(), q.z(), q.w()})
@@ -137,7 +137,8 @@ std::string EncodeCameraInfo(const RosHeader& header, const Camera& camera) {
     for (int column = 0; column < 3; ++column) out.Add(k[3 * row + column]);
     out.Add(0.0);
   }
-  for (int i = 0; i < 6; ++i) out.Add(uint32_t{0});  // binning, region of interest: the whole
+  // Binning and region of interest: the full image.
+  for (int i = 0; i < 6; ++i) out.Add(uint32_t{0});
   out.Add(false);
   return out.Take();
 }

@@ -1,4 +1,4 @@
-// Values as the bytes of ROS 2 messages (CDR).
+// Encodes values as ROS 2 messages (CDR).
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct RosTime {
   int32_t sec = 0;
   uint32_t nanosec = 0;
 
-  // The decimal with 6 to 9 digits behind the point that `seconds` was read from, where there is
-  // one: 1305031102.175304 has no 64 nanoseconds more, whatever a double makes of it. Below 0 and
-  // beyond 2038: what is nearest to it.
+  // Returns the shortest decimal with 6 to 9 digits after the point that equals `seconds`, if there
+  // is one, so that the rounding error of a double is not written (1305031102.175304 has no further
+  // 64 nanoseconds). Clamps to the range from 0 to the year 2038.
   static RosTime FromSeconds(double seconds);
   uint64_t nanoseconds() const { return static_cast<uint64_t>(sec) * 1000000000u + nanosec; }
 };
@@ -51,12 +51,14 @@ enum class RosLogLevel : uint8_t { kInfo = 20, kWarn = 30, kError = 40 };
 
 std::string EncodeTransforms(const std::vector<RosTransform>& transforms);
 std::string EncodePose(const RosHeader& header, const Se3& pose);
-std::string EncodePath(const RosHeader& header, const std::vector<RosPose>& poses);  // same frame
-// x y z as FLOAT32, and `rgb` where the cloud has colours: FLOAT32 whose bits are 0x00rrggbb, as
-// the Point Cloud Library has it. Normals and sigmas are left out.
+// All in the same frame.
+std::string EncodePath(const RosHeader& header, const std::vector<RosPose>& poses);
+// x y z as FLOAT32, and for colored clouds `rgb` as FLOAT32 with the bits 0x00rrggbb, as in the
+// Point Cloud Library. Normals and sigmas are omitted.
 std::string EncodeCloud(const RosHeader& header, const Cloud& cloud);
 std::string EncodeImage(const RosHeader& header, std::string_view format, std::string_view bytes);
-// plumb_bob is k1 k2 p1 p2 k3, as ours. No rectification: r is 1, p is k.
+// Distortion model plumb_bob with k1 k2 p1 p2 k3, the same order as Camera's. No rectification: r
+// is the identity, p is k.
 std::string EncodeCameraInfo(const RosHeader& header, const Camera& camera);
 std::string EncodeDiagnostics(const RosTime& stamp, const std::vector<RosStatus>& all);
 std::string EncodeLog(const RosTime& stamp, RosLogLevel level, std::string_view name,

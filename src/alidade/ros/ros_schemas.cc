@@ -11,8 +11,8 @@ struct Definition {
   std::string_view name, fields;
 };
 
-// Fields and constants as ROS 2 (Humble to Jazzy) defines them; types of other definitions are
-// written with their package.
+// Fields and constants as defined by ROS 2 (Humble to Jazzy); types of fields are written with
+// their package.
 constexpr Definition kDefinitions[] = {
     {"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
     {"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
@@ -31,7 +31,7 @@ constexpr Definition kDefinitions[] = {
      "byte DEBUG=10\nbyte INFO=20\nbyte WARN=30\nbyte ERROR=40\nbyte FATAL=50\n"
      "builtin_interfaces/Time stamp\nuint8 level\nstring name\nstring msg\nstring file\n"
      "string function\nuint32 line\n"},
-    // What these are made of.
+    // types of the fields above
     {"builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n"},
     {"std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n"},
     {"geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n"},
@@ -59,7 +59,7 @@ const Definition& DefinitionOf(std::string_view name) {
                        [&](const Definition& d) { return d.name == name; });
 }
 
-// The other definitions that are named as the type of a field, and those they name.
+// Appends the definitions used as field types, recursively.
 void AddParts(const Definition& whole, std::vector<std::string_view>& parts) {
   std::string_view rest = whole.fields;
   while (!rest.empty()) {

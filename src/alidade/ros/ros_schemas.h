@@ -1,4 +1,4 @@
-// The types of ROS 2 messages that are written, and what readers are told of them.
+// ROS 2 message types that are written, and their schemas.
 #pragma once
 
 #include <string>
@@ -19,8 +19,8 @@ enum class RosType {
 // "tf2_msgs/msg/TFMessage".
 std::string NameOf(RosType type);
 
-// MCAP's "ros2msg": the definition, then those of all types it is made of, each behind a line of 80
-// '=' and one with its name.
+// Schema in MCAP's encoding "ros2msg": the definition, then those of all types it uses, each after
+// a line of 80 '=' and a line with its name.
 std::string SchemaOf(RosType type);
 
 }  // namespace alidade

@@ -1,5 +1,6 @@
 #include "alidade/run/any_source.h"
 
+#include "alidade/io/files/file.h"
 #include "alidade/run/synth_source.h"
 
 namespace alidade {
@@ -8,6 +9,11 @@ std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options) {
   if (IsSynthSource(source)) return OpenSynthSource(source, options);
   return OpenSource(source, options);
+}
+
+std::string PathOfSource(const std::string& source) {
+  if (IsSynthSource(source) || source.rfind("camera:", 0) == 0) return {};
+  return IsThere(source) ? source : source.substr(0, source.find('?'));
 }
 
 }  // namespace alidade

@@ -13,4 +13,8 @@ namespace alidade {
 std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options = {});
 
+// The file or folder of a source: without the ?name=value of a ROS recording. Empty: it has none
+// (rendered scenes, live cameras).
+std::string PathOfSource(const std::string& source);
+
 }  // namespace alidade

@@ -7,7 +7,9 @@
 #include <sstream>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
 #include "alidade/io/text.h"
+#include "alidade/run/any_source.h"
 
 namespace alidade {
 namespace {
@@ -37,9 +39,8 @@ std::string Expanded(const std::string& line, size_t& at) {
 // What the folder of a source's results is called.
 std::string FolderNameOf(const std::string& source) {
   std::string name = source;
-  if (name.find("://") == std::string::npos && name.rfind("synth:", 0) != 0) {
-    const std::filesystem::path path = std::filesystem::path(name + "/").lexically_normal();
-    name = path.parent_path().filename().string();
+  if (const std::string path = PathOfSource(source); !path.empty()) {
+    name = NameAsTyped(path);
     if (name.find('.') != std::string::npos && name.front() != '.')
       name = std::filesystem::path(name).stem().string();
   } else if (name.rfind("synth:", 0) == 0) {
@@ -51,12 +52,18 @@ std::string FolderNameOf(const std::string& source) {
   return name.empty() || name.front() == '.' ? "recording" : name;
 }
 
+// What the batch has in its folder besides those of the recordings.
+bool IsBatchsOwn(const std::string& name) {
+  static const std::set<std::string> kOwn = {"log",    "done",      "batch.json", "batch.md",
+                                             "merged", "batch.log", "batch.lock", "slurm",
+                                             "compare.html"};
+  return kOwn.count(name) > 0;
+}
+
 void CheckFolderName(const std::string& name) {
-  static const std::set<std::string> kOurs = {"log",    "done",      "batch.json", "batch.md",
-                                              "merged", "batch.log", "slurm",      "compare.html"};
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
     ThrowUsage("--out " + name + ": here it is the name of a folder within the batch's --out");
-  if (kOurs.count(name) > 0)
+  if (IsBatchsOwn(name))
     ThrowUsage("--out " + name + ": the batch has a file of its own of that name");
 }
 
@@ -129,7 +136,8 @@ std::vector<std::string> WordsOfLine(const std::string& line) {
 }
 
 std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string& name,
-                                      const std::vector<std::string>& more) {
+                                      const std::vector<std::string>& more,
+                                      const IsOthersFolder& is_others) {
   CheckIsText(text, name);
   std::vector<BatchItem> items;
   std::set<std::string> taken;
@@ -160,7 +168,12 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
     if (!item.name.empty()) continue;
     const std::string own = FolderNameOf(SourceOf(item));
     item.name = own;
-    for (int i = 2; !taken.insert(item.name).second; ++i) item.name = own + "-" + std::to_string(i);
+    const auto is_taken = [&] {
+      return taken.count(item.name) > 0 || IsBatchsOwn(item.name) ||
+             (is_others && is_others(item.name, SourceOf(item)));
+    };
+    for (int i = 2; is_taken(); ++i) item.name = own + "-" + std::to_string(i);
+    taken.insert(item.name);
   }
   return items;
 }

@@ -2,6 +2,7 @@
 // run`.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,14 @@ struct BatchItem {
 };
 
 // `more`: words added to every line. A line's `--out NAME` names its folder; else that is what the
-// source is called, with -2, -3, … where that is taken. Throws Error (usage), beginning with
+// source is called, with -2, -3, … where that is taken, by another line or by results of another
+// source (`is_others`, of folder name and source). Throws Error (usage), beginning with
 // `name`:LINE, for a line that cannot be read, a name that is taken or is no plain name; and for a
 // list without lines. Options are not looked at here.
+using IsOthersFolder = std::function<bool(const std::string& name, const std::string& source)>;
 std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string& name,
-                                      const std::vector<std::string>& more);
+                                      const std::vector<std::string>& more,
+                                      const IsOthersFolder& is_others = nullptr);
 
 // The source among the words: what is no option and no option's value is not known here, so it is
 // the first word, which must be the source.

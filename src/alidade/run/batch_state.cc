@@ -12,6 +12,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
+#include "alidade/run/any_source.h"
 #include "alidade/version.h"
 
 namespace alidade {
@@ -46,6 +47,15 @@ void AddFile(Fnv1a& hash, const fs::path& path, const std::string& name) {
   hash.Add(static_cast<int64_t>(info.st_mtim.tv_nsec));
 }
 
+// A calibration beside a video or a ROS recording is taken without being named; one of a folder of
+// pictures lies in it.
+void AddCalibrationBeside(Fnv1a& hash, const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return;
+  const std::string file = (path.parent_path() / "camera.yaml").string();
+  hash.Add(IsFile(file) ? ReadFile(file) : "none");
+}
+
 // A file, or all that is in a folder.
 void AddSource(Fnv1a& hash, const fs::path& path) {
   std::error_code error;
@@ -65,13 +75,14 @@ void AddContent(Fnv1a& hash, const std::optional<std::string>& path) {
   if (path) hash.Add(IsFile(*path) ? ReadFile(*path) : "gone");
 }
 
-// Without what changes no result: "--threads 4", "--threads=4", "--quiet".
+// Without what changes no result: "--threads 4", "--threads=4", "--quiet", "--overwrite".
 std::vector<std::string> TellingWords(const std::vector<std::string>& words) {
   std::vector<std::string> telling;
   for (size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--threads") {
       ++i;
-    } else if (words[i].rfind("--threads=", 0) != 0 && words[i] != "--quiet") {
+    } else if (words[i].rfind("--threads=", 0) != 0 && words[i] != "--quiet" &&
+               words[i] != "--overwrite") {
       telling.push_back(words[i]);
     }
   }
@@ -92,7 +103,10 @@ std::string FingerprintOf(const BatchItem& item, const RunOptions& options,
   hash.Add(ALIDADE_VERSION);
   hash.Add(program);
   for (const std::string& word : TellingWords(item.words)) hash.Add(word);
-  if (options.source.rfind("synth:", 0) != 0) AddSource(hash, options.source);
+  if (const std::string path = PathOfSource(options.source); !path.empty()) {
+    AddSource(hash, path);
+    AddCalibrationBeside(hash, path);
+  }
   AddContent(hash, options.config);
   AddContent(hash, options.camera_file);
   for (const auto& file : {options.detector, options.load}) {

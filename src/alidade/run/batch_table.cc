@@ -17,6 +17,8 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr int kBatchVersion = 1;
+constexpr char kAligned[] =
+    "Errors after alignment by Sim(3) with one camera (mono), else by SE(3).";
 
 std::string TextOf(const char* format, const std::optional<double>& value, double factor = 1) {
   if (!value) return "–";
@@ -181,7 +183,7 @@ std::string BatchMarkdown(const std::vector<BatchRow>& rows) {
     for (const std::string& cell : cells) text += " " + Escaped(cell) + " |";
     text += "\n";
   }
-  return text;
+  return text + "\n" + kAligned + "\n";
 }
 
 std::string BatchText(const std::vector<BatchRow>& rows) {
@@ -204,7 +206,7 @@ std::string BatchText(const std::vector<BatchRow>& rows) {
     }
     text += line + "\n";
   }
-  return text;
+  return text + kAligned + "\n";
 }
 
 WorseBy ParseWorseBy(const std::string& option, const std::string& text,

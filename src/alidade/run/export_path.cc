@@ -5,6 +5,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/run/mcap_export.h"
+#include "alidade/run/own_files.h"
 #include "alidade/run/saved_map.h"
 #include "alidade/version.h"
 
@@ -44,6 +45,7 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
                        const std::string& out) {
   settings.Check();
+  CheckIsNoResult(out);
   if (settings.to == "mcap") return ExportToMcap(path, settings, out);
   std::error_code error;
   if (std::filesystem::equivalent(SavedMapPath(path), out, error)) {

@@ -53,7 +53,7 @@ std::string LensInWords(const LensCheck& check, const Camera& camera) {
       camera.HasDistortion() ? " more strongly than its calibration says" : " strongly";
   return "this camera's lens bends lines" + than + how +
          ": the path and the map are bent with it. Give its calibration, distortion included, with "
-         "--camera (docs/formats.md)";
+         "--camera (docs/reference/camera.md)";
 }
 
 }  // namespace alidade

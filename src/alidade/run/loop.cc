@@ -153,9 +153,9 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
   TellWhatStopped(result, slam, record);
   if (masks) masks->Write(frame, slam.MoverMask());
   if (result.state != TrackState::kTracking) {
-    ++record.untracked_reasons[result.reason];
+    ++record.untracked_reasons[result.reason()];
     record.untracked.Add(
-        frame.time, result.reason, frame.image,
+        frame.time, result.reason(), frame.image,
         static_cast<double>(slam.Features().size()) / record.settings.tracker.extractor.features);
     record.dark += cv::mean(frame.image)[0] < kBlack;
   } else if (result.keyframe) {

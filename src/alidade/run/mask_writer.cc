@@ -21,7 +21,7 @@ void MaskWriter::Write(const SourceFrame& frame, const cv::Mat& mask) {
   try {
     if (!draft_)
       draft_ =
-          std::make_unique<DraftFolder>((fs::path(folder_.path()) / name).parent_path().string());
+          std::make_unique<DraftFolder>((fs::path(folder_.draft()) / name).parent_path().string());
     // Flushing thousands of pictures one by one would hold up the frames.
     AtomicWriteFile(draft_->path() + "/" + stamp + ".png", EncodePng(picture), Sync::kNo);
   } catch (...) {
@@ -37,7 +37,7 @@ void MaskWriter::Write(const SourceFrame& frame, const cv::Mat& mask) {
 
 void MaskWriter::Publish() {
   if (!draft_) return;
-  const fs::path folder = folder_.path();
+  const fs::path folder = folder_.draft();
   const auto move = [](const fs::path& from, const fs::path& to) {
     std::error_code error;
     fs::rename(from, to, error);

@@ -1,4 +1,4 @@
-// mask/TIMESTAMP.png and mask.txt: what was left out of each frame as moving (docs/formats.md).
+// mask/TIMESTAMP.png and mask.txt: what each frame left out (docs/guides/moving-objects.md).
 #pragma once
 
 #include <memory>

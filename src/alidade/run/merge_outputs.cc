@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
@@ -23,6 +24,44 @@ size_t OriginOf(const MergedMaps& merged, KeyFrameId id) {
       return i;
   }
   return merged.parts.size();
+}
+
+// A map by where it is, wherever it is named.
+std::string PlaceOfMap(const std::string& path) {
+  std::error_code error;
+  const auto place = std::filesystem::weakly_canonical(SavedMapPath(path), error);
+  return error ? path : place.string();
+}
+
+// What an earlier merge left in a folder, as its merge.json says.
+struct EarlierMerge {
+  std::set<std::string> inputs, files;
+};
+
+EarlierMerge ReadEarlierMerge(const std::string& folder) {
+  EarlierMerge earlier;
+  const std::string file = folder + "/merge.json";
+  if (!IsFile(file)) return earlier;
+  const auto json = ordered_json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
+  // Anybody may have written it.
+  const auto list_in = [](const ordered_json& object, const char* name) {
+    const bool there = object.is_object() && object.contains(name) && object[name].is_array();
+    return there ? object[name] : ordered_json::array();
+  };
+  const auto word_in = [](const ordered_json& object, const char* name) {
+    const bool there = object.is_object() && object.contains(name) && object[name].is_string();
+    return there ? object[name].get<std::string>() : std::string();
+  };
+  for (const ordered_json& recording : list_in(json, "recordings")) {
+    const std::string place = word_in(recording, "place");
+    earlier.inputs.insert(place.empty() ? PlaceOfMap(word_in(recording, "path")) : place);
+    for (const ordered_json& trajectory : list_in(recording, "trajectories")) {
+      const std::string name = word_in(trajectory, "file");
+      if (name.ends_with(".txt") && name.find('/') == std::string::npos)
+        earlier.files.insert(name);
+    }
+  }
+  return earlier;
 }
 
 void MakeFolder(const std::string& path) {
@@ -60,7 +99,8 @@ MergePlaces MergePlacesOf(const std::string& out) {
   return {(path / "map.alidade").string(), out};
 }
 
-void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs) {
+void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs,
+                      bool overwrite) {
   std::error_code error;
   for (const MergeInput& input : inputs) {
     if (std::filesystem::equivalent(places.map, SavedMapPath(input.path), error))
@@ -68,6 +108,23 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
   }
   if (IsFile(places.folder + "/stats.json"))
     ThrowUsage("--out " + places.folder + " holds what `alidade run` left: give another folder");
+  if (overwrite) return;
+  const EarlierMerge earlier = ReadEarlierMerge(places.folder);
+  std::set<std::string> now;
+  for (const MergeInput& input : inputs) now.insert(PlaceOfMap(input.path));
+  const bool of_these = std::includes(now.begin(), now.end(), earlier.inputs.begin(),
+                                      earlier.inputs.end());
+  if (IsThere(places.map) && (earlier.inputs.empty() || !of_these)) {
+    ThrowUsage("--out would replace " + places.map +
+               ", which was not made of these maps: name another, or give --overwrite");
+  }
+  for (const MergeInput& input : inputs) {
+    const std::string name = NumberedFile(input.name, 0);
+    if (IsThere(places.folder + "/" + name) && earlier.files.count(name) == 0) {
+      ThrowUsage("--out would replace " + places.folder + "/" + name +
+                 ", which is not of an earlier merge: name another, or give --overwrite");
+    }
+  }
 }
 
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
@@ -83,6 +140,7 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
         {{"keyframes", world.keyframes}, {"landmarks", world.landmarks}, {"from", names}});
   }
   const std::string bytes = EncodeMap(merged.saved);
+  std::set<std::string> left_over = ReadEarlierMerge(places.folder).files;
   MakeFolder(places.folder);
   AtomicWriteFile(places.map, bytes);
   ordered_json recordings = ordered_json::array();
@@ -92,13 +150,17 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
     for (size_t k = 0; k < paths.size(); ++k) {
       const std::string file = NumberedFile(inputs[i].name, k);
       AtomicWriteFile(places.folder + "/" + file, FormatTumTrajectory(paths[k].frames));
+      left_over.erase(file);
       files.push_back({{"file", file},
                        {"world", number.at(paths[k].world)},
                        {"poses", paths[k].frames.size()},
                        {"of", paths[k].keyframes_only ? "keyframes" : "frames"}});
     }
     recordings.push_back(
-        {{"name", inputs[i].name}, {"path", inputs[i].path}, {"trajectories", files}});
+        {{"name", inputs[i].name},
+         {"path", inputs[i].path},
+         {"place", PlaceOfMap(inputs[i].path)},
+         {"trajectories", files}});
   }
   ordered_json joins = ordered_json::array();
   for (const MapJoin& join : merged.joins) {
@@ -112,12 +174,16 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
                      {"visible", join.visible}});
   }
   const ordered_json all = {{"version", kMergeVersion},
+                            {"sensor", merged.saved.sensor},
                             {"worlds", world_list},
                             {"recordings", recordings},
                             {"joins", joins},
                             {"ties", merged.ties}};
   AtomicWriteFile(places.folder + "/merge.json",
                   all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  std::error_code ignored;
+  for (const std::string& file : left_over)
+    std::filesystem::remove(places.folder + "/" + file, ignored);
 }
 
 }  // namespace alidade

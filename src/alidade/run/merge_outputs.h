@@ -24,10 +24,13 @@ struct MergePlaces {
 };
 MergePlaces MergePlacesOf(const std::string& out);
 
-// Throws Error (usage) where results of something else would be lost.
-void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs);
+// Throws Error (usage) where results of something else would be lost: a map that was not merged
+// from these inputs, or some of them, and a file of an input's name. `overwrite`: they may be.
+void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs,
+                      bool overwrite);
 
-// Writes all of it (docs/merge.md). Throws Error (input) when a file cannot be written.
+// Writes all of it (docs/guides/several-maps.md) and removes the trajectories of an earlier merge.
+// Throws Error (input) when a file cannot be written.
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                 const MergedMaps& merged);
 

@@ -1,200 +1,109 @@
 #include "alidade/run/output_folder.h"
 
-#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <utility>
-#include <vector>
 
 #include "alidade/base/error.h"
-#include "alidade/io/text.h"
+#include "alidade/run/place_files.h"
 
 namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<const char*, 12> kOurFiles = {
-    "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt",
-    "map.alidade",    "landmarks.ply",       "semidense.ply", "semidense.png",
-    "report.html",    "stats.json",          "run.stream",    "camera.yaml"};
+constexpr char kLastAttempt[] = "last-attempt";
 
-// Pictures with a list: NAME/STAMP.png and NAME.txt, where maps have their own NAME.1.txt, …
-struct PictureKind {
-  std::string name;
-  std::string_view header;  // first line of the list
-  bool numbered;
-};
-const PictureKind kDepth{"depth", kDepthListHeader, true};
-const PictureKind kMasks{"mask", kMaskListHeader, false};
+std::string Opening(const OutputClaim& claim) { return "--out " + claim.path + ": "; }
 
-// trajectory.1.txt and the like, of further maps.
-bool IsNumbered(const std::string& name, const std::string& what, const std::string& ending) {
-  if (name.rfind(what + ".", 0) != 0) return false;
-  const std::string rest = name.substr(what.size() + 1);
-  const size_t digits = rest.find_first_not_of("0123456789");
-  return digits != 0 && digits != std::string::npos && rest.rfind(ending, digits) == digits;
+std::optional<EarlierResult> ResultIn(const fs::path& folder) {
+  return ReadEarlierResult((folder / kStatsFile).string());
 }
 
-bool StartsWith(const std::string& text, const std::string& start) {
-  return text.rfind(start, 0) == 0;
-}
-
-// By name: one of ours, or a temporary of one, left by a run that was killed while it wrote.
-bool IsOurs(const std::string& name) {
-  for (const std::string ours : kOurFiles) {
-    if (name == ours || StartsWith(name, ours + ".tmp")) return true;
-  }
-  return IsNumbered(name, "trajectory", ".txt") || IsNumbered(name, "keyframes", ".txt") ||
-         IsNumbered(name, "semidense", ".ply");
-}
-
-bool IsList(const fs::path& path, const PictureKind& kind) {
-  const std::string name = path.filename().string();
-  if (StartsWith(name, kind.name + ".txt.tmp")) return true;
-  if (name != kind.name + ".txt" && !(kind.numbered && IsNumbered(name, kind.name, ".txt")))
-    return false;
+bool HoldsOtherThings(const fs::path& folder) {
   std::error_code error;
-  return fs::is_regular_file(path, error) &&
-         StartsWith(ReadFile(path.string()), std::string(kind.header));
+  const bool empty = HoldsNoResult(folder, error);
+  if (error) ThrowInput("cannot read " + folder.string() + ": " + error.message());
+  return !empty && !ResultIn(folder) && !ResultIn(folder / kRunDone);
 }
 
-nlohmann::json StatsIn(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_regular_file(folder / "stats.json", error)) return nullptr;
-  return nlohmann::json::parse(ReadFile((folder / "stats.json").string()), nullptr, false);
+void CheckOwner(const OutputClaim& claim) {
+  const auto earlier = ResultIn(claim.path);
+  if (claim.overwrite || !IsTakenFrom(earlier, claim.owner)) return;
+  ThrowInput(Opening(claim) + "the folder holds the results of " + earlier->owner.InWords() +
+             ", and this is " + claim.owner.InWords() +
+             ": name another, or give --overwrite to replace them");
 }
 
-bool AreOurs(const nlohmann::json& stats) {
-  return stats.is_object() && stats.contains("version") && stats.contains("source") &&
-         stats.contains("coverage");
+// Why the new results are elsewhere.
+std::string Complaint(const OutputClaim& claim, const EarlierResult& earlier,
+                      const EarlierResult& now, const std::string& place) {
+  const auto frames = [](const EarlierResult& result) {
+    return std::to_string(static_cast<long long>(result.frames)) + " frames";
+  };
+  return claim.path + " keeps the results of an earlier run (" + frames(earlier) +
+         ", this one had " + frames(now) + "), and this run's are in " + place +
+         "; --overwrite replaces the earlier ones";
 }
 
-bool MappedShape(const nlohmann::json& stats) {
-  if (!AreOurs(stats) || !stats.contains("settings")) return false;
-  const nlohmann::json& settings = stats["settings"];
-  return settings.is_object() && settings.contains("semidense.enabled") &&
-         settings["semidense.enabled"] == 1;
-}
-
-// What the lines of our lists begin with.
-void AddStamps(const fs::path& list, std::set<std::string>& stamps) {
-  const std::string text = ReadFile(list.string());
-  for (const TextLine& line : ContentLines(text)) {
-    const std::string stamp(line.text.substr(0, line.text.find_first_of(" \t")));
-    if (stamp.find('/') == std::string::npos) stamps.insert(stamp);
+// What ReadEarlierResult() reads.
+void NoteFolder(const fs::path& draft, const ResultOwner& owner, bool complete) {
+  using nlohmann::ordered_json;
+  const std::string file = (draft / kStatsFile).string();
+  ordered_json stats = ordered_json::parse(ReadFile(file));
+  ordered_json names = ordered_json::array();
+  std::vector<std::string> files = NamesIn(draft.string());
+  std::sort(files.begin(), files.end());
+  for (const std::string& name : files) {
+    if (IsFile((draft / name).string())) names.push_back(name);
   }
-}
-
-// Pictures of the run in `folder`, and temporaries of such: those its lists name and, for a run
-// that was killed before it wrote those of depth, those of its keyframes.
-std::vector<fs::path> Pictures(const fs::path& folder, const PictureKind& kind) {
-  const bool by_keyframe = kind.name == kDepth.name && MappedShape(StatsIn(folder));
-  std::set<std::string> stamps;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    const bool keyframes = name == "keyframes.txt" || IsNumbered(name, "keyframes", ".txt");
-    if (IsList(entry.path(), kind) || (by_keyframe && keyframes)) AddStamps(entry.path(), stamps);
-  }
-  std::vector<fs::path> pictures;
-  if (stamps.empty()) return pictures;
-  for (const auto& entry : fs::directory_iterator(folder / kind.name, error)) {
-    const std::string name = entry.path().filename().string();
-    const size_t ending = name.rfind(".png");
-    if (ending == std::string::npos || stamps.count(name.substr(0, ending)) == 0) continue;
-    const std::string rest = name.substr(ending);
-    if (rest == ".png" || StartsWith(rest, ".png.tmp")) pictures.push_back(entry.path());
-  }
-  return pictures;
-}
-
-// Folders of masks that a run which was killed has not finished.
-std::vector<std::string> LeftDrafts(const fs::path& folder) {
-  return StaleTemporaries((folder / kMasks.name).string());
-}
-
-// Nothing in it but what a run that was killed may leave before it has results.
-bool HoldsNothing(const fs::path& folder, std::error_code& error) {
-  std::set<std::string> drafts;
-  for (const std::string& draft : LeftDrafts(folder))
-    drafts.insert(fs::path(draft).filename().string());
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (drafts.count(entry.path().filename().string()) == 0) return false;
-  }
-  return true;
-}
-
-void RemoveOurFiles(const fs::path& folder, const fs::path& kept = {}) {
-  std::vector<fs::path> ours;
-  std::vector<fs::path> emptied;
-  for (const PictureKind& kind : {kDepth, kMasks}) {
-    const std::vector<fs::path> pictures = Pictures(folder, kind);
-    if (!pictures.empty()) emptied.push_back(folder / kind.name);
-    ours.insert(ours.end(), pictures.begin(), pictures.end());
-  }
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    std::error_code none;
-    if (!kept.empty() && fs::equivalent(entry.path(), kept, none)) continue;
-    if (IsOurs(entry.path().filename().string()) || IsList(entry.path(), kDepth) ||
-        IsList(entry.path(), kMasks))
-      ours.push_back(entry.path());
-  }
-  for (const fs::path& path : ours) {
-    if (!fs::remove(path, error) && error) {
-      ThrowInput("cannot remove " + path.string() + ": " + error.message());
-    }
-  }
-  for (const fs::path& path : emptied) fs::remove(path, error);  // only when nothing is in it
-  for (const std::string& draft : LeftDrafts(folder)) fs::remove_all(draft, error);
+  stats["folder"] = {{"command", owner.command},
+                     {"source", owner.place},
+                     {"complete", complete},
+                     {"files", names}};
+  AtomicWriteFile(file,
+                  stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace
 
-std::string NumberedFile(const std::string& name, size_t number, const std::string& ending) {
-  return number == 0 ? name + ending : name + "." + std::to_string(number) + ending;
-}
-
-std::string DepthPictureFile(const std::string& stamp) {
-  return kDepth.name + "/" + stamp + ".png";
-}
-
-std::string MaskPictureFile(const std::string& stamp) { return kMasks.name + "/" + stamp + ".png"; }
-
-OutputFolder::OutputFolder(const std::string& path, const std::string& kept)
-    : path_(path), kept_(kept) {
-  const std::string what = "--out " + path + ": ";
+OutputFolder::MadeFolder::MadeFolder(const OutputClaim& claim) {
   std::error_code error;
-  if (fs::exists(fs::symlink_status(path, error))) {
-    if (!fs::is_directory(path, error)) ThrowInput(what + "there is a file of that name");
-    const bool empty = HoldsNothing(path, error);
-    if (error) ThrowInput(what + error.message());
-    if (!empty && !AreOurs(StatsIn(path))) {
-      ThrowInput(
-          what +
-          "the folder exists and holds no earlier run (no stats.json of ours); name another");
+  if (fs::exists(fs::symlink_status(claim.path, error))) {
+    if (!fs::is_directory(claim.path, error))
+      ThrowInput(Opening(claim) + "there is a file of that name");
+    if (HoldsOtherThings(claim.path)) {
+      ThrowInput(Opening(claim) +
+                 "the folder exists and holds no earlier run (no stats.json of ours); name "
+                 "another");
     }
-    RemoveOurFiles(path, kept_);
-  } else {
-    fs::create_directories(path, error);
-    if (error) ThrowInput(what + "cannot be made: " + error.message());
-    made_ = true;
+    return;
   }
-  // As much as a short run leaves.
-  const std::string probe(65536, '\0');
-  try {
-    Write("stats.json", probe);
-    RemoveOurFiles(path_, kept_);
-  } catch (const Error&) {
-    Remove();
-    throw;
-  }
+  fs::create_directories(claim.path, error);
+  if (error) ThrowInput(Opening(claim) + "cannot be made: " + error.message());
+  path = claim.path;
+}
+
+OutputFolder::MadeFolder::~MadeFolder() {
+  std::error_code error;
+  if (!path.empty()) fs::remove(path, error);  // only when it is empty
+}
+
+OutputFolder::OutputFolder(OutputClaim claim)
+    : claim_(std::move(claim)),
+      made_(claim_),
+      lock_((fs::path(claim_.path) / kRunLock).string(), Opening(claim_)) {
+  FinishPlacing(claim_.path, claim_.inputs);
+  CheckOwner(claim_);
+  std::error_code error;
+  for (const fs::path& left : LeftoversIn(claim_.path)) fs::remove_all(left, error);
+  draft_.emplace((fs::path(claim_.path) / kRunPlace).string());
+  Write(kStatsFile, std::string(65536, '\0'));  // as much as a short run leaves
+  Discard(kStatsFile);
 }
 
 void OutputFolder::Write(const std::string& name, const std::string& bytes, Sync sync) {
-  const fs::path path = fs::path(path_) / name;
+  const fs::path path = fs::path(draft()) / name;
   std::error_code error;
   if (fs::path(name).has_parent_path() && !fs::create_directories(path.parent_path(), error) &&
       error) {
@@ -204,16 +113,33 @@ void OutputFolder::Write(const std::string& name, const std::string& bytes, Sync
 }
 
 void OutputFolder::Discard(const std::string& name) {
-  const fs::path path = fs::path(path_) / name;
+  const fs::path path = fs::path(draft()) / name;
   std::error_code ignored;
   fs::remove(path, ignored);
   if (fs::path(name).has_parent_path()) fs::remove(path.parent_path(), ignored);
 }
 
-void OutputFolder::Remove() {
-  RemoveOurFiles(path_, kept_);
-  std::error_code ignored;
-  if (made_) fs::remove(path_, ignored);  // only when it is empty
+PlacedResult OutputFolder::Place(bool complete) {
+  const fs::path folder = claim_.path, attempt = folder / kLastAttempt;
+  auto now = ResultIn(draft());
+  if (!now) return {};
+  now->complete = complete;
+  PlacedResult placed{claim_.path, ""};
+  const auto earlier = ResultIn(folder);
+  if (earlier && !claim_.overwrite && !MayReplace(*earlier, *now)) {
+    placed = {attempt.string(), Complaint(claim_, *earlier, *now, attempt.string())};
+    std::error_code error;
+    fs::create_directory(attempt, error);
+    if (HoldsOtherThings(attempt)) return {"", placed.problem};
+  }
+  LeaveFilesOfOthers(draft(), placed.folder, claim_.inputs);
+  try {
+    NoteFolder(draft(), claim_.owner, complete);
+  } catch (const Error&) {  // the disk is full: as older versions left it
+  }
+  PlaceFiles(draft(), placed.folder, claim_.inputs);
+  draft_.reset();
+  return placed;
 }
 
 }  // namespace alidade

@@ -33,7 +33,6 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
   Cloud shape;
   Cloud landmarks;
   ReportPictures pictures;
-  bool useful = false;
   std::exception_ptr failure;  // the first that is neither the disk's fault nor the folder's
   // What there is no memory for is left out, and the next is tried.
   const auto attempt = [&](const auto& write) {
@@ -60,7 +59,6 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     folder.Write("stats.json", StatsJson(record, results));
     if (const std::string camera = FoundCameraFile(record); !camera.empty())
       folder.Write("camera.yaml", camera);
-    useful = true;
     attempt([&] {
       if (with_map) folder.Write("map.alidade", slam.SaveMap());
     });
@@ -90,7 +88,6 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     });
   } catch (...) {
     if (masks) masks->Discard();
-    if (!useful) folder.Remove();
     throw;
   }
   if (failure) std::rethrow_exception(failure);

@@ -1,4 +1,4 @@
-// The folder `alidade run` leaves behind (docs/formats.md).
+// The folder `alidade run` leaves behind (docs/reference/run-folder.md).
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@ struct RunSummary {
   double path_length = 0;  // through the largest map, metres (mono: map units)
 };
 
-// Writes everything. Throws Error (input) when a file cannot be written; what stays then is whole,
-// and is nothing at all unless stats.json is among it.
+// Writes everything. Throws Error (input) when a file cannot be written; what was written by then is
+// whole.
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map = true, MaskWriter* masks = nullptr);
 

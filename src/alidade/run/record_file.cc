@@ -3,6 +3,7 @@
 #include "alidade/run/draft_file.h"
 #include "alidade/run/final_state.h"
 #include "alidade/run/mcap_file.h"
+#include "alidade/run/own_files.h"
 #include "alidade/run/stream_file.h"
 #include "alidade/run/stream_to_ros.h"
 
@@ -52,6 +53,7 @@ bool IsMcap(const std::string& path) {
 
 std::unique_ptr<RecordFile> MakeRecordFile(const std::string& path, const std::string& program,
                                            const StreamFeedSettings& settings) {
+  CheckIsNoResult(path);
   if (IsMcap(path)) return std::make_unique<McapRecord>(path, program, settings);
   return std::make_unique<StreamRecord>(path);
 }

@@ -21,7 +21,7 @@ std::optional<double> NumberIn(const json& object, const char* name) {
 }
 
 std::string WordIn(const json& object, const char* name) {
-  return object.contains(name) && object[name].is_string() ? object[name].get<std::string>() : "";
+  return object.is_object() && object.contains(name) && object[name].is_string() ? object[name].get<std::string>() : "";
 }
 
 std::optional<std::array<double, 2>> PairIn(const json& list) {
@@ -106,7 +106,11 @@ ResultFolder ReadResultFolder(const std::string& path) {
   const std::string trajectory = path + "/trajectory.txt";
   if (*result.tracked > 0) result.trajectory = ReadTrajectory(trajectory);
   const std::string truth = path + "/groundtruth.txt";
-  result.truth = IsFile(truth) ? ReadTrajectory(truth) : TruthBeside(result.source);
+  // Since the run, the user may have gone to another folder.
+  const json folder = stats.contains("folder") ? stats["folder"] : json();
+  const std::string place = WordIn(folder, "source");
+  result.truth =
+      IsFile(truth) ? ReadTrajectory(truth) : TruthBeside(place.empty() ? result.source : place);
   if (!result.trajectory.empty()) {
     result.span = {result.trajectory.front().time, result.trajectory.back().time};
     if (!result.first_pose) result.first_pose = result.span.first;

@@ -1,4 +1,4 @@
-// What a run left behind, read again (docs/formats.md).
+// What a run left behind, read again (docs/reference/run-folder.md).
 #pragma once
 
 #include <array>

@@ -67,6 +67,67 @@ class Warnings {
   std::vector<std::string> all_;
 };
 
+// The folder of the results, locked, before the work begins.
+OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
+  OutputClaim claim;
+  claim.owner = OwnerOf(options.source, options.localise);
+  claim.overwrite = options.overwrite;
+  const std::string usual = "alidade-out/" + source.name + (options.localise ? "-localized" : "");
+  claim.path =
+      options.out ? *options.out : options.overwrite ? usual : FreeFolder(usual, claim.owner);
+  for (const auto& file : {options.camera_file, options.config, options.detector}) {
+    if (file) claim.inputs.push_back(*file);
+  }
+  if (options.load) claim.inputs.push_back(SavedMapPath(*options.load));
+  return claim;
+}
+
+// What ended the run, with `problem` (may be empty) behind it.
+[[noreturn]] void Rethrow(const std::exception_ptr& failure, const std::string& problem) {
+  try {
+    std::rethrow_exception(failure);
+  } catch (const Error& error) {
+    throw Error(error.kind(), error.what() + problem);
+  }
+}
+
+// Writes the results and puts them in their place. Throws what says that the run did not end well.
+void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
+                  const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
+  const RunRecord& record = outcome.record;
+  std::exception_ptr failure;
+  try {
+    outcome.summary =
+        WriteOutputs(folder, slam, record, !record.settings.localise, masks);
+    for (RunWatcher* watcher : watchers) watcher->Written(folder.draft());
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  const std::string bugs = BugOf(record);
+  const bool mapped = outcome.summary.tracked > 0;
+  const PlacedResult placed = folder.Place(!failure && !record.failure && bugs.empty() &&
+                                           !record.interrupted && mapped);
+  outcome.folder = placed.folder;
+  if (!placed.folder.empty()) {
+    for (RunWatcher* watcher : watchers) watcher->Placed(placed.folder);
+  }
+  const std::string problem = placed.problem.empty() ? "" : " (" + placed.problem + ")";
+  if (failure) Rethrow(failure, problem);
+  for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, placed.folder);
+  if (record.failure) Rethrow(record.failure, problem);
+  if (!bugs.empty())
+    throw RunStopped(bugs + " (what could be done without is in " + placed.folder + ")" + problem);
+  if (record.interrupted) {
+    outcome.status = kInterruptedStatus;
+    if (!placed.problem.empty()) LogWarning(placed.problem);
+  } else if (!mapped) {
+    throw Error(ErrorKind::kNothingMapped,
+                "nothing could be mapped: " + WhyNothing(record) + problem);
+  } else if (!placed.problem.empty()) {
+    ThrowInput(placed.problem);
+  }
+}
+
 }  // namespace
 
 RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watchers) {
@@ -101,6 +162,8 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   record.source = source->Info();
   record.settings.sensor = record.source.sensor;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
+  OutputFolder folder(ClaimOf(options, record.source));
+  outcome.folder = folder.path();
   if (saved && saved->camera.width < record.source.camera.width)
     record.settings.image_width = saved->camera.width;  // it was made from images scaled down
   LearnCamera(options, wanted, saved ? &saved->camera : nullptr, watchers, record);
@@ -110,14 +173,11 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   Slam slam(record.source.camera, record.settings, detector);
   SayScaledDown(record.source.camera, slam.camera(), record.settings);
   if (saved) slam.Load(*saved);
-  OutputFolder folder(options.out.value_or("alidade-out/" + record.source.name),
-                      options.load ? SavedMapPath(*options.load) : std::string());
-  outcome.folder = folder.path();
 
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record, folder.path());
+  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record, folder.draft());
   RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
@@ -128,22 +188,8 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (const std::string bent = LensInWords(record.lens, slam.camera()); !bent.empty())
     LogWarning(bent);
   record.warnings = warnings.all();
-  if (record.failure && record.frames == 0) {
-    if (masks) masks->Discard();
-    folder.Remove();
-    std::rethrow_exception(record.failure);
-  }
-  outcome.summary =
-      WriteOutputs(folder, slam, record, !options.localise, masks ? &*masks : nullptr);
-  for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, folder.path());
-  if (record.failure) std::rethrow_exception(record.failure);
-  if (const std::string bugs = BugOf(record); !bugs.empty())
-    throw RunStopped(bugs + " (what could be done without is in " + folder.path() + ")");
-  if (record.interrupted) {
-    outcome.status = kInterruptedStatus;
-  } else if (outcome.summary.tracked == 0) {
-    throw Error(ErrorKind::kNothingMapped, "nothing could be mapped: " + WhyNothing(record));
-  }
+  if (record.failure && record.frames == 0) std::rethrow_exception(record.failure);
+  LeaveResults(folder, slam, masks ? &*masks : nullptr, watchers, outcome);
   return outcome;
 }
 

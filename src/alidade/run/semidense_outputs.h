@@ -1,5 +1,5 @@
-// What semi-dense mapping leaves behind (docs/formats.md): depth pictures of the keyframes, their
-// lists, and clouds.
+// What semi-dense mapping leaves behind (docs/guides/shape.md): depth pictures of the keyframes,
+// their lists, and clouds.
 #pragma once
 
 #include "alidade/map/depth_cloud.h"

@@ -17,7 +17,7 @@ struct ReportPictures {
   std::vector<ReportKeyframe> keyframes;
 };
 
-// Both as the bytes of the file. Fields and units: docs/formats.md.
+// Both as the bytes of the file. Fields and units: docs/reference/stats.md.
 std::string StatsJson(const RunRecord& record, const RunResults& results);
 std::string ReportHtml(const RunRecord& record, const RunResults& results, ReportPictures pictures);
 

@@ -207,8 +207,7 @@ void StreamFeed::TellEnd() {
   Tell({encoder_->Playback(playback_)});
 }
 
-void StreamFeed::End(const RunSummary& summary, const std::string& folder) {
-  (void)summary;
+void StreamFeed::Written(const std::string& folder) {
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   if (!file_) return;
   try {

@@ -35,7 +35,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   void Wait(bool (*interrupted)()) override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
   void Finished() override;
-  void End(const RunSummary& summary, const std::string& folder) override;
+  void Written(const std::string& folder) override;
 
   // The carriers'.
   int Join(Take take) override;

@@ -1,5 +1,5 @@
-// The stream of a run (docs/stream.md) told to ROS: each frame as it was when it was done, and at
-// the end what the run's files say.
+// The stream of a run (docs/reference/stream.md) told to ROS: each frame as it was when it was
+// done, and at the end what the run's files say.
 #pragma once
 
 #include <cstdint>

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/io/frame_source.h"
+#include "alidade/run/choice.h"
 
 namespace alidade {
 namespace {
@@ -43,13 +46,58 @@ Trajectory Between(const Trajectory& trajectory, double first, double last) {
   return within;
 }
 
+const char* NameOf(Alignment align) {
+  return align == Alignment::kSim3 ? "sim3" : align == Alignment::kSe3 ? "se3" : "none";
+}
+
+ChosenAlignment AlignmentFor(const std::string& sensor) {
+  if (sensor == NameOf(Sensor::kMono)) return {Alignment::kSim3, "one camera"};
+  if (sensor == NameOf(Sensor::kStereo) || sensor == NameOf(Sensor::kRgbd))
+    return {Alignment::kSe3, "depth or stereo"};
+  return {Alignment::kSe3, "sensor not known; sim3 is for one camera"};
+}
+
+ChosenAlignment AlignmentNamed(const std::string& option, const std::string& word,
+                               const std::string& sensor) {
+  using Maybe = std::optional<Alignment>;
+  const auto align = Choice<Maybe>(option, word,
+                                   {{"auto", std::nullopt},
+                                    {"se3", Alignment::kSe3},
+                                    {"sim3", Alignment::kSim3},
+                                    {"none", Alignment::kNone}});
+  return align ? ChosenAlignment{*align, option} : AlignmentFor(sensor);
+}
+
+std::string InWords(const ChosenAlignment& chosen, double scale, const Trajectory& truth,
+                    const Trajectory& estimate, double max_dt) {
+  if (chosen.align == Alignment::kNone) return "not aligned";
+  const auto in_digits = [](double value) {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%.6f", value);
+    return std::string(digits);
+  };
+  if (chosen.align == Alignment::kSim3)
+    return "aligned by Sim(3) (" + chosen.why + "), scale " + in_digits(scale);
+  const std::string words = "aligned by SE(3) (" + chosen.why + ")";
+  AteSettings similarity;
+  similarity.align = Alignment::kSim3;
+  similarity.max_dt = max_dt;
+  try {
+    return words + "; Sim(3) would scale by " +
+           in_digits(EvaluateAte(truth, estimate, similarity).T_truth_estimate.s);
+  } catch (const Error&) {  // poses that no scale fits
+    return words;
+  }
+}
+
 std::optional<TruthErrors> ErrorsAgainst(const Trajectory& truth, const Trajectory& estimate,
                                          bool mono, const std::optional<TimeSpan>& span,
                                          std::string* problem) {
   TruthErrors errors;
   AteSettings ate;
   RpeSettings rpe;
-  ate.align = rpe.align = mono ? Alignment::kSim3 : Alignment::kSe3;
+  ate.align = rpe.align =
+      AlignmentFor(NameOf(mono ? Sensor::kMono : Sensor::kRgbd)).align;
   ate.source_span = rpe.source_span = span;
   try {
     errors.ate = EvaluateAte(truth, estimate, ate);

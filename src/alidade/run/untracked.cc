@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <map>
 
+#include "alidade/tracking/track_failure.h"
+
 namespace alidade {
 namespace {
 
@@ -75,27 +77,7 @@ std::string MostFrequentReason(const std::vector<UntrackedFrames>& frames) {
 }  // namespace
 
 std::string AdviceOn(const std::string& reason) {
-  static const std::map<std::string, std::string> kAdvice = {
-      {"too few corners in the image", "Turning to something with structure helps"},
-      {"too few corners with depth in the sensor's range",
-       "Going nearer, to something with structure, helps"},
-      {"too few corners near enough for the sensor to place",
-       "Going nearer, to something with structure, helps"},
-      {"too few matches between frames", "Moving more slowly helps"},
-      {"the camera hardly moves", "Moving the camera sideways helps"},
-      {"too little parallax: move the camera sideways", "Turning alone shows no depth"},
-      {"a turn on the spot explains what is seen: move the camera sideways",
-       "Turning alone shows no depth"},
-      {"something moves, the camera seems to stand still", "The camera itself has to move"},
-      {"two motions explain what is seen",
-       "Looking at more than one flat wall, and moving on, helps"},
-      {"too few points agree on one motion",
-       "Something in view moves by itself: looking elsewhere, or --dynamics geometry, helps"},
-      {"the first points did not hold", "Moving on, sideways, helps"},
-      {"the first points moved", "Looking where nothing moves helps"},
-      {"mapping has stopped", "A part of the program failed: see the warnings"}};
-  const auto found = kAdvice.find(reason);
-  return found == kAdvice.end() ? "" : found->second;
+  return AdviceText(FailureWithReason(reason.c_str()));
 }
 
 void UntrackedLog::AddKeyFrame(const cv::Mat& gray) {

@@ -19,7 +19,8 @@ class RunWatcher {
   // Before all else, while the camera is looked for: after each frame of a pass.
   virtual void Calibrating(const CalibrateProgress& progress) { (void)progress; }
   // Before the first frame. What `slam` and `record` are references to lives until End() has
-  // returned, or Run() throws. Results will be in `folder`, which is there.
+  // returned, or Run() throws. Files are gathered in `folder`, which is there; a watcher may write
+  // its own into it until Written() has returned.
   virtual void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
     (void)slam, (void)record, (void)folder;
   }
@@ -32,6 +33,11 @@ class RunWatcher {
   }
   virtual void Finishing() {}  // the workers are waited for
   virtual void Finished() {}   // the map stays as it is now
+  // All files but the watchers' own are in `folder` (that of Begin()), from where they go to their
+  // place.
+  virtual void Written(const std::string& folder) { (void)folder; }
+  // What could be written, which may not be all, is now in `folder`.
+  virtual void Placed(const std::string& folder) { (void)folder; }
   // The results are written, in `folder`.
   virtual void End(const RunSummary& summary, const std::string& folder) {
     (void)summary, (void)folder;

@@ -1,4 +1,4 @@
-// Where the next keyframe is to be searched, by what the ones before it gave.
+// Search intervals of a pixel in the next keyframe, from its hypotheses in previous ones.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace alidade {
 
-// Hypotheses of one pixel as they come, in groups that agree.
+// Groups the hypotheses of one pixel by compatibility as they are added.
 class Candidates {
  public:
   explicit Candidates(float chi2) : chi2_(chi2) {}
@@ -29,8 +29,8 @@ class Candidates {
     if (count_ < kMost) groups_[count_++] = {w * h.inverse_depth, w, h};
   }
 
-  // Three standard deviations to both sides of each group; without any, all of `range`. Holds until
-  // the next call.
+  // Intervals of ±3 standard deviations around each group; all of `range` if there are none. Valid
+  // until the next call.
   std::span<const DepthInterval> Around(const DepthInterval& range) {
     intervals_[0] = range;
     for (int i = 0; i < count_; ++i) {
@@ -44,7 +44,8 @@ class Candidates {
  private:
   static constexpr int kMost = 3;
   struct Group {
-    float sum = 0, weight = 0;  // of inverse depths by inverse variance
+    // Sum of weighted inverse depths; sum of weights (inverse variances).
+    float sum = 0, weight = 0;
     Hypothesis mean;
   };
   float chi2_;

@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-// A view's depth by place, and the way there.
+// Depth of another view, indexed by pixel, with the transfer to that view.
 class Witness {
  public:
   Witness(const DepthView& view, const Camera& camera)
@@ -23,9 +23,9 @@ class Witness {
     b_ = to_view.shift;
   }
 
-  // Of what the view knows at the pixels around the projection, the compatible ones, as one linear
-  // equation of the reference's inverse depth: each with residual r, derivative J and variance.
-  // False when none is.
+  // Adds the compatible depths of the view at the four pixels around the projection to the normal
+  // equation of the reference's inverse depth: residual r, derivative J and variance of each.
+  // Returns false if there are none.
   bool Confirms(const EdgePixel& pixel, const Hypothesis& hypothesis, float chi2, float* jj,
                 float* jr) const {
     const Eigen::Vector3f a = M_ * Eigen::Vector3f(pixel.x, pixel.y, 1);
@@ -35,7 +35,7 @@ class Witness {
     if (!(x >= 1 && y >= 1 && x < static_cast<float>(width_ - 2) &&
           y < static_cast<float>(height_ - 2)))
       return false;
-    // Inverse depth there is rho / h.z (z' = h.z / rho); by rho: a.z / h.z².
+    // Inverse depth in the view is rho / h.z (z' = h.z / rho); its derivative by rho is a.z / h.z².
     const float there = hypothesis.inverse_depth / h.z();
     const float derivative = a.z() / (h.z() * h.z());
     const float own = hypothesis.sigma * derivative;
@@ -76,7 +76,7 @@ std::vector<Hypothesis> CrossCheck(std::span<const EdgePixel> edges,
   witnesses.reserve(views.size());
   for (const DepthView& view : views) witnesses.emplace_back(view, camera);
   std::vector<Hypothesis> checked(edges.size());
-  constexpr int kChunk = 2048;  // pixels
+  constexpr int kChunk = 2048;  // pixels per task
   const int count = static_cast<int>(edges.size());
   ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
     const int end = std::min(count, (chunk + 1) * kChunk);

@@ -1,4 +1,5 @@
-// Depth of a keyframe held against that of others (Mur-Artal & Tardós, RSS 2015, §III-D).
+// Consistency check of a keyframe's depth against other keyframes (Mur-Artal & Tardós, RSS 2015,
+// §III-D).
 #pragma once
 
 #include <span>
@@ -14,8 +15,9 @@ struct CrossCheckSettings {
   int enough = 3;  // views that must confirm a depth
 };
 
-// Keeps what at least `enough` views confirm at one of the pixels around its projection, each
-// adjusted to those that do (Gauss-Newton on inverse depths).
+// Keeps a depth if at least `enough` views confirm it at one of the pixels around its projection,
+// and refines it with those views (Gauss-Newton on inverse depth). Returns one hypothesis per edge;
+// rejected ones are unknown.
 std::vector<Hypothesis> CrossCheck(std::span<const EdgePixel> edges,
                                    std::span<const Hypothesis> depth,
                                    std::span<const DepthView> views, const Camera& camera,

@@ -8,13 +8,14 @@
 namespace alidade {
 namespace {
 
-constexpr int kLandmarkCells = 4;    // cells of this class to one cell landmarks are gathered in
-constexpr int kEnoughLandmarks = 4;  // nearby, that say something of a place
-constexpr int kEnoughDepth = 12;     // pixels with depth nearby that do
-// Share by which things may be nearer or farther than what is known nearby.
+// Cells of DepthRange per cell of the landmark grid, along each axis.
+constexpr int kLandmarkCells = 4;
+constexpr int kEnoughLandmarks = 4;  // needed nearby for a local range
+constexpr int kEnoughDepth = 12;     // pixels with depth needed nearby for a local range
+// Relative margin added to a local range on both sides.
 constexpr float kMargin = 0.12f;
 
-// What is known within a cell.
+// Range of inverse depths in a cell.
 struct Span {
   float min = 1e30f, max = 0;
   int count = 0;
@@ -31,7 +32,7 @@ struct Span {
   DepthInterval Widened() const { return {min * (1 - kMargin), max * (1 + kMargin)}; }
 };
 
-// Cells of a picture, each seen with its eight neighbours.
+// Grid of ranges, queried with the eight neighboring cells.
 class SpanGrid {
  public:
   SpanGrid(int columns, int rows) : columns_(columns), rows_(rows), spans_(columns * rows) {}

@@ -1,5 +1,5 @@
-// How far away things may be, by the landmarks a keyframe shows: the part of an epipolar line that
-// is worth a search.
+// Range of inverse depths of a keyframe, from its landmarks. Limits the search along an epipolar
+// line.
 #pragma once
 
 #include <span>
@@ -13,12 +13,12 @@ namespace alidade {
 
 class DepthRange {
  public:
-  // By landmarks, and where they reach by the depth `views` already have.
+  // From the keyframe's landmarks, narrowed by the depth of `views` where available.
   DepthRange(const MapSnapshot& map, const KeyFrame& keyframe, const Camera& camera,
              std::span<const DepthView> views);
   bool known() const { return !all_.empty(); }
   DepthInterval all() const { return all_; }
-  // That of the depth nearby, or of the landmarks, where there are some, else of all.
+  // Range from depth nearby, else from landmarks nearby, else from all landmarks.
   DepthInterval At(int x, int y) const { return cells_[(y / kCell) * columns_ + x / kCell]; }
 
  private:

@@ -1,4 +1,4 @@
-// Depth of another keyframe, as one keyframe meets it.
+// Depth of another keyframe, for use in a reference keyframe.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@ namespace alidade {
 
 struct DepthView {
   std::span<const EdgePixel> edges;
-  std::vector<Hypothesis> depth;  // one for each edge, in the units of today
+  std::vector<Hypothesis> depth;  // one per edge, in current map units
   Se3 T_view_reference;
 };
 

@@ -11,11 +11,11 @@ namespace {
 
 constexpr int kShift = 5;  // fractional bits of samples
 constexpr int kOne = 1 << kShift;
-constexpr float kInFront =
-    0.1f;  // of the distance in the reference: nearer to the other camera, a point says nothing
+// Smallest ratio of the depth in the other camera to the depth in the reference.
+constexpr float kInFront = 0.1f;
 
 // Intensity in the low half, gradient magnitude in the high half, so that one multiplication
-// weighs both.
+// interpolates both.
 inline uint32_t Spread(const uint8_t* pixel) {
   return static_cast<uint32_t>(pixel[0]) | static_cast<uint32_t>(pixel[1]) << 16;
 }
@@ -23,11 +23,11 @@ inline uint32_t Spread(const uint8_t* pixel) {
 inline int Intensity(uint32_t sample) { return static_cast<int>(sample & 0xffff); }
 inline int Gradient(uint32_t sample) { return static_cast<int>(sample >> 16); }
 
-constexpr int kFixed = 16;  // fractional bits of places
+constexpr int kFixed = 16;  // fractional bits of positions
 
 inline int32_t ToFixed(float x) { return static_cast<int32_t>(x * (1 << kFixed)); }
 
-// Both values at a place between pixels, times kOne.
+// Both values at a sub-pixel position, times kOne.
 inline uint32_t Sample(const uint8_t* values, std::ptrdiff_t row, int32_t x, int32_t y) {
   const uint32_t wx = static_cast<uint32_t>(x & 0xffff) >> (kFixed - 3);
   const uint32_t wy = static_cast<uint32_t>(y & 0xffff) >> (kFixed - kShift);
@@ -86,7 +86,7 @@ Hypothesis EpipolarSearch::Search(const EdgePixel& pixel, std::span<const DepthI
   return match.cost >= 0 ? Refine(line, match) : Hypothesis{};
 }
 
-// The part of the interval that lies before the other camera. `a_z`: of Line::a.
+// Part of the interval in front of the other camera. `a_z`: z of Line::a.
 DepthInterval EpipolarSearch::InFront(DepthInterval interval, float a_z) const {
   if (std::abs(b_.z()) < 1e-6f) return a_z < kInFront ? DepthInterval{} : interval;
   const float limit = (kInFront - a_z) / b_.z();
@@ -98,7 +98,7 @@ DepthInterval EpipolarSearch::InFront(DepthInterval interval, float a_z) const {
   return interval;
 }
 
-// Whether the line tells depth at all at this pixel.
+// Returns false if depth is not observable along the line at this pixel.
 bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole, Line& line) {
   const Eigen::Vector3f p(pixel.x, pixel.y, 1);
   line.direction = {epipole_.x() - epipole_.z() * p.x(), epipole_.y() - epipole_.z() * p.y()};
@@ -117,7 +117,7 @@ bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole,
   const Eigen::Vector3f far = line.a + seen.min * b_, near = line.a + seen.max * b_;
   const Eigen::Vector2f path = near.head<2>() / near.z() - far.head<2>() / far.z();
   axis_ = std::abs(path.x()) >= std::abs(path.y()) ? 0 : 1;
-  // At a middle depth, by how much a step in the reference moves the match.
+  // Displacement of the match per step in the reference, at a medium depth.
   const Eigen::Vector3f middle = line.a + 0.5f * (seen.min + seen.max) * b_;
   const Eigen::Vector3f moved = M_.leftCols<2>() * line.direction;
   line.stretch =
@@ -125,7 +125,8 @@ bool EpipolarSearch::Prepare(const EdgePixel& pixel, const DepthInterval& whole,
   return std::abs(line.stretch) > 0.4f && std::abs(line.stretch) < 2.5f;
 }
 
-// What is sought: the reference around the pixel, one step there being one place on the line.
+// Samples the pattern: the reference around the pixel, with a step that corresponds to one sample
+// of the line.
 bool EpipolarSearch::TakePattern(const EdgePixel& pixel, const Line& line) {
   const Eigen::Vector2f step = line.direction / line.stretch;
   const Eigen::Vector2f centre(pixel.x, pixel.y);
@@ -146,8 +147,8 @@ bool EpipolarSearch::TakePattern(const EdgePixel& pixel, const Line& line) {
   return true;
 }
 
-// Samples of the line from kMargin places before the first to as many after the last: at whole
-// pixels along the axis, between two across it.
+// Samples the line from kMargin positions before the first to kMargin after the last: at whole
+// pixels along the axis, interpolated across it.
 void EpipolarSearch::WalkLine(int first, int places, float across, float slope) {
   const cv::Mat& values = pair_.other->values;
   const auto row = static_cast<std::ptrdiff_t>(values.step[0]);
@@ -166,7 +167,7 @@ void EpipolarSearch::WalkLine(int first, int places, float across, float slope) 
   }
 }
 
-// The place on the line most like the pattern: kLanes compared at once.
+// Position on the line with the smallest cost; kLanes are compared in parallel.
 int EpipolarSearch::LeastCost(int places) {
   using cv::v_int32x4;
   std::array<cv::v_int16x8, kPattern> pattern;
@@ -179,7 +180,7 @@ int EpipolarSearch::LeastCost(int places) {
   for (int t = 0; t < places; t += kLanes) {
     v_int32x4 cost = cv::v_setzero_s32();
     for (int k = 0; k < kPattern; ++k) {
-      // The first place lies kMargin samples in, and its pattern begins kHalf before it.
+      // The first position is at sample kMargin, and its pattern begins kHalf before it.
       const auto d =
           cv::v_reinterpret_as_s16(cv::v_load(&line_[t + k + kMargin - kHalf])) - pattern[k];
       cost = cost + cv::v_dotprod(d, d);
@@ -209,7 +210,7 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
   const Eigen::Vector2f from = far.head<2>() / far.z(), to = near.head<2>() / near.z();
   const float u0 = from[axis_], u1 = to[axis_], v0 = from[1 - axis_], v1 = to[1 - axis_];
   const float extent = u1 - u0;
-  // Farther out, rounding alone could lead the walk out of the picture.
+  // Beyond this, rounding errors could move the samples outside the image.
   constexpr float kFarthest = 1e4f;  // pixels
   const bool near_enough = std::abs(u0) < kFarthest && std::abs(u1) < kFarthest &&
                            std::abs(v0) < kFarthest && std::abs(v1) < kFarthest;
@@ -218,7 +219,7 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
   const int limit_u = axis_ == 0 ? width_ : height_, limit_v = axis_ == 0 ? height_ : width_;
   int first = std::max(static_cast<int>(std::floor(std::min(u0, u1))) - 1, kMargin);
   int last = std::min(static_cast<int>(std::ceil(std::max(u0, u1))) + 1, limit_u - 1 - kMargin);
-  // Across, too, it must stay in the picture.
+  // Keep the line inside the image across the axis, too.
   const float low = 1, high = static_cast<float>(limit_v) - 3;
   if (std::abs(slope) > 1e-6f) {
     const float a = u0 + (low - v0) / slope, b = u0 + (high - v0) / slope;
@@ -234,7 +235,7 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
   WalkLine(first, places, across, slope);
 
   const int best = LeastCost(places);
-  if (best == 0 || best == places - 1) return;  // no minimum
+  if (best == 0 || best == places - 1) return;  // at the end of the interval: not a minimum
   if (match.cost >= 0 && match.cost <= least_cost_) return;
   match.cost = least_cost_;
   match.place = first + best;
@@ -243,7 +244,7 @@ void EpipolarSearch::SearchInterval(const Line& line, const DepthInterval& inter
   std::copy_n(&line_[best + kMargin - kHalf - 1], match.samples.size(), match.samples.begin());
 }
 
-// The place between the pixels, and what it says.
+// Sub-pixel position of the match, and the resulting inverse depth.
 Hypothesis EpipolarSearch::Refine(const Line& line, const Match& match) const {
   // Gauss-Newton on the pattern (eq. 10).
   int32_t sum_gg = 0, sum_gr = 0;
@@ -267,7 +268,7 @@ Hypothesis EpipolarSearch::Refine(const Line& line, const Match& match) const {
   const float u = static_cast<float>(match.place) + shift;
   const float v = match.across + shift * match.slope;
 
-  // The match looks the same way, but for the turn of the picture.
+  // The gradient direction must agree, up to the relative rotation of the images.
   const int iu = static_cast<int>(u + 0.5f), iv = static_cast<int>(v + 0.5f);
   const int there = axis_ == 0 ? pair_.other->direction.at<uint8_t>(iv, iu)
                                : pair_.other->direction.at<uint8_t>(iu, iv);
@@ -276,7 +277,7 @@ Hypothesis EpipolarSearch::Refine(const Line& line, const Match& match) const {
   if (turned < 0) turned += GradientImage::kTurn;
   if (std::min(turned, GradientImage::kTurn - turned) > max_turn_) return {};
 
-  // eq. 8, and its derivative by the place along the axis.
+  // Eq. 8, and its derivative by the position along the axis.
   const float denominator = u * b_.z() - b_[axis_];
   const float numerator = line.a[axis_] - u * line.a.z();
   if (std::abs(denominator) < 1e-12f) return {};

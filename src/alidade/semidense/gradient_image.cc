@@ -7,8 +7,8 @@
 namespace alidade {
 namespace {
 
-constexpr int kBorder =
-    3;  // pixels at the image's rim that are left out: gradients there are made up
+// Pixels excluded at the image border, where gradients are extrapolated.
+constexpr int kBorder = 3;
 
 }  // namespace
 
@@ -56,7 +56,8 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
   const cv::Mat gray = straight(picture.gray, cv::INTER_LINEAR);
   const cv::Mat color = straight(picture.color, cv::INTER_LINEAR);
   cv::Mat mask = straight(picture.mask, cv::INTER_NEAREST);
-  if (!mask.empty()) cv::dilate(mask, mask, cv::Mat());  // by the pixel that gradients reach
+  // By one pixel, the support of the gradient.
+  if (!mask.empty()) cv::dilate(mask, mask, cv::Mat());
   cv::Mat gx, gy, magnitude, angle;
   cv::Scharr(gray, gx, CV_32F, 1, 0, 1.0 / 32);
   cv::Scharr(gray, gy, CV_32F, 0, 1, 1.0 / 32);

@@ -1,4 +1,4 @@
-// A keyframe's picture as semi-dense mapping sees it: undistorted, with gradients.
+// Undistorted image of a keyframe with gradients, the input of semi-dense mapping.
 #pragma once
 
 #include <array>
@@ -16,41 +16,41 @@ struct EdgePixel {
 };
 
 struct GradientImage {
-  // CV_8UC2: intensity, and gradient magnitude over √θ (both then weigh the same in a residual);
-  // 255 when it is that or more.
+  // CV_8UC2: intensity, and gradient magnitude / √θ (so that both have equal weight in a residual),
+  // saturated at 255.
   cv::Mat values;
-  // CV_8U: direction of the gradient in steps of 1/kTurn of a turn, kUnusable outside the lens'
-  // view and on what moves.
+  // CV_8U: gradient direction in steps of 1/kTurn of a full circle; kUnusable outside the lens's
+  // field of view and on moving objects.
   cv::Mat direction;
-  std::vector<EdgePixel> edges;  // pixels with gradient of λ_G or more, by row, then column
-  std::vector<std::array<uint8_t, 3>> colors;  // one for each: red green blue
+  std::vector<EdgePixel> edges;  // pixels with gradient of at least λ_G, by row, then column
+  std::vector<std::array<uint8_t, 3>> colors;  // one per edge: red, green, blue
 
   size_t bytes() const;
-  // The picture it was made of, as far as it is still known: grey, colours of edges, what moves.
+  // Reconstructs the picture as far as it is still known: gray, colors of edges, moving objects.
   Picture Straight() const;
 
   static constexpr int kTurn = 252;
   static constexpr uint8_t kUnusable = 255;
 };
 
-// Takes lens distortion out of pictures, again and again for one camera.
+// Computes gradient images with undistortion, for one camera.
 class GradientImageMaker {
  public:
-  // `min_gradient` (λ_G): grey levels per pixel; `gradient_weight`: θ.
+  // `min_gradient` (λ_G): gray levels per pixel. `gradient_weight`: θ.
   GradientImageMaker(const Camera& camera, double min_gradient, double gradient_weight);
-  // For pictures of which the distortion of `from` was taken out, to have that of `to` out instead.
+  // For pictures undistorted with `from`: undistorts them with `to` instead.
   GradientImageMaker(const Camera& from, const Camera& to, double min_gradient,
                      double gradient_weight);
   GradientImage Make(const Picture& picture) const;
 
  private:
-  // `there`: where in the picture a pixel of the result lies.
+  // `there` maps a pixel of the result to its position in the picture.
   template <typename Where>
   void MapFrom(const Camera& camera, Where&& there);
 
   double min_gradient_, gradient_scale_;
   cv::Mat map_x_, map_y_;  // for cv::remap; empty without distortion
-  cv::Mat seen_;           // 255 where the lens sees; empty: everywhere
+  cv::Mat seen_;           // 255 inside the lens's field of view; empty: everywhere
 };
 
 }  // namespace alidade

@@ -10,9 +10,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kChunk = 2048;  // pixels of one body of a parallel loop
+constexpr int kChunk = 2048;  // pixels per task
 
-// Without fusion: what the best of them says.
+// Without fusion: the hypothesis with the smallest variance.
 Hypothesis MostCertain(std::span<const Hypothesis> hypotheses) {
   Hypothesis best;
   for (const Hypothesis& h : hypotheses) {
@@ -45,7 +45,7 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
       Candidates candidates(chi2);
       for (size_t k = 0; k < pairs.size(); ++k) {
         found[k] = {};
-        // Those left could not make it enough.
+        // Skip if the remaining pairs cannot reach the required number.
         if (settings.fuse && known + static_cast<int>(pairs.size() - k) < settings.min_compatible)
           continue;
         found[k] = searches[k].Search(edges[i], candidates.Around(whole), counts[chunk]);

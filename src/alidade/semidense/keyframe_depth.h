@@ -1,4 +1,4 @@
-// What one keyframe goes through on its way to semi-dense depth.
+// Semi-dense depth of one keyframe from its partners.
 #pragma once
 
 #include <array>
@@ -10,8 +10,9 @@
 
 namespace alidade {
 
-// From its partners, those with the least parallax first, which later ones are narrowed by:
-// searched, fused, smoothed. One hypothesis for each of the reference's edges.
+// Searches the partners in order (smallest parallax first, each narrowing the search in later
+// ones), then fuses and smooths. Returns one hypothesis per edge of the reference. `count` (may be
+// null) accumulates statistics.
 std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
                                         const Camera& camera, const DepthRange& range,
                                         const SemiDenseSettings& settings,

@@ -10,8 +10,8 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kFewest = 10;  // landmarks that are a verdict
-constexpr int kNear = 2;        // pixels: a corner need not lie on the edge itself
+constexpr size_t kFewest = 10;  // landmarks required for a decision
+constexpr int kNear = 2;        // pixels: a corner may lie beside the edge
 
 }  // namespace
 

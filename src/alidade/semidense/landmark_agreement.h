@@ -1,6 +1,6 @@
-// Whether landmarks lie where a keyframe's semi-dense depth says. They were found another way, so
-// that the two part where poses do not fit the images: a camera that only turned, a map that is
-// wrong.
+// Consistency check of a keyframe's semi-dense depth with its landmarks. Both are estimated
+// independently and disagree where poses do not fit the images, e.g. after a pure rotation or in a
+// wrong map.
 #pragma once
 
 #include <span>
@@ -12,10 +12,10 @@
 
 namespace alidade {
 
-// True when at least ten landmarks have depth beside them (within two pixels; the best of it) and
-// three quarters differ from it by `max_difference` at most: of inverse depth, as a share, of the
-// landmarks' median for what is farther. `depth`: one for each of `edges`, of known or unknown
-// depth, in the map's unit.
+// True if at least ten landmarks have semi-dense depth within two pixels (the most similar one
+// counts) and for three quarters of them the inverse depths differ by at most `max_difference`,
+// relative to the landmark's inverse depth, or to that of the median depth for more distant
+// landmarks. `depth`: one per entry of `edges`, possibly unknown, in map units.
 bool AgreesWithLandmarks(const MapSnapshot& map, const KeyFrame& keyframe,
                          std::span<const EdgePixel> edges, std::span<const Hypothesis> depth,
                          const Camera& camera, double max_difference);

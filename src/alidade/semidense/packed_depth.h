@@ -1,4 +1,4 @@
-// Hypotheses of a keyframe's pixels at half their size, for keeping.
+// Hypotheses of a keyframe in a compact form of half the size.
 #pragma once
 
 #include <cstdint>
@@ -9,21 +9,21 @@
 
 namespace alidade {
 
-// Inverse depths in steps of 1/65535 of the largest (at a tenth of it: 0.015 %, a tenth of what a
-// search can tell), sigmas with 8 significant bits.
+// Inverse depths in steps of 1/65535 of the largest (0.015 % at a tenth of it, a tenth of the
+// accuracy of a search); sigmas with 8 significant bits.
 class PackedDepth {
  public:
   PackedDepth() = default;
   explicit PackedDepth(std::span<const Hypothesis> depth);
 
-  // `growth`: what all inverse depths are multiplied by, for other units.
+  // `growth`: factor applied to all inverse depths and sigmas, for a change of scale.
   std::vector<Hypothesis> Unpack(double growth = 1) const;
   size_t bytes() const { return packed_.capacity() * sizeof(Packed); }
 
  private:
   struct Packed {
     uint16_t inverse_depth = 0;
-    uint16_t sigma = 0;  // upper half of the float; 0: nothing is known
+    uint16_t sigma = 0;  // upper half of the float; 0: unknown
   };
   float step_ = 0;
   std::vector<Packed> packed_;

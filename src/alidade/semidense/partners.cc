@@ -11,10 +11,12 @@
 namespace alidade {
 namespace {
 
-constexpr double kLeastBaseline = 0.02;  // of the median depth: less shows too little parallax
-constexpr int kEnough = 20;              // landmarks an exposure is told by
+// Relative to the median depth; a smaller baseline gives too little parallax.
+constexpr double kLeastBaseline = 0.02;
+constexpr int kEnough = 20;  // landmarks needed to estimate an exposure
 constexpr int kRounds = 5;
-constexpr double kTrust = 8;  // grey levels: beyond, a pair of intensities weighs less
+// Gray levels; pairs of intensities with a larger residual are down-weighted.
+constexpr double kTrust = 8;
 
 std::optional<double> MeanAround(const GradientImage& image, const Keypoint& keypoint) {
   constexpr int kRadius = 3;
@@ -58,7 +60,8 @@ Exposure CompareExposures(const KeyFrame& reference, const GradientImage& refere
     if (mean) here.push_back({reference.landmarks[i], *mean});
   }
   std::sort(here.begin(), here.end());
-  std::vector<std::pair<double, double>> pairs;  // intensity here, there
+  // Intensity in the reference and in the other image.
+  std::vector<std::pair<double, double>> pairs;
   for (size_t i = 0; i < other.landmarks.size(); ++i) {
     const LandmarkId id = other.landmarks[i];
     if (!id.valid()) continue;
@@ -106,7 +109,7 @@ cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure) {
     auto* to = result.ptr<uint8_t>(y);
     constexpr int kLanes = 16;
     for (int i = 0; i < bytes; i += kLanes) {
-      const int at = std::min(i, bytes - kLanes);  // the last ones overlap those before
+      const int at = std::min(i, bytes - kLanes);  // the last block overlaps the previous one
       cv::v_uint16x8 low, high;
       cv::v_expand(cv::v_load(from + at), low, high);
       cv::v_store(to + at, cv::v_pack_u(changed(low), changed(high)));

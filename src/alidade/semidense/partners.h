@@ -1,4 +1,4 @@
-// Which keyframes a keyframe's depth is found from, and what sets their pictures apart.
+// Selection of the keyframes used for a keyframe's depth, and compensation of exposure differences.
 #pragma once
 
 #include <functional>
@@ -10,20 +10,20 @@
 
 namespace alidade {
 
-// The `count` covisible keyframes that share most landmarks, of those `usable`, with some baseline:
-// in order of id.
+// The `count` covisible keyframes accepted by `usable` that share the most landmarks and have a
+// sufficient baseline; in order of ids.
 std::vector<KeyFrameId> ChoosePartners(const MapSnapshot& map, const KeyFrame& keyframe, int count,
                                        const std::function<bool(KeyFrameId)>& usable);
 
 struct Exposure {
-  double gain = 1, offset = 0;  // intensity in the other = gain * intensity + offset
+  double gain = 1, offset = 0;  // intensity in the other image = gain * intensity + offset
 };
 
-// By the intensities around landmarks both see; robust to what changes its look.
+// Robust estimate from the intensities around common landmarks.
 Exposure CompareExposures(const KeyFrame& reference, const GradientImage& reference_image,
                           const KeyFrame& other, const GradientImage& other_image);
 
-// `values` of GradientImage as that exposure would have made them.
+// Applies the exposure to GradientImage::values.
 cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure);
 
 }  // namespace alidade

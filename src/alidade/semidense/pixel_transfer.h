@@ -1,4 +1,4 @@
-// Where a pixel of one keyframe is seen in another, by its inverse depth.
+// Position of a keyframe's pixel in another keyframe as a function of its inverse depth.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,8 +8,8 @@
 
 namespace alidade {
 
-// Homogeneous pixel there = at_infinity * (x, y, 1) + inverse depth * shift; its third component is
-// the depth there over the depth here.
+// Homogeneous pixel there = at_infinity * (x, y, 1) + inverse depth * shift. Its third component is
+// the depth there divided by the depth here.
 struct PixelTransfer {
   Eigen::Matrix3f at_infinity;
   Eigen::Vector3f shift;

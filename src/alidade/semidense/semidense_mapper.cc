@@ -17,20 +17,20 @@
 
 namespace alidade {
 
-// A keyframe as this mapper remembers it.
+// State of one keyframe.
 struct SemiDenseMapper::Entry {
   KeyFrameId id;
   GradientImage image;
-  std::vector<Hypothesis> sensor;  // depth as measured, one for each edge; empty: none wanted
+  std::vector<Hypothesis> sensor;  // measured depth, one per edge; empty: not requested
   bool estimated = false;
-  bool of_other_camera = false;  // when it was: its depth is to be found anew
-  PackedDepth depth;             // before the check between keyframes; one for each edge
-  double scale = 1;              // KeyFrame::scale then
+  bool of_other_camera = false;  // processed with a previous camera model: to be redone
+  PackedDepth depth;             // before the check between keyframes; one per edge
+  double scale = 1;              // KeyFrame::scale at the time of estimation
   struct Partner {
     KeyFrameId id;
-    Se3 T_partner_keyframe;  // then
+    Se3 T_partner_keyframe;  // at the time of estimation
   };
-  std::vector<Partner> partners;  // it was found from
+  std::vector<Partner> partners;  // used for the estimate
 };
 
 SemiDenseMapper::SemiDenseMapper(MapStore& map, const Camera& camera,
@@ -60,7 +60,7 @@ void SemiDenseMapper::SetCamera(const Camera& camera) {
 void SemiDenseMapper::Keep(KeyFrameId id, std::shared_ptr<const Picture> picture) {
   const MapSnapshot map = map_.Snapshot();
   std::lock_guard<std::mutex> lock(inbox_mutex_);
-  // Of maps given up at their start nothing is ever processed.
+  // Maps given up during initialization are never processed.
   std::erase_if(inbox_, [&](const auto& kept) { return !map.Find(kept.first); });
   inbox_.push_back({id, std::move(picture)});
   if (static_cast<int>(inbox_.size()) > settings_.max_waiting) {
@@ -119,7 +119,7 @@ SemiDenseMapper::Entry* SemiDenseMapper::Find(KeyFrameId id) {
   return it != entries_.end() && (*it)->id == id ? it->get() : nullptr;
 }
 
-// The newest that `delay` others followed.
+// The newest unprocessed keyframe that is followed by at least `delay` others.
 SemiDenseMapper::Entry* SemiDenseMapper::NextDue(const MapSnapshot& map) {
   Entry* next = nullptr;
   int waiting = 0;
@@ -138,8 +138,7 @@ SemiDenseMapper::Entry* SemiDenseMapper::NextDue(const MapSnapshot& map) {
   return next;
 }
 
-// Whether partners lie elsewhere than when its depth was found, by too much a share of the
-// parallax.
+// True if a baseline to a partner changed since the estimate by too large a share.
 bool SemiDenseMapper::Moved(const MapSnapshot& map, const Entry& entry) const {
   if (!entry.estimated) return false;
   if (entry.of_other_camera) return true;
@@ -202,7 +201,7 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
   }
 }
 
-// The neighbours' depth.
+// Depth of the neighboring keyframes.
 std::vector<DepthView> SemiDenseMapper::Views(const MapSnapshot& map, const KeyFrame& keyframe) {
   std::vector<DepthView> views;
   const auto usable = [&](KeyFrameId id) { return Find(id) && Find(id)->estimated; };
@@ -265,7 +264,8 @@ void SemiDenseMapper::Process() {
   const MapSnapshot map = TakeIn();
   Entry* due = NextDue(map);
   if (due) WorkOn(map, *due);
-  // A loop moves more than the next keyframes would make good: then two are done at a time.
+  // A loop closure moves many keyframes. Until they are redone, each call also processes one of
+  // them.
   if (due && map.corrections() == settled_corrections_) return;
   if (Entry* moved = NewestMoved(map)) {
     WorkOn(map, *moved);

@@ -1,5 +1,6 @@
-// Inverse depth at the high-gradient pixels of each keyframe (Mur-Artal & Tardós, RSS 2015), a few
-// keyframes behind the mapper. One instance, one thread at a time, but for Keep() and report().
+// Semi-dense mapping: inverse depth at the high-gradient pixels of each keyframe (Mur-Artal &
+// Tardós, RSS 2015), a few keyframes behind the mapper. One thread at a time, except for Keep() and
+// report().
 #pragma once
 
 #include <atomic>
@@ -23,29 +24,31 @@ class SemiDenseMapper {
   SemiDenseMapper(MapStore& map, const Camera& camera, const SemiDenseSettings& settings);
   ~SemiDenseMapper();
 
-  // The picture of a keyframe just inserted. Thread-safe, and quick.
+  // Stores the picture of a newly inserted keyframe. Thread-safe and fast.
   void Keep(KeyFrameId id, std::shared_ptr<const Picture> picture);
 
-  // A keyframe was mapped: works on the one whose turn it is now, the newest first, and commits its
-  // depth; where none waits, or a loop was closed, on one whose neighbours have moved since.
+  // Called after a keyframe was mapped. Processes the newest keyframe that is due and commits its
+  // depth; if none is due, or a loop was closed, processes one whose neighbors have moved.
   void Process();
 
-  // Nothing will follow: works on all that wait or were moved, and checks every keyframe's depth
-  // against its neighbours', of which only the older ones were known before.
-  // `stop` (may be null): turns true when it is enough; the map is sound then, and some keyframes
-  // stay without depth, or unchecked.
+  // Called at the end of input. Processes all keyframes that are due or were moved, and checks
+  // every keyframe's depth against all neighbors (before, only older ones were available). `stop`
+  // (may be null) ends it early; the map is then consistent, but some keyframes have no depth or
+  // are not checked.
   void Finish(const std::atomic<bool>* stop = nullptr);
 
-  // The map is of this camera from now on: all depth is found anew, a keyframe at a time. Nothing
-  // else may be at work.
+  // Changes the camera model of the map: all depth is recomputed, one keyframe at a time. No other
+  // thread may be using the map.
   void SetCamera(const Camera& camera);
 
-  SemiDenseReport report() const;  // of all that is done; any thread may ask
+  SemiDenseReport report() const;  // statistics so far; thread-safe
 
  private:
   struct Entry;
-  MapSnapshot TakeIn();         // what was kept, and out what is not in the map (returned) any more
-  void LetGo(int turned_away);  // of those that wait, the oldest beyond max_waiting
+  // Moves new pictures to entries_ and drops entries of keyframes that are not in the map
+  // (returned) any more.
+  MapSnapshot TakeIn();
+  void LetGo(int turned_away);  // drops the oldest waiting entries beyond max_waiting
   Entry* Find(KeyFrameId id);
   Entry* NextDue(const MapSnapshot& map);
   Entry* NewestMoved(const MapSnapshot& map);
@@ -63,12 +66,13 @@ class SemiDenseMapper {
   GradientImageMaker maker_;
   std::mutex inbox_mutex_;
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const Picture>>> inbox_;
-  int turned_away_ = 0;                          // pictures, since the inbox was last emptied
+  int turned_away_ = 0;  // pictures dropped since the inbox was last emptied
   std::vector<std::unique_ptr<Entry>> entries_;  // by id
-  uint64_t settled_corrections_ = 0;  // of the map, up to which all that moved was done again
+  // MapSnapshot::corrections() up to which all moved keyframes were redone.
+  uint64_t settled_corrections_ = 0;
   SemiDenseReport report_;
   mutable std::mutex told_mutex_;
-  SemiDenseReport told_;  // report_ as of the last keyframe that was done
+  SemiDenseReport told_;  // copy of report_ after the last processed keyframe
 };
 
 }  // namespace alidade

@@ -7,8 +7,8 @@
 namespace alidade {
 namespace {
 
-// Of inverse depth, 1/m: structured light measures a disparity, 1.5 mm off at 1 m and 6 at 2
-// (Khoshelham & Elberink 2012).
+// Standard deviation of inverse depth, 1/m. Structured light measures a disparity: 1.5 mm at 1 m, 6
+// mm at 2 m (Khoshelham & Elberink 2012).
 constexpr float kSigma = 0.0015f;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A depth sensor's readings as hypotheses, to be held beside what motion tells.
+// Depth sensor readings as hypotheses, for comparison with depth from motion.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-// One for each edge pixel; `depth`: as in Picture. Unknown where the sensor had no reading.
+// One per edge pixel; unknown where the sensor has no reading. `depth`: see Picture.
 std::vector<Hypothesis> DepthFromSensor(const cv::Mat& depth, std::span<const EdgePixel> edges,
                                         const Camera& camera);
 

@@ -9,9 +9,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kEnoughAgree = 2;  // neighbours that agree
+constexpr int kEnoughAgree = 2;  // neighbors that must agree
 
-// The neighbours in the 3x3 window that are known.
+// Known neighbors in the 3x3 window.
 class Neighbours {
  public:
   Neighbours(const std::vector<int>& index, int width, std::span<const Hypothesis> depth,
@@ -24,7 +24,7 @@ class Neighbours {
       }
     }
   }
-  // Those compatible with `centre`, and itself, as one; unknown when they are too few.
+  // Mean of the compatible neighbors (and of `centre` if `itself`); unknown if there are too few.
   Hypothesis With(const Hypothesis& centre, bool itself, float chi2) const {
     int agree = 0;
     const float own = 1 / (centre.sigma * centre.sigma);
@@ -38,14 +38,13 @@ class Neighbours {
       sum += w * around_[k].inverse_depth;
       sigma = std::min(sigma, around_[k].sigma);
     }
-    // Neighbours share much of what they were made of: together they are not more certain than
-    // the best of them.
+    // Neighbors are correlated, so the mean is not more certain than the best of them.
     return agree < kEnoughAgree ? Hypothesis{} : Hypothesis{sum / weight, sigma};
   }
   Hypothesis Grown(float chi2) const {
     Hypothesis best;
     for (int k = 0; k < count_; ++k) {
-      // A neighbour counts itself among those it agrees with.
+      // A neighbor is compatible with itself, so it is included.
       const Hypothesis grown = With(around_[k], false, chi2);
       if (grown.known() && (!best.known() || grown.sigma < best.sigma)) best = grown;
     }
@@ -65,7 +64,7 @@ std::vector<Hypothesis> Smooth(std::span<const EdgePixel> edges, std::span<const
   for (size_t i = 0; i < edges.size(); ++i) {
     index[edges[i].y * size.width + edges[i].x] = static_cast<int>(i);
   }
-  constexpr int kChunk = 2048;  // pixels
+  constexpr int kChunk = 2048;  // pixels per task
   const int count = static_cast<int>(edges.size());
   const auto over = [&](auto&& body) {
     ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {

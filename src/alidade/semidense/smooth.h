@@ -1,4 +1,4 @@
-// Depth of a keyframe made to agree with itself (Mur-Artal & Tardós, RSS 2015, §III-C).
+// Smoothing within a keyframe (Mur-Artal & Tardós, RSS 2015, §III-C).
 #pragma once
 
 #include <span>
@@ -9,8 +9,9 @@
 
 namespace alidade {
 
-// `depth`: one for each of `edges`. Kept: those with at least two compatible neighbours in their
-// 3x3 window, smoothed over them. Grown: unknown ones between two that agree.
+// Keeps hypotheses with at least two compatible neighbors in the 3x3 window, averaged with them.
+// Fills unknown pixels from at least two neighbors that agree. `depth`: one per entry of `edges`;
+// returns one per edge.
 std::vector<Hypothesis> Smooth(std::span<const EdgePixel> edges, std::span<const Hypothesis> depth,
                                cv::Size size, float chi2);
 

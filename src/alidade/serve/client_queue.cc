@@ -5,7 +5,7 @@
 namespace alidade {
 
 bool ClientQueue::Push(const Message& message) {
-  std::deque<Entry> forgotten;  // goes after the lock
+  std::deque<Entry> forgotten;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   if (behind_) return false;
   const size_t counts = joining_ ? 0 : message->size();

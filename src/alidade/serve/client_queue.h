@@ -1,4 +1,5 @@
-// What waits to be sent to one viewer: messages that all viewers share, so many bytes at most.
+// Queue of messages to send to one viewer, limited in bytes. The messages are shared by all
+// viewers.
 #pragma once
 
 #include <cstddef>
@@ -15,17 +16,17 @@ class ClientQueue {
 
   explicit ClientQueue(size_t bytes) : bytes_(bytes) {}
 
-  // By who tells, from any thread. True when who sends must be woken: it has nothing to do, or is
-  // to hear that all was forgotten. Messages that come before Joined() are the whole state: they do
-  // not count.
+  // Producer, any thread. Returns true when the consumer must be woken: it is idle, or the queue
+  // was discarded. Messages pushed between Begin() and Joined() are the whole state and do not
+  // count against the limit.
   bool Push(const Message& message);
 
-  // By who sends. Null when nothing waits; then Push() will wake.
+  // Consumer. Null when the queue is empty; the next Push() then returns true.
   Message Pop();
-  // More than `bytes` waited: all is forgotten, nothing more is taken until Begin().
+  // The limit was exceeded: the queue was discarded and accepts nothing until Begin().
   bool behind() const;
-  void Begin();   // before it joins: forgets all
-  void Joined();  // after
+  void Begin();   // before joining: empties the queue
+  void Joined();  // after joining
   size_t waiting_bytes() const;
 
  private:
@@ -39,7 +40,7 @@ class ClientQueue {
   size_t counted_ = 0;
   bool joining_ = false;
   bool behind_ = false;
-  bool awake_ = false;  // who sends will look again by itself
+  bool awake_ = false;  // the consumer will call Pop() again without being woken
 };
 
 }  // namespace alidade

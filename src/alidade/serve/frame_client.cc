@@ -13,10 +13,11 @@ namespace {
 namespace frame_beast = boost::beast;
 namespace frame_websocket = boost::beast::websocket;
 
-constexpr size_t kMostPicture = size_t{4} << 20;  // bytes of a message: a JPEG of 4 megapixels
+// Bytes of a message: a JPEG of about 4 megapixels.
+constexpr size_t kMostPicture = size_t{4} << 20;
 constexpr size_t kFrameClientFrame = size_t{64} << 10;  // bytes of a WebSocket frame
 
-// The text in a JSON string: no quotes, backslashes or control characters.
+// Replaces quotes, backslashes and control characters, for use in a JSON string.
 std::string Harmless(const std::string& text) {
   std::string plain;
   for (const char c : text) plain += (c == '"' || c == '\\' || (c >= 0 && c < ' ')) ? ' ' : c;
@@ -30,7 +31,7 @@ FrameClient::FrameClient(frame_beast::tcp_stream stream, boost::asio::io_context
     : io_(io), host_(host), socket_(std::move(stream)) {
   const auto patience = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(settings.patience));
-  frame_beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has timers of its own
+  frame_beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timers
   socket_.set_option(frame_websocket::stream_base::timeout{patience, patience, true});
   socket_.read_message_max(kMostPicture);
   socket_.write_buffer_bytes(kFrameClientFrame);
@@ -69,7 +70,8 @@ void FrameClient::Hear(std::string bytes, bool text) {
   }
   if (!text) return Refuse("the first message says who sends: text");
   std::string problem;
-  // Only what is posted may hold the client for a moment: it is to end in its own thread.
+  // Only a posted handler may hold a strong reference, so that the client is destroyed in its own
+  // thread.
   seat_ = host_.Join(
       bytes,
       [io = &io_, client = weak_from_this()](std::vector<FrameMessage> messages, bool last) {

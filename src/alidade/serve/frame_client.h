@@ -1,4 +1,5 @@
-// One page that sends its pictures: they go to the FrameHost, what that tells comes back.
+// Connection of one web page that sends its images: passes them to the FrameHost and the replies
+// back.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -16,9 +17,8 @@
 
 namespace alidade {
 
-// Everything but what the host calls happens in the one thread of the io_context. What waits to be
-// sent is bounded by what the page has sent: two pictures at a time are answered, more are not
-// taken.
+// Runs in the thread of the io_context, except for the callback that the host calls. The page sends
+// at most two images ahead of their replies, which bounds the outgoing queue.
 class FrameClient : public std::enable_shared_from_this<FrameClient> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -29,14 +29,14 @@ class FrameClient : public std::enable_shared_from_this<FrameClient> {
   FrameClient& operator=(const FrameClient&) = delete;
 
   void Start(const Request& upgrade);
-  void Finish();  // says good-bye
+  void Finish();  // closes the connection gracefully
 
  private:
   void Read();
   void Hear(std::string bytes, bool text);
   void Add(std::vector<FrameMessage> messages, bool last);
   void Refuse(const std::string& why);
-  void Pump();  // sends the next message, if there is one and nothing is being sent
+  void Pump();  // sends the next message unless one is being sent
   void End();
 
   boost::asio::io_context& io_;

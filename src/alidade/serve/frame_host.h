@@ -1,5 +1,5 @@
-// Who works on pictures that pages send to the program (`alidade phone --connected`): the server
-// carries, a FrameHost does the work.
+// Processes the images that web pages send to the program (`alidade phone --connected`). The server
+// only transports them.
 #pragma once
 
 #include <functional>
@@ -11,25 +11,25 @@ namespace alidade {
 
 struct FrameMessage {
   std::string bytes;
-  bool text = true;  // else binary: a message of the stream
+  bool text = true;  // false: binary, a message of the stream
 };
 
-// To the page, from any thread, in order. `last`: nothing follows, the connection is closed.
+// Sends messages to the page, in order, from any thread. `last`: closes the connection afterwards.
 using FrameTell = std::function<void(std::vector<FrameMessage> messages, bool last)>;
 
-// One page's seat, until it is destroyed.
+// The session of one page; ends on destruction.
 class FrameSeat {
  public:
   virtual ~FrameSeat() = default;
-  // A binary message of the page: 16 bytes and a JPEG (docs/phone.md). Returns at once.
+  // A binary message of the page: a 16-byte header and a JPEG (docs/reference/phone-protocol.md). Does not block.
   virtual void Take(std::string bytes) = 0;
 };
 
 class FrameHost {
  public:
   virtual ~FrameHost() = default;
-  // `hello`: the page's first message, JSON. Null when it cannot be, and `problem` says why. The
-  // seat's owner may be called back until it has destroyed the seat, and a moment longer.
+  // `hello`: the page's first message, JSON. Returns null and sets `problem` when it is refused.
+  // `tell` may be called until the seat is destroyed and for a short time afterwards.
   virtual std::unique_ptr<FrameSeat> Join(const std::string& hello, FrameTell tell,
                                           std::string* problem) = 0;
 };

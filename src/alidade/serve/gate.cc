@@ -37,7 +37,7 @@ Gate::Gate(int port, std::string name, std::string token, bool tls)
 bool Gate::IsOurs(std::string_view host, const Caller& caller) const {
   if (host.size() > port_.size() && host.substr(host.size() - port_.size()) == port_) {
     host.remove_suffix(port_.size());
-  } else if (port_ != (tls_ ? ":443" : ":80")) {  // which browsers leave out
+  } else if (port_ != (tls_ ? ":443" : ":80")) {  // browsers omit the default port
     return false;
   }
   if (SameName(host, caller.local) || (!name_.empty() && SameName(host, name_))) return true;

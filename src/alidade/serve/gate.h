@@ -1,4 +1,4 @@
-// Whom the server lets in, by what a request says of where it comes from.
+// Access control of the server, based on a request's headers.
 #pragma once
 
 #include <optional>
@@ -8,26 +8,25 @@
 namespace alidade {
 
 struct Caller {
-  std::optional<std::string_view> host;    // header Host; none when it came twice, too
-  std::optional<std::string_view> origin;  // header Origin
-  std::string_view target;                 // of the request line: /path?query
-  std::string local;      // the address of ours that it came to, as in a URL: [::1] in brackets
-  bool loopback = false;  // that address is
+  std::optional<std::string_view> host;    // Host header; nullopt when absent or repeated
+  std::optional<std::string_view> origin;  // Origin header
+  std::string_view target;                 // from the request line: /path?query
+  std::string local;  // the server's address the request arrived at, as in a URL: [::1] in brackets
+  bool loopback = false;  // `local` is a loopback address
 };
 
 class Gate {
  public:
-  // `name`: what else we are called, when the user gave a name; `token`: empty when none is needed.
-  // `tls`: pages are https, and connections come from the TLS door: any may use the name, localhost
-  // or 127.0.0.1.
+  // `name`: host name set by the user; empty: none. `token`: empty when none is required. `tls`:
+  // pages are served by https and connections come from the TLS proxy; every client may then use
+  // the name, localhost or 127.0.0.1.
   Gate(int port, std::string name, std::string token, bool tls = false);
-  // Why the caller is refused, one line; empty when it may come in.
-  //   Host must be an address of ours or the name: a page of another host whose name was made to
-  // lead here (DNS rebinding) is told by it. Origin, which browsers send with what other pages ask
-  // for and with WebSockets, must be the page's own.
+  // Returns why the caller is refused, one line; empty if it is admitted.
+  // Host must be the server's address or its name: this prevents DNS rebinding by pages of other
+  // hosts. Origin, which browsers send with WebSockets and cross-origin requests, must be the
+  // page's own.
   std::string Refusal(const Caller& caller) const;
-  // The target's query holds the token. Compared in a time that does not depend on where they
-  // differ.
+  // true when the target's query contains the token. The comparison takes constant time.
   bool HasToken(std::string_view target) const;
 
  private:
@@ -39,10 +38,10 @@ class Gate {
   bool tls_ = false;
 };
 
-// 128 random bits from the system, as 32 hexadecimal digits.
+// 128 random bits of the operating system as 32 hexadecimal digits.
 std::string RandomToken();
 
-// "/path?query" without its query.
+// Removes the query from "/path?query".
 std::string_view PathOf(std::string_view target);
 
 }  // namespace alidade

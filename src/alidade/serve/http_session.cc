@@ -19,10 +19,10 @@ namespace beast = boost::beast;
 namespace http = boost::beast::http;
 namespace asio = boost::asio;
 
-constexpr uint32_t kMostHeader = 8192;             // bytes: browsers send 1000
-constexpr size_t kMostBuffered = 16384;            // bytes: a header, and what was sent after it
-constexpr size_t kPartBytes = size_t{256} << 10;   // of a file, read and sent at a time
-constexpr auto kLinger = std::chrono::seconds(1);  // for the other side to read why it was refused
+constexpr uint32_t kMostHeader = 8192;             // bytes; browsers send about 1000
+constexpr size_t kMostBuffered = 16384;            // bytes: a header and data sent after it
+constexpr size_t kPartBytes = size_t{256} << 10;   // bytes of a file read and sent at a time
+constexpr auto kLinger = std::chrono::seconds(1);  // time for the client to read the refusal
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 
 std::optional<std::string_view> Only(const http::fields& fields, http::field name) {
@@ -72,7 +72,7 @@ void HttpSession::OnBadRequest(beast::error_code error) {
                          error != http::error::end_of_stream &&
                          error != http::error::partial_message;
   if (malformed) return Send(400, kText, "no HTTP\n");
-  Close();  // the other side has gone, or was silent for too long
+  Close();  // the client disconnected or timed out
 }
 
 std::string HttpSession::Refusal(const Request& request) const {
@@ -108,7 +108,7 @@ void HttpSession::OnRequest() {
   const bool is_stream = path == "/stream" && task.hub != nullptr;
   const bool is_frames = path == "/frames" && task.frames != nullptr;
   const bool is_file = path == "/run.stream" && task.hub == nullptr && !task.phone;
-  // What is compiled in is no secret, and the page asks for it without the token.
+  // Compiled-in files are public; the page requests them without the token.
   const bool is_own = path == "/" || path == "/index.html" || path == "/info.json";
   if ((is_stream || is_frames || is_file || is_own) && !core_.gate->HasToken(target)) {
     return Send(403, kText, "the address that the program printed ends in a token: it is needed\n");
@@ -183,7 +183,7 @@ void HttpSession::SendPart() {
   }
   part_.resize(std::min<uint64_t>(kPartBytes, file_left_));
   if (!file_.read(part_.data(), static_cast<std::streamsize>(part_.size())))
-    return Close();  // it has become shorter meanwhile
+    return Close();  // the file was truncated meanwhile
   file_left_ -= part_.size();
   Wake();
   asio::async_write(stream_, asio::buffer(part_),
@@ -201,7 +201,7 @@ void HttpSession::Sent(beast::error_code error) {
   Linger();
 }
 
-// A socket closed with input unread takes back what was sent last.
+// Reads and discards input, because closing a socket with unread input would discard the response.
 void HttpSession::Linger() {
   stream_.async_read_some(asio::buffer(scratch_),
                           [self = shared_from_this()](beast::error_code error, size_t) {

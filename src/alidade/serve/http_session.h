@@ -1,5 +1,5 @@
-// One connection: requests are read, and answered, one after the other, until it ends or becomes a
-// viewer's WebSocket.
+// One HTTP connection: answers requests one after the other until it closes or is upgraded to a
+// WebSocket.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   HttpSession(boost::asio::ip::tcp::socket socket, ServerCore& core);
   void Start();
   void Close();
-  // When it last did something.
+  // Time of the last activity.
   std::chrono::steady_clock::time_point active() const { return active_; }
 
  private:
@@ -42,7 +42,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void SendPart();
   void Sent(boost::beast::error_code error);
   void Linger();
-  void Wake();  // the time that is left to the next step starts anew
+  void Wake();  // restarts the timeout
 
   ServerCore& core_;
   boost::beast::tcp_stream stream_;
@@ -52,9 +52,9 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   bool keep_alive_ = false;
   bool head_only_ = false;
   std::string head_;
-  std::string text_;        // of an answer made for this request
-  std::ifstream file_;      // being sent,
-  uint64_t file_left_ = 0;  // bytes
+  std::string text_;        // body generated for this request
+  std::ifstream file_;      // file being sent
+  uint64_t file_left_ = 0;  // bytes left to send
   std::vector<char> part_;
   std::array<char, 4096> scratch_;
 };

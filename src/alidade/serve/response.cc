@@ -103,7 +103,7 @@ std::string ResponseHead(int status, std::string_view type, uint64_t length, boo
   line("Cache-Control", "no-store");
   line("Content-Security-Policy", site == Site::kPhone ? kPhonePolicy : kContentPolicy);
   if (site == Site::kPhone) {
-    // Cross-origin isolated: threads need it. The sensors are the page's own.
+    // Cross-origin isolation is required for threads. Only the page itself may use the sensors.
     line("Cross-Origin-Opener-Policy", "same-origin");
     line("Cross-Origin-Embedder-Policy", "require-corp");
     line("Permissions-Policy",
@@ -125,7 +125,7 @@ bool AcceptsGzip(std::string_view accepted) {
     }
     accepted.remove_prefix(comma == std::string_view::npos ? accepted.size() : comma + 1);
     if (one == "gzip") return true;
-    if (one.rfind("gzip;q=", 0) == 0)  // 0, 0.0, 0.00 and 0.000: not
+    if (one.rfind("gzip;q=", 0) == 0)  // a quality of 0, 0.0, 0.00 or 0.000 means refused
       return one.find_first_of("123456789", 7) != std::string::npos;
   }
   return false;

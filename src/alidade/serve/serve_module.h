@@ -1,6 +1,7 @@
-// What libalidade_serve.so offers: the server of viewer_server.h, by Boost.Beast, with the page's
-// files compiled in. Loaded by viewer_server.cc, linked by nobody. Both sides are built together:
-// the interface may hold C++ types, only its name is C. No exception leaves the module.
+// Interface of libalidade_serve.so: the server of viewer_server.h, implemented with Boost.Beast,
+// with the page's files compiled in. viewer_server.cc loads it on first use; no target links it.
+// The program and the module are built together, so the interface may use C++ types; only the
+// function name is C. No exception leaves the module.
 #pragma once
 
 #include <string>
@@ -11,19 +12,19 @@
 namespace alidade {
 
 struct ServeTask {
-  ServeSettings settings;    // checked
-  StreamHub* hub = nullptr;  // null: the file
+  ServeSettings settings;    // already checked
+  StreamHub* hub = nullptr;  // null: replay the file
   std::string replay_path;
-  std::string info;             // what /info.json answers
-  bool phone = false;           // the page for phones, not the viewer's
-  std::string core_folder;      // of the core as WebAssembly; empty: none
-  FrameHost* frames = nullptr;  // who works on pictures that pages send; null: nobody
+  std::string info;             // JSON returned for /info.json
+  bool phone = false;           // serve the phone page instead of the viewer
+  std::string core_folder;      // folder of the WebAssembly core; empty: none
+  FrameHost* frames = nullptr;  // processes images that pages send; null: not supported
 };
 
 inline constexpr char kServeModuleFile[] = "libalidade_serve.so";
 inline constexpr char kServeModuleStart[] = "alidade_serve_start";
 
-// Null when it cannot be, and `problem` says why, in one line.
+// Returns null and sets `problem`, one line, on failure.
 using ServeStartFunction = ViewerServer*(const ServeTask& task, std::string* problem);
 
 }  // namespace alidade

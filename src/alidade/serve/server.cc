@@ -24,10 +24,12 @@ using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr int kPortsTried = 100;
-// What the kernel keeps for a viewer that has stopped: without a limit 4 MB of old pictures.
-constexpr int kSendBuffer = 64 << 10;                   // bytes
-constexpr auto kRest = std::chrono::milliseconds(100);  // until descriptors may be free again
-constexpr auto kGoodbye = std::chrono::seconds(2);      // at the end, for what waits to be sent
+// Bytes the kernel buffers for a viewer that stopped reading; the default would be up to 4 MB of
+// outdated images.
+constexpr int kSendBuffer = 64 << 10;
+// Until file descriptors may be available again.
+constexpr auto kRest = std::chrono::milliseconds(100);
+constexpr auto kGoodbye = std::chrono::seconds(2);  // at the end, to send queued messages
 
 asio::ip::address AddressOf(const std::string& host, asio::io_context& io) {
   error_code error;
@@ -39,7 +41,8 @@ asio::ip::address AddressOf(const std::string& host, asio::io_context& io) {
   return found.begin()->endpoint().address();
 }
 
-// By which others reach this machine; nothing is sent. 192.0.2.1 is for documentation (RFC 5737).
+// Address by which other machines reach this one. Sends nothing; 192.0.2.1 is reserved for
+// documentation (RFC 5737).
 asio::ip::address OutwardAddress(asio::io_context& io) {
   error_code error;
   asio::ip::udp::socket socket(io);
@@ -108,7 +111,7 @@ Server::Server(const ServeTask& task) : core_(task) {
   if (!token.empty()) address_ += "?token=" + token;
 
   Accept();
-  // Signals are for the threads that the program handles them in.
+  // Block all signals in the new thread, so that the program's threads handle them.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
@@ -128,7 +131,7 @@ bool Server::has_page() const {
                      [](const PageFile& file) { return file.name == "index.html"; });
 }
 
-// The plain server listens on a port of its own, to this machine alone.
+// The plain server listens on a separate port of the loopback interface.
 void Server::OpenTls(const asio::ip::address& host, const std::string& name) {
 #ifdef ALIDADE_TLS
   tcp::acceptor outer(core_.io);
@@ -183,7 +186,7 @@ int Server::Listen(const asio::ip::address& host, tcp::acceptor& acceptor) {
 void Server::Accept() {
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
-    if (error) {  // no descriptors, no memory: it would fail again at once
+    if (error) {  // no descriptors or memory: an immediate retry would fail again
       rest_.expires_after(kRest);
       rest_.async_wait([this](error_code stopped) {
         if (!stopped) Accept();
@@ -198,7 +201,7 @@ void Server::Accept() {
         core_.sessions.push_back(session);
         session->Start();
       }
-    } catch (...) {  // no memory: this one goes, others come
+    } catch (...) {  // out of memory: drops this connection only
     }
     Accept();
   });
@@ -210,13 +213,13 @@ void Server::Run() {
     try {
       core_.io.run();
       done = true;
-    } catch (...) {  // a connection's step failed (no memory), and the connection with it
+    } catch (...) {  // a handler failed (out of memory); only its connection is lost
     }
   }
   ended_.set_value();
 }
 
-// Without connections run() has nothing left to wait for, and returns.
+// Without connections run() has no work left and returns.
 void Server::Finish() {
   error_code ignored;
   acceptor_.close(ignored);

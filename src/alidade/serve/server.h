@@ -1,4 +1,4 @@
-// The server: one thread, in which all connections are taken and served.
+// The server. All connections are accepted and served in one thread.
 #pragma once
 
 #include <atomic>
@@ -28,11 +28,11 @@ class FrameClient;
 class HttpSession;
 class StreamClient;
 
-// As in a URL: IPv6 in brackets.
+// The address as in a URL: IPv6 in brackets.
 std::string UrlAddress(const boost::asio::ip::address& address);
 
-// What connections share. `io` first: what waits in it goes last, and may refer to the rest only
-// through what it owns.
+// State shared by the connections. `io` is the first member and so destroyed last; its pending
+// handlers refer to other members only through objects they own.
 struct ServerCore {
   explicit ServerCore(const ServeTask& given) : task(given) {}
 
@@ -41,12 +41,12 @@ struct ServerCore {
   std::optional<Gate> gate;
   std::vector<std::weak_ptr<HttpSession>> sessions;
   std::vector<std::weak_ptr<StreamClient>> clients;
-  std::vector<std::weak_ptr<FrameClient>> pages;  // that send pictures
+  std::vector<std::weak_ptr<FrameClient>> pages;  // pages that send images
   std::shared_ptr<std::atomic<int>> viewers = std::make_shared<std::atomic<int>>(0);
 
-  bool MayJoin();  // one viewer more
-  // Makes room for one connection more: closes the one without a viewer that has been silent
-  // longest. False when there are only viewers.
+  bool MayJoin();  // false when the maximum number of viewers is reached
+  // Makes room for a connection by closing the one that was idle longest and is not a viewer.
+  // Returns false when all are viewers.
   bool MayConnect();
 };
 
@@ -64,7 +64,7 @@ class Server : public ViewerServer {
   const std::string& fingerprint() const override { return fingerprint_; }
 
  private:
-  // At the port of the settings or one after it; its number.
+  // Listens at the port of the settings or one of the following ports, and returns its number.
   int Listen(const boost::asio::ip::address& host, boost::asio::ip::tcp::acceptor& acceptor);
   void OpenTls(const boost::asio::ip::address& host, const std::string& name);
   void Accept();
@@ -73,7 +73,7 @@ class Server : public ViewerServer {
 
   ServerCore core_;
   boost::asio::ip::tcp::acceptor acceptor_{core_.io};
-  boost::asio::steady_timer rest_{core_.io};  // after connections could not be taken
+  boost::asio::steady_timer rest_{core_.io};  // delays accepting after a failure
   std::unique_ptr<TlsDoor> door_;             // null without TLS
   std::string address_, fingerprint_;
   int port_ = 0;

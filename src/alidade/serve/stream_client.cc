@@ -14,10 +14,10 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kMostHeard = 1024;  // bytes of a message: what can be asked takes 20
-constexpr int kMostAsked = 100;      // per second: a key held down repeats at 30
-// A message is sent in frames of so many bytes, so that a viewer on a slow line is asked for signs
-// of life between them, not only after the whole.
+constexpr size_t kMostHeard = 1024;  // bytes of a message; valid ones have about 20
+constexpr int kMostAsked = 100;      // messages per second; a key held down repeats at 30 Hz
+// Bytes of a WebSocket frame. With small frames the connection to a slow viewer is checked between
+// frames, not only after a whole message.
 constexpr size_t kFrameBytes = size_t{64} << 10;
 constexpr auto kBetweenWholes = std::chrono::seconds(1);
 
@@ -32,7 +32,7 @@ StreamClient::StreamClient(beast::tcp_stream stream, boost::asio::io_context& io
       viewers_(std::move(viewers)) {
   const auto patience =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(settings.patience));
-  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has timers of its own
+  beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timers
   socket_.set_option(websocket::stream_base::timeout{patience, patience, true});
   socket_.read_message_max(kMostHeard);
   socket_.write_buffer_bytes(kFrameBytes);
@@ -80,7 +80,7 @@ void StreamClient::Read() {
   });
 }
 
-// {"do":"pause"}, with spaces or without; what is nothing of this is passed over.
+// Handles {"do":"pause"} and similar commands, with or without spaces; ignores anything else.
 void StreamClient::Hear(std::string_view text) {
   std::string plain;
   std::copy_if(text.begin(), text.end(), std::back_inserter(plain),
@@ -97,7 +97,7 @@ void StreamClient::Hear(std::string_view text) {
 void StreamClient::Pump() {
   if (!open_) return;
   const bool behind = queue_->behind();
-  if (behind) Leave();  // at once: the hub need not tell what nobody keeps
+  if (behind) Leave();  // leave early, so that the hub does not send messages that are discarded
   if (sending_) return;
   if (!finishing_ && (behind || (wants_whole_ && Clock::now() - whole_at_ >= kBetweenWholes))) {
     Leave();
@@ -120,7 +120,8 @@ void StreamClient::Pump() {
 void StreamClient::Join() {
   whole_at_ = Clock::now();
   queue_->Begin();
-  // Only what is posted may hold the client for a moment: it is to end in its own thread.
+  // Only a posted handler may hold a strong reference, so that the client is destroyed in its own
+  // thread.
   joined_ = hub_.Join(
       [queue = queue_, io = &io_, client = weak_from_this()](const ClientQueue::Message& message) {
         if (!queue->Push(message)) return;

@@ -1,4 +1,5 @@
-// One viewer: what the hub tells goes to its WebSocket, what it asks goes to the hub.
+// Connection of one viewer: sends the hub's messages over its WebSocket and passes its commands to
+// the hub.
 #pragma once
 
 #include <atomic>
@@ -19,12 +20,12 @@
 
 namespace alidade {
 
-// Everything but what the hub calls happens in the one thread of the io_context.
+// Runs in the thread of the io_context, except for the callback that the hub calls.
 class StreamClient : public std::enable_shared_from_this<StreamClient> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
-  // `viewers` counts those that are connected.
+  // `viewers`: number of connected viewers, updated.
   StreamClient(boost::beast::tcp_stream stream, boost::asio::io_context& io, StreamHub& hub,
                const ServeSettings& settings, std::shared_ptr<std::atomic<int>> viewers);
   ~StreamClient();
@@ -32,12 +33,12 @@ class StreamClient : public std::enable_shared_from_this<StreamClient> {
   StreamClient& operator=(const StreamClient&) = delete;
 
   void Start(const Request& upgrade);
-  void Finish();  // sends what waits, then says good-bye
+  void Finish();  // sends queued messages, then closes gracefully
 
  private:
   void Read();
   void Hear(std::string_view text);
-  void Pump();  // sends the next message, if there is one and nothing is being sent
+  void Pump();  // sends the next message unless one is being sent
   void Join();
   void Leave();
   void Close(boost::beast::websocket::close_code code);
@@ -49,13 +50,14 @@ class StreamClient : public std::enable_shared_from_this<StreamClient> {
   boost::beast::flat_buffer heard_;
   std::shared_ptr<ClientQueue> queue_;
   std::shared_ptr<std::atomic<int>> viewers_;
-  std::optional<int> joined_;  // the hub's id for it
+  std::optional<int> joined_;  // id assigned by the hub
   ClientQueue::Message sending_;
   bool open_ = false;
   bool finishing_ = false;
   bool wants_whole_ = false;
   bool counted_ = false;
-  std::chrono::steady_clock::time_point second_{};  // in which `asked_` were heard
+  // Start of the second in which `asked_` commands arrived.
+  std::chrono::steady_clock::time_point second_{};
   std::chrono::steady_clock::time_point whole_at_{};
   int asked_ = 0;
 };

@@ -57,7 +57,7 @@ TlsCertificate MakeCertificate(const std::vector<std::string>& names) {
   for (const unsigned char byte : noise) serial = (serial << 7) ^ byte;
   Require(X509_set_version(x509.get(), 2) == 1);  // X.509 v3
   Require(ASN1_INTEGER_set_uint64(X509_get_serialNumber(x509.get()), serial >> 1) == 1);
-  Made(X509_gmtime_adj(X509_getm_notBefore(x509.get()), -kDay));  // clocks differ
+  Made(X509_gmtime_adj(X509_getm_notBefore(x509.get()), -kDay));  // tolerates differences of clocks
   Made(X509_gmtime_adj(X509_getm_notAfter(x509.get()), kDays * kDay));
   X509_NAME* name = X509_get_subject_name(x509.get());
   const auto* title = reinterpret_cast<const unsigned char*>("Alidade");

@@ -1,5 +1,6 @@
-// A certificate made on the spot: browsers give the camera to secure pages only, and a phone cannot
-// reach localhost. It says nothing of who we are; browsers ask the user once.
+// Generates a self-signed certificate. Browsers grant camera access to secure pages only, and a
+// phone cannot use localhost. The certificate does not prove the server's identity; browsers ask
+// the user once.
 #pragma once
 
 #include <string>
@@ -9,10 +10,10 @@ namespace alidade {
 
 struct TlsCertificate {
   std::string certificate, key;  // PEM
-  std::string fingerprint;       // SHA-256 of the certificate, as browsers show it: AB:CD:…
+  std::string fingerprint;  // SHA-256 of the certificate in the format browsers display: AB:CD:…
 };
 
-// Self-signed, EC P-256, for 30 days. `names`: addresses and names that we are called by. Throws
+// Self-signed, EC P-256, valid for 30 days. `names`: addresses and host names of the server. Throws
 // std::runtime_error when OpenSSL fails.
 TlsCertificate MakeCertificate(const std::vector<std::string>& names);
 

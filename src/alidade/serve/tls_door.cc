@@ -13,7 +13,7 @@ namespace alidade {
 
 namespace tls_asio = boost::asio;
 
-// One connection: two loops that read from one side and write to the other.
+// One proxied connection: two loops, each reading from one side and writing to the other.
 class TlsRelay : public std::enable_shared_from_this<TlsRelay> {
  public:
   using Tcp = tls_asio::ip::tcp;
@@ -53,7 +53,7 @@ class TlsRelay : public std::enable_shared_from_this<TlsRelay> {
   }
 
  private:
-  using Buffer = std::array<char, 16384>;  // bytes: the most of a TLS record
+  using Buffer = std::array<char, 16384>;  // bytes, the maximum size of a TLS record
 
   template <class From, class To>
   void Pass(From& from, To& to, Buffer& buffer) {
@@ -68,7 +68,7 @@ class TlsRelay : public std::enable_shared_from_this<TlsRelay> {
     });
   }
 
-  // The server has ended: the other side is told so, as TLS asks for.
+  // The server closed the connection: shut down the TLS session as the protocol requires.
   void End(bool by_server) {
     if (!by_server) return Close();
     outer_.async_shutdown([self = shared_from_this()](Error) { self->Close(); });
@@ -102,7 +102,7 @@ TlsDoor::TlsDoor(tls_asio::io_context& io, tls_asio::ip::tcp::acceptor acceptor,
 void TlsDoor::Accept() {
   acceptor_.async_accept([this](boost::system::error_code error, TlsRelay::Tcp::socket socket) {
     if (error == tls_asio::error::operation_aborted || !acceptor_.is_open()) return;
-    if (error) {  // no descriptors, no memory: it would fail again at once
+    if (error) {  // no descriptors or memory: an immediate retry would fail again
       rest_.expires_after(std::chrono::milliseconds(100));
       rest_.async_wait([this](boost::system::error_code stopped) {
         if (!stopped) Accept();

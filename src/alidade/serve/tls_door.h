@@ -1,5 +1,6 @@
-// TLS before the plain server: connections are taken at the public address, what they say is handed
-// on to the server on a loopback port of its own, and back. HTTP and WebSockets know nothing of it.
+// TLS proxy in front of the plain server: accepts connections at the public address and forwards
+// the decrypted data to the server on a loopback port. The HTTP and WebSocket code is independent
+// of TLS.
 #pragma once
 
 #include <boost/asio/io_context.hpp>
@@ -17,8 +18,8 @@ class TlsRelay;
 
 class TlsDoor {
  public:
-  // `acceptor` listens already. At most `max_connections` at a time; a handshake takes `patience`
-  // seconds at most, for the rest the plain server sees to it that nobody stays silent.
+  // `acceptor` is already listening. At most `max_connections` connections; a handshake may take
+  // `patience` seconds. Other timeouts are enforced by the plain server.
   TlsDoor(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, int inner_port,
           const TlsCertificate& certificate, int max_connections, double patience);
   void Close();
@@ -29,7 +30,7 @@ class TlsDoor {
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::ssl::context context_;
-  boost::asio::steady_timer rest_;  // after connections could not be taken
+  boost::asio::steady_timer rest_;  // delays accepting after a failure
   std::vector<std::weak_ptr<TlsRelay>> relays_;
   const int inner_port_, max_connections_;
   const double patience_;

@@ -1,5 +1,5 @@
-// Serves the viewer's page and the stream of a run, live or recorded, to browsers. What does it is
-// a module of its own (serve_module.h), loaded when it is first asked for.
+// Serves the viewer's page and a live or recorded stream to web browsers. The implementation is a
+// module (serve_module.h), loaded on first use.
 #pragma once
 
 #include <cstddef>
@@ -32,31 +32,31 @@ struct ServeSettings {
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };
 
-// Ends when destroyed, within 2 seconds, in which viewers are sent what waits for them.
+// Stops on destruction, within 2 seconds, in which queued messages are sent.
 class ViewerServer {
  public:
   virtual ~ViewerServer() = default;
-  // What to open: http://127.0.0.1:8090/, with ?token=… when one is needed.
+  // URL to open: http://127.0.0.1:8090/, with ?token=… if required.
   virtual const std::string& address() const = 0;
   virtual int port() const = 0;
-  virtual int viewers() const = 0;    // who are connected to the live stream now
-  virtual bool has_page() const = 0;  // false: built without Node.js, a plain page says so
-  // SHA-256 of the certificate, as browsers show it; empty without TLS.
+  virtual int viewers() const = 0;    // number of viewers connected to the live stream
+  virtual bool has_page() const = 0;  // false: built without Node.js; a plain page says so
+  // SHA-256 of the certificate as browsers display it; empty without TLS.
   virtual const std::string& fingerprint() const = 0;
 };
 
-// Live when there is a `hub`, which must outlive the server; else the recorded stream in the file
-// `replay_path`. Throws Error when it cannot be: the module is missing, the port is in use, the
-// file cannot be read. Returns once connections are taken.
+// Serves the live stream of `hub`, which must outlive the server; without a hub the recorded stream
+// in the file `replay_path`. Throws Error when the module is missing, the port is in use, or the
+// file cannot be read. Returns once the server accepts connections.
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
                                           const std::string& replay_path, const std::string& title);
 
-// The page for phones. `core_folder`: where the core as WebAssembly is (scripts/wasm/build:
-// build-wasm); empty: nowhere. `frames`, which must outlive the server: who works on pictures that
-// pages send; null: nobody does.
+// Serves the phone page. `core_folder`: folder of the WebAssembly core (scripts/wasm/build: build-wasm);
+// empty: none. `frames`: processes images that pages send, must outlive the server; null: not
+// supported.
 std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
                                              const std::string& core_folder, FrameHost* frames);
-// Which variants of the core are in a folder: "single", "threads".
+// true when `core_folder` contains the variant ("single" or "threads") of the core.
 bool HasCore(const std::string& core_folder, const std::string& variant);
 
 }  // namespace alidade

@@ -1,5 +1,5 @@
-// Numbers of the stream as bytes and back (stream.fbs says what they mean). Little-endian, as all
-// machines are that this is compiled for.
+// Packs the values of the stream into bytes and unpacks them (stream.fbs defines the encodings).
+// Little-endian, as all supported machines are.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,10 @@
 namespace alidade {
 
 stream::Pose PackPose(const Se3& pose);
-Se3 UnpackPose(const stream::Pose& pose);  // the quaternion made unit again
+Se3 UnpackPose(const stream::Pose& pose);  // normalizes the quaternion
 
-// A place in the picture: pixel = value * size / 65536 - 0.5, within it.
+// Position in the image along an axis of `size` pixels, clamped to it: pixel = value * size / 65536
+// - 0.5.
 uint16_t PackPlace(double pixel, int size);
 double UnpackPlace(uint16_t value, int size);
 
@@ -34,12 +35,12 @@ struct PackedCloud {
 };
 struct CloudPoint {
   double x = 0, y = 0;       // undistorted pixel
-  double inverse_depth = 0;  // per unit, with lengths as if the keyframe's scale were 1
+  double inverse_depth = 0;  // per unit, with lengths scaled as if the keyframe's scale were 1
   uint8_t red = 0, green = 0, blue = 0;
 };
-// Inverse depth is kept on a logarithmic scale of 65,536 steps from the least to the most there is:
-// of a range of 1 to 1000 a step is 1e-4 of the depth, where sigma is 1e-3 at best. Of more than
-// `most_points` every n-th.
+// Packs inverse depth logarithmically into 65536 steps from the smallest to the largest value. For
+// a range of 1 to 1000 a step is 1e-4 of the depth; the standard deviation is at least 1e-3.
+// Subsamples evenly to `most_points`.
 PackedCloud PackCloud(const DepthMap& depth, int most_points);
 // `width`, `height`: the camera's.
 CloudPoint UnpackPoint(const uint8_t* bytes, float least, float most, int width, int height);

@@ -55,7 +55,7 @@ std::string EncodeEvent(stream::EventKind kind, int number, double time, const s
                 stream::Body::Event);
 }
 
-// What is left out as moving, as closed polygons.
+// Outlines of the moving parts of the image as closed polygons.
 fb::Offset<fb::Vector<fb::Offset<stream::Outline>>> EncodeOutlines(fb::FlatBufferBuilder& builder,
                                                                    const cv::Mat& mask,
                                                                    double tolerance) {
@@ -83,24 +83,24 @@ std::string Words(TrackState state, const std::string& reason) {
 
 }  // namespace
 
-// Where frames were, by what they hang on.
+// Poses of past frames, relative to keyframes.
 struct StreamEncoder::Path {
   struct Entry {
     int number = 0;
-    TrackState state = TrackState::kInitialising;
+    TrackState state = TrackState::kInitializing;
     KeyFrameId reference;
     double time = 0;
     Se3 T_reference_camera;
   };
   std::vector<Entry> entries;
-  std::map<KeyFrameId, std::vector<size_t>> of;  // entries, by reference
+  std::map<KeyFrameId, std::vector<size_t>> of;  // indices of entries, by reference
 
   void Add(const Entry& entry, size_t most) {
     if (entries.size() >= most) Thin();
     if (entry.reference.valid()) of[entry.reference].push_back(entries.size());
     entries.push_back(entry);
   }
-  // Every other one of the older half goes.
+  // Removes every second entry of the older half.
   void Thin() {
     size_t kept = 0;
     for (size_t i = 0; i < entries.size(); ++i) {
@@ -144,7 +144,7 @@ std::string StreamEncoder::Hello() const {
   fb::FlatBufferBuilder builder;
   const Camera& c = source_.camera;
   const std::vector<double> distortion(c.distortion.begin(), c.distortion.end());
-  std::vector<double> turn;  // row by row
+  std::vector<double> turn;  // row-major
   if (!source_.R_camera_rectified.isIdentity(0)) {
     for (int i = 0; i < 9; ++i) turn.push_back(source_.R_camera_rectified(i / 3, i % 3));
   }
@@ -222,7 +222,7 @@ void StreamEncoder::TellMap(const MapSnapshot& map, int number, double time,
 
 void StreamEncoder::TellState(const StreamFrame& frame, std::vector<std::string>& messages) {
   const TrackState state = frame.result.state;
-  const std::string reason = Words(state, frame.result.reason);
+  const std::string reason = Words(state, frame.result.reason());
   const auto event = [&](stream::EventKind kind, const std::string& text) {
     messages.push_back(EncodeEvent(kind, frame.number, frame.time, text));
     events_.push_back(messages.back());
@@ -265,7 +265,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   path_->Add(entry, static_cast<size_t>(settings_.path_frames));
 
   fb::FlatBufferBuilder builder(65536);
-  const auto reason = builder.CreateString(result.reason);
+  const auto reason = builder.CreateString(result.reason());
   const auto cut = builder.CreateString(result.cut);
   const auto ms = builder.CreateVector(frame.ms.data(), frame.ms.size());
   std::vector<uint8_t> features;
@@ -291,7 +291,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   }
   const MapSnapshot& map = told_.snapshot();
   const stream::Pose beside = PackPose(entry.T_reference_camera);
-  const stream::Pose live = PackPose(result.T_world_camera);
+  const stream::Pose live = PackPose(result.predicted.value_or(result.T_world_camera));
   stream::FrameBuilder made(builder);
   made.add_number(frame.number);
   made.add_time(frame.time);
@@ -305,7 +305,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
     made.add_t_reference_camera(&beside);
   }
   if (result.state == TrackState::kTracking || result.predicted) made.add_t_world_camera(&live);
-  made.add_predicted(result.predicted);
+  made.add_predicted(result.predicted.has_value());
   made.add_keyframes(static_cast<uint32_t>(map.keyframe_count()));
   made.add_landmarks(static_cast<uint32_t>(map.landmark_count()));
   made.add_matches(static_cast<uint32_t>(result.matches));

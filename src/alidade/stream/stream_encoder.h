@@ -1,5 +1,5 @@
-// The stream's one encoder: shown each frame's result and the map, it gives messages (stream.fbs).
-// What it is not shown it does not know; it changes nothing. One thread at a time.
+// Encodes each frame's result and the map as messages (stream.fbs). Has no effect on the SLAM
+// system. Use from one thread at a time.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ struct StreamTruth {
   Se3 T_world_camera;
 };
 
-// What is streamed.
+// Description of the run, sent in Hello.
 struct StreamSource {
   std::string program, source, sensor;  // "alidade 0.1.0"; as typed; "mono", "stereo" or "rgbd"
   std::string unit;                     // "m" or "map units"
   int frames = -1;                      // of the recording; -1: unknown
-  bool live = false;                    // a camera
+  bool live = false;                    // a live camera
   Camera camera;
   std::vector<StreamTruth> truth;                                    // empty: unknown
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
@@ -35,28 +35,27 @@ struct StreamPlayback {
 
 class StreamEncoder {
  public:
-  // Throws Error (usage) on settings that cannot be.
+  // Throws Error (usage) for invalid settings.
   explicit StreamEncoder(StreamSource source, const StreamSettings& settings = {});
   ~StreamEncoder();
   StreamEncoder(const StreamEncoder&) = delete;
   StreamEncoder& operator=(const StreamEncoder&) = delete;
 
-  // Known later than the rest: to be told by another Hello().
+  // For ground truth that becomes known later; takes effect with the next Hello().
   void SetTruth(std::vector<StreamTruth> truth) { source_.truth = std::move(truth); }
 
-  // Each a message.
+  // Each returns one message.
   std::string Hello() const;
   std::string Playback(const StreamPlayback& playback) const;
 
-  // The messages of one more frame, in order: another Hello() when its camera is another, what the
-  // map has other than before, events, the frame. Frames may be left out, the next one's messages
-  // make up for them.
+  // Messages for one more frame, in order: a Hello if the camera changed, the map's changes,
+  // events, the frame. Frames may be skipped; the messages of the next one include their changes.
   std::vector<std::string> Add(const StreamFrame& frame);
-  // When nothing will follow: the map as it was finished, and the camera (as StreamFrame's).
+  // Messages at the end of the run: the final map, and the camera as in StreamFrame.
   std::vector<std::string> End(const MapSnapshot& map, const Camera& camera = {});
 
-  // For those who join now: hello and all that was told, as one map change that begins anew. What
-  // Add() gives next goes on from it.
+  // Messages for a viewer that joins now: hello and the whole state, as one map change that
+  // replaces everything. Later messages of Add() continue from there.
   std::vector<std::string> Whole() const;
 
  private:
@@ -73,11 +72,11 @@ class StreamEncoder {
   ToldMap told_;
   std::unique_ptr<Path> path_;
   std::optional<TrackState> state_;
-  std::string reason_;  // why there was no pose, told last
+  std::string reason_;  // last reason for a missing pose that was sent
   std::string warning_;
-  bool tracked_ = false;             // ever
-  std::vector<std::string> events_;  // so far, for those who join late
-  uint32_t maps_ = 0;                // as told
+  bool tracked_ = false;             // true once any frame was tracked
+  std::vector<std::string> events_;  // so far, for viewers that join later
+  uint32_t maps_ = 0;                // number of maps, as last sent
   int last_number_ = 0;
   double last_time_ = 0;
 };

@@ -5,7 +5,7 @@
 namespace alidade {
 namespace {
 
-// What each stage took since `before`; -1 where it has not run.
+// Processing time of each stage since `before`; -1 for a stage that did not run.
 StreamMilliseconds MillisecondsSince(const LatestTimes& before, const LatestTimes& now) {
   const auto of = [](const SampleLog::Reading& then, const SampleLog::Reading& last) {
     return last.number > then.number ? static_cast<float>(last.value) : -1.f;

@@ -1,4 +1,4 @@
-// One frame as it is streamed, and how it comes from a system.
+// The data streamed for one frame, and how to collect it from a Slam.
 #pragma once
 
 #include <array>
@@ -11,43 +11,42 @@
 
 namespace ALIDADE_API alidade {
 
-// A picture as its carrier coded it; empty: none.
+// An encoded image; empty: none.
 struct StreamPicture {
   int width = 0, height = 0;
   std::string type, bytes;  // "image/jpeg"
 };
 
-// Milliseconds of a frame, in this order: frame, extract, track, map, loop, semidense, detect,
-// dynamics; below 0: not run.
+// Milliseconds per frame, in this order: frame, extract, track, map, loop, semidense, detect,
+// dynamics; negative: did not run.
 using StreamMilliseconds = std::array<float, 8>;
 
-// What a detector found, in pixels of the camera's picture, from edge to edge: the first one covers
-// 0 to 1.
+// A detection in pixels of the camera's image, from edge to edge: the first pixel covers 0 to 1.
 struct StreamBox {
   cv::Rect2f box;
   float score = 0;  // 0…1
   std::string label;
 };
 
-// One frame as the system left it.
+// One frame after it was processed.
 struct StreamFrame {
-  int number = 0;   // of the recording
+  int number = 0;   // in the recording
   double time = 0;  // seconds
   TrackResult result;
-  FramePose pose;  // of Slam::Trajectory(): what the frame hangs on
+  FramePose pose;  // from Slam::Trajectory(): the pose relative to a keyframe
   StreamMilliseconds ms{-1, -1, -1, -1, -1, -1, -1, -1};
   std::vector<FeatureUse> features;
-  cv::Mat mover_mask;  // CV_8U, 255 where left out; empty: nothing
+  cv::Mat mover_mask;  // CV_8U, 255 at moving parts; empty: none
   std::vector<StreamBox> detections;
-  double detection_age = -1;  // seconds since the frame they are of; below 0: no answer so far
+  double detection_age = -1;  // seconds since the frame of the detections; negative: no result yet
   StreamPicture picture;
-  MapSnapshot map;  // taken after it
-  Camera camera;    // as it is known by then; of no size: as before
+  MapSnapshot map;  // snapshot after the frame
+  Camera camera;    // current estimate; width 0: unchanged
 };
 
-// The frame `slam` tracked last, without a picture: `number` and `time` are the recording's,
-// `result` what Track() returned. `latest`: what Slam::Latest() said after the frame before ({} at
-// first); takes what it says now.
+// Collects the data of the frame `slam` tracked last, without an image. `number` and `time` are
+// those of the recording, `result` is what Track() returned. `latest`: Slam::Latest() after the
+// previous frame ({} initially); updated.
 StreamFrame FrameAsLeft(const Slam& slam, int number, double time, const TrackResult& result,
                         LatestTimes& latest);
 

@@ -1,4 +1,4 @@
-// Where the messages of a stream can be had while it runs, for those who carry them somewhere.
+// Gives access to the messages of a running stream.
 #pragma once
 
 #include <functional>
@@ -13,17 +13,17 @@ class StreamHub {
  public:
   virtual ~StreamHub() = default;
 
-  // Messages are shared by all who take them, and never change.
+  // Messages are immutable and shared by all receivers.
   using Take = std::function<void(const std::shared_ptr<const std::string>& message)>;
 
-  // `take` is given all that was told so far (hello, the whole map, events, how it is played),
-  // before this returns, then every message as it comes, one call at a time, from any thread, until
-  // Leave() has returned. It must be quick: everybody waits for it. Any thread may call; `take`
-  // itself must not.
+  // Calls `take` with the state so far (hello, the whole map, events, playback) before it returns,
+  // then with every new message, one call at a time, from any thread, until Leave() has returned.
+  // `take` must be fast, because all receivers wait for it. May be called from any thread, but not
+  // from `take`.
   virtual int Join(Take take) = 0;
   virtual void Leave(int id) = 0;
 
-  // What a viewer asks of the run. Without effect where that cannot be (a camera). Any thread.
+  // Executes a viewer's request. Ignored for live cameras. Any thread.
   virtual void Control(StreamControl control) = 0;
 };
 

@@ -54,7 +54,7 @@ void TakeKeyFrame(const stream::KeyFrame& told, StreamScene& scene) {
   keyframe.loops = ListFrom(told.loops());
 }
 
-// Frames that hang on it hang on the one that is followed from now on.
+// Re-anchors frames of the culled keyframe to the keyframe that replaces it.
 void TakeCull(const stream::Culled& cull, StreamScene& scene) {
   const Se3 T_follows_culled = PoseFrom(&cull.t_follows_culled(), "what was culled");
   const double scale = ScaleFrom(cull.scale());
@@ -207,7 +207,7 @@ void TakeFrame(const stream::Frame& told, StreamScene& scene) {
 }  // namespace
 
 void StreamScene::Take(std::string_view bytes) {
-  // FlatBuffers reads numbers where they lie: they must lie as they did when they were written.
+  // FlatBuffers reads numbers in place and requires their original alignment.
   std::vector<uint64_t> aligned((bytes.size() + 7) / 8);
   std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char*>(aligned.data()));
   const auto* data = reinterpret_cast<const uint8_t*>(aligned.data());

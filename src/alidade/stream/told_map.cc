@@ -11,7 +11,7 @@ bool Same(const Se3& a, const Se3& b) { return a.R == b.R && a.t == b.t; }
 
 std::vector<KeyFrameId> EdgesOf(const KeyFrame& keyframe, int shared) {
   std::vector<KeyFrameId> edges;
-  for (const Neighbour& neighbour : keyframe.covisible) {  // most shared first
+  for (const Neighbour& neighbour : keyframe.covisible) {  // sorted by shared landmarks, descending
     if (neighbour.shared < shared) break;
     edges.push_back(neighbour.id);
   }
@@ -27,13 +27,13 @@ void SortUnique(std::vector<Id>& ids) {
 
 }  // namespace
 
-// A culled keyframe's place beside the living one it follows. The map keeps it for as long as
-// frames hang on it (MapState::culled); where it has gone already, what was told last says it.
+// Pose of a culled keyframe relative to the keyframe that replaces it. The map keeps it while
+// frames refer to it (MapState::culled); afterwards it follows from what was sent last.
 ToldCull ToldMap::CullOf(KeyFrameId id, const MapSnapshot& map) const {
-  ToldCull cull{id, id, 1, {}};  // T_follows_culled, followed up step by step
+  ToldCull cull{id, id, 1, {}};  // T_follows_culled is composed step by step
   while (!map.Find(cull.follows)) {
     Se3 T_parent_gone;
-    double scale = 1;  // of the one that is gone, relative to its parent's
+    double scale = 1;  // of the removed keyframe, relative to its parent's scale
     KeyFrameId parent;
     if (const CulledKeyFrame* gone = map.state().culled.At(cull.follows.value)) {
       parent = gone->parent;
@@ -110,7 +110,7 @@ MapNews ToldMap::Update(const MapSnapshot& map) {
                                     gone.push_back(before->id);
                                   }
                                 });
-  // First of all: by places that were told together.
+  // First, because it uses the poses that were sent last.
   for (KeyFrameId id : gone) news.culled.push_back(CullOf(id, map));
   for (const KeyFrame* keyframe : changed) UpdateKeyFrame(*keyframe, news);
 
@@ -123,7 +123,8 @@ MapNews ToldMap::Update(const MapSnapshot& map) {
                                     news.removed_landmarks.push_back(before->id);
                                   }
                                 });
-  // Landmarks that stood still while their keyframe moved have moved against it.
+  // A landmark that kept its position while its keyframe moved has changed relative to the
+  // keyframe.
   const auto check = [&](const std::vector<KeyFrameId>& ids) {
     for (KeyFrameId id : ids) {
       for (LandmarkId seen : map.Find(id)->landmarks) {

@@ -1,5 +1,5 @@
-// What a receiver of the stream knows of the map, and what must be told to bring it up to a newer
-// snapshot. Finding that costs what has changed: snapshots share what has not (map/id_table.h).
+// The map as known to the receivers of the stream, and its difference to a newer snapshot. The cost
+// is proportional to the changes, because snapshots share unchanged nodes (map/id_table.h).
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace alidade {
 
-// A landmark in its keyframe's camera, with lengths as if the keyframe's scale were 1.
+// In the camera of its keyframe, with lengths scaled as if the keyframe's scale were 1.
 struct ToldLandmark {
   KeyFrameId keyframe;
   Eigen::Vector3f p = Eigen::Vector3f::Zero();
@@ -29,25 +29,25 @@ struct ToldKeyFrame {
   std::shared_ptr<const DepthMap> depth;
 };
 
-// A keyframe that is no more: p(follows) = T_follows_culled * (scale * p(culled)), lengths as if
-// the scale of `follows` were 1. None: its map is gone.
+// A removed keyframe: p(follows) = T_follows_culled * (scale * p(culled)), with lengths scaled as
+// if the scale of `follows` were 1. `follows` invalid: its map was removed.
 struct ToldCull {
   KeyFrameId id, follows;
   double scale = 1;
   Se3 T_follows_culled;
 };
 
-// By id, in order of it.
+// All lists are sorted by id.
 struct MapNews {
-  std::vector<KeyFrameId> keyframes;  // new, or with other links, parent or map
-  std::vector<KeyFrameId> moved;      // others that are elsewhere
-  std::vector<KeyFrameId> depths;     // with other semi-dense depth
+  std::vector<KeyFrameId> keyframes;  // new, or with changed links, parent or map
+  std::vector<KeyFrameId> moved;      // others whose pose changed
+  std::vector<KeyFrameId> depths;     // with changed semi-dense depth
   std::vector<LandmarkId> landmarks;  // new or moved
   std::vector<LandmarkId> removed_landmarks;
   std::vector<ToldCull> culled;
-  // What is worth an event.
+  // Reported as events.
   std::vector<std::pair<KeyFrameId, KeyFrameId>> loops;  // new ones, older keyframe first
-  std::vector<std::pair<MapId, MapId>> merged;           // map, and the one it became part of
+  std::vector<std::pair<MapId, MapId>> merged;           // a map, and the map it became part of
   std::vector<MapId> begun, given_up;
   bool empty() const {
     return keyframes.empty() && moved.empty() && depths.empty() && landmarks.empty() &&
@@ -59,7 +59,7 @@ class ToldMap {
  public:
   explicit ToldMap(const StreamSettings& settings) : settings_(settings) {}
 
-  // Takes over what `map` has other than what was told; not older than the one before.
+  // Adopts `map`, which must not be older than the previous one, and returns the difference.
   MapNews Update(const MapSnapshot& map);
 
   const std::unordered_map<uint32_t, ToldKeyFrame>& keyframes() const { return keyframes_; }
@@ -72,7 +72,7 @@ class ToldMap {
   ToldCull CullOf(KeyFrameId id, const MapSnapshot& map) const;
 
   StreamSettings settings_;
-  MapSnapshot snapshot_;  // that was told
+  MapSnapshot snapshot_;  // the snapshot sent last
   std::unordered_map<uint32_t, ToldKeyFrame> keyframes_;
   std::unordered_map<uint32_t, ToldLandmark> landmarks_;
 };

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// A frame in which x is ahead, y to the left and z up.
+// Frame with x ahead, y to the left, z up.
 struct Stance {
   Vector3d foot;
   double c, s;
@@ -24,7 +24,7 @@ struct Stance {
   }
 };
 
-// A ball stretched to radii along the stance's axes, leaning ahead by `lean` radians.
+// Ellipsoid with radii along the axes of the stance.
 Quadric Blob(const Stance& stance, const Vector3d& centre, const Vector3d& radii, int texture) {
   Quadric ball;
   ball.origin = ball.centre = centre;
@@ -38,8 +38,8 @@ Quadric Blob(const Stance& stance, const Vector3d& centre, const Vector3d& radii
   return ball;
 }
 
-// A limb or trunk from `low` to `high`; its section is an ellipse with half-axes `deep` (ahead) and
-// `wide` at `low`.
+// Limb or trunk from `low` to `high`. Elliptic cross section with half-axes `deep` (ahead) and
+// `wide` at `low`, scaled by `top` at `high`.
 Quadric Limb(const Stance& stance, const Vector3d& low, const Vector3d& high, double deep,
              double wide, double top, int texture) {
   Quadric limb;
@@ -47,8 +47,8 @@ Quadric Limb(const Stance& stance, const Vector3d& low, const Vector3d& high, do
   limb.origin = low;
   const Vector3d axis = high - low;
   const Vector3d left(-stance.s, stance.c, 0);
-  // Columns span the limb: ahead, left, axis. Not quite orthogonal when it swings sideways, which
-  // does no harm.
+  // Columns span the limb: ahead, left, axis. Slightly non-orthogonal when it swings sideways,
+  // which is harmless.
   Eigen::Matrix3d to_world;
   to_world.col(0) = left.cross(axis).normalized() * deep;
   to_world.col(1) = left * wide;
@@ -77,7 +77,7 @@ Actor::Actor(ActorLooks looks, Walk walk, double start, double speed, double wan
 }
 
 double Actor::Along(double time) const {
-  // Now faster, now slower, nearly standing still once in eleven seconds.
+  // Varies the speed with a period of 11 s, almost stopping once per period.
   const double rhythm = 2 * kPi / 11;
   return start_ + speed_ * (time + 0.9 / rhythm * std::sin(rhythm * time + wander_phase_));
 }
@@ -91,7 +91,7 @@ Vector2d Actor::At(double along) const {
 }
 
 Vector2d Actor::Position(double time) const {
-  // Corners are rounded: the mean of the way 0.35 m behind to 0.35 m ahead.
+  // Rounds the corners: mean over the path from 0.35 m behind to 0.35 m ahead.
   const double along = Along(time);
   Vector2d sum = Vector2d::Zero();
   for (int i = -3; i <= 3; ++i) sum += At(along + 0.35 * i / 3);
@@ -114,10 +114,8 @@ std::vector<Quadric> Actor::Body(double time) const {
   for (const int side : {-1, 1}) {
     const double swing = 0.42 * std::sin(step + (side > 0 ? kPi : 0));
     const double bend =
-        0.25 +
-        0.35 * std::max(0.0,
-                        std::cos(step +
-                                 (side > 0 ? kPi : 0)));  // of the knee, when the leg swings ahead
+        // Bend of the knee while the leg swings ahead.
+        0.25 + 0.35 * std::max(0.0, std::cos(step + (side > 0 ? kPi : 0)));
     const double thigh = 0.245 * h, shin = 0.235 * h;
     const Vector3d joint = stance.At(0, side * 0.052 * h, hip);
     const Vector3d knee =
@@ -185,7 +183,8 @@ std::vector<Actor> CastActors(const std::vector<ActorLooks>& looks, const std::v
   Random random(seed, 31);
   std::vector<Actor> cast;
   for (size_t i = 0; i < looks.size(); ++i) {
-    // Of some thirty ways to walk, the one that leaves the camera and the others most room.
+    // Best of 30 random walks: the one that keeps the largest distance to the camera and the other
+    // actors.
     std::vector<Actor> best;
     double most_room = -1;
     for (int attempt = 0; attempt < 30; ++attempt) {
@@ -201,7 +200,7 @@ std::vector<Actor> CastActors(const std::vector<ActorLooks>& looks, const std::v
         for (const Actor& other : cast)
           room = std::min(room, 1.5 * (p - other.Position(time)).norm());
       }
-      room = std::min(room, 1.2);  // more than this is as good as this
+      room = std::min(room, 1.2);  // a larger distance is not better
       if (room > most_room) {
         most_room = room;
         best = {actor};

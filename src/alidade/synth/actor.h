@@ -1,4 +1,4 @@
-// People made of rounded parts, who walk about.
+// Walking people composed of quadrics.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,30 +11,30 @@
 namespace alidade {
 
 struct ActorLooks {
-  double height = 1.75;                                                     // metres
+  double height = 1.75;                                                     // meters
   double girth = 1;                                                         // factor
-  int head = 0, shirt = 0, sleeves = 0, trousers = 0, shoes = 0, skin = 0;  // textures
+  int head = 0, shirt = 0, sleeves = 0, trousers = 0, shoes = 0, skin = 0;  // texture indices
 };
 
 class Actor {
  public:
   Actor(ActorLooks looks, Walk walk, double start, double speed, double wander_phase);
-  Eigen::Vector2d Position(double time) const;  // on the floor, metres
+  Eigen::Vector2d Position(double time) const;  // on the floor, meters; time in seconds
   std::vector<Quadric> Body(double time) const;
 
  private:
-  double Along(double time) const;  // metres walked since the walk's first corner
+  double Along(double time) const;  // meters walked since the first corner of the walk
   Eigen::Vector2d At(double along) const;
 
   ActorLooks looks_;
   Walk walk_;
-  std::vector<double> until_;  // metres at each corner
+  std::vector<double> until_;  // path length at each corner, meters
   double start_, speed_, wander_phase_;
 };
 
 ActorLooks DressActor(SceneBuilder& builder, Random& random);
 
-// `count` people on the walks, started so that they keep out of the camera's way for `seconds`.
+// `count` people on the walks, placed so that they keep away from the camera for `seconds`.
 std::vector<Actor> CastActors(const std::vector<ActorLooks>& looks, const std::vector<Walk>& walks,
                               const CameraPath& path, double seconds, uint64_t seed);
 

@@ -24,10 +24,11 @@ CameraPath::CameraPath(std::vector<PathKnot> knots, double period, int turns,
   for (int axis = 0; axis < 6; ++axis) {
     const double scale = axis < 3 ? shake.position : shake.rotation;
     for (size_t i = 0; i < waves_[axis].size(); ++i) {
-      // Evenly spread in log frequency; slow sway is wide, quick tremble small.
+      // Evenly spaced in log frequency.
       const double octave =
           (static_cast<double>(i) + random.Uniform()) / static_cast<double>(waves_[axis].size());
-      // Eight times as quick in all. Not pow(8, …), which some compilers make this of, some not.
+      // Frequencies span a factor of 8. exp2 instead of pow(8, …), which some compilers replace by
+      // it.
       const double hertz = (1 / shake.seconds) * std::exp2(3 * (octave - 1));
       waves_[axis][i] = {scale * std::sqrt(2.0 / static_cast<double>(waves_[axis].size())),
                          2 * std::numbers::pi * hertz, random.Uniform(0, 2 * std::numbers::pi)};
@@ -60,7 +61,7 @@ PathKnot CameraPath::Spline(double time) const {
   return at;
 }
 
-// Speed grows from 0 to 1 within a second, as 3 t² - 2 t³, whose integral is t³ - t⁴/2.
+// Speed rises from 0 to 1 within a second as 3 t² - 2 t³; its integral is t³ - t⁴/2.
 double CameraPath::Walked(double time) const {
   if (timing_.turn_first == 0) return timing_.speed * time;
   const double since = std::max(0.0, time - timing_.turn_first);
@@ -74,7 +75,7 @@ Eigen::Vector3d CameraPath::UnshakenPosition(double time) const {
 
 Se3 CameraPath::At(double time) const {
   PathKnot knot = Spline(Walked(time));
-  double steady = 0;  // 1: the hand does not shift
+  double steady = 0;  // 1: no translation by shake
   if (timing_.turn_first > 0 && time < timing_.turn_first + 1) {
     const double since = std::max(0.0, time - timing_.turn_first);
     steady = 1 - since * since * (3 - 2 * since);

@@ -1,4 +1,4 @@
-// The way of a hand-held camera: a smooth closed curve, and the shake of hands and steps on top.
+// Trajectory of a hand-held camera: a smooth closed curve plus the shake of hands and steps.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,10 +9,10 @@
 
 namespace alidade {
 
-// Where the camera is and looks. Yaw is about the vertical from the world's x axis, pitch is
-// positive upwards.
+// Camera position and viewing direction. Yaw is the angle from the world's x axis about the
+// vertical; pitch is positive upwards.
 struct PathKnot {
-  Eigen::Vector3d position;   // metres
+  Eigen::Vector3d position;   // meters
   double yaw = 0, pitch = 0;  // radians
 };
 
@@ -22,23 +22,22 @@ struct ShakeSettings {
   double seconds = 0.6;     // shortest period of the turning; hands are slower than 2 Hz or so
 };
 
-// How the way is gone along.
+// Speed along the path.
 struct PathTiming {
-  double speed = 1;  // times that of the knots; hands shake as ever
-  // Seconds that are spent turning on the spot where the way begins, about the camera's centre and
-  // back, before it is walked; it takes a second more to be at full speed.
+  double speed = 1;  // relative to that of the knots; the shake is not scaled
+  // Seconds of pure rotation at the start of the path, to `turn_angle` and back, before the camera
+  // moves; it reaches full speed one second later.
   double turn_first = 0;
-  double turn_angle = 1.2;  // radians, how far
+  double turn_angle = 1.2;  // radians
 };
 
-// Uniform cubic B-spline through the neighbourhood of its knots (position and both angles have
-// continuous accelerations), closed: after the last knot comes the first. `turns`: whole turns of
-// yaw on the way round.
+// Closed uniform cubic B-spline (continuous acceleration of position and angles) with the knots as
+// control points. `turns`: full turns of yaw per period.
 class CameraPath {
  public:
   CameraPath(std::vector<PathKnot> knots, double period, int turns, const ShakeSettings& shake,
              uint64_t seed, const PathTiming& timing = {});
-  Se3 At(double time) const;  // T_world_camera; any time, seconds
+  Se3 At(double time) const;  // T_world_camera at any time, seconds
   double period() const { return period_; }
   Eigen::Vector3d UnshakenPosition(double time) const;
 
@@ -48,7 +47,7 @@ class CameraPath {
   };
   PathKnot Spline(double time) const;
   double Shake(int axis, double time) const;
-  double Walked(double time) const;  // seconds along the way
+  double Walked(double time) const;  // seconds along the path
 
   std::vector<PathKnot> knots_;
   double period_;
@@ -57,8 +56,8 @@ class CameraPath {
   std::array<std::array<Wave, 6>, 6> waves_;  // 3 of position, 3 of rotation
 };
 
-// Rotation of a camera (x right, y down, z forward) that looks along yaw and pitch, z of the world
-// up.
+// Rotation R_world_camera of a camera (x right, y down, z forward) that looks along yaw and pitch;
+// the world's z is up.
 Eigen::Matrix3d LookAlong(double yaw, double pitch);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// What the painters of things share: choices, print, shapes and frames.
+// Drawing primitives shared by the painters: random choices, text, shapes and frames.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -7,19 +7,19 @@
 
 namespace alidade {
 
-// Draws of one call are in a fixed order only where they stand in statements or braces of their
-// own: the order of a call's arguments is the compiler's, and a recording must be the same with
-// every compiler.
-int Pick(Random& random, int low, int high);  // both included
+// Random draws must be in separate statements or in braces: the evaluation order of function
+// arguments depends on the compiler, and a recording must be the same with every compiler.
+int Pick(Random& random, int low, int high);  // both bounds inclusive
 cv::Point PickPoint(Random& random, cv::Size size);
-double Contrasting(Random& random, double other,
-                   double apart = 50);  // a tone at least `apart` from `other`
+// A gray level that differs from `other` by at least `apart`.
+double Contrasting(Random& random, double other, double apart = 50);
 
 cv::Mat Blank(cv::Size size, double tone);
 
-// Print that fills a box: a line is `line` texels high.
+// Text that fills a box; `line`: line height, texels.
 void WriteText(Random& random, cv::Mat& picture, cv::Rect box, double line, double tone);
-void DrawShape(Random& random, cv::Mat& picture, double smallest, double largest);  // radii, texels
+// `smallest`, `largest`: radius, texels.
+void DrawShape(Random& random, cv::Mat& picture, double smallest, double largest);
 void DrawFrame(cv::Mat& picture, int width, double tone);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// The pieces furniture is made of, and the shell of a room.
+// Primitives of furniture, and walls, floors and ceilings.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -132,7 +132,7 @@ void Furnisher::Window(const Place& wall, double x) {
 
 namespace {
 
-constexpr double kThickness = 0.07;  // metres: half of what is between two rooms
+constexpr double kThickness = 0.07;  // meters: half of the thickness of a wall between two rooms
 constexpr double kOpeningHeight = 2.1;
 
 void AddPanel(Furnisher& furnish, const Place& wall, double from, double to, double low,
@@ -155,7 +155,7 @@ void AddPanel(Furnisher& furnish, const Place& wall, double from, double to, dou
 }  // namespace
 
 Place AtWall(const Vector2d& a, const Vector2d& b, double along, double off) {
-  // The wall seen from the room: a is on the right when the room lies to the left of a → b.
+  // As seen from the room: a is on the right, because the room is to the left of a → b.
   const Vector2d direction = (b - a).normalized();
   const double yaw = std::atan2(-direction.y(), -direction.x());
   const Vector2d inward(-direction.y(), direction.x());
@@ -166,14 +166,14 @@ Place AtWall(const Vector2d& a, const Vector2d& b, double along, double off) {
 void AddWall(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double height,
              const WallFinish& finish, const std::vector<Opening>& openings) {
   const double length = (b - a).norm();
-  const Place wall = AtWall(a, b, length);  // x runs from b back to a
+  const Place wall = AtWall(a, b, length);  // x runs from b to a
   double done = 0;
   const int jamb = furnish.builder().Tone(150);
   for (auto opening = openings.rbegin(); opening != openings.rend(); ++opening) {
     const double from = length - opening->to, to = length - opening->from;
     AddPanel(furnish, wall, done, from, 0, height, finish);
     AddPanel(furnish, wall, from, to, kOpeningHeight, height, finish);
-    // Jambs and lintel reach through this room's half of the wall.
+    // Jambs and lintel cover this room's half of the wall's thickness.
     const double w = to - from;
     furnish.Box(wall, {from - 0.01, 0, 0}, {0.01, kThickness, kOpeningHeight},
                 {-1, -1, -1, jamb, -1, -1});

@@ -204,7 +204,7 @@ void Furnisher::Pages(const Place& place, int count) {
 }
 
 void Furnisher::Clutter(const Place& place, double width, double depth, int count) {
-  // One thing to a cell, so that they don't stand in each other.
+  // At most one object per cell, so that they do not intersect.
   const int columns = std::max(1, static_cast<int>(width / 0.28)),
             rows = std::max(1, static_cast<int>(depth / 0.28));
   const std::vector<int> cells = random().Sample(std::min(count, columns * rows), columns * rows);

@@ -12,7 +12,7 @@ cv::Mat PaintHead(Random& random, cv::Size size) {
   cv::Mat1f picture(size, static_cast<float>(hair));
   const int w = size.width, h = size.height, cx = w / 2;
   picture += 12.0 * FractalNoise(random, size, w / 60.0, h / 4.0, 3, 0.7);
-  // The face looks out of the middle: the ball's v runs from the crown to below the chin.
+  // The face is in the middle; v of the ball runs from the crown to below the chin.
   cv::ellipse(picture, {cx, h * 11 / 20}, {w * 9 / 50, h * 9 / 40}, 0, 0, 360, skin, -1,
               cv::LINE_AA);
   cv::rectangle(picture, {0, h * 31 / 40, w, h / 4}, skin * 0.9, -1);

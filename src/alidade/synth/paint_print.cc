@@ -1,4 +1,4 @@
-// What is printed, written or drawn.
+// Printed, written and drawn textures.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -11,8 +11,8 @@
 namespace alidade {
 namespace {
 
-// Hills under a sky: what photographs on walls show. By day or night, gentle or rugged, from afar
-// or near.
+// Landscape as in a framed photograph: hills under a sky, with random brightness, ruggedness and
+// scale.
 void DrawLandscape(Random& random, cv::Mat picture) {
   const cv::Size size = picture.size();
   const double zenith = random.Uniform(60, 235), horizon = random.Uniform(120, 240);
@@ -59,18 +59,18 @@ cv::Mat PaintPoster(Random& random, cv::Size size) {
   cv::Mat picture = Blank(size, ground);
   const int w = size.width, h = size.height, side = std::min(w, h);
   switch (random.Below(4)) {
-    case 0:  // shapes over one another
+    case 0:  // overlapping shapes
       for (int i = 0; i < 16; ++i) DrawShape(random, picture, side * 0.05, side * 0.22);
       WriteText(random, picture, {w / 12, h * 3 / 4, w * 5 / 6, h / 5}, h / 14.0,
                 Contrasting(random, ground, 90));
       break;
-    case 1: {  // a photograph and a caption
+    case 1: {  // photograph with a caption
       DrawLandscape(random, picture(cv::Rect(w / 16, h / 16, w - w / 8, h * 5 / 8)));
       WriteText(random, picture, {w / 12, h * 23 / 32, w * 5 / 6, h / 5}, h / 18.0,
                 Contrasting(random, ground, 90));
       break;
     }
-    case 2: {  // text and figures, as at a conference
+    case 2: {  // text and figures, like a conference poster
       cv::rectangle(picture, {0, 0, w, h / 7}, Contrasting(random, ground), -1);
       WriteText(random, picture, {w / 20, h / 40, w * 9 / 10, h / 9}, h / 15.0, ground);
       const double ink = Contrasting(random, ground, 110);

@@ -1,4 +1,4 @@
-// What streets are lined and covered with.
+// Textures of streets.
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// One window: frame, dark glass, a bright sky in its upper part, and often a curtain.
+// A window: frame, dark glass, bright sky in the upper part, and often a curtain.
 void DrawPane(Random& random, cv::Mat& facade, const cv::Rect& box, double frame) {
   const cv::Rect inside = box & cv::Rect({0, 0}, facade.size());
   if (inside.area() <= 0) return;
@@ -28,7 +28,7 @@ void DrawPane(Random& random, cv::Mat& facade, const cv::Rect& box, double frame
   cv::rectangle(pane, {0, 0, pane.cols, pane.rows}, frame, wide);
 }
 
-// The ground floor: a door, and shop windows with something written above.
+// Ground floor: a door, and shop windows with a sign above.
 void DrawGroundFloor(Random& random, cv::Mat& facade, double density, double frame) {
   const int top = facade.rows - static_cast<int>(3.1 * density), width = facade.cols;
   const double band = random.Uniform(60, 220);
@@ -66,7 +66,7 @@ cv::Mat PaintFacade(Random& random, cv::Size size, double density, double tone) 
   const double wide = random.Uniform(0.45, 0.65) * pitch, tall = random.Uniform(0.45, 0.62) * floor;
   const int columns = std::max(1, static_cast<int>(size.width / pitch));
   const double margin = (size.width - columns * pitch) / 2;
-  // From the bottom up; the ground floor is 3.1 m high.
+  // From bottom to top; the ground floor is 3.1 m high.
   for (double foot = size.height - 3.1 * density; foot - floor > -0.3 * floor; foot -= floor) {
     for (int i = 0; i < columns; ++i) {
       const double x = margin + i * pitch + (pitch - wide) / 2;
@@ -86,7 +86,7 @@ cv::Mat PaintAsphalt(Random& random, cv::Size size, double density, double tone)
   const cv::Mat1f stones = FractalNoise(random, size, 0.06 * density, 0.06 * density, 3, 0.8);
   const cv::Mat1f wear = FractalNoise(random, size, 2 * density, 2 * density, 4, 0.6);
   cv::Mat1f picture = 9.0 * stones + 12.0 * wear + tone;
-  for (int patch = Pick(random, 1, 3); patch > 0; --patch) {  // where it was dug up
+  for (int patch = Pick(random, 1, 3); patch > 0; --patch) {  // repaired patches
     const cv::Point at = PickPoint(random, size);
     const int across =
         Pick(random, static_cast<int>(0.4 * density), static_cast<int>(1.5 * density));

@@ -11,13 +11,14 @@ cv::Mat1f Plain(cv::Size size, double tone) { return cv::Mat1f(size, static_cast
 
 cv::Rect Clip(const cv::Rect& rect, cv::Size size) { return rect & cv::Rect({0, 0}, size); }
 
-// Row before column: a call's arguments would be drawn in the compiler's order.
+// Row before column in separate statements: the order of function arguments depends on the
+// compiler.
 cv::Point PickTexel(Random& random, cv::Size size) {
   const int y = static_cast<int>(random.Below(size.height));
   return {static_cast<int>(random.Below(size.width)), y};
 }
 
-// Soft dark or light blots, a few per square metre.
+// Soft dark or light spots; `per_square_metre`: number per square meter.
 void AddStains(Random& random, cv::Mat1f& picture, double density, double per_square_metre,
                double strength) {
   const double area = picture.cols / density * (picture.rows / density);

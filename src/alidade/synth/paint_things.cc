@@ -1,4 +1,4 @@
-// Furnishings and what stands about.
+// Textures of furniture and small objects.
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>

@@ -20,7 +20,7 @@ double MeetQuadric(const Quadric& quadric, const QuadricView& view, double x, do
     if (discriminant <= 0) return 0;
     return std::max(0.0, (-b - std::sqrt(discriminant)) / a);
   }
-  // x² + y² = (1 + k z)², cut off at 0 <= z <= 1; the far side is seen through an open end.
+  // x² + y² = (1 + k z)², limited to 0 <= z <= 1; the inside is visible through an open end.
   const double k = quadric.top - 1, radius = 1 + k * q.z();
   const double a = d.x() * d.x() + d.y() * d.y() - k * k * d.z() * d.z();
   const double b = q.x() * d.x() + q.y() * d.y() - k * d.z() * radius;
@@ -54,7 +54,7 @@ QuadricHit ShadeQuadric(const Quadric& quadric, const QuadricView& view, double 
   }
   const bool inside = normal.dot(d) > 0;
   const Eigen::Vector3d n = (quadric.from_world.transpose() * normal).normalized();
-  // Light from above and a little from one side; fixed in the world, the same from every view.
+  // Light from above and slightly from one side, fixed in the world and independent of the view.
   const double facing = 0.8 + 0.14 * n.z() + 0.06 * n.x();
   hit.light = static_cast<float>(quadric.light * (inside ? 0.5 : facing));
   return hit;

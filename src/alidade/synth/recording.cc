@@ -16,9 +16,9 @@
 namespace alidade {
 namespace {
 
-constexpr double kMostGain = 4;     // of the exposure in low light
-constexpr int kBlurSamples = 7;     // pictures taken meanwhile
-constexpr double kBaseline = 0.11;  // metres
+constexpr double kMostGain = 4;     // largest exposure gain in low light
+constexpr int kBlurSamples = 7;     // images averaged during the exposure
+constexpr double kBaseline = 0.11;  // meters
 constexpr double kDepthFactor = 5000;
 
 Camera MakeCamera(const SynthSettings& settings) {
@@ -51,10 +51,10 @@ RawCamera LensOf(const SynthSettings& settings, const Camera& camera) {
   return lens;
 }
 
-// Slow drift of brightness and contrast; 1 and 0 in the mean.
+// Slow drift of brightness and contrast, with means 1 and 0.
 struct Drift {
-  double gain = 1, bias = 0;  // factor, grey levels
-  double noise = 0;           // grey levels
+  double gain = 1, bias = 0;  // factor; gray levels
+  double noise = 0;           // gray levels
 };
 Drift ExposureAt(const SynthSettings& settings, double time) {
   if (!settings.exposure) return {};
@@ -65,8 +65,8 @@ Drift ExposureAt(const SynthSettings& settings, double time) {
           9 * std::sin(0.6 * time + c), 0};
 }
 
-// How bright the picture is against daylight's, and the deviation of its noise: that of what is
-// seen grows with 1 / sqrt(light).
+// Brightness relative to daylight, and the noise: relative to the signal it grows with 1 /
+// sqrt(light).
 Drift InThisLight(const SynthSettings& settings, Drift drift) {
   const double bright = std::min(1.0, kMostGain * settings.light);
   drift.gain *= bright;
@@ -82,7 +82,7 @@ Layout LayOutFor(const SynthSettings& settings, SceneBuilder& builder) {
   return layout;
 }
 
-// Seconds by which each frame comes late, with all those before.
+// Cumulative delay of each frame, seconds.
 std::vector<double> DelaysOf(const SynthSettings& settings) {
   Random random(settings.seed, 61);
   std::vector<double> delays;
@@ -141,8 +141,7 @@ struct SynthRecording::Parts {
     return renderer.Render(shutter);
   }
 
-  // With blur: grey levels are the mean over the time the shutter is open, depth and actors those
-  // of its middle.
+  // With blur: gray levels are the mean over the exposure, depth and actors those at its middle.
   View Look(double time, const Eigen::Vector3d& p_camera_eye) const {
     View view = Capture(time, p_camera_eye);
     if (settings.blur == 0) return view;
@@ -172,7 +171,8 @@ SynthRecording::SynthRecording(SynthSettings settings) {
   if (settings.things > 0 && !layout.table)
     ThrowUsage("synth: no table for things in the scene \"" + settings.scene + "\"");
   std::vector<ActorLooks> looks;
-  Random random(settings.seed, 51);  // their own: the place is the same with and without people
+  // Separate stream: the scene is the same with and without people.
+  Random random(settings.seed, 51);
   for (int i = 0; i < settings.actors; ++i) looks.push_back(DressActor(builder, random));
   std::vector<Thing> things;
   if (settings.things > 0)

@@ -1,4 +1,4 @@
-// A recording that never was: images, depth and masks of a rendered place, with exact poses.
+// Synthetic recording: images, depth and masks of a rendered scene, with exact poses.
 #pragma once
 
 #include <memory>
@@ -13,32 +13,33 @@ namespace alidade {
 
 struct RenderedFrame {
   double time = 0;  // seconds
-  cv::Mat
-      image;  // CV_8U grey, as the camera's sensor has it: with noise, and blur etc. where asked
-  cv::Mat right;  // CV_8U, the second camera's; empty without one
-  cv::Mat depth;  // CV_16U, camera().depth_factor per metre, 0 = none: with a depth sensor's faults
-  cv::Mat depth_exact;  // CV_32F, metres along z through each pixel's centre, 0 = nothing there
-  cv::Mat mask;         // CV_8U, 255 = an actor
-  cv::Mat clean;        // CV_32F, grey levels: the image before exposure drift and noise
+  // CV_8U gray, as recorded by the sensor: with noise, and blur etc. if set.
+  cv::Mat image;
+  cv::Mat right;  // CV_8U, second camera; empty if there is none
+  // CV_16U, camera().depth_factor per meter, 0 = no reading; with the errors of a depth sensor.
+  cv::Mat depth;
+  cv::Mat depth_exact;  // CV_32F, meters along z at the pixel center, 0 = nothing
+  cv::Mat mask;         // CV_8U, 255 = actor
+  cv::Mat clean;        // CV_32F, gray levels: the image before exposure drift and noise
 };
 
 class SynthRecording {
  public:
-  // Paints and builds the scene (0.2 s to 2 s). Throws Error on settings that cannot be.
+  // Builds and paints the scene (0.2 to 2 s). Throws Error (usage) on invalid settings.
   explicit SynthRecording(SynthSettings settings);
   ~SynthRecording();
   SynthRecording(SynthRecording&&) noexcept;
   SynthRecording& operator=(SynthRecording&&) noexcept;
 
   const SynthSettings& settings() const;
-  const Camera& camera() const;  // of a fisheye: size, and focal length in its middle
-  RawCamera lens() const;        // with a fisheye's lens, too
+  const Camera& camera() const;  // for a fisheye: its size, and the focal length at its center
+  RawCamera lens() const;        // includes a fisheye lens
   int frames() const;
   double Time(int number) const;  // seconds
-  // T_world_camera, exact; when rows are taken one after another, of the middle row. The world is z
-  // up, its floor at z = 0. Any number will do: the path goes on beyond frames().
+  // T_world_camera, exact; with a rolling shutter, that of the middle row. The world's z is up, the
+  // floor is at z = 0. `number` may exceed frames(): the path continues.
   Se3 Pose(int number) const;
-  // Depends on the settings and the number only, not on threads or on what was rendered before.
+  // Depends only on the settings and `number`, not on threads or previous calls.
   RenderedFrame Render(int number) const;
 
  private:

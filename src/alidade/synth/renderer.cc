@@ -49,20 +49,20 @@ RayBounds ViewRenderer::Bounds(const cv::Rect& pixels) const {
   double left, right, top, bottom;
   cv::minMaxLoc(ray_x_(area), &left, &right);
   cv::minMaxLoc(ray_y_(area), &top, &bottom);
-  // Samples lie up to half a pixel around the rays.
+  // Samples are up to half a pixel away from the rays.
   const double half = 0.6 / std::min(camera_.fx, camera_.fy);
   return {static_cast<float>(left - half), static_cast<float>(right + half),
           static_cast<float>(top - half), static_cast<float>(bottom + half)};
 }
 
-// What is known of a picture on the way.
+// State of an image in progress.
 struct ViewRenderer::Picture {
   const Shutter& shutter;
   View view;
-  cv::Mat1i surfaces;             // what each pixel's centre meets
-  cv::Mat1f one_sample;           // grey levels there
-  std::vector<StageView> stages;  // one, or with a rolling shutter one for each band of tiles
-  std::vector<TileList> lists;    // one for each tile
+  cv::Mat1i surfaces;             // surface at each pixel's center
+  cv::Mat1f one_sample;           // gray level there
+  std::vector<StageView> stages;  // one, or for a rolling shutter one per row of tiles
+  std::vector<TileList> lists;    // one per tile
 
   const StageView& StageOf(int band) const {
     return stages[stages.size() > 1 ? static_cast<size_t>(band) : 0];
@@ -92,7 +92,7 @@ View ViewRenderer::Render(const Shutter& shutter) const {
   return picture.view;
 }
 
-// One ray through the middle of every pixel.
+// One ray through the center of every pixel.
 void ViewRenderer::CastBand(int band, Picture& picture) const {
   const StageView& stage = picture.StageOf(band);
   View& view = picture.view;
@@ -121,14 +121,13 @@ void ViewRenderer::CastBand(int band, Picture& picture) const {
 
 namespace {
 
-// Where in a pixel eight more rays go, sixteenths of its width from its middle: no two in a row or
-// a column.
+// Eight more rays per pixel, offsets from the center in sixteenths of its width; no two in one row
+// or column.
 constexpr int kSamples = 8;
 constexpr float kOffsets[kSamples][2] = {{1, -3}, {-1, 3},  {5, 1}, {-3, -5},
                                          {-5, 5}, {-7, -1}, {3, 7}, {7, -7}};
 
-// Mean over the surfaces that a pixel's rays meet, each shaded once where its rays meet it on
-// average.
+// Mean gray level of the surfaces hit by a pixel's rays, each shaded once at the mean of its rays.
 float ShadeMixed(const TileCaster& caster, const float (&x)[kSamples], const float (&y)[kSamples]) {
   int which[kSamples];
   for (int i = 0; i < kSamples; ++i) which[i] = caster.Cast(x[i], y[i]);
@@ -144,7 +143,7 @@ float ShadeMixed(const TileCaster& caster, const float (&x)[kSamples], const flo
       sum_y += y[k];
       count += 1;
     }
-    // A round thing's outline is curved: the mean of its rays may miss it.
+    // The mean ray may miss a surface with a curved outline.
     float mean_x = sum_x / count, mean_y = sum_y / count;
     if (!caster.Meets(which[i], mean_x, mean_y)) {
       mean_x = x[i];
@@ -157,10 +156,10 @@ float ShadeMixed(const TileCaster& caster, const float (&x)[kSamples], const flo
 
 }  // namespace
 
-// Pixels astride the outlines of surfaces gather from all they touch: edges stay where they are, to
-// a fraction of a pixel.
+// Antialiasing: pixels on outlines of surfaces average all surfaces they touch, so that edges are
+// accurate to a fraction of a pixel.
 void ViewRenderer::SmoothBand(int band, Picture& picture) const {
-  constexpr float kContrast = 2;  // grey levels: less is not worth it
+  constexpr float kContrast = 2;  // gray levels; smaller differences are not antialiased
   const int width = camera_.width, height = camera_.height;
   for (int column = 0; column < columns_; ++column) {
     const TileList& list = picture.lists[static_cast<size_t>(band) * columns_ + column];

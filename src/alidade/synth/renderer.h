@@ -1,5 +1,4 @@
-// Ray casting: what a camera sees of a scene, colours gathered as by a pixel, depth, and where
-// people are.
+// Ray caster: antialiased image, depth, and mask of actors of a scene from a camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,17 +11,17 @@
 namespace alidade {
 
 struct View {
-  cv::Mat1f grey;   // grey levels, without noise
-  cv::Mat1f depth;  // metres along z through the pixel's centre, 0 = nothing
-  cv::Mat1b actor;  // 255 = an actor, through the pixel's centre
+  cv::Mat1f grey;   // gray levels, without noise
+  cv::Mat1f depth;  // meters along z at the pixel center, 0 = nothing
+  cv::Mat1b actor;  // 255 = actor at the pixel center
 };
 
 class ViewRenderer {
  public:
-  // Keeps a reference to the scene. `fisheye`: equidistant, with the camera's size and focal
-  // length.
+  // Keeps a reference to the scene. `fisheye`: equidistant projection with the camera's size and
+  // focal length.
   ViewRenderer(const Scene& scene, const Camera& camera, bool fisheye = false);
-  // The same bits with any number of threads.
+  // The result does not depend on the number of threads.
   View Render(const Shutter& shutter) const;
 
  private:
@@ -34,8 +33,8 @@ class ViewRenderer {
   const Scene& scene_;
   Camera camera_;
   int columns_, rows_;  // tiles
-  cv::Mat1f ray_x_,
-      ray_y_;  // x/z and y/z of every pixel's ray; whole tiles, and one more row and column
+  // x/z and y/z of every pixel's ray, for whole tiles plus one row and column.
+  cv::Mat1f ray_x_, ray_y_;
   std::vector<RectPlane> planes_;
 };
 

@@ -30,8 +30,8 @@ int SceneBuilder::Tone(double grey) {
   return texture;
 }
 
-// Diffuse light: sky-like ambient that corners and things nearby take away (distance-field
-// occlusion, Evans 2006), and lamps with a soft fall-off, unshadowed.
+// Diffuse light: ambient light with occlusion by corners and nearby objects (distance-field
+// occlusion, Evans 2006), plus lamps with smooth fall-off and no shadows.
 double SceneBuilder::LightAt(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const {
   double occlusion = 0;
   double weight = 1;
@@ -54,7 +54,7 @@ double SceneBuilder::LightAt(const Eigen::Vector3d& p, const Eigen::Vector3d& no
 }
 
 void SceneBuilder::BakeLight(Rect& rect) const {
-  constexpr double kCell = 0.2;  // metres
+  constexpr double kCell = 0.2;  // meters
   LightGrid& light = rect.light;
   light.columns = std::clamp(static_cast<int>(std::lround(rect.right.norm() / kCell)), 1, 64);
   light.rows = std::clamp(static_cast<int>(std::lround(rect.down.norm() / kCell)), 1, 64);

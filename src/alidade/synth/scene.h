@@ -1,4 +1,4 @@
-// A place made of textured rectangles and quadrics, with baked light.
+// Scene of textured rectangles and quadrics with baked lighting.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,10 +12,10 @@
 
 namespace alidade {
 
-// How bright a surface is at each place: a grid of factors over u, v, interpolated bilinearly.
+// Brightness of a surface: a grid of factors over (u, v), bilinearly interpolated.
 struct LightGrid {
   int columns = 1, rows = 1;                 // cells; values are at their corners
-  std::vector<float> values = {1, 1, 1, 1};  // (columns + 1) × (rows + 1), row by row
+  std::vector<float> values = {1, 1, 1, 1};  // (columns + 1) × (rows + 1), row-major
 
   float At(float u, float v) const {
     const float x = u * static_cast<float>(columns), y = v * static_cast<float>(rows);
@@ -30,38 +30,38 @@ struct LightGrid {
   }
 };
 
-// Points origin + u * right + v * down, u and v in [0, 1]; right ⟂ down. Seen from the side to
-// which down × right points (where `right` and `down` look as they are called); invisible from
-// behind.
+// Rectangle of points origin + u * right + v * down with u, v in [0, 1]; right ⟂ down. Visible only
+// from the side to which down × right points, where `right` and `down` appear as named.
 struct Rect {
-  Eigen::Vector3d origin, right, down;  // metres
+  Eigen::Vector3d origin, right, down;  // meters
   int texture = 0;
   LightGrid light;
 
   Eigen::Vector3d Normal() const { return down.cross(right).normalized(); }
 };
 
-// In its own frame, q = from_world * (p - origin), a unit ball, or the side of a cone frustum
-// around z from z = 0 (radius 1) to z = 1 (radius `top`). Open at its ends.
+// Unit ball or cone frustum in its own frame q = from_world * (p - origin). The frustum is the open
+// lateral surface around z from z = 0 (radius 1) to z = 1 (radius `top`).
 struct Quadric {
   enum class Kind { kBall, kFrustum };
   Kind kind = Kind::kBall;
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d from_world = Eigen::Matrix3d::Identity();  // 1/metres
+  Eigen::Matrix3d from_world = Eigen::Matrix3d::Identity();  // 1/meters
   double top = 1;
-  double radius = 1;  // metres, of a ball around `centre` that holds it all
+  double radius = 1;  // of a bounding sphere around `centre`, meters
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double size = 1;  // metres: once around its belly, which the texture's width spans
+  // Circumference that the texture's width spans, meters.
+  double size = 1;
   int texture = 0;
   float light = 1;  // factor where the surface faces up; less below
   bool actor = false;
 };
 
-// Rotated about the vertical; what casts soft shadows on what is near.
+// Box rotated about the vertical that casts soft shadows on nearby surfaces.
 struct Obstacle {
-  Eigen::Vector3d centre, half;  // metres
+  Eigen::Vector3d centre, half;  // meters
   double cos_yaw, sin_yaw;
-  double Distance(const Eigen::Vector3d& p) const;  // metres, 0 inside
+  double Distance(const Eigen::Vector3d& p) const;  // meters; 0 inside
 };
 
 struct Scene {
@@ -72,15 +72,14 @@ struct Scene {
 
 using Painter = std::function<cv::Mat(Random&)>;
 
-// Puts a scene together. Textures are painted at the end, in parallel, each with its own random
-// stream.
+// Assembles a scene. Textures are painted at the end, in parallel, each with its own random stream.
 class SceneBuilder {
  public:
   explicit SceneBuilder(uint64_t seed) : seed_(seed), random_(seed, 11) {}
 
   Random& random() { return random_; }  // for layout
-  int Paint(Painter painter);           // index of the texture to be
-  int Tone(double grey);                // a texture of one grey level
+  int Paint(Painter painter);           // returns the index of the future texture
+  int Tone(double grey);                // a texture of one gray level
 
   void Add(Rect rect) { scene_.rects.push_back(std::move(rect)); }
   void Add(Quadric quadric) { scene_.quadrics.push_back(quadric); }
@@ -99,7 +98,7 @@ class SceneBuilder {
   std::vector<Painter> painters_;
   std::vector<Obstacle> obstacles_;
   std::vector<Eigen::Vector3d> lamps_;
-  std::vector<std::pair<int, int>> tones_;  // grey level, texture
+  std::vector<std::pair<int, int>> tones_;  // gray level, texture index
 };
 
 }  // namespace alidade

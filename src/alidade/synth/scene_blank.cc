@@ -1,4 +1,4 @@
-// Walls with next to nothing on them: turned past in the middle of a room, walked past in a hall.
+// Scenes with almost blank walls: a rotation in a room ("blank"), and a walk along a hall ("hall").
 #include <cmath>
 #include <numbers>
 
@@ -9,7 +9,7 @@ namespace alidade {
 
 using Eigen::Vector2d;
 
-// The north wall is blank but for a switch, a socket and a small picture.
+// The north wall is blank except for a switch, a socket and a small picture.
 Layout LayOutBlank(SceneBuilder& builder) {
   Furnisher furnish(builder, 400);
   const double pi = std::numbers::pi, height = 2.6;
@@ -44,7 +44,7 @@ Layout LayOutBlank(SceneBuilder& builder) {
   furnish.Poster(AtWall(d, a, 3.1), 0, 1.6, 0.9, 0.65);
   furnish.Shelf(AtWall(d, a, 1.4, 0.16), 1.0, 0.3, 1.6);
 
-  // On a small round in the middle of the room while it turns once, looking outwards.
+  // A small circle in the middle of the room during one full turn, looking outwards.
   std::vector<PathKnot> knots;
   constexpr int kKnots = 48;
   for (int i = 0; i < kKnots; ++i) {
@@ -60,7 +60,7 @@ Layout LayOutBlank(SceneBuilder& builder) {
   return {knots, 14.0, 1, {}, walks, {}};
 }
 
-// Its north wall is blank for 6 m, but for a socket every 2 m; all else is furnished.
+// The north wall is blank over 6 m except for a socket every 2 m; the rest is furnished.
 Layout LayOutHall(SceneBuilder& builder) {
   Furnisher furnish(builder, 400);
   const double pi = std::numbers::pi, height = 2.6, half = 5.5, side = 1.6;
@@ -94,8 +94,8 @@ Layout LayOutHall(SceneBuilder& builder) {
     }
   }
 
-  // East along the blank wall, 1.5 m from it, looking at it aslant; round; and back, looking at the
-  // other one. Knots half a second apart.
+  // East along the blank wall at a distance of 1.5 m, looking at it obliquely; turn; back, looking
+  // at the other wall. Knots are 0.5 s apart.
   constexpr int kStraight = 22, kTurn = 6, kAll = 2 * (kStraight + kTurn);
   std::vector<PathKnot> knots;
   for (int i = 0; i < kAll; ++i) {
@@ -105,13 +105,13 @@ Layout LayOutHall(SceneBuilder& builder) {
     if (step < kStraight) {
       x = -3.6 + 7.2 * step / (kStraight - 1);
       y = 0.1;
-      // Aslant by 50 degrees in the middle, straight on at the ends.
+      // Oblique by 50 degrees in the middle, straight ahead at the ends.
       along = 0.88 * std::sqrt(std::sin(pi * step / (kStraight - 1.0)));
     } else {
       const double share = (step - kStraight + 1.0) / (kTurn + 1);
       x = 3.6 + 0.3 * std::sin(pi * share);
       y = 0.1 * std::cos(pi * share);
-      along = -pi * share;  // turns right: through the south
+      along = -pi * share;  // clockwise, through south
     }
     const double sign = leg == 0 ? 1 : -1;
     knot.position = {sign * x, sign * y, 1.45 + 0.05 * std::sin(2 * pi * 7 * i / kAll)};

@@ -1,4 +1,4 @@
-// A corridor of 15 m in which doors and posters repeat: places look alike.
+// A corridor of 15 m with repeating doors and posters: places look alike.
 #include <cmath>
 #include <numbers>
 
@@ -8,13 +8,13 @@
 namespace alidade {
 namespace {
 
-constexpr double kHalf = 7.5;  // metres, half the length
-constexpr double kSide = 1.3;  // half the width
+constexpr double kHalf = 7.5;  // meters, half of the length
+constexpr double kSide = 1.3;  // half of the width
 
-// Out on one side, round in a small bow, and back: knots at equal times.
+// Out on one side, a small arc, and back; knots at equal times.
 std::vector<PathKnot> OutAndBack() {
-  constexpr double kReach = 5.0, kLane = 0.22;  // metres
-  constexpr int kStraight = 29, kTurn = 5;      // knots, half a second apart
+  constexpr double kReach = 5.0, kLane = 0.22;  // meters
+  constexpr int kStraight = 29, kTurn = 5;      // knots, 0.5 s apart
   constexpr int kAll = 2 * (kStraight + kTurn);
   const double pi = std::numbers::pi;
   std::vector<PathKnot> knots;
@@ -34,7 +34,7 @@ std::vector<PathKnot> OutAndBack() {
     PathKnot knot;
     const double sign = half == 0 ? 1 : -1;
     knot.position = {sign * x, sign * y, 1.45};
-    // Looks now at one wall, now at the other; straight ahead when about to turn.
+    // Looks alternately at both walls; straight ahead before a turn.
     const double calm = step < kStraight ? std::sin(pi * step / (kStraight - 1.0)) : 0;
     knot.yaw = half * pi + yaw + 0.42 * std::sqrt(calm) * std::sin(2 * pi * i / 9.0 + 0.8);
     knot.pitch = -0.1 + 0.06 * std::sin(2 * pi * 9 * i / kAll) - (step < kStraight ? 0 : 0.15);
@@ -58,7 +58,7 @@ Layout LayOutCorridor(SceneBuilder& builder) {
   AddWall(furnish, d, a, height, {PaintPlaster, 180});
   for (double x = -6; x <= 6; x += 3) builder.AddLamp({x, 0, 2.4});
 
-  // The same door and the same three posters, over and over.
+  // The same door and the same three posters repeat.
   const int door = builder.Paint([](Random& random) { return PaintDoor(random, {380, 832}, 7); });
   const int posters[3] = {furnish.Picture(PaintPoster, 0.6, 0.85),
                           furnish.Picture(PaintPoster, 0.8, 0.6),
@@ -78,12 +78,12 @@ Layout LayOutCorridor(SceneBuilder& builder) {
   for (double x = -6; x <= 6; x += 3)
     furnish.Box(Place{}.At(x, 0, height - 0.06), {-0.6, -0.12, 0}, {1.2, 0.24, 0.06},
                 BoxFaces::All(lamp));
-  // The ends, and the few things that tell one place from another.
+  // The ends, and the few objects that distinguish places.
   furnish.Window(AtWall(b, c, kSide), 0);
   furnish.Hang(AtWall(d, a, kSide), -0.3, 1.04, 0.95, 2.08, door, 0.03);
   furnish.Hang(AtWall(d, a, kSide), 0.65, 1.5, 0.5, 0.7, posters[2], 0.008);
-  for (const Place& wall :
-       {AtWall(a, b, kHalf), AtWall(c, d, kHalf)}) {  // where the camera turns round
+  // Where the camera turns around.
+  for (const Place& wall : {AtWall(a, b, kHalf), AtWall(c, d, kHalf)}) {
     furnish.Shelf(wall.At(6.2, -0.17, 0), 1.3, 0.3, 1.95);
     furnish.Hang(wall, 4.9, 1.5, 0.9, 0.7, furnish.Picture(PaintBoard, 0.9, 0.7), 0.015);
   }

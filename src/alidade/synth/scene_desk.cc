@@ -1,4 +1,4 @@
-// A desk full of things, seen from half a metre to a metre; a wall with pictures behind it.
+// A cluttered desk at 0.5 to 1 m distance, with pictures on the wall behind it.
 #include <cmath>
 #include <numbers>
 
@@ -38,7 +38,7 @@ Layout LayOutDesk(SceneBuilder& builder) {
   furnish.Cartons(top.At(0.66, -0.1, 0, 0.4), 1);
   furnish.Chair(Place{}.At(1.3, -0.3, 0, -1.2));
 
-  // The wall behind.
+  // The wall behind the desk.
   const Place wall = AtWall(c, d, 2.6);
   shell.Poster(wall, -1.5, 1.5, 0.6, 0.85);
   shell.Poster(wall, -0.55, 1.35, 0.7, 0.5);

@@ -1,4 +1,4 @@
-// Six rooms in two rows, joined by doorways to a way round.
+// Six rooms in two rows, connected by doorways to a loop.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,12 +11,12 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double kPitchX = 7.2, kPitchY = 7.0;  // metres from one room's middle to the next
-constexpr double kHalfWall = 0.07;              // half of what is between them
+constexpr double kPitchX = 7.2, kPitchY = 7.0;  // meters between the centers of adjacent rooms
+constexpr double kHalfWall = 0.07;              // half of the wall's thickness
 constexpr double kDoorway = 1.3;                // width
 constexpr double kHeight = 2.7;
 
-// One thing against a wall, its middle `along` metres from a, in a space `width` wide.
+// One object against a wall, with its middle `along` meters from a, in a slot of width `width`.
 void FillSlot(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double along, double width,
               bool outside, int kind) {
   const Place wall = AtWall(a, b, along);
@@ -78,7 +78,7 @@ void FillSlot(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double a
   }
 }
 
-// Something every metre and a half or two, all along what no doorway takes.
+// Objects every 1.5 to 2 m along the wall, except at doorways.
 void FillWall(Furnisher& furnish, const Vector2d& a, const Vector2d& b,
               const std::vector<Opening>& openings, bool outside, int& kind) {
   double from = 0.75;
@@ -94,7 +94,7 @@ void FillWall(Furnisher& furnish, const Vector2d& a, const Vector2d& b,
     for (int i = 0; i < slots; ++i) {
       FillSlot(furnish, a, b, span.from + length * (i + 0.5) / slots, length / slots, outside,
                kind % 8);
-      kind += 3;  // goes through all eight before one comes again
+      kind += 3;  // cycles through all eight kinds
     }
   }
 }
@@ -144,7 +144,7 @@ Layout LayOutLoop(SceneBuilder& builder) {
   for (int j = 0; j < 2; ++j) {
     for (int i = 0; i < 3; ++i) AddRoom(furnish, i, j, looks[3 * j + i], (i + j) % 2 == 1);
   }
-  // Tables that stand free, off the way.
+  // Free-standing tables beside the path.
   constexpr double kTables[6][2] = {{-0.9, 1.1}, {7.2, -1.3}, {15.2, 1.1},
                                     {15.3, 5.9}, {7.2, 8.4},  {-0.9, 5.9}};
   for (const auto& at : kTables) {
@@ -162,7 +162,7 @@ Layout LayOutLoop(SceneBuilder& builder) {
       {15.4, -0.6}, {15.6, 0.9}, {14.4, 3.5}, {15.6, 6.1}, {15.4, 7.6}, {13.9, 7.9},
       {10.8, 7.0},  {9.0, 6.65}, {5.4, 6.65}, {3.6, 7.0},  {0.5, 7.9},  {-1.0, 7.6},
       {-1.2, 6.1},  {0, 3.5},    {-1.2, 0.9}, {-1.0, -0.6}};
-  constexpr int kKnots = 128;  // half a second apart
+  constexpr int kKnots = 128;  // 0.5 s apart
   std::vector<PathKnot> knots = KnotsAlong(way, 1.45, kKnots);
   for (int i = 0; i < kKnots; ++i) {
     const double angle = 2 * std::numbers::pi * i / kKnots;

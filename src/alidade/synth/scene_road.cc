@@ -1,5 +1,5 @@
-// A country road driven at 14 m/s: fields with next to nothing on them, posts, a tree here and
-// there, and what has texture is far away.
+// A country road driven at 14 m/s: fields with little texture, posts, a few trees; most texture is
+// far away.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,14 +13,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kHalfStraight = 120;  // metres, half of each of two straights
-constexpr double kBend = 71.7;         // of the two bends, to the middle of our lane
+constexpr double kHalfStraight = 120;  // meters, half of each of the two straights
+constexpr double kBend = 71.7;         // radius of the two bends to the middle of the driving lane
 constexpr double kMiddle = 1.7;        // from there to the middle of the road, to the left
-constexpr double kRoadSpeed = 14;      // metres per second
+constexpr double kRoadSpeed = 14;      // meters per second
 
 constexpr double RoadLength() { return 4 * kHalfStraight + 2 * std::numbers::pi * kBend; }
 
-// x ahead and y to the left of our lane, `s` metres from its beginning.
+// Place `s` meters along the driving lane: x ahead, y to the left.
 Place Along(double s) {
   const double pi = std::numbers::pi, bend = pi * kBend;
   s -= std::floor(s / RoadLength()) * RoadLength();
@@ -111,7 +111,7 @@ void AddRoadside(Furnisher& furnish) {
       }
     }
   }
-  // Woods all round, beyond the fields.
+  // Woods around the fields.
   for (int i = 0; i < 48; ++i) {
     const double angle = 2 * std::numbers::pi * i / 48, height = random.Uniform(9, 17);
     const Place edge =
@@ -129,8 +129,8 @@ Layout LayOutRoad(SceneBuilder& builder) {
   AddSurface(furnish);
   AddRoadside(furnish);
   Layout layout;
-  const int count =
-      static_cast<int>(RoadLength() / (kRoadSpeed / 4));  // a quarter of a second apart
+  // Knots, 0.25 s apart.
+  const int count = static_cast<int>(RoadLength() / (kRoadSpeed / 4));
   for (int i = 0; i < count; ++i) {
     const Place here = Along(RoadLength() * i / count);
     layout.knots.push_back({here.origin + Vector3d(0, 0, 1.5), here.yaw, -0.02});

@@ -22,7 +22,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   builder.AddLamp({-1.6, 0, 2.45});
   builder.AddLamp({1.6, 0, 2.45});
 
-  // The table in the middle, on a rug.
+  // A table in the middle, on a rug.
   const int rug = furnish.Picture(PaintRug, 2.6, 1.9, 0.7);
   furnish.Box({}, {-1.3, -0.95, 0}, {2.6, 1.9, 0.008}, {-1, -1, -1, -1, rug, -1});
   furnish.Table({}, 1.4, 0.8, 0.75);
@@ -31,7 +31,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   furnish.Chair(Place{}.At(0.35, -0.55, 0, pi + 0.3));
   furnish.Chair(Place{}.At(1.0, 0.1, 0, -pi / 2));
 
-  // South wall (y = -3): shelves, a cabinet, posters, a door.
+  // South wall (y = -3): shelf, cabinet, posters, a door.
   const Place south = AtWall(a, b, 3.6);
   furnish.Shelf(AtWall(a, b, 1.2, 0.16), 1.2, 0.3, 1.95);
   furnish.Cabinet(AtWall(a, b, 2.7, 0.24), 1.2, 0.45, 0.85, 3, 2);
@@ -41,7 +41,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   furnish.Poster(south, -2.35, 1.6, 0.6, 0.85);
   furnish.Cartons(AtWall(a, b, 6.8, 0.3), 3);
 
-  // East wall: window, desk with a monitor, a board.
+  // East wall: window, desk with a monitor, a whiteboard.
   const Place east = AtWall(b, c, 3.0);
   furnish.Window(east, -1.4);
   const Place desk = AtWall(b, c, 2.0, 0.36);
@@ -56,7 +56,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   furnish.Hang(east, 0.9, 1.55, 1.3, 0.85, furnish.Picture(PaintBoard, 1.3, 0.85), 0.02);
   furnish.PottedPlant(AtWall(b, c, 5.5, 0.5), 1.4);
 
-  // North wall, its bricks bare behind the sofa: pictures, lamp.
+  // North wall, with bare bricks behind the sofa: pictures, a lamp.
   const Place north = AtWall(c, d, 3.6);
   furnish.Hang(north, -0.5, 1.3, 1.7, 2.6, furnish.Material(PaintBricks, 1.7, 2.6, 120), 0.01);
   furnish.Sofa(AtWall(c, d, 3.4, 0.48), 1.9);
@@ -77,7 +77,7 @@ Layout LayOutRoom(SceneBuilder& builder) {
   furnish.Cartons(AtWall(d, a, 1.6, 0.35), 2);
   furnish.PottedPlant(AtWall(d, a, 5.5, 0.45), 1.2);
 
-  // Once round, looking across the room and somewhat ahead, now left, now right.
+  // Once around, looking across the room and slightly ahead, alternating left and right.
   std::vector<PathKnot> knots;
   constexpr int kKnots = 48;
   for (int i = 0; i < kKnots; ++i) {

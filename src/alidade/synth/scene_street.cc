@@ -1,4 +1,4 @@
-// Streets round a block of houses, driven by a car: on the right, slower at the corners.
+// Streets around a block of houses, driven by a car on the right-hand side, slower at corners.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,14 +12,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kBlockX = 45, kBlockY = 30;  // metres, half the size of the block
-constexpr double kStreet = 13;                // from house to house
-constexpr double kBack = 1.2;                 // by how much houses are set back, at most
-constexpr double kLane = 8.1;                 // from the block's houses to the middle of our lane
-constexpr double kCorner = 8;                 // radius of our way round
-constexpr double kEye = 1.5;                  // metres above the road
+constexpr double kBlockX = 45, kBlockY = 30;  // meters, half of the block's size
+constexpr double kStreet = 13;                // between opposite houses
+constexpr double kBack = 1.2;                 // largest setback of a house
+constexpr double kLane = 8.1;  // from the block's houses to the middle of the driving lane
+constexpr double kCorner = 8;  // radius of the driven path at corners
+constexpr double kEye = 1.5;   // meters above the road
 
-// One house: its front from `from` to `to` along a wall, set back from it by `back`.
+// One house with its front from `from` to `to` along a wall, set back by `back` meters.
 void AddHouse(Furnisher& furnish, const Place& wall, double from, double to, double back,
               double height) {
   Random& random = furnish.random();
@@ -31,7 +31,7 @@ void AddHouse(Furnisher& furnish, const Place& wall, double from, double to, dou
   furnish.Box(wall, {from, back, 0}, {to - from, 6, height}, faces);
 }
 
-// Along the wall from a to b, houses and what stands before them.
+// Houses along the wall from a to b.
 void LineWithHouses(Furnisher& furnish, const Vector2d& a, const Vector2d& b) {
   Random& random = furnish.random();
   const double length = (b - a).norm();
@@ -64,7 +64,7 @@ void AddCar(Furnisher& furnish, const Place& place) {
   f.Shade(place, {-length / 2, -0.85, 0.2}, {length, 1.7, 0.9});
 }
 
-// Between the houses and the road, from `from` to `to` metres along a wall: cars, trees, lamps.
+// Cars, trees and lamp posts between houses and road, from `from` to `to` meters along a wall.
 void AddKerb(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double from, double to) {
   Random& random = furnish.random();
   const Place wall = AtWall(a, b, (b - a).norm());
@@ -94,9 +94,9 @@ void AddKerb(Furnisher& furnish, const Vector2d& a, const Vector2d& b, double fr
 }
 
 void AddRoad(Furnisher& furnish) {
-  // As far as to the fronts that are set back.
+  // Covers the setback of the houses, too.
   constexpr double kX = kBlockX + kStreet + kBack, kY = kBlockY + kStreet + kBack;
-  constexpr double kPiece = 6.5;  // metres; pieces look alike, four kinds of them
+  constexpr double kPiece = 6.5;  // meters; four kinds of pieces
   int kinds[4];
   for (int& kind : kinds) {
     const double tone = furnish.random().Uniform(140, 165);
@@ -112,7 +112,7 @@ void AddRoad(Furnisher& furnish) {
       furnish.Box({}, {x, y, -0.1}, {kPiece, kPiece, 0.1}, {-1, -1, -1, -1, kinds[kind], -1});
     }
   }
-  // A broken line down the middle.
+  // Dashed center line.
   const BoxFaces paint = {-1, -1, -1, -1, furnish.builder().Tone(225), -1};
   const double my = kBlockY + kStreet / 2, mx = kBlockX + kStreet / 2;
   for (double x = -kBlockX; x < kBlockX; x += 6) {
@@ -123,8 +123,8 @@ void AddRoad(Furnisher& furnish) {
   }
 }
 
-// Place and direction `s` metres along our way, anticlockwise from the middle of the south side,
-// and how far the nearest corner is.
+// Position and direction `s` meters along the path (counter-clockwise from the middle of the south
+// side), and the distance to the nearest corner.
 struct Spot {
   Vector2d p;
   double yaw = 0, to_corner = 0;
@@ -134,7 +134,7 @@ struct Way {
   double arc = kCorner * std::numbers::pi / 2;
   double Length() const { return 4 * (x + y + arc); }
   Spot At(double s) const {
-    // Four sides: half the straight, the corner, half the next straight.
+    // Each of four sides: half a straight, the corner, half of the next straight.
     s -= std::floor(s / Length()) * Length();
     int side = 0;
     double here = x, next = y;
@@ -145,7 +145,7 @@ struct Way {
     }
     Spot spot;
     Vector2d p;
-    const double depth = (side % 2 == 0 ? y : x) + kCorner;  // from the middle of the block
+    const double depth = (side % 2 == 0 ? y : x) + kCorner;  // from the center of the block
     if (s < here) {
       p = {s, -depth};
       spot.to_corner = here - s;
@@ -165,9 +165,9 @@ struct Way {
   }
 };
 
-// A car: 10 m/s, 5 at corners, braked and sped up by 2.5 m/s². Knots at equal times.
+// Speed profile of a car: 10 m/s, 5 m/s at corners, acceleration ±2.5 m/s². Knots at equal times.
 std::vector<PathKnot> Drive(double& period) {
-  constexpr double kKnot = 0.25, kStep = 0.01;  // seconds, metres
+  constexpr double kKnot = 0.25, kStep = 0.01;  // seconds, meters
   const Way way;
   std::vector<double> until = {0};  // seconds at each step
   for (double s = 0; s < way.Length(); s += kStep) {
@@ -193,7 +193,8 @@ Layout LayOutStreet(SceneBuilder& builder) {
   AddRoad(furnish);
   const double x = kBlockX, y = kBlockY, ox = x + kStreet, oy = y + kStreet;
   const Vector2d outer[4] = {{-ox, -oy}, {ox, -oy}, {ox, oy}, {-ox, oy}};
-  const Vector2d inner[4] = {{-x, -y}, {-x, y}, {x, y}, {x, -y}};  // the street to the left of each
+  // The street is to the left of each side.
+  const Vector2d inner[4] = {{-x, -y}, {-x, y}, {x, y}, {x, -y}};
   for (int i = 0; i < 4; ++i) {
     const Vector2d &a = outer[i], &b = outer[(i + 1) % 4], &c = inner[i], &d = inner[(i + 1) % 4];
     LineWithHouses(furnish, a, b);
@@ -205,7 +206,7 @@ Layout LayOutStreet(SceneBuilder& builder) {
   shake.position = 0.012;
   shake.rotation = 0.004;
   shake.seconds = 0.4;
-  // People keep to the pavement before the southern houses.
+  // People stay on the sidewalk in front of the southern houses.
   const std::vector<Walk> walks = {
       {{-20, -oy + 0.8}, {25, -oy + 0.8}, {25, -oy + 1.4}, {-20, -oy + 1.4}}};
   Layout layout;

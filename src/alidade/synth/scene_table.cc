@@ -1,4 +1,4 @@
-// A bare table in a bare room: little to see but what is moved on it.
+// A bare table in a bare room: few features except on the moved objects.
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +21,7 @@ Layout LayOutTable(SceneBuilder& builder) {
   builder.AddLamp({-0.5, -0.6, 2.4});
   builder.AddLamp({0.8, 1.0, 2.4});
 
-  // A bright top without grain; a rail of panels along the wall behind, a switch, a mug.
+  // A bright table top without texture; panels along the wall behind, a switch, a mug.
   const int top = builder.Tone(215), leg = builder.Tone(120);
   furnish.Box({}, {-0.8, -0.45, 0.705}, {1.6, 0.9, 0.035}, BoxFaces::All(top));
   for (const double x : {-0.74, 0.68}) {
@@ -35,7 +35,7 @@ Layout LayOutTable(SceneBuilder& builder) {
   }
   furnish.Hang(wall, 0.9, 1.3, 0.09, 0.09, furnish.Picture(PaintCover, 0.09, 0.09, 2), 0.012);
   furnish.Mug(Place{}.At(-0.55, 0.2, 0.74));
-  // Behind the camera, where it looks when it turns.
+  // Behind the camera, visible when it turns.
   furnish.Cabinet(AtWall(a, b, 2.0, 0.24), 1.2, 0.45, 0.85, 3, 2);
   furnish.Poster(AtWall(a, b, 4.0), 0, 1.6, 0.7, 0.95);
 

@@ -1,4 +1,4 @@
-// One wall that fills the view: all that is seen lies within a few centimetres of a plane.
+// One wall fills the view: all visible points are within a few centimeters of a plane.
 #include <cmath>
 #include <numbers>
 
@@ -21,7 +21,7 @@ Layout LayOutWall(SceneBuilder& builder) {
   AddWall(coarse, d, a, height, {PaintPlaster, 180});
   for (const double x : {-3.0, 0.0, 3.0}) builder.AddLamp({x, -1.6, 3.4});
 
-  // x from the middle to the right, z up, size; posters unless said.
+  // x from the middle to the right, z up, size; posters unless noted.
   const Place wall = AtWall(c, d, 5.5);
   constexpr double kPosters[][4] = {
       {-4.2, 1.5, 0.7, 0.95},   {-3.2, 2.1, 0.6, 0.45}, {-3.1, 1.15, 0.55, 0.75},
@@ -30,9 +30,9 @@ Layout LayOutWall(SceneBuilder& builder) {
       {3.1, 0.9, 0.7, 0.5},     {4.0, 1.5, 0.6, 0.9}};
   for (const auto& p : kPosters) furnish.Poster(wall, p[0], p[1], p[2], p[3]);
   furnish.Hang(wall, -2.1, 1.6, 1.3, 0.95, furnish.Picture(PaintBoard, 1.3, 0.95), 0.02);
-  // A panel of bricks left bare.
+  // A panel of bare bricks.
   furnish.Hang(wall, 1.95, 1.5, 0.85, 1.5, furnish.Material(PaintBricks, 0.85, 1.5, 120), 0.008);
-  for (const double x : {-2.75, -0.1, 1.35, 2.5}) {  // sheets of paper pinned up
+  for (const double x : {-2.75, -0.1, 1.35, 2.5}) {  // pinned sheets of paper
     furnish.Hang(wall, x, 1.45 + 0.2 * std::sin(5 * x), 0.21, 0.297,
                  furnish.Picture(PaintPage, 0.21, 0.297), 0.002);
   }

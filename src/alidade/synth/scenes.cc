@@ -8,7 +8,7 @@
 namespace alidade {
 
 Layout LayOut(const std::string& name, SceneBuilder& builder) {
-  SceneFrames(name);  // throws when there is none
+  SceneFrames(name);  // throws on an unknown name
   if (name == "desk") return LayOutDesk(builder);
   if (name == "corridor") return LayOutCorridor(builder);
   if (name == "wall") return LayOutWall(builder);
@@ -28,12 +28,12 @@ Layout TurnOnTheSpot(Layout layout, double arm) {
   for (int i = 0; i < kKnots; ++i) {
     const double angle = 2 * std::numbers::pi * i / kKnots;
     PathKnot knot = begin;
-    knot.yaw += angle + 0.25 * std::sin(3 * angle);  // now faster, now slower
+    knot.yaw += angle + 0.25 * std::sin(3 * angle);  // varying speed
     knot.pitch += 0.08 * std::sin(5 * angle);
     knot.position += arm * Eigen::Vector3d(std::cos(knot.yaw), std::sin(knot.yaw), 0);
     layout.knots.push_back(knot);
   }
-  layout.period = 16;  // 22 degrees a second, as one looks about
+  layout.period = 16;  // 22 degrees/s
   layout.turns = 1;
   layout.shake.position = 0;
   return layout;

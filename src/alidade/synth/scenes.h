@@ -1,4 +1,4 @@
-// The places there are, the way the camera takes through them, and where people may walk.
+// The scenes: their layout, the camera's path, and where people may walk.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,45 +11,46 @@
 
 namespace alidade {
 
-using Walk = std::vector<Eigen::Vector2d>;  // corners of a closed way over free floor, metres
+using Walk = std::vector<Eigen::Vector2d>;  // corners of a closed path over free floor, meters
 
-// A part of a table over which things may be moved: the middle at the height they stand on, and
-// half its size along the world's x and y.
+// Part of a table over which objects are moved: its middle, at the height of the table top, and
+// half of its size along the world's x and y.
 struct TableTop {
-  Eigen::Vector3d middle;  // metres
+  Eigen::Vector3d middle;  // meters
   double half_x = 0, half_y = 0;
-  Eigen::Vector3d arm = {0.75, -0.55, 0.2};  // where an arm that reaches over it comes from
-  double sitter = 0;  // metres along y to who sits at it; 0: nobody is in the picture
+  Eigen::Vector3d arm = {0.75, -0.55, 0.2};  // origin of an arm that reaches over the table
+  double sitter = 0;                         // meters along y to a person sitting at it; 0: none
 };
 
 struct Layout {
-  std::vector<PathKnot> knots;  // of the camera's way
-  double period = 20;           // seconds once round it
-  int turns = 0;                // of yaw meanwhile
+  std::vector<PathKnot> knots;  // of the camera's path
+  double period = 20;           // seconds once around
+  int turns = 0;                // full turns of yaw per period
   ShakeSettings shake;
   std::vector<Walk> walks;
   std::optional<TableTop> table;
 };
 
-// Fills the builder with the scene called `name`, one of SceneNames(); throws Error otherwise.
+// Builds the scene `name` (one of SceneNames()); throws Error (usage) otherwise.
 Layout LayOut(const std::string& name, SceneBuilder& builder);
 
-Layout LayOutRoom(SceneBuilder& builder);      // once round a furnished room, looking across it
+Layout LayOutRoom(SceneBuilder& builder);      // once around a furnished room, looking across it
 Layout LayOutDesk(SceneBuilder& builder);      // close above a cluttered desk
 Layout LayOutCorridor(SceneBuilder& builder);  // out and back; doors and posters repeat
 Layout LayOutWall(SceneBuilder& builder);      // along one wall that fills the view
-Layout LayOutLoop(SceneBuilder& builder);      // through six rooms and back into the first
-Layout LayOutStreet(SceneBuilder& builder);    // a car's way round a block of houses
+Layout LayOutLoop(SceneBuilder& builder);      // through six rooms and back to the first
+Layout LayOutStreet(SceneBuilder& builder);    // by car around a block of houses
 Layout LayOutRoad(SceneBuilder& builder);      // a road through fields
 Layout LayOutTable(SceneBuilder& builder);     // a bare table in a bare room
-Layout LayOutBlank(SceneBuilder& builder);     // a turn in a room, past a wall that is blank
-Layout LayOutHall(SceneBuilder& builder);      // past such a wall, and back past another
+Layout LayOutBlank(SceneBuilder& builder);     // rotation in a room with one blank wall
+Layout LayOutHall(SceneBuilder& builder);      // along such a wall, and back along another
 
-// The same place, where the camera turns or stands where its way begins (see SynthSettings::path).
+// The same scene with a camera that rotates or stands at the start of its path (see
+// SynthSettings::path). `arm`: distance of the camera from the axis of rotation, meters.
 Layout TurnOnTheSpot(Layout layout, double arm);
 Layout StandStill(Layout layout);
 
-// Knots at equal distances along a closed polygon, at one height; yaw looks along the way.
+// Knots at equal distances along a closed polygon at one height; yaw is along the path.
 std::vector<PathKnot> KnotsAlong(const std::vector<Eigen::Vector2d>& corners, double height,
                                  int count);
 

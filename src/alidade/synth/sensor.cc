@@ -16,8 +16,8 @@ uint64_t Mix(uint64_t x) {  // SplitMix64 (Steele et al. 2014)
   return x ^ (x >> 31);
 }
 
-// Standard normal values at the middles of 4096 equal shares of probability: drawing one of them at
-// random costs a look-up; the tails end at 3.7.
+// Standard normal values at the centers of 4096 intervals of equal probability: a random draw costs
+// one look-up. The tails end at 3.7.
 class GaussianTable {
  public:
   static constexpr int kSize = 4096;
@@ -45,8 +45,8 @@ const GaussianTable& Gaussian() {
   return table;
 }
 
-// Fast numbers for one row (xorshift64*, Vigna 2016); rows are independent of each other and of
-// threads.
+// Fast random numbers for one row (xorshift64*, Vigna 2016). Rows are independent, so the result
+// does not depend on threads.
 class RowRandom {
  public:
   RowRandom(const NoiseKey& key, int row)
@@ -101,8 +101,8 @@ cv::Mat SenseDepth(const cv::Mat1f& exact, double focal, double factor, const No
   const int width = exact.cols, height = exact.rows;
   ParallelFor(height, [&](int y) {
     RowRandom random(key, y);
-    // From the right, the columns x - fb / z of the projector's own picture fall; where one rises
-    // again, what is seen lies in the shadow of something in front of it further to the right.
+    // Going from right to left, the column x - fb / z in the projector's image decreases; where it
+    // increases, the point is in the shadow of an object farther right.
     float lit = 1e9f;
     for (int x = width - 1; x >= 0; --x) {
       const uint64_t bits = random.Next();
@@ -119,7 +119,8 @@ cv::Mat SenseDepth(const cv::Mat1f& exact, double focal, double factor, const No
           0, height - 1);
       const float z = exact(sy, sx);
       if (shadow || !(z >= nearest) || z >= farthest) continue;
-      // Steps are told from slopes by the second difference; steep slopes return too little light.
+      // The second difference distinguishes depth steps from slopes. Steep slopes reflect too
+      // little light.
       const int left = std::max(0, sx - 1), right = std::min(width - 1, sx + 1);
       const int above = std::max(0, sy - 1), below = std::min(height - 1, sy + 1);
       const float bend_x = std::abs(exact(sy, left) + exact(sy, right) - 2 * z),

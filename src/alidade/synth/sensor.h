@@ -1,5 +1,4 @@
-// What sensors make of a perfect picture: noisy grey levels, and the depth of a structured-light
-// camera.
+// Sensor models: noisy gray levels, and depth of a structured-light camera.
 #pragma once
 
 #include <cstdint>
@@ -7,15 +6,15 @@
 
 namespace alidade {
 
-// Names one stream of noise: the same key gives the same noise.
+// Key of a noise stream: equal keys give equal noise.
 struct NoiseKey {
   uint64_t seed = 1;
   int frame = 0;
   int channel = 0;
 };
 
-// CV_8U of gain * clean + bias plus Gaussian noise of standard deviation `sigma` (grey levels), cut
-// off at 0 and 255.
+// CV_8U: gain * clean + bias plus Gaussian noise of standard deviation `sigma` (gray levels),
+// clamped to [0, 255].
 cv::Mat ExposeImage(const cv::Mat1f& clean, double gain, double bias, double sigma,
                     const NoiseKey& key);
 
@@ -31,9 +30,9 @@ struct DepthSensorSettings {
       0.05;  // relative depth step between neighbours beyond which there is no reading
 };
 
-// CV_16U, `factor` per metre, 0 = no reading: disparity noise and steps, ragged and missing depth
-// at edges, the shadow of the projector (which is to the camera's right) beside what stands in
-// front, holes where surfaces are seen at a grazing angle and out of range. `focal`: pixels.
+// CV_16U, `factor` per meter, 0 = no reading. Models disparity noise and quantization, ragged and
+// missing depth at edges, the shadow of the projector (to the right of the camera) beside
+// foreground objects, and holes at grazing angles and out of range. `focal`: pixels.
 cv::Mat SenseDepth(const cv::Mat1f& exact, double focal, double factor, const NoiseKey& key,
                    const DepthSensorSettings& settings = {});
 

@@ -9,12 +9,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr float kNear = 0.01f;  // metres; nothing nearer is seen
+constexpr float kNear = 0.01f;  // near plane, meters
 
-// Whether some of a convex set of corners may lie within the rays' bounds.
+// True if the convex hull of the corners may intersect the rays' bounds.
 bool Touches(const StageItem& item, const RayBounds& bounds) {
-  bool left = true, right = true, top = true, bottom = true,
-       behind = true;  // all corners are out there
+  // True if all corners are on that side.
+  bool left = true, right = true, top = true, bottom = true, behind = true;
   for (int i = 0; i < 4; ++i) {
     left = left && item.x[i] < bounds.left * item.z[i];
     right = right && item.x[i] > bounds.right * item.z[i];
@@ -39,8 +39,8 @@ RayBounds Widened(const RayBounds& bounds, float by) {
   return {bounds.left - by, bounds.right + by, bounds.top - by, bounds.bottom + by};
 }
 
-// How far rays may be off between two rows. Nothing is nearer than 0.3 m: a shift by s moves rays
-// by s / 0.3 at most.
+// Bound on the deviation of rays between two rows. Nothing is nearer than 0.3 m, so a translation
+// by s moves rays by at most s / 0.3.
 float Margin(const Shutter& shutter, const Se3& pose, double first_row, double last_row) {
   double margin = 0;
   for (const double row : {first_row, last_row}) {
@@ -104,7 +104,7 @@ StageView PrepareStage(const Scene& scene, const std::vector<RectPlane>& planes,
   for (int i = 0; i < stage.rects; ++i) {
     const RectPlane& plane = planes[i];
     const bool facing = MakeForms(plane, stage.T_world_camera, item.forms);
-    // Other rows may just see the front of what this pose sees the back of.
+    // Other rows may see the front of a rectangle whose back faces this pose.
     const bool may_face =
         shutter.rolling && plane.normal.dot(stage.T_world_camera.t - plane.origin) > -0.05;
     if (!facing && !may_face) continue;

@@ -16,7 +16,7 @@ double Share(int part, const cv::Mat& of) {
 
 double PlainShare(const cv::Mat& clean) {
   constexpr int kBlock = 16;        // pixels
-  constexpr double kTexture = 3.0;  // grey levels
+  constexpr double kTexture = 3.0;  // gray levels
   int plain = 0, blocks = 0;
   cv::Scalar mean, deviation;
   for (int y = 0; y + kBlock <= clean.rows; y += kBlock) {

@@ -1,4 +1,4 @@
-// How hard a recording is, in figures: what `alidade synth` prints and tests hold the scenes to.
+// Difficulty measures of a recording; printed by `alidade synth` and used by tests.
 #pragma once
 
 #include <vector>
@@ -10,22 +10,23 @@ namespace alidade {
 
 struct SynthStatistics {
   int frames = 0;
-  double path_length = 0;    // metres
-  double median_speed = 0;   // metres per second
-  double median_turn = 0;    // degrees per second, median over frames of the angle to the next
-  double plain_share = 0;    // of the image area nearly without texture, mean over frames
+  double path_length = 0;   // meters
+  double median_speed = 0;  // meters per second
+  // Degrees per second, median over frames of the rotation to the next frame.
+  double median_turn = 0;
+  double plain_share = 0;    // share of the image area almost without texture, mean over frames
   double missing_depth = 0;  // share of pixels without a depth reading, mean over frames
   double actor_share = 0;    // of the image area, mean over frames
 };
 
-// Share of 16 × 16 pixel blocks in which the noise-free image has a standard deviation below 3 grey
-// levels: less than its noise (4 by default), so that nothing is found there.
+// Share of 16 × 16 pixel blocks whose noise-free image has a standard deviation below 3 gray
+// levels: below the noise (4 by default), so no features are found there.
 double PlainShare(const cv::Mat& clean);
 
 class StatisticsCollector {
  public:
   explicit StatisticsCollector(double fps) : fps_(fps) {}
-  // Frames in order; poses of all, pictures of as many as one cares to give.
+  // Add the poses of all frames in order, and any number of the images.
   void AddPose(const Se3& T_world_camera);
   void AddFrame(const RenderedFrame& frame);
   SynthStatistics Result() const;
@@ -33,7 +34,7 @@ class StatisticsCollector {
  private:
   double fps_;
   std::vector<Se3> poses_;
-  double plain_ = 0, missing_ = 0, actors_ = 0;  // sums over the frames given
+  double plain_ = 0, missing_ = 0, actors_ = 0;  // sums over the images added
   int pictures_ = 0;
 };
 

@@ -16,7 +16,7 @@ Texture::Texture(const cv::Mat& grey) {
         {level.cols, level.rows, static_cast<int>(bordered.step), bordered.ptr(1) + 1});
     if (level.cols == 1 && level.rows == 1) break;
     cv::Mat half;
-    // Area averaging keeps every level registered with the first, whatever its size.
+    // Area averaging keeps all levels aligned with the first, for any size.
     cv::resize(level, half, {std::max(1, level.cols / 2), std::max(1, level.rows / 2)}, 0, 0,
                cv::INTER_AREA);
     level = half;

@@ -1,5 +1,5 @@
-// Pictures on surfaces, prefiltered for every distance (mip maps, Williams 1983), so that corners
-// stay where they are and nothing shimmers when the camera moves.
+// Textures with mip maps (Williams 1983), so that features are stable and do not alias when the
+// camera moves.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,8 +14,8 @@ class Texture {
   int width() const { return levels_.front().width; }
   int height() const { return levels_.front().height; }
 
-  // Grey level at (u, v) in [0, 1]², u to the right, v down; the border continues outside.
-  // `lod`: log2 of the texels of level 0 that a pixel covers; trilinear.
+  // Gray level at (u, v) in [0, 1]², u to the right, v down; the border is replicated outside.
+  // `lod`: log2 of the number of level-0 texels per pixel; trilinear interpolation.
   float Sample(float u, float v, float lod) const {
     const int last = static_cast<int>(levels_.size()) - 1;
     if (!(lod > 0)) return Bilinear(levels_[0], u, v);
@@ -30,7 +30,7 @@ class Texture {
   struct Level {
     int width, height;
     int stride;                 // texels per row; one texel of border on each side
-    const unsigned char* data;  // of the first inner texel
+    const unsigned char* data;  // first inner texel
   };
   static float Bilinear(const Level& level, float u, float v) {
     float x = u * static_cast<float>(level.width) - 0.5f,
@@ -52,7 +52,7 @@ class Texture {
     return top + fy * (bottom - top);
   }
 
-  std::vector<cv::Mat> images_;  // with borders; keep the levels' data alive
+  std::vector<cv::Mat> images_;  // with borders; own the data of `levels_`
   std::vector<Level> levels_;
 };
 

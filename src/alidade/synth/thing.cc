@@ -15,7 +15,7 @@ using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
 
-// A frustum from `low` to `high`, both radii in metres.
+// Cone frustum from `low` to `high` with two radii, meters.
 Quadric Round(const Vector3d& low, const Vector3d& high, const Vector3d& sideways, double foot,
               double rim, int texture) {
   Quadric round;
@@ -52,7 +52,7 @@ Thing::Thing(const ThingLooks& looks, const TableTop& table, double phase)
     : looks_(looks), table_(table), phase_(phase) {}
 
 double Thing::Done(double time) const {
-  const double rhythm = 2 * kPi / 5;  // it rests for a moment every five seconds
+  const double rhythm = 2 * kPi / 5;  // it pauses briefly every five seconds
   return time + 0.95 / rhythm * std::sin(rhythm * time + phase_);
 }
 
@@ -82,7 +82,7 @@ std::vector<Quadric> Thing::Parts(double time) const {
   parts.push_back(Round(hand, hand + 0.12 * along, {0, 0, 1}, 0.026, 0.03, looks_.skin));
   parts.push_back(
       Round(hand + 0.1 * along, hand + 0.6 * along, {0, 0, 1}, 0.042, 0.055, looks_.sleeve));
-  if (looks_.shirt >= 0) {  // who sits there, and sways
+  if (looks_.shirt >= 0) {  // a person sitting there, swaying
     const double lean = 0.05 * std::sin(0.8 * s);
     const Vector3d seat(0.02 * lean, table_.sitter, 0.35), neck(lean, table_.sitter - 0.05, 1.27);
     parts.push_back(Round(seat, neck, {1, 0, 0}, 0.19, 0.22, looks_.shirt));
@@ -94,7 +94,7 @@ std::vector<Quadric> Thing::Parts(double time) const {
 
 std::vector<Thing> PutThings(SceneBuilder& builder, const TableTop& table, int count,
                              uint64_t seed) {
-  Random random(seed, 61);  // their own: the place is the same with and without
+  Random random(seed, 61);  // separate stream: the scene is the same with and without objects
   std::vector<Thing> things;
   for (int i = 0; i < count; ++i) {
     ThingLooks looks;

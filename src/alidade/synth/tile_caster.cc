@@ -9,10 +9,10 @@
 namespace alidade {
 namespace {
 
-constexpr float kSky = 230;       // grey level where there is nothing
-constexpr float kSharpen = 0.2f;  // levels of detail finer than a pixel's width
+constexpr float kSky = 230;       // gray level of the background
+constexpr float kSharpen = 0.2f;  // mip levels finer than the pixel width
 
-// log2 to about 0.01: the exponent, and a parabola through the mantissa.
+// log2 with an error of about 0.01: exponent plus a parabola in the mantissa.
 float FastLog2(float x) {
   const uint32_t bits = std::bit_cast<uint32_t>(x);
   const float mantissa = std::bit_cast<float>((bits & 0x007fffffu) | 0x3f800000u);
@@ -22,7 +22,7 @@ float FastLog2(float x) {
 
 float Apply(const float form[3], float x, float y) { return form[0] * x + form[1] * y + form[2]; }
 
-// Four rays at a time.
+// Four rays, processed in parallel.
 struct RayGroup {
   cv::v_float32x4 x, y, best;
   cv::v_int32x4 found;
@@ -95,7 +95,7 @@ void TileCaster::SetRow(int row) {
     if (is_rect_[i]) {
       const RectPlane& plane = planes_[Surface(static_cast<int>(i))];
       if (!MakeForms(plane, pose, forms_[i]))
-        forms_[i] = {{0, 0, -1}, {0, 0, -1}, {0, 0, -1}};  // meets nothing
+        forms_[i] = {{0, 0, -1}, {0, 0, -1}, {0, 0, -1}};  // never intersected
     } else {
       views_[i] = SeenFrom(QuadricOf(static_cast<int>(i)), pose.R, pose.t);
     }
@@ -123,7 +123,7 @@ void TileCaster::Row(const float* ray_x, const float* ray_y, float* inverse_z, i
   }
   const int count = static_cast<int>(list_.size());
   for (int i = 0; i < count; ++i) {
-    if (i % 4 == 0) {  // what follows lies behind all that was met?
+    if (i % 4 == 0) {  // stop if all further items are behind the hits so far
       const cv::v_float32x4 farthest = cv::v_min(cv::v_min(groups[0].best, groups[1].best),
                                                  cv::v_min(groups[2].best, groups[3].best));
       if (cv::v_reduce_min(farthest) > list_[i].first) break;
@@ -182,7 +182,7 @@ float TileCaster::ShadeRect(int which, float x, float y) const {
   const float width = static_cast<float>(texture.width()),
               height = static_cast<float>(texture.height());
   if (width == 1 && height == 1) return light * texture.Sample(0.5f, 0.5f, 0);
-  // Steps in the texture for one pixel to the right and one down.
+  // Texture coordinate steps per pixel to the right and down.
   const float sx = inverse / static_cast<float>(camera_.fx),
               sy = inverse / static_cast<float>(camera_.fy);
   const float ux = (f.fu[0] - u * f.fw[0]) * sx, vx = (f.fv[0] - v * f.fw[0]) * sx;
@@ -192,7 +192,8 @@ float TileCaster::ShadeRect(int which, float x, float y) const {
   const bool x_longer = along_x > along_y;
   const float longer2 = std::max(x_longer ? along_x : along_y, 1e-12f);
   const float area = std::abs(ux * vy - uy * vx) * width * height;
-  // Seen aslant, a pixel covers a long strip: several samples along it.
+  // Anisotropic filtering: at oblique views a pixel covers a long strip, sampled several times
+  // along it.
   const float ratio = longer2 / std::max(area, 1e-6f);
   const int samples = ratio < 1.5f ? 1 : (ratio < 3 ? 2 : (ratio < 5.5f ? 4 : 6));
   const float lod = 0.5f * FastLog2(longer2 / static_cast<float>(samples * samples)) - kSharpen;

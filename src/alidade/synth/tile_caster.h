@@ -1,4 +1,4 @@
-// Casts the rays of one tile of the picture against what may be seen in it.
+// Casts the rays of one image tile against its visible items.
 #pragma once
 
 #include <vector>
@@ -14,23 +14,22 @@ class TileCaster {
  public:
   static constexpr int kTile = 16;  // pixels, side of a tile
 
-  // Keeps references to all.
+  // Keeps references to all arguments.
   TileCaster(const Scene& scene, const std::vector<RectPlane>& planes, const Camera& camera,
              const Shutter& shutter, const StageView& stage, const TileList& list);
 
-  // To be called before a row's rays are cast.
+  // Must be called before casting rays of a row.
   void SetRow(int row);
-  // 1/z and place in the list (-1: nothing) of what the row's rays (x/z, y/z) meet first, kTile of
-  // them.
+  // 1/z and list index (-1: nothing) of the first hits of the row's kTile rays (x/z, y/z).
   void Row(const float* ray_x, const float* ray_y, float* inverse_z, int* which) const;
-  // The place in the list of what one ray meets first.
+  // List index of the first hit of one ray; -1: nothing.
   int Cast(float x, float y) const;
-  // Whether the ray meets the list's `which`, hidden or not. Rectangles are convex: they need no
-  // look.
+  // True if the ray hits list item `which`, occluded or not. Always true for rectangles: they are
+  // convex, so the mean of rays that hit one hits it too.
   bool Meets(int which, float x, float y) const;
-  // Grey level where the ray meets the list's `which`, filtered as a pixel gathers it.
+  // Filtered gray level where the ray hits list item `which`.
   float Shade(int which, float x, float y) const;
-  // Index of the rectangle, or their number plus that of the quadric; -1: nothing.
+  // Index of the rectangle, or number of rectangles + index of the quadric; -1: nothing.
   int Surface(int which) const;
   bool IsActor(int which) const;
 
@@ -45,8 +44,8 @@ class TileCaster {
   const Shutter& shutter_;
   const StageView& stage_;
   const TileList& list_;
-  std::vector<char> is_rect_;       // one for each of the list
-  std::vector<RectForms> forms_;    // likewise, for the row set
+  std::vector<char> is_rect_;       // one per list item
+  std::vector<RectForms> forms_;    // likewise, for the current row
   std::vector<QuadricView> views_;  // likewise
 };
 

@@ -9,8 +9,10 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kIntervals = 9;  // whose median is the usual one: four may be of dropped frames
-constexpr size_t kFewestIntervals = 3;  // to call any usual
+// Intervals whose median is the usual one. Up to four of them may be longer because frames were
+// dropped.
+constexpr size_t kIntervals = 9;
+constexpr size_t kFewestIntervals = 3;  // with fewer there is no usual interval
 
 }  // namespace
 

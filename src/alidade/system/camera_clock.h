@@ -1,5 +1,5 @@
-// What the time stamps of a camera say: whether a frame goes on where the last one was, comes late,
-// after a gap, or from a clock that was set anew.
+// Checks the time stamps of a camera: a frame follows the last one, is late, comes after a gap, or
+// comes from a clock that was set back. Also converts them to a clock that never runs backward.
 #pragma once
 
 #include <deque>
@@ -23,33 +23,34 @@ struct ClockSettings {
 };
 
 enum class ClockStep {
-  kGoesOn,
-  kLate,  // not newer than the last frame: not to be taken
-  kGap,   // taken; the time has jumped ahead
-  kBack   // taken; the time has jumped back
+  kGoesOn,  // accepted; continues the last frame
+  kLate,    // not accepted: not newer than the last accepted frame
+  kGap,     // accepted; the time jumped ahead
+  kBack     // accepted; the clock was set back (ClockSettings::agree_frames)
 };
 
 class CameraClock {
  public:
   explicit CameraClock(const ClockSettings& settings = {}) : settings_(settings) {}
 
-  ClockStep Take(double time);          // of the next frame, seconds
+  ClockStep Take(double time);          // the next frame's time, seconds
   void Restart() { started_ = false; }  // the next frame may have any time
 
-  double jump() const { return jump_; }  // between the last two frames taken, seconds
-  // A time for the last frame that grows whatever the clock does: what intervals are measured in.
-  // Equal to the frame's own until the clock first jumps back.
+  double jump() const { return jump_; }  // time between the last two accepted frames, seconds
+  // Time of the last accepted frame on a clock that never runs backward, seconds; time spans such
+  // as "lost for one second" are measured on it. Equal to the frame's own time until the clock is
+  // first set back or restarted.
   double steady() const { return last_ + offset_; }
 
  private:
-  double UsualInterval() const;  // median of the last ones; 0: not known yet
+  double UsualInterval() const;  // median of the newest intervals, seconds; 0: not known yet
 
   ClockSettings settings_;
-  bool started_ = false, ever_ = false;
-  double last_ = 0, offset_ = 0, jump_ = 0;  // seconds
+  bool started_ = false, ever_ = false;      // a frame was accepted since Restart(), and at all
+  double last_ = 0, offset_ = 0, jump_ = 0;  // seconds; last_: time of the last accepted frame
   std::deque<double> intervals_;             // the newest, seconds
-  int late_ = 0;                             // frames in a row
-  double last_late_ = 0;                     // time of the last of them
+  int late_ = 0;                             // consecutive late frames with increasing times
+  double last_late_ = 0;                     // time of the last of them, seconds
 };
 
 }  // namespace alidade

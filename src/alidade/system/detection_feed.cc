@@ -40,7 +40,7 @@ void DetectionFeed::Fail(int number) noexcept {
   try {
     LogWarning("the detector failed at frame " + std::to_string(number) + " (" + WhatOf(failure) +
                "); going on with geometry alone");
-  } catch (...) {  // no memory for the warning: failure() still tells
+  } catch (...) {  // no memory for the warning: failure() still reports it
   }
 }
 

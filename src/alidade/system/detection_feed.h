@@ -1,4 +1,4 @@
-// The detector beside the tracker: given frames, it answers when it can; nobody waits for it.
+// Runs the detector beside the tracker. Threaded, the tracker does not wait for its results.
 #pragma once
 
 #include <atomic>
@@ -18,39 +18,41 @@
 
 namespace alidade {
 
-// Threaded: a thread of its own that takes the newest frame whenever it is free. Inline: the
-// first frame and every k-th after it, each answer handed over a fixed number of frames later: the
-// same every time. One that answers late is given nothing: its answers come from elsewhere.
+// Threaded: a separate thread runs the detector on the newest frame whenever it is free. Inline:
+// the detector runs on the first frame and on every detector_every_frames-th one after it, and each
+// result is returned detector_latency_frames frames later, so that runs are reproducible. A
+// detector that runs elsewhere (Detector::AnswersLate()) gets no frames here; its results arrive
+// from outside.
 class DetectionFeed {
  public:
-  // `detector` may be null: then there are never answers.
+  // `detector` may be null: then there are no results.
   DetectionFeed(std::shared_ptr<Detector> detector, const DynamicsSettings& settings, bool threaded,
                 uint64_t seed);
   ~DetectionFeed();
 
-  // `image`: CV_8UC3 or CV_8UC1; copied when it is kept. `number`: Frame::number, growing.
+  // `image`: CV_8UC3 or CV_8UC1; copied when threaded. `number`: Frame::number, increasing.
   void Offer(int number, const cv::Mat& image);
-  // The answer that is due at frame `number`, if any: the newest.
+  // The newest result that is due at frame `number`, if any. Each is returned once at most.
   std::optional<FrameDetections> Take(int number);
-  // Any thread may ask.
-  const SampleLog& milliseconds() const { return milliseconds_; }  // one per frame it was given
-  std::exception_ptr failure() const;  // what ended the detector; null: nothing did
+  // Any thread may call these.
+  const SampleLog& milliseconds() const { return milliseconds_; }  // one per frame it processed
+  std::exception_ptr failure() const;  // exception that ended the detector; null: it runs
 
  private:
   void Run();
   std::optional<FrameDetections> Detect(int number, const cv::Mat& image);
-  void Fail(int number) noexcept;  // by what is being handled
+  void Fail(int number) noexcept;  // ends the detector; called while its exception is handled
 
   std::shared_ptr<Detector> detector_;
   DynamicsSettings settings_;
-  bool late_;  // it works elsewhere
+  bool late_;  // Detector::AnswersLate()
   bool threaded_;
   Random random_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;
-  cv::Mat offered_;  // threaded: the newest frame; empty when taken
+  cv::Mat offered_;  // threaded: the newest frame that is not taken yet; empty: none
   int offered_number_ = 0;
-  int offers_ = 0;  // inline: so far
+  int offers_ = 0;  // inline: frames offered so far
   bool stopping_ = false;
   std::deque<FrameDetections> answers_;
   SampleLog milliseconds_;

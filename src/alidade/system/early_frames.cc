@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// Of the keyframes of a map the one whose frame came nearest in time.
+// The keyframe of map `of` whose frame number is nearest to `number`.
 KeyFrameId NearestKeyFrame(const MapSnapshot& map, MapId of, int number) {
   KeyFrameId nearest;
   int least = 0;
@@ -49,7 +49,7 @@ void EarlyFrames::Tracked(const Frame& frame, int index) {
   if (map_.valid() && frame.number - begun_ < settings_.settle) Keep(frame, index, map_);
 }
 
-void EarlyFrames::GiveUp() {
+void EarlyFrames::Release() {
   for (Early& early : frames_) {
     if (early.map == map_) early = {early.frame, early.index, {}, true};
   }
@@ -81,14 +81,14 @@ void EarlyFrames::Place(int count, int number, Tracker& tracker, const MapSnapsh
                                    [](const Early& early) { return early.map.valid(); });
     if (last == frames_.rend()) return;
     PlaceOne(*last, tracker, map, log);
-    frames_.erase(std::next(last).base());  // not when memory ran out
+    frames_.erase(std::next(last).base());  // if PlaceOne() throws, the frame stays
   }
 }
 
 void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapshot& map,
                            FrameLog& log) {
   const KeyFrameId near = NearestKeyFrame(map, early.map, early.frame->number);
-  if (!near.valid()) return;  // its map is gone
+  if (!near.valid()) return;  // the map was dropped
   const double time = early.frame->time;
   if (map.Find(near)->frame->number == early.frame->number) {
     const Anchor anchor{near, Se3(), map.ScaleOf(near)};
@@ -120,7 +120,9 @@ void EarlyFrames::Passed(double time, const Anchor& anchor, MapId map) {
   while (way_.size() > 2 && way_[1].time - time >= settings_.leap_seconds) way_.pop_front();
 }
 
-// Against the velocity of the frames after it.
+// Motion gate: with x, v the position and velocity extrapolated from the frames localized after
+// this one, and p, sigma its own position and standard deviation, true if |p - x| is above max_leap
+// (|v| max(|dt|, leap_seconds) + 3 sigma), and above min_leap times the median depth.
 bool EarlyFrames::Leaps(const TrackEstimate& estimate, const MapSnapshot& map) const {
   if (way_.size() < 2) return false;
   const PlacedFrame& placed = estimate.placed;

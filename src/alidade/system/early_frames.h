@@ -1,7 +1,8 @@
-// Frames that came before the map knew better: those before one camera's start (lost ones included,
-// where another map begins), which had no pose, and those placed in the first seconds of its map,
-// when two views were all it had. Once the map has settled each is placed in it anew. Holds a
-// bounded number of frames; used by the tracker's thread.
+// Deferred localization with one camera. Buffers frames without a pose (before the start of a map,
+// or lost) and the frames tracked in the first settings.settle frames of a map, whose poses rest on
+// two views. Localizes them again settings.settle frames after the start of the map
+// (docs/development/decisions/0016-deferred-localization.md). Holds at most settings.most frames;
+// used by the driving thread.
 #pragma once
 
 #include <deque>
@@ -18,52 +19,55 @@ class EarlyFrames {
  public:
   explicit EarlyFrames(const EarlyFrameSettings& settings) : settings_(settings) {}
 
-  // `index`: of the frame in the log. A frame without a pose, while a map is or may be begun …
+  // Buffers a frame without a pose while a map may start. `index`: of the frame in the log.
   void Wait(const Frame& frame, int index);
-  // … which `map` then is, by frame `number`: the frames that wait are its own from now on.
+  // `map` was started with frame `number`: the waiting frames are to be localized in it.
   void Begin(MapId map, int number);
-  // A frame that was tracked in that map.
+  // Buffers a frame that was tracked in the newest map, if that is young.
   void Tracked(const Frame& frame, int index);
-  // The map is given up: its frames wait for the next one.
-  void GiveUp();
-  // What waits is of no use any more: the next frame need not go on where it was.
+  // The newest map is dropped: its frames may be localized in the next one.
+  void Release();
+  // Drops the waiting frames: the frames to come need not continue them.
   void ForgetWaiting();
 
   // From then on nothing here needs a keyframe that was culled in `map`.
   void Reanchor(const MapSnapshot& map);
 
-  // All frames that wait are of this camera.
+  // Undistorts the keypoints of all buffered frames for another camera.
   void SetCamera(const Camera& camera);
 
-  // Places `count` frames at most whose map has settled by frame `number`. Those before the start
-  // come last first, and no further than they are recognised.
+  // Localizes up to `count` buffered frames, newest first, unless frame `number` is less than
+  // settings.settle frames after the start of the newest map. Of the frames before a start, the
+  // rest is given up after settings.most_missed consecutive failures, or at a position beyond the
+  // motion gate (settings.max_leap).
   void Place(int count, int number, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
 
  private:
   struct Early {
     std::shared_ptr<const Frame> frame;
-    int index = 0;
-    MapId map;            // none: it waits
-    bool before = false;  // the start
+    int index = 0;        // in the log
+    MapId map;            // where to localize it; invalid: it waits for a map
+    bool before = false;  // it came before the start of that map
   };
   void PlaceOne(const Early& early, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
   void Keep(const Frame& frame, int index, MapId map);
   bool Leaps(const TrackEstimate& estimate, const MapSnapshot& map) const;
   void Passed(double time, const Anchor& anchor, MapId map);
 
-  struct Step {  // where the camera was
+  struct Step {  // a localized frame
     double time = 0;
     Anchor anchor;
   };
 
   EarlyFrameSettings settings_;
   std::deque<Early> frames_;  // oldest first
-  MapId map_;                 // begun last
-  int begun_ = 0;             // number of the frame it was begun with
-  int missed_ = 0;            // frames before the start that were not recognised, on end …
-  MapId missed_in_;           // … in that map
-  std::deque<Step> way_;      // going back: where those placed last were, the earliest one last …
-  MapId way_in_;              // … in that map
+  MapId map_;                 // the newest map
+  int begun_ = 0;             // number of the frame that started it
+  int missed_ = 0;   // consecutive frames before the start of missed_in_ that were not localized
+  MapId missed_in_;  // see missed_
+  // The frames localized last in way_in_, going back in time: the earliest one last.
+  std::deque<Step> way_;
+  MapId way_in_;  // see way_
 };
 
 }  // namespace alidade

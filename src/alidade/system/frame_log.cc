@@ -47,7 +47,7 @@ void FrameLog::End() {
   begun_ = placed_ = false;
 }
 
-// In the open chunk's table.
+// Index of the keyframe in the open chunk's table.
 int FrameLog::AnchorOf(KeyFrameId keyframe) {
   std::shared_ptr<const AnchorTable> table = open_.anchors;
   const int index = AnchorIn(table, first_of_open_ / kChunk, keyframe);
@@ -57,7 +57,8 @@ int FrameLog::AnchorOf(KeyFrameId keyframe) {
   return index;
 }
 
-// In the table of chunk `number`. Readers hold the table: a longer one takes its place.
+// Index of the keyframe in the table of chunk `number`. If it is missing, a longer copy replaces
+// the table, because readers may hold the old one.
 int FrameLog::AnchorIn(std::shared_ptr<const AnchorTable>& table, int number, KeyFrameId keyframe) {
   const auto same = [&](const ChunkAnchor& a) { return a.placed == keyframe; };
   if (table) {
@@ -100,11 +101,12 @@ void FrameLog::PlaceLate(int index, Anchor anchor) {
   full_ = std::move(full);
 }
 
+// Moves the open chunk, which is full, to full_, and drops chunks older than keep_seconds.
 void FrameLog::Seal() {
   auto full = std::make_shared<std::vector<Chunk>>(*full_);
   full->push_back(open_);
   int tracked = 0;
-  size_t old = 0;  // chunks to be let go
+  size_t old = 0;  // chunks to drop
   while (settings_.keep_seconds > 0 && old < full->size() &&
          (*full)[old].age < age_ - settings_.keep_seconds) {
     tracked += (*full)[old].tracked;
@@ -141,7 +143,7 @@ void FrameLog::Reanchor(const MapSnapshot& map) {
         number == open_number ? open_ : (*full_)[static_cast<size_t>(number - first_chunk_)];
     return *chunk.anchors;
   };
-  std::map<int, std::shared_ptr<AnchorTable>> changed;  // by number of the chunk
+  std::map<int, std::shared_ptr<AnchorTable>> changed;  // by chunk number
   for (KeyFrameId id : culled) {
     const std::vector<int> numbers = std::move(chunks_of_[id]);
     chunks_of_.erase(id);
@@ -187,7 +189,8 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
   std::vector<int> recordings;
   MapSnapshot map;
   {
-    // The map is taken with the lock held: what it may have forgotten was not an anchor any more.
+    // The snapshot is taken under the lock. The map forgets culled keyframes only after Reanchor(),
+    // so it still has every anchor that is read here.
     std::lock_guard<std::mutex> lock(mutex_);
     full = full_;
     open = open_;
@@ -196,7 +199,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     recordings = recordings_;
     map = store.Snapshot();
   }
-  struct Place {  // of an anchor, now
+  struct Place {  // current pose of an anchor
     MapId map;
     Se3 T_anchor_world;
     double scale = 1;
@@ -234,7 +237,7 @@ std::vector<FramePose> FrameLog::Trajectory(const MapStore& store, int since) co
     if (record.anchor >= 0) {
       const Place& place = places[static_cast<size_t>(record.anchor)];
       pose.map = place.map;
-      pose.tracked = place.map.valid();  // not when its map was given up
+      pose.tracked = place.map.valid();  // false if its map was dropped
       if (pose.tracked) {
         Se3 T_camera_anchor = Unpack(record.T_camera_anchor);
         T_camera_anchor.t *= place.anchor->scale;

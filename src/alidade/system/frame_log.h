@@ -1,8 +1,9 @@
-// Where every frame is, told by the keyframe it was placed against: what is learnt of that later
-// moves the frame along. One thread writes; any other may ask for the trajectory meanwhile.
+// The trajectory. The pose of every frame is stored relative to a keyframe, so it follows later
+// corrections of that keyframe. One thread writes; any other may read the trajectory meanwhile.
 //
-// Frames lie in chunks of 512 that never change once full; readers share them. A frame takes 128
-// bytes, its share of the chunk's table of keyframes some 20: 16 MB an hour at 30 per second.
+// Frames are stored in chunks of 512. Full chunks are immutable and shared with readers; a change
+// replaces a chunk. A frame takes 128 bytes and about 20 bytes of its chunk's table of keyframes:
+// 16 MB per hour at 30 frames per second.
 #pragma once
 
 #include <array>
@@ -14,7 +15,7 @@
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"
-#include "alidade/system/slam.h"
+#include "alidade/system/types.h"
 
 namespace alidade {
 
@@ -22,62 +23,64 @@ class FrameLog {
  public:
   explicit FrameLog(const TrajectorySettings& settings = {});
 
-  // The writer's: Begin, Place when the frame has a pose, End. A frame that was begun is readable
-  // once it has ended; Begin ends the one before.
+  // For each frame the writer calls Begin(), Place() if the frame has a pose, and End(). The frame
+  // can be read after End(). Begin() ends the previous frame.
   void Begin(double time);  // seconds
-  void BeginRecording();    // frames begun from now on are the next one's (FramePose::recording)
+  void BeginRecording();    // the next frames belong to the next FramePose::recording
   void Place(const Anchor& anchor, const Se3& T_world_camera_live);
-  // A frame that has ended, by its index, gets the pose it lacked or another one. Nothing happens
-  // to one that was let go.
+  // Gives a finished frame, by its index, a pose or another pose. Does nothing if the frame is no
+  // longer held.
   void PlaceLate(int index, Anchor anchor);
-  void End();  // where it throws, for want of memory, the next Begin ends the frame
+  void End();  // if it throws (out of memory), the next Begin() ends the frame
   bool empty() const { return size() == 0; }
-  int recording() const { return static_cast<int>(recordings_.size()); }  // the writer's, of now
-  int size() const { return first_of_open_ + open_count_ + (begun_ ? 1 : 0); }  // frames begun
-  double time() const { return time_; }                     // of the frame begun last
+  // The current FramePose::recording. Writer only.
+  int recording() const { return static_cast<int>(recordings_.size()); }
+  // Frames begun so far, including those no longer held.
+  int size() const { return first_of_open_ + open_count_ + (begun_ ? 1 : 0); }
+  double time() const { return time_; }                     // of the frame begun last, seconds
   const Se3& T_world_camera_live() const { return live_; }  // of the frame placed last
 
-  // Frames placed against a keyframe that is culled in `map` are tied to the living keyframe it
-  // follows instead, where they stay to within rounding. From then on no frame needs a culled
-  // keyframe of `map`. The writer's.
+  // Poses relative to a keyframe that is culled in `map` become relative to its nearest live
+  // ancestor in the spanning tree (Reanchored()). They change by rounding only. Afterwards no frame
+  // needs a keyframe culled in `map`. Writer only.
   void Reanchor(const MapSnapshot& map);
-  std::vector<KeyFrameId> Anchors() const;  // keyframes that frames hang on. The writer's
+  std::vector<KeyFrameId> Anchors() const;  // keyframes that poses are relative to; writer only
 
-  // Frames that have ended, from index `since` on, by the map as it is now; those whose map is gone
-  // have no pose. Any thread's; the writer waits for it no longer than it takes to copy a few
-  // pointers.
+  // Finished frames from index `since` on, with poses in the current map. A frame whose map was
+  // dropped has none. Any thread; the writer waits at most while a few pointers are copied.
   std::vector<FramePose> Trajectory(const MapStore& map, int since = 0) const;
-  // Frames that were let go (TrajectorySettings::keep_seconds). Any thread's.
+  // Frames no longer held because of their age (TrajectorySettings::keep_seconds). Any thread.
   LetGoFrames let_go() const;
-  size_t bytes() const;  // that all frames take. Any thread's
+  size_t bytes() const;  // memory used by all frames; any thread
 
  private:
   static constexpr int kChunk = 512;  // frames
-  struct Pose {                       // as Se3, in 56 bytes instead of 96
+  struct Pose {                       // an Se3 in 56 bytes instead of 96
     Eigen::Quaternion<double, Eigen::DontAlign> q{1, 0, 0, 0};
     Eigen::Vector3d t{0, 0, 0};
   };
   struct Record {
     double time = 0;
-    Pose T_camera_anchor;  // with lengths as if the anchor's scale were 1
+    Pose T_camera_anchor;  // translation for an anchor of scale 1
     Pose T_world_camera_live;
-    int anchor = -1;    // in the chunk's table; -1: no pose
-    bool late = false;  // it had none when the frame was done: there is no live one
+    int anchor = -1;    // index in the chunk's table; -1: no pose
+    bool late = false;  // first pose by PlaceLate(): T_world_camera_live is undefined
   };
-  // What records are tied to: a keyframe, or the place one had beside an older one.
+  // What poses are relative to: a keyframe, or the former pose of a culled one relative to a live
+  // one.
   struct ChunkAnchor {
-    KeyFrameId placed;      // the keyframe records were placed against
-    KeyFrameId keyframe;    // the one that tells now where it is; none: their map is gone
-    Se3 T_placed_keyframe;  // with lengths as if the keyframe's scale were 1
-    double scale = 1;       // of `placed`, relative to the keyframe's
+    KeyFrameId placed;      // the keyframe that the poses were relative to at first
+    KeyFrameId keyframe;    // the keyframe that moves it now; invalid: the map was dropped
+    Se3 T_placed_keyframe;  // translation for a `keyframe` of scale 1
+    double scale = 1;       // scale of `placed` relative to that of `keyframe`
   };
   using Records = std::array<Record, kChunk>;
   using AnchorTable = std::vector<ChunkAnchor>;
   struct Chunk {
     std::shared_ptr<const Records> records;
     std::shared_ptr<const AnchorTable> anchors;
-    double age = 0;   // seconds of recording up to its last frame
-    int tracked = 0;  // frames
+    double age = 0;   // recording time up to its last frame, seconds
+    int tracked = 0;  // frames with a pose
   };
 
   void Seal();
@@ -87,22 +90,23 @@ class FrameLog {
   static Se3 Unpack(const Pose& pose) { return {pose.q.toRotationMatrix(), pose.t}; }
 
   TrajectorySettings settings_;
-  // The frame that was begun.
+  // The frame between Begin() and End().
   bool begun_ = false, placed_ = false;
   double time_ = 0, age_ = 0;
   Anchor anchor_;
   Se3 live_;
-  std::shared_ptr<Records> writing_;  // the open chunk's
-  // In which chunks (by number) a keyframe is an anchor.
+  std::shared_ptr<Records> writing_;  // records of the open chunk
+  // Numbers of the chunks whose tables contain a keyframe, in ascending order.
   std::map<KeyFrameId, std::vector<int>> chunks_of_;
 
-  mutable std::mutex mutex_;  // of all below, where a reader may be; only the writer changes them
+  // Guards the members below: readers copy them, only the writer changes them.
+  mutable std::mutex mutex_;
   std::shared_ptr<const std::vector<Chunk>> full_;
-  int first_chunk_ = 0;  // number of the first in full_
+  int first_chunk_ = 0;  // number of the first chunk in full_
   Chunk open_;
-  int first_of_open_ = 0, open_count_ = 0;  // frames
+  int first_of_open_ = 0, open_count_ = 0;  // index of its first frame, number of frames
   LetGoFrames let_go_;
-  std::vector<int> recordings_;  // index of the first frame of each but the first
+  std::vector<int> recordings_;  // index of the first frame of each recording but the first
 };
 
 }  // namespace alidade

@@ -33,10 +33,11 @@ void LensWatchSettings::Check() const {
 
 namespace {
 
-// Standard deviation of the shift at the corners: all but none. 0 would keep the distortion there
-// is.
+// As CameraEstimateSettings::k1_corner_sigma: holds the distortion at nearly zero. 0 would hold it
+// at its current value.
 constexpr double kNoBend = 1e-4;
 
+// Keyframes of the largest map.
 int SizeOf(const MapSnapshot& map) {
   const MapId largest = LargestMap(map);
   return largest.valid() ? static_cast<int>(map.KeyFramesOf(largest).size()) : 0;
@@ -63,7 +64,7 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   ask.adjust.focal_sigma = settings_.focal_sigma;
   ask.adjust.min_lens_step = settings_.settled;
   ask.adjust.min_relative_decrease = settings_.settled_cost;
-  if (last)  // shorter stretches, rather than none that tell of distortion
+  if (last)  // shorter windows, so that there are enough of them to estimate distortion
     ask.window = std::clamp(now / settings_.bend_windows, ask.min_keyframes, ask.window);
   std::vector<LensWindow> windows = LensWindowsOf(map, LargestMap(map), camera_, noise_, ask);
   const bool bend = static_cast<int>(windows.size()) >= settings_.bend_windows - anew_;
@@ -80,11 +81,12 @@ void LensWatch::Ask(const MapSnapshot& map, bool last) {
   if (const auto taken = Agreed(before, answer, last)) Believe(*taken, now);
 }
 
-// What two answers on end are good for: the later one when they agree; when both are off the same
-// way, the nearer one.
+// The answer to accept, given two consecutive ones: the later one if they agree within 2 sigma. If
+// both differ from the current focal length by more than 2 sigma in the same direction, the one
+// nearer to it. Otherwise none.
 std::optional<LensWatch::Answer> LensWatch::Agreed(const std::optional<Answer>& before,
                                                    const Answer& now, bool last) const {
-  if (last && now.estimate.known) return now;  // nothing will follow
+  if (last && now.estimate.known) return now;  // no later answer can confirm it
   if (!before) return {};
   const double sigma = now.estimate.focal_sigma, was_sigma = before->estimate.focal_sigma;
   const double off = std::log(now.estimate.camera.fx / camera_.fx);

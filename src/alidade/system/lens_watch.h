@@ -1,4 +1,5 @@
-// Finds the lens of a camera nobody calibrated, while its map grows.
+// Online self-calibration: estimates focal length and radial distortion of an uncalibrated camera
+// while its map grows (docs/development/decisions/0006-live-self-calibration.md).
 #pragma once
 
 #include <mutex>
@@ -11,8 +12,8 @@
 
 namespace ALIDADE_API alidade {
 
-// For one camera of which nothing is known and whose pictures come once: live cameras, phones, a
-// program's own pictures. Recordings are better played beforehand (run/find_camera.h).
+// For one camera with unknown calibration whose images come only once: live cameras, phones, images
+// from a program. Recordings are better calibrated offline, before the run (run/find_camera.h).
 struct LensWatchSettings {
   bool enabled = false;      // false: the camera is taken as it is given
   int first_keyframes = 10;  // of a map, when it is asked first …
@@ -57,25 +58,28 @@ class LensWatch {
  public:
   LensWatch(const Camera& camera, const MeasurementNoise& noise, const LensWatchSettings& settings);
 
-  // A keyframe was mapped: asks the largest map when that has grown. One thread's.
+  // Call after each mapped keyframe: estimates the camera from the largest map if that has grown
+  // enough. Mapping thread.
   void Mapped(const MapSnapshot& map);
-  // However much it has grown. The same.
-  // `last`: nothing will follow, so an answer needs no second one when it is known well.
+  // Estimates the camera from the largest map now. `last`: no estimate will follow, so a
+  // sufficiently certain one is accepted without a second one that agrees. Not while Mapped() runs.
   void Ask(const MapSnapshot& map, bool last = false);
-  // A camera that the map should be changed to: told once. Any thread's.
+  // The camera that the map should be changed to; returned once. Any thread.
   std::optional<Camera> Take();
-  // The map is of this camera now. Nothing may be in Mapped() meanwhile.
+  // The map was changed to this camera. Not while Mapped() runs.
   void SetCamera(const Camera& camera) { camera_ = camera; }
-  // The map is gone, another is made. The same.
+  // The map was dropped and is rebuilt with a better camera. Not while Mapped() runs.
   void BeginAnew();
-  // What is believed by now; none: nothing was found. Any thread's.
+  // The estimate so far; nullopt: none was accepted. Any thread.
   std::optional<CameraEstimate> found() const;
   const LensWatchSettings& settings() const { return settings_; }
 
  private:
   struct Answer {
     CameraEstimate estimate;
-    double unasked = 0;  // relative sigma of the focal length by distortion that was not asked for
+    // Relative standard deviation of the focal length that is due to distortion, if that was not
+    // estimated.
+    double unasked = 0;
   };
   std::optional<Answer> Agreed(const std::optional<Answer>& before, const Answer& now,
                                bool last) const;
@@ -84,12 +88,12 @@ class LensWatch {
   Camera camera_;
   MeasurementNoise noise_;
   LensWatchSettings settings_;
-  int ask_at_;
-  std::optional<Answer> before_;  // the last
-  bool anew_ = false;             // the map was begun anew with a better camera
+  int ask_at_;                    // keyframes of the largest map at the next estimate
+  std::optional<Answer> before_;  // the previous answer
+  bool anew_ = false;             // the map was rebuilt with a better camera
   mutable std::mutex mutex_;
   std::optional<CameraEstimate> found_;
-  std::optional<Camera> wanted_;
+  std::optional<Camera> wanted_;  // for Take()
 };
 
 }  // namespace alidade

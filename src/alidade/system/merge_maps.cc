@@ -15,30 +15,31 @@
 namespace alidade {
 namespace {
 
-constexpr int kTyingRounds = 3;  // the second finds a few places more, a third hardly any
+constexpr int kTyingRounds = 3;  // the second finds a few more places, the third hardly any
 
-// As the map was made, where this program knows the names.
+// The settings that the map was made with, as far as this version has them.
 SlamSettings SettingsOf(const SavedMap& saved) {
   SlamSettings settings;
   for (const auto& [name, value] : saved.settings) {
     try {
       settings.Set(name, value);
-    } catch (const Error&) {  // of another version
+    } catch (const Error&) {  // a setting of another version
     }
   }
   settings.loop.enabled = true;
-  settings.loop.tied_share = 0;  // what shares any landmark is tied: Tie() looks for the others
+  // Keyframes that share any landmark are no candidates for each other: Tie() matches the others.
+  settings.loop.tied_share = 0;
   return settings;
 }
 
-// Where each stands when they are sorted by size; equal ones are refused.
+// Indices of the maps, the largest first. Throws Error (input) if two maps are equal.
 std::vector<size_t> BySize(const std::vector<MapToMerge>& maps) {
   const auto size = [](const MapToMerge& map) {
     return std::pair(map.saved.map.keyframe_count(), map.saved.map.landmark_count());
   };
   std::vector<size_t> order(maps.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::vector<std::string> bytes(maps.size());  // only of those that are of equal size
+  std::vector<std::string> bytes(maps.size());  // only of maps of equal size
   const auto bytes_of = [&](size_t i) -> const std::string& {
     if (bytes[i].empty()) bytes[i] = EncodeMap(maps[i].saved);
     return bytes[i];
@@ -114,8 +115,8 @@ class Merger {
                     [&](KeyFrameId id) { places_.Add(id, map().Find(id)->frame); });
   }
 
-  // Asks every keyframe for places of other maps. Whether any two were joined: then there are more
-  // landmarks around a place, and those who were refused are asked again.
+  // Matches every keyframe with places of other maps and joins the maps. True if any were joined:
+  // then more landmarks surround the places, and keyframes without a match are worth another try.
   bool JoinOnce() {
     bool any = false;
     ForEachKeyFrame("looking for the same place", [&](KeyFrameId id) {
@@ -136,7 +137,8 @@ class Merger {
     return any;
   }
 
-  // Places of the joined maps where parts of different origin meet and share no landmarks yet.
+  // Matches the keyframes of joined maps with places that come from another input map and share no
+  // landmarks with them yet. Returns the number of matches.
   int Tie() {
     int found = 0;
     ForEachKeyFrame("tying the maps together", [&](KeyFrameId id) {
@@ -151,7 +153,7 @@ class Merger {
     return found;
   }
 
-  // What two keyframes both show is one landmark, as the mapper does it for a new keyframe.
+  // Fuses duplicate landmarks around each keyframe, as the mapper does around a new one.
   void Weld() {
     ForEachKeyFrame("fusing landmarks", [&](KeyFrameId id) {
       const MapSnapshot map = map_.Snapshot();
@@ -165,7 +167,7 @@ class Merger {
     });
   }
 
-  // The whole map; what does not fit goes, and the rest is adjusted once more.
+  // Adjusts a whole map, removes outliers, and adjusts it once more.
   void Adjust(MapId id) {
     for (const char* round : {"adjusting all", "adjusting all again"}) {
       const MapSnapshot map = map_.Snapshot();
@@ -178,7 +180,7 @@ class Merger {
       const Adjustment adjusted = AdjustKeyFrames(map, free, fixed, camera_, settings, nullptr);
       map_.Commit([&](MapCommit& commit) {
         CommitAdjustment(commit, map, adjusted);
-        const size_t needed = camera_.bf() > 0 ? 1 : 2;  // sightings that tell where it is
+        const size_t needed = camera_.bf() > 0 ? 1 : 2;  // observations that determine a position
         for (const auto& [landmark, keyframe] : adjusted.outliers) {
           const Landmark* left = commit.Find(landmark);
           if (left && left->observations.size() < needed) commit.Remove(landmark);
@@ -203,7 +205,7 @@ class Merger {
   PlaceIndex places_;
   LoopCloser closer_;
   std::vector<MapJoin> joins_;
-  std::set<MapId> joined_;  // maps that others were laid on
+  std::set<MapId> joined_;  // maps that others were merged into
   int ties_ = 0;
 };
 

@@ -1,5 +1,5 @@
-// Maps of several recordings become one where they show one place: recognised, verified and laid
-// together as the maps of one recording are (looping/), then adjusted as a whole.
+// Merges maps of several recordings that show the same place. Places are recognized, verified and
+// aligned as between maps of one recording (looping/), then the whole map is adjusted.
 #pragma once
 
 #include <functional>
@@ -13,33 +13,33 @@
 namespace ALIDADE_API alidade {
 
 struct MapToMerge {
-  std::string name;  // for errors
+  std::string name;  // for error messages
   SavedMap saved;
 };
 
-// Two worlds that became one.
+// Two maps that became one.
 struct MapJoin {
-  KeyFrameId keyframe, place;  // of the merged map: `keyframe` sees what `place` saw
-  int found = 0;               // landmarks of the place seen there …
-  int visible = 0;             // … of so many that should be
+  KeyFrameId keyframe, place;  // in the merged map: `keyframe` shows the same place as `place`
+  int found = 0;               // landmarks of the place found in `keyframe`
+  int visible = 0;             // landmarks of the place that should be visible in it
 };
 
 struct MergedMaps {
-  SavedMap saved;                 // with the camera and settings of the largest
-  std::vector<UnitedPart> parts;  // what became of each map given, in that order
+  SavedMap saved;                 // with the camera and settings of the largest map
+  std::vector<UnitedPart> parts;  // one per given map, in the same order
   std::vector<MapJoin> joins;
-  int ties = 0;  // further places where joined maps were found to meet
+  int ties = 0;  // further matches between joined maps
 };
 
-// `what` is done for `done` of `total` keyframes. Called often.
+// Progress: step `what` has processed `done` of `total` keyframes. Called for each keyframe.
 using MergeProgress = std::function<void(const char* what, int done, int total)>;
 
-// The result is the same whatever order the maps are given in: they are sorted by size (keyframes,
-// landmarks, then their bytes), and the world of the largest is the common one. Maps that show no
-// place of another's stay as they are, each in its own world. Every keyframe is asked for places of
-// other maps, with all gates of LoopSettings, as the settings saved in the largest map have them.
-// Throws Error: usage for fewer than two, input for maps that cannot be together: another sensor or
-// camera (see CheckSameCamera), or one that is given twice.
+// The result does not depend on the order of the maps: they are sorted by size (keyframes,
+// landmarks, then their bytes), and merged maps are in the world of the largest one. A map that
+// shows no place of another map stays unchanged in its own world. Every keyframe is matched with
+// places of the other maps, with all gates of LoopSettings, as saved in the largest map. Throws
+// Error: usage for fewer than two maps; input for maps of different sensors or cameras
+// (CheckSameCamera()), or a map that is given twice.
 MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& progress = {});
 
 }  // namespace alidade

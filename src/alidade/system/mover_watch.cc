@@ -26,7 +26,7 @@ MoverWatch::MoverWatch(const Camera& camera, const SlamSettings& settings,
 }
 
 bool MoverWatch::Watches(bool young) {
-  if (!young && watched_ >= settings_.watch_frames && doubtful_ == 0) {  // the look is over
+  if (!young && watched_ >= settings_.watch_frames && doubtful_ == 0) {  // examined long enough
     watched_ = 0;
     rest_ = settings_.watch_every - settings_.watch_frames;
   }
@@ -35,7 +35,7 @@ bool MoverWatch::Watches(bool young) {
     --rest_;
     return false;
   }
-  if (watched_ == 0) {  // the last frame it had is long ago
+  if (watched_ == 0) {  // the filter's last frame is too old to compare with
     filter_.emplace(camera_, settings_, class_names_);
     moved_.clear();
     doubtful_ = 0;
@@ -55,14 +55,15 @@ void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool
   const std::optional<FrameDetections> arrived = detections_.Take(number);
   Remember(arrived, number, prepared.time);
   const Stopwatch advancing;
-  // Matching a stereo pair takes four times as long as flow does: not for a look.
+  // While frames are only examined, the right image is left out: matching a stereo pair takes four
+  // times as long as optical flow.
   const cv::Mat right = counts_ ? prepared.right : cv::Mat();
   filter_->Advance({number, prepared.time, prepared.image, prepared.depth, right}, arrived);
   present_ms_ += advancing.Milliseconds();
 }
 
 void MoverWatch::Remember(const std::optional<FrameDetections>& arrived, int number, double time) {
-  constexpr size_t kWaiting = 1000;  // frames: 33 s at 30 a second; no detector takes so long
+  constexpr size_t kWaiting = 1000;  // frames; 33 s at 30 per second, longer than any detector
   now_ = time;
   if (settings_.mode != DynamicsMode::kFull) return;
   offered_.push_back({number, time});
@@ -95,7 +96,7 @@ bool MoverWatch::FollowsMover(bool young) {
   if (!counts_ && (MuchMoves(young) || follows)) {
     LogWarning(
         "much of the picture moves: from now on what moves is left out (--dynamics off: never)");
-    used_ = counts_ = true;  // of this frame: what it says of landmarks
+    used_ = counts_ = true;  // counts_: this frame already gives evidence on landmarks
   }
   present_ms_ += watch.Milliseconds();
   return follows;
@@ -162,7 +163,7 @@ void MoverWatch::Recover() noexcept {
   if (settings_.mode == DynamicsMode::kOff || filter_failed_) return;
   try {
     filter_.emplace(camera_, settings_, class_names_);
-  } catch (...) {  // there is none now
+  } catch (...) {  // filter_ is empty now
     used_ = false;
     const std::lock_guard<std::mutex> lock(failure_mutex_);
     failure_ = std::current_exception();

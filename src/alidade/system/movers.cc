@@ -8,10 +8,11 @@
 
 namespace alidade {
 
-// A keyframe keeps only what stands still for certain: it must be tied to the map by that alone.
+// A keyframe keeps only keypoints that may enter the map. Their matches suffice if they are all
+// matches, or at least kLeast and kShare of all.
 bool HoldsWithoutMovers(const PlacedFrame& placed) {
-  constexpr int kLeast = 20;       // landmarks, …
-  constexpr double kShare = 0.25;  // … and of those the pose was found with
+  constexpr int kLeast = 20;
+  constexpr double kShare = 0.25;
   int tied = 0, all = 0;
   for (size_t k = 0; k < placed.matches.size(); ++k) {
     if (!placed.matches[k].valid()) continue;
@@ -25,7 +26,8 @@ WorldId WorldOf(KeyFrameId reference, const MapSnapshot& map) {
   return {map.MapOf(reference), map.corrections()};
 }
 
-// Nothing is much nearer than the nearest of the landmarks in view.
+// The smallest depth in the scene is taken as kNearer times the 5 % quantile of the depths of the
+// matched landmarks.
 PoseGuess GuessOf(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
   constexpr double kNearer = 0.4;
   PoseGuess guess;
@@ -51,7 +53,7 @@ std::vector<int> MappableKeypoints(const Frame& frame) {
   return kept;
 }
 
-// The map never knows of keypoints on what may move.
+// The map gets no keypoints on objects that may move.
 void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
   const std::vector<int> kept = MappableKeypoints(*placed.frame);
   if (kept.size() == placed.frame->keypoints.size()) return;
@@ -60,7 +62,7 @@ void LeaveOutMovers(PlacedFrame& placed, const Camera& camera) {
     for (int k : kept) matches.push_back(placed.matches[k]);
   }
   auto frame = std::make_shared<Frame>(KeypointSubset(*placed.frame, kept, camera));
-  frame->picture = nullptr;  // the map keeps none
+  frame->picture = nullptr;  // the map holds no images
   placed.frame = std::move(frame);
   placed.matches = std::move(matches);
   placed.passing.clear();

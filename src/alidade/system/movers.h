@@ -1,4 +1,5 @@
-// What tracked frames mean to the dynamic filter, and what the filter's word means to keyframes.
+// Between tracking and the dynamic filter: what the filter needs from a tracked frame, and which
+// keypoints may enter a keyframe.
 #pragma once
 
 #include <vector>
@@ -9,19 +10,24 @@
 
 namespace alidade {
 
-// Whether a frame is tied to the map by what stands still for certain: only that enters keyframes.
+// MapperSettings::young_static while moving objects are left out: the prior probability that a new
+// landmark is static.
+constexpr float kYoungStatic = 0.5f;
+
+// Whether the matches of the keypoints that may enter the map suffice to tie a keyframe to it.
 bool HoldsWithoutMovers(const PlacedFrame& placed);
 
-// Whose world the poses that hang on a keyframe are in.
+// The world of poses that are stored relative to keyframe `reference`.
 WorldId WorldOf(KeyFrameId reference, const MapSnapshot& map);
 
-// Where the camera is, before movers are told apart.
+// The predicted pose, for DynamicFilter::Judge().
 PoseGuess GuessOf(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
 
-// Keypoints that may enter the map, in order.
+// Indices of the keypoints that may enter the map (Frame::kMappable), ascending.
 std::vector<int> MappableKeypoints(const Frame& frame);
 
-// The frame without the others, their matches gone too; its picture is left out.
+// Removes all other keypoints, with their matches, from the frame; if there are any, the picture,
+// too.
 void LeaveOutMovers(PlacedFrame& placed, const Camera& camera);
 
 }  // namespace alidade

@@ -42,7 +42,7 @@ void ReadoutWatch::Placed(const Vector6d& motion, std::span<const ReadoutMatch> 
   sum_.Add(motion, matches);
 }
 
-// Where it was found to be something else than camera_ has.
+// Replaces the readout time. Always true.
 bool ReadoutWatch::Take(const std::array<double, 2>& readout, double sigma) {
   camera_.readout = readout;
   const std::lock_guard<std::mutex> lock(mutex_);
@@ -52,7 +52,8 @@ bool ReadoutWatch::Take(const std::array<double, 2>& readout, double sigma) {
   return true;
 }
 
-// Whether what frames told since the last change leads the same way.
+// Whether the residuals of the frames since the last change support a change to `readout`: the same
+// sign, and more than 2 sigma.
 bool ReadoutWatch::FramesAgree(const std::array<double, 2>& readout) const {
   const std::lock_guard<std::mutex> lock(mutex_);
   const ReadoutSum::Told told = sum_.told();
@@ -61,6 +62,8 @@ bool ReadoutWatch::FramesAgree(const std::array<double, 2>& readout) const {
          std::abs(told.change) > 2 * told.sigma;
 }
 
+// Changes the readout time if the residuals of enough frames agree on it. The map partly agrees
+// with a wrong readout time, so the estimated change is multiplied by hint_growth.
 bool ReadoutWatch::TakeHint() {
   ReadoutSum::Told told;
   {
@@ -106,7 +109,7 @@ bool ReadoutWatch::Mapped(KeyFrameId id, const MapSnapshot& map) {
   const double sigma = found.readout_sigma.maxCoeff();
   const double longer = std::max(std::abs(readout[0]), std::abs(readout[1]));
   if (sigma > settings_.max_sigma || longer > settings_.longest) return false;
-  if (longer < settings_.least) return false;  // what frames told stays, until they tell else
+  if (longer < settings_.least) return false;  // keeps a readout time found by TakeHint()
   const double change = std::max(std::abs(readout[0] - camera_.readout[0]),
                                  std::abs(readout[1] - camera_.readout[1]));
   if (change < std::max(settings_.min_change, 1e-9)) return false;

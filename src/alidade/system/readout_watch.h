@@ -1,4 +1,4 @@
-// Finds how long a camera with a rolling shutter takes to read an image, while its map grows.
+// Estimates the rolling-shutter readout time of a camera while its map grows.
 #pragma once
 
 #include <array>
@@ -13,9 +13,9 @@
 
 namespace ALIDADE_API alidade {
 
-// Where nothing is told of a camera's readout (`readout` in its file). Rows that are read later
-// show a later place: 30 ms cost half of the accuracy of hand-held recordings
-// (docs/calibration.md).
+// For cameras whose readout time is not given (`readout` in the camera's file). Rows that are read
+// later are seen from a later pose: ignoring 30 ms costs half of the accuracy of hand-held
+// recordings (docs/development/decisions/0007-rolling-shutter.md).
 struct ReadoutSettings {
   bool enabled = true;
   int first_keyframes = 10;   // of a map, when it is asked first …
@@ -46,16 +46,16 @@ class ReadoutWatch {
   ReadoutWatch(const Camera& camera, const MeasurementNoise& noise,
                const ReadoutSettings& settings);
 
-  // A frame was placed. The tracker's thread.
+  // Adds the residuals of a tracked frame; see ReadoutSum::Add(). Driving thread.
   void Placed(const Vector6d& motion, std::span<const ReadoutMatch> matches);
-  // A keyframe was mapped: asks the map it is in when that has grown. Returns whether readout() has
-  // changed. One thread's.
+  // Call after each mapped keyframe: estimates the readout time from frame residuals, and from the
+  // keyframe's map if that has grown enough. True if readout() changed. Mapping thread.
   bool Mapped(KeyFrameId id, const MapSnapshot& map);
-  // The map is of this camera now, its readout included. Nothing else may be at work.
+  // The map was changed to this camera, readout time included. Not while another call runs.
   void SetCamera(const Camera& camera);
-  std::array<double, 2> readout() const;  // see Camera; any thread's
-  double sigma() const;  // seconds; 0: told by the camera, or not found. Any thread's
-  const Camera& camera() const { return camera_; }  // with the readout; the thread's of Mapped()
+  std::array<double, 2> readout() const;  // see Camera::readout; any thread
+  double sigma() const;  // standard deviation, seconds; 0: given, or no estimate. Any thread
+  const Camera& camera() const { return camera_; }  // with the readout time; mapping thread
 
  private:
   bool Take(const std::array<double, 2>& readout, double sigma);
@@ -65,12 +65,12 @@ class ReadoutWatch {
   Camera camera_;
   MeasurementNoise noise_;
   ReadoutSettings settings_;
-  int ask_at_;
+  int ask_at_;  // keyframes of the map at the next estimate
   mutable std::mutex mutex_;
   std::array<double, 2> readout_;
   double sigma_ = 0;
-  int hints_ = 0;         // on end that agree
-  double last_hint_ = 0;  // the change it told of, seconds
+  int hints_ = 0;         // consecutive estimates from frames with the same sign
+  double last_hint_ = 0;  // change of the readout time in the last one, seconds
   ReadoutSum sum_;
 };
 

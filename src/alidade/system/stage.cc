@@ -28,7 +28,7 @@ std::exception_ptr Stage::failure() const {
   return failure_;
 }
 
-// The first failure is the one that is kept: others may follow from it.
+// Keeps the first failure: later ones may be its consequence.
 void Stage::Fail(const std::exception_ptr& what) noexcept {
   {
     std::lock_guard<std::mutex> lock(mutex_);

@@ -1,4 +1,4 @@
-// A worker that keyframes are handed to, on its own thread or inline: same worker, two schedules.
+// A worker that processes keyframes one after another, on its own thread or inline.
 #pragma once
 
 #include <atomic>
@@ -16,38 +16,39 @@
 namespace alidade {
 
 enum class Schedule {
-  kInline,      // done before Add() returns
-  kThread,      // queued for a thread that shares the loops' workers
-  kBackground,  // queued for a thread that keeps to itself and gives way to the others
+  kInline,      // processed before Add() returns
+  kThread,      // queued for a thread that uses the threads of parallel loops (base/parallel.h)
+  kBackground,  // queued for a thread of lower priority that runs its loops alone
 };
 
-// What the work throws ends it: the stage has failed, drops what is queued, and from then on does
-// nothing, in both schedules. failure() keeps it; it is not thrown again.
+// An exception thrown by the work ends the stage, in all schedules: it drops its queue and does
+// nothing from then on. failure() returns the exception; it is not rethrown.
 class Stage {
  public:
-  // `stop` turns true when something else is waiting: long work should come to an end. Null inline.
+  // `stop` becomes true when other work is waiting: long work should end early then. Null inline.
   using Work = std::function<void(KeyFrameId id, const std::atomic<bool>* stop)>;
   Stage(Work work, Schedule schedule);
   ~Stage();
-  void Stop();  // drops what is queued, and returns when nothing is in work
+  void Stop();  // drops the queue, ends the thread, and returns when no work is in progress
 
   void Add(KeyFrameId id) noexcept;
-  // To be run in turn by whoever does the work: nobody waits for it. False when the stage has
-  // failed: then it is not run.
+  // Queues a function behind the keyframes added so far, to run in the stage's thread (inline: at
+  // once). False if the stage has failed or stopped: then it does not run.
   bool AddErrand(std::function<void()> errand) noexcept;
-  int backlog() const;  // keyframes and errands waiting or in work
-  // Drops the keyframes that are queued, and hurries what is in work; goes on afterwards.
+  int backlog() const;  // keyframes and errands that are queued or in progress
+  // Drops the queued keyframes and makes work in progress end early. The stage accepts new
+  // keyframes afterwards.
   void GiveUp();
-  void Drain();  // returns when nothing is waiting or in work
-  const SampleLog& milliseconds() const { return milliseconds_; }  // one per keyframe done
+  void Drain();  // returns when nothing is queued or in progress
+  const SampleLog& milliseconds() const { return milliseconds_; }  // one per processed keyframe
 
-  // Runs `action` while this stage rests: what is in work is hurried to its end, what waits, waits.
-  // What it throws comes out here.
+  // Runs `action` in the caller's thread while this stage does no work: work in progress is made to
+  // end early, queued work stays queued. Rethrows what `action` throws.
   void WhileResting(const std::function<void()>& action);
 
-  std::exception_ptr failure() const;  // null: none
-  // Runs what the caller does for this stage: what it throws is the stage's failure. Not run once
-  // there is one.
+  std::exception_ptr failure() const;  // what ended the stage; null: it has not failed
+  // Runs `action` in the caller's thread as work of this stage: an exception ends the stage. Does
+  // nothing if the stage has failed.
   template <typename Action>
   void Guard(Action&& action) noexcept {
     if (failure()) return;
@@ -61,7 +62,7 @@ class Stage {
  private:
   struct Task {
     KeyFrameId id;
-    std::function<void()> errand;  // instead of the work, when there is one
+    std::function<void()> errand;  // if set, run instead of the work
   };
   void Run();
   bool Enqueue(Task task) noexcept;
@@ -74,8 +75,8 @@ class Stage {
   std::condition_variable changed_;
   std::deque<Task> queue_;
   bool working_ = false, stopping_ = false;
-  int rests_ = 0;  // actions that are waiting or running
-  std::atomic<bool> hurry_{false};
+  int rests_ = 0;                   // calls of WhileResting() that wait or run
+  std::atomic<bool> hurry_{false};  // `stop` of the work
   std::exception_ptr failure_;
   SampleLog milliseconds_;
   std::thread thread_;

@@ -13,11 +13,12 @@
 namespace alidade {
 namespace {
 
+// Schedule of the stages behind the mapper.
 Schedule Behind(const SlamSettings& settings) {
   return settings.threaded ? Schedule::kBackground : Schedule::kInline;
 }
 
-// Does something after a time, on a thread of its own, unless it is destroyed before.
+// Runs an action after some seconds on its own thread, unless it is destroyed earlier.
 class Alarm {
  public:
   Alarm(double seconds, std::function<void()> action)
@@ -41,7 +42,7 @@ class Alarm {
   std::mutex mutex_;
   std::condition_variable changed_;
   bool cancelled_ = false;
-  std::thread thread_;  // last: it uses all of the above
+  std::thread thread_;  // last, since it uses the other members
 };
 
 }  // namespace
@@ -64,16 +65,30 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
   BeginRecording();
 }
 
-Workers::~Workers() {  // who hands on stops before who is handed to
+Workers::~Workers() {  // a stage stops before those that it adds to
   mapping_.Stop();
   semidense_.Stop();
   looping_.Stop();
   adjusting_.Stop();
 }
 
-void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
+void Workers::MapKeyFrame(KeyFrameId id, const std::atomic<bool>* stop) {
   const MapperReport report = mapper_.Process(id, stop);
-  if (report.split.valid()) unknown_scale_ = report.split.value;
+  if (!report.split.valid()) return;
+  const std::lock_guard<std::mutex> lock(news_mutex_);
+  unknown_scale_.push_back(report.split);
+}
+
+WorkerNews Workers::TakeNews() {
+  WorkerNews news;
+  news.camera = lens_watch_.Take();
+  const std::lock_guard<std::mutex> lock(news_mutex_);
+  news.unknown_scale.swap(unknown_scale_);
+  return news;
+}
+
+void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
+  MapKeyFrame(id, stop);
   if (readout_watch_.Mapped(id, map_.Snapshot())) {
     map_.Commit([&](MapCommit& commit) { CommitShutter(commit, readout_watch_.camera()); });
     adjusting_.Add(id);
@@ -111,7 +126,7 @@ void Workers::AdjustAll(KeyFrameId id, const std::atomic<bool>* stop) {
       [this](const std::function<void()>& commit) { mapping_.WhileResting(commit); });
 }
 
-// Who hands on rests before who is handed to: what is in work may need the mapper to rest.
+// The mapper rests last: work in progress in the other stages may itself need it to rest.
 void Workers::WhileAllRest(const std::function<void()>& action) {
   adjusting_.WhileResting([&] {
     looping_.WhileResting(
@@ -148,7 +163,7 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
       }
     });
     if (Apart(from, to) > lens_watch_.settings().rework) {
-      for (KeyFrameId id : map_.Snapshot().KeyFrames()) mapper_.Process(id);
+      for (KeyFrameId id : map_.Snapshot().KeyFrames()) MapKeyFrame(id, nullptr);
     }
     semidense_mapper_.SetCamera(to);
     readout_watch_.SetCamera(to);
@@ -162,7 +177,7 @@ void Workers::CutShort() {
 }
 
 void Workers::Drain(double limit) {
-  // Nothing is timed where nothing is limited.
+  // Without a limit there is no timer: the result does not depend on the clock.
   std::optional<Alarm> alarm;
   if (std::isfinite(limit)) alarm.emplace(limit, [this] { CutShort(); });
   DrainStages();
@@ -175,7 +190,8 @@ void Workers::DrainStages() {
   looping_.Drain();
   adjusting_.Drain();
   adjusting_.Guard([&] {
-    // Local windows leave a slow drift of scale and shape that all observations together do not.
+    // Local adjustments leave a slow drift of scale and shape, which an adjustment of the whole map
+    // removes.
     const MapSnapshot map = map_.Snapshot();
     if (map.next_keyframe() == adjusted_up_to_) return;
     for (MapId id : map.Maps()) {
@@ -183,7 +199,7 @@ void Workers::DrainStages() {
       const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(id);
       if (keyframes.size() <= 2) continue;
       adjusting_.Add(keyframes.back());
-      adjusting_.Drain();  // one by one: what waits would hurry the one before
+      adjusting_.Drain();  // one at a time: a queued map would end the one before early
     }
     if (!cut_short_) adjusted_up_to_ = map.next_keyframe();
   });
@@ -198,7 +214,7 @@ void Workers::Restore(const SavedMap& saved) {
   places_.Restore(saved.places, keyframes);
   loop_closer_.SetEntered(ids);
   mapper_.Restore(saved.map);
-  map_.Restore(saved.map);  // last: nobody sees a map that could be restored in part only
+  map_.Restore(saved.map);  // last: if a step before it throws, no part of the map is visible
   adjusted_up_to_ = saved.map.next_keyframe();
   BeginRecording();
 }
@@ -207,8 +223,8 @@ void Workers::BeginRecording() {
   loop_closer_.BeginRecording(KeyFrameId{map_.Snapshot().next_keyframe()});
 }
 
-// On the loop closer's thread, while the mapper rests: what either of them has in work was begun
-// with the map still there, and must be done with it.
+// Runs on the loop closer's thread while the mapper rests: work in progress of either may use the
+// map, so it must end first.
 void Workers::Drop(MapId id) {
   {
     std::lock_guard<std::mutex> lock(dropped_mutex_);

@@ -1,5 +1,6 @@
-// The map and all that works on it behind the tracker: mapper, loop closer, full adjustment, each
-// as a stage. Keyframes pass through them in this order.
+// The map and the workers behind the tracker: mapper, loop closer, full adjustment and semi-dense
+// mapper, each in a Stage. A mapped keyframe goes on to the loop closer and the semi-dense mapper;
+// a closed loop starts a full adjustment. Used by the driving thread, except where noted.
 #pragma once
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "alidade/looping/loop_closer.h"
@@ -23,6 +25,12 @@
 
 namespace alidade {
 
+// What the workers found since the last call of Workers::TakeNews().
+struct WorkerNews {
+  std::optional<Camera> camera;      // the map supports this camera rather than the one in use
+  std::vector<MapId> unknown_scale;  // maps split off because their scale is unknown
+};
+
 class Workers {
  public:
   Workers(const Camera& camera, const SlamSettings& settings);
@@ -34,39 +42,38 @@ class Workers {
   const PlaceIndex& places() const { return places_; }
   Mapper& mapper() { return mapper_; }
 
-  void Add(KeyFrameId id) { mapping_.Add(id); }  // to be mapped, then looked for elsewhere
-  void AddMapped(KeyFrameId id);                 // needs no mapping
-  // The keyframe's picture, before it is added: semi-dense mapping wants a copy. Null without it.
+  // Queues a keyframe for mapping, after which it is passed on as by AddMapped().
+  void Add(KeyFrameId id) { mapping_.Add(id); }
+  void AddMapped(KeyFrameId id);  // queues it for loop closing and semi-dense mapping only
+  // Copies the keyframe's images for semi-dense mapping. Call before Add(). Null: there are none.
   void Keep(KeyFrameId id, const Picture* picture);
-  // How long the camera's shutter takes to roll, as found by now; see Camera::readout.
+  // The rolling-shutter readout time estimated so far, seconds; see Camera::readout.
   std::array<double, 2> readout() const { return readout_watch_.readout(); }
   ReadoutWatch& readout_watch() { return readout_watch_; }
   double readout_sigma() const { return readout_watch_.sigma(); }
-  void AskForCamera();                       // what the map says of its lens, now: see LensWatch
-  void AskAnew();                            // the map that was asked is gone
-  void AwaitMapping() { mapping_.Drain(); }  // of the keyframes handed over so far
-  void AwaitDrop() { looping_.Drain(); }     // until maps that were to be dropped are out
+  void AskForCamera();  // LensWatch::Ask() for the last time; WorkerNews::camera has the result
+  void AskAnew();       // LensWatch::BeginAnew()
+  void AwaitMapping() { mapping_.Drain(); }  // returns when all keyframes added so far are mapped
+  void AwaitDrop() { looping_.Drain(); }     // returns when the maps to be dropped are removed
   LensWatch& lens_watch() { return lens_watch_; }
   const LensWatch& lens_watch() const { return lens_watch_; }
-  // All maps are of another camera from now on: each is bent to it and adjusted, while nothing else
-  // is at work. The tracker's thread; not while keyframes of it wait.
+  // Changes all maps to another camera, in steps with an adjustment after each, while no worker
+  // runs. Not while a map is unconfirmed: an adjustment needs three keyframes.
   void ChangeCamera(const Camera& from, const Camera& to);
-  int backlog() const { return mapping_.backlog(); }  // keyframes that wait for the mapper
-  // Until nothing is left to do; what grew is adjusted as a whole once more. After `limit` seconds,
-  // or CutShort(), what is left is given up, as soon as what is in work can be brought to an end.
-  // What a worker throws does not come out here: see health().
+  int backlog() const { return mapping_.backlog(); }  // keyframes queued or being mapped
+  // Returns when no work is left; maps get a full adjustment if any keyframe was added since the
+  // last call. After `limit` seconds, or CutShort(), drops the remaining work and returns as soon
+  // as work in progress has ended. Does not throw what a worker throws; see health().
   void Drain(double limit = std::numeric_limits<double>::infinity());
-  void CutShort();                      // any thread's: a Drain() that runs, or else the next
+  void CutShort();  // ends the running Drain(), or else the next one, early; any thread
   void Restore(const SavedMap& saved);  // before the first keyframe
-  void BeginRecording();  // keyframes from now on are of another clock. The tracker's thread
-  // A map and its places, without a trace. Not awaited when threaded.
+  void BeginRecording();                // the times of keyframes from now on are of another clock
+  // Removes a map and its places. Threaded: returns earlier; the loop closer's thread removes it.
   void Drop(MapId id);
-  std::vector<MapId> dropped() const;  // and not out of the map yet
-  // The map that was split off last because its scale is not known (MapperReport::split), told
-  // once.
-  MapId TakeUnknownScale() { return {unknown_scale_.exchange(MapId{}.value)}; }
+  std::vector<MapId> dropped() const;  // maps given to Drop() that are not removed yet
+  WorkerNews TakeNews();               // returns each item once
 
-  // Any thread may ask.
+  // Any thread may call these.
   std::vector<StageHealth> health() const;
   bool mapping_stopped() const { return mapping_.failure() != nullptr; }
   bool any_stopped() const;
@@ -78,6 +85,7 @@ class Workers {
   const SampleLog& semidense_milliseconds() const { return semidense_.milliseconds(); }
 
  private:
+  void MapKeyFrame(KeyFrameId id, const std::atomic<bool>* stop);
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
   void DrainStages();
@@ -87,17 +95,18 @@ class Workers {
   MapStore map_;
   PlaceIndex places_;
   Mapper mapper_;
-  ReadoutWatch readout_watch_;  // mapping_'s
-  LensWatch lens_watch_;        // likewise
+  ReadoutWatch readout_watch_;  // used by mapping_
+  LensWatch lens_watch_;        // used by mapping_
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
-  bool dense_;  // semi-dense mapping is asked for
+  bool dense_;  // semi-dense mapping is on
   std::atomic<bool> cut_short_{false};
-  std::atomic<decltype(MapId::value)> unknown_scale_{MapId{}.value};
-  bool limit_told_ = false;      // that keyframes go because there are too many; mapping_'s
-  uint32_t adjusted_up_to_ = 0;  // keyframes there were at the last adjustment of Drain()
+  std::mutex news_mutex_;
+  std::vector<MapId> unknown_scale_;  // WorkerNews::unknown_scale
+  bool limit_told_ = false;      // the user was warned of mapper.max_keyframes; used by mapping_
+  uint32_t adjusted_up_to_ = 0;  // MapSnapshot::next_keyframe() at the last adjustment by Drain()
   mutable std::mutex dropped_mutex_;
-  std::vector<MapId> dropped_;  // given up, and not out of the map yet
+  std::vector<MapId> dropped_;  // see dropped()
   Stage adjusting_, looping_, semidense_, mapping_;
 };
 

@@ -19,7 +19,7 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
   const auto views = start_.Add(frame);
   if (!views) return {};
   Mapper::TwoViewMap two;
-  const auto first = std::make_shared<Frame>(*views->a);  // the map keeps no pictures
+  const auto first = std::make_shared<Frame>(*views->a);  // the map holds no images
   first->picture = nullptr;
   first->glance.release();
   two.a = first;
@@ -53,7 +53,8 @@ std::optional<YoungMap::Begun> YoungMap::Begin(const std::shared_ptr<const Frame
 }
 
 bool YoungMap::Confirm(const TrackEstimate& estimate) {
-  // Of the points that should be in sight: a camera that drives leaves many behind in five frames.
+  // Share of the landmarks that should be visible, not of all: a driving camera passes many of them
+  // within five frames.
   const auto in_sight = static_cast<double>(estimate.sightings.size());
   if (!estimate.tracked || estimate.placed.inliers < settings_.start.trial_share * in_sight)
     return false;
@@ -84,10 +85,10 @@ bool YoungMap::StandsStill(const PlacedFrame& placed) {
   return still_ >= settings.min_still_frames && still_ > moved_;
 }
 
-// Not an older one: what comes back looks the same, too, and arms before a camera that stands still
-// hide more and more of what was seen first.
+// The newest such view, not an older one: a moving camera may have come back to an older view, and
+// arms in front of a stationary camera hide more and more of it.
 const YoungMap::View* YoungMap::LastBeforeMotion(const Pixels& now, int number) const {
-  constexpr size_t kFewest = 20;  // landmarks that both must show
+  constexpr size_t kFewest = 20;  // landmarks that both views must show
   for (auto view = views_.rbegin(); view != views_.rend(); ++view) {
     if (number - view->number > kStillFrames) break;
     std::vector<double> motion;
@@ -103,11 +104,12 @@ const YoungMap::View* YoungMap::LastBeforeMotion(const Pixels& now, int number) 
 void YoungMap::SetCamera(const Camera& camera, double focal_sigma) {
   settings_.start.two_view.lens_uncertainty = 3 * focal_sigma;
   start_ = MonoStart(camera, settings_.start);
-  views_.clear();  // of another camera
+  views_.clear();  // their pixels are of another camera
 }
 
-void YoungMap::GiveUp() {
-  workers_.Drop(map_);
+void YoungMap::Drop() {
+  if (map_.valid()) workers_.Drop(map_);
+  map_ = {};
   start_.Reset();
   trial_left_ = 0;
   started_ = -1;

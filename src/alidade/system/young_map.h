@@ -1,5 +1,6 @@
-// How a map of one camera begins: two views that tell where the points are, then frames that must
-// confirm them before the map is believed.
+// Start of a map of one camera: two views triangulate its landmarks, then the next frames must
+// confirm it. While the map is young, also checks for a stationary camera that watches a moving
+// object (docs/development/decisions/0017-stationary-camera.md). Used by the driving thread.
 #pragma once
 
 #include <map>
@@ -20,64 +21,73 @@ class YoungMap {
  public:
   YoungMap(const Camera& camera, const SlamSettings& settings, Workers& workers);
 
-  // A map is sought: the next frame. What begins one is in the map when this returns.
   struct Begun {
-    PlacedFrame placed;  // the frame, second of the two keyframes
-    KeyFrameId id;       // its
+    PlacedFrame placed;  // the frame, which is the second keyframe
+    KeyFrameId id;       // of that keyframe
     MapSnapshot map;
-    bool holds = false;  // enough points for a trial; otherwise it is to be given up
+    bool holds = false;  // enough landmarks; otherwise the map must be dropped
   };
+  // Adds a frame while there is no map. If it starts a map with an earlier frame, both are in the
+  // map as keyframes when this returns.
   std::optional<Begun> Begin(const std::shared_ptr<const Frame>& frame);
-  const char* reason() const { return start_.reason(); }  // why the last frame began none
-  void Reset() { start_.Reset(); }  // the views kept so far are of no use any more
+  TrackFailure failure() const { return start_.failure(); }  // why the last frame started no map
+  void ForgetViews() { start_.Reset(); }  // drops the reference views for the next start
 
-  bool on_trial() const { return trial_left_ > 0; }
-  // One frame of the trial: whether it confirms the map. After the last its keyframes are handed to
-  // the workers.
+  // The newest map; invalid before the first one and after Drop().
+  MapId map() const { return map_; }
+  bool confirmed() const { return trial_left_ == 0; }
+  // Counts a frame after the start; false if it contradicts the map. After start.trial_frames
+  // frames the map is confirmed, and its two keyframes are passed to the workers.
   bool Confirm(const TrackEstimate& estimate);
-  // So young that it had better be begun again than kept, if it is of something that moves.
-  // `reference`: the keyframe the tracker leans on.
+  // Whether the frame is in the newest map and at most kYoung frames after its start. A map of a
+  // moving object is dropped if it is young, kept otherwise. `reference`: the tracker's reference
+  // keyframe.
   bool IsYoung(const Frame& frame, KeyFrameId reference, const MapSnapshot& map) const;
-  // Whether frame `number` needs its Glance(): the map is young.
+  // Whether frame `number` needs an edge thumbnail (Glance()), because the map is young.
   bool WantsGlance(int number) const { return started_ >= 0 && number - started_ <= kYoung; }
-  // A frame that was placed in the young map. True when frames have shown that the camera stands
-  // still: it is said to have moved, and yet the picture behind stays where it was.
+  // Adds a frame that was tracked in the young map. True if the camera is stationary: in at least
+  // start.min_still_frames frames, and in most, landmarks have moved in the image since an earlier
+  // view, but the image's edges have not.
   bool StandsStill(const PlacedFrame& placed);
-  // The recording ends while the map is young: whether most frames so far have shown that, and a
-  // third of those that would be asked for.
+  // At the end of input, for a young map: true if most frames, and at least a third of
+  // start.min_still_frames, indicate a stationary camera.
   bool StoodStill() const {
     return still_ > moved_ && 3 * still_ >= settings_.start.min_still_frames;
   }
-  // Of all frames from now on: views kept so far are of no use any more. `focal_sigma`: relative.
+  // All frames from now on are of this camera; drops the views so far. `focal_sigma`: relative
+  // standard deviation of its focal length.
   void SetCamera(const Camera& camera, double focal_sigma);
-  void GiveUp();  // out of the map, frames placed in it included; begins anew
+  void Drop();  // removes the newest map; frames tracked in it lose their poses
 
  private:
   static constexpr int kYoung = 40;       // frames
-  static constexpr int kStillFrames = 8;  // frames at most between two whose pictures are compared
+  static constexpr int kStillFrames = 8;  // largest distance of two frames that are compared
 
   using Pixels = std::map<LandmarkId, Eigen::Vector2d>;
   struct View {
-    int number;  // of the frame
-    cv::Mat glance;
-    Pixels pixels;  // where landmarks of the map are seen
+    int number;      // Frame::number
+    cv::Mat glance;  // edge thumbnail
+    Pixels pixels;   // keypoints of the map's landmarks
   };
-  // The newest view since which the landmarks now at `now` have moved by least_motion_ (median);
-  // null where there is none.
+  // The newest view since which the landmarks, now at `now`, have moved by at least least_motion_
+  // (median); null: none.
   const View* LastBeforeMotion(const Pixels& now, int number) const;
 
   SlamSettings settings_;
   Workers& workers_;
   MonoStart start_;
-  int started_ = -1;      // number of the frame it was begun with
-  int trial_left_ = 0;    // frames that have yet to confirm it
-  int begun_points_ = 0;  // landmarks it began with
-  MapId map_;
-  KeyFrameId keyframes_[2];  // it began with
-  // The first of its keyframes and the frames since, the newest last; a glance is 170 kB.
+  int started_ = -1;         // number of the frame that started the map; -1: none
+  int trial_left_ = 0;       // frames that must still confirm it
+  int begun_points_ = 0;     // landmarks at its start
+  MapId map_;                // see map()
+  KeyFrameId keyframes_[2];  // its first two keyframes
+  // The first keyframe and the frames since the start, the newest kStillFrames of them, newest
+  // last. A thumbnail takes 170 kB.
   std::vector<View> views_;
-  double least_motion_;        // pixels (start.min_still_motion)
-  int still_ = 0, moved_ = 0;  // frames since that show an earlier picture again, and that do not
+  double least_motion_;  // pixels: start.min_still_motion times the image's width
+  // Frames since the start whose image edges stayed where they were in an earlier view, and frames
+  // whose edges moved.
+  int still_ = 0, moved_ = 0;
 };
 
 }  // namespace alidade

@@ -7,15 +7,16 @@
 namespace alidade {
 
 namespace {
-constexpr int kNeighboursEach =
-    10;  // best covisible keyframes looked at for one that shares landmarks
-constexpr double kMaxTurn = 0.7;  // cosine: optical axes within 45°
-constexpr double kMaxMove = 0.5;  // of the depth of what is seen
-// Of that depth, too: how far the camera may have gone since. What comes back after a longer way is
-// for the loop closer, before landmarks that have drifted apart are taken for one another.
+// Best covisible keyframes added for each keyframe that shares landmarks with the frame.
+constexpr int kNeighboursEach = 10;
+constexpr double kMaxTurn = 0.7;  // cosine of 45°, between the optical axes
+// Largest distance, relative to the depth of the observed landmarks.
+constexpr double kMaxMove = 0.5;
+// Longest path since, relative to the same depth. After a longer path with drift, the loop closer
+// must match the place first.
 constexpr double kMaxWay = 10;
 
-// Keyframes from whose place and direction much the same must be seen, best first.
+// Keyframes with a similar position and viewing direction, best first.
 std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
                                           const Se3& T_camera_world, double depth) {
   const Eigen::Vector3d centre = T_camera_world.Inverse().t,

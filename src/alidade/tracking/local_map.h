@@ -1,4 +1,4 @@
-// The part of the map a frame can be expected to see (ORB-SLAM §V-D).
+// The part of the map that a frame is expected to observe (Mur-Artal et al. 2015, §V-D).
 #pragma once
 
 #include <span>
@@ -10,24 +10,25 @@
 namespace alidade {
 
 struct LocalMap {
-  // Those that share landmarks with the frame, those that look the same way from nearby (where
-  // covisibility was lost by a turn away and back), then their neighbours.
+  // Keyframes that share landmarks with the frame; those with a similar pose (covisibility is lost
+  // when the camera turns away and back); then covisible keyframes of both.
   std::vector<KeyFrameId> keyframes;
-  std::vector<const Landmark*> landmarks;  // all they see, each once; valid as long as the snapshot
-  KeyFrameId reference;                    // the one that shares most
+  // All they observe, without duplicates; valid as long as the snapshot.
+  std::vector<const Landmark*> landmarks;
+  KeyFrameId reference;  // the keyframe that shares the most landmarks
 };
 
-// Keeps the memory of its marks between frames.
+// Reuses its buffers between frames; one thread at a time.
 class LocalMapGatherer {
  public:
-  // `matches`: the frame's landmarks so far (invalid and stale ids are passed over).
+  // `matches`: the frame's landmarks so far (invalid and outdated ids are ignored).
   LocalMap Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
                   const Se3& T_camera_world, int max_keyframes);
 
  private:
   IdSet<LandmarkId> landmarks_taken_;
   IdSet<KeyFrameId> keyframes_taken_;
-  IdMap<KeyFrameId, int> votes_;  // landmarks of the frame each sees
+  IdMap<KeyFrameId, int> votes_;  // number of the frame's landmarks that each keyframe observes
 };
 
 }  // namespace alidade

@@ -10,9 +10,10 @@
 namespace alidade {
 namespace {
 
-constexpr int kChunk = 256;             // landmarks a thread looks for at a time
-constexpr double kHeadOn = 0.998;       // cosine to the mean viewing direction
-constexpr float kHeadOnRadius = 0.625;  // of the radius from the side: 2.5 to 4 (ORB-SLAM)
+constexpr int kChunk = 256;        // landmarks per task
+constexpr double kHeadOn = 0.998;  // cosine to the mean viewing direction
+// Relative to the radius at oblique views: 2.5 to 4 (Mur-Artal et al. 2015).
+constexpr float kHeadOnRadius = 0.625;
 
 struct Candidate {
   const Landmark* landmark;
@@ -52,7 +53,7 @@ LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, con
   for (const Landmark* landmark : local.landmarks) {
     if (!known.Contains(landmark->id)) candidates.push_back({landmark, {}, false});
   }
-  // Side by side; conflicts are settled afterwards, in order.
+  // Search in parallel; conflicts are resolved afterwards, in order.
   const float radius =
       camera.StereoBaseline() > 0 ? settings.local_radius_depth : settings.local_radius;
   const int count = static_cast<int>(candidates.size());
@@ -61,7 +62,7 @@ LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, con
     for (int i = chunk * kChunk; i < end; ++i) LookFor(candidates[i], placed, camera, radius);
   });
 
-  std::vector<int> holder(found.matches.size(), -1);  // candidate, by keypoint
+  std::vector<int> holder(found.matches.size(), -1);  // index of the candidate, by keypoint
   for (int i = 0; i < count; ++i) {
     if (candidates[i].visible) found.visible.push_back(candidates[i].landmark->id);
     const Sighting& s = candidates[i].sighting;

@@ -1,4 +1,4 @@
-// Which keypoints of a placed frame are landmarks of the local map (ORB-SLAM §V-D).
+// Matching of a frame with a known pose against the local map (Mur-Artal et al. 2015, §V-D).
 #pragma once
 
 #include <vector>
@@ -11,13 +11,14 @@
 namespace alidade {
 
 struct LocalMatches {
-  std::vector<LandmarkId> matches;  // one for each keypoint: the frame's own, and those found
-  std::vector<LandmarkId>
-      visible;  // landmarks looked for because they should be in sight, in order
+  std::vector<LandmarkId> matches;  // one per keypoint: existing and new matches
+  // Landmarks expected to be visible and therefore searched, in order.
+  std::vector<LandmarkId> visible;
 };
 
-// Projects the landmarks the frame does not have yet and matches them near where they should be
-// seen. A keypoint goes to the landmark most like it. The same with any number of threads.
+// Projects the landmarks that are not matched yet and searches them near their predicted positions.
+// A keypoint is assigned to the landmark with the most similar descriptor. The result does not
+// depend on the number of threads.
 LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, const Camera& camera,
                            const TrackerSettings& settings);
 

@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-// How far about points lie: the area of the ellipse of one standard deviation, by pi.
+// Spatial extent of points: the area of their one-sigma ellipse divided by π.
 struct Extent {
   double count = 0;
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -50,8 +50,8 @@ void MonoStartSettings::Check() const {
   require(still_memory >= 0, "still_memory must not be negative");
   require(min_still_motion > 0, "min_still_motion must be positive");
   require(min_still_frames >= 1, "min_still_frames must be at least 1");
-  require(trial_frames >= 0 && trial_share >= 0 && trial_share <= 1,
-          "trial_share must lie in [0, 1]");
+  require(trial_frames >= 1, "trial_frames must be at least 1");
+  require(trial_share >= 0 && trial_share <= 1, "trial_share must lie in [0, 1]");
 }
 
 MonoStart::Step MonoStart::StepOf(TwoViewFailure failure) {
@@ -141,7 +141,7 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
     if (step == Step::kStarts && still_ && frame->number - *still_ <= settings_.still_memory)
       step = Step::kStillCamera;
     farthest_ = std::max(farthest_, step);
-    if (step == Step::kStarts) {  // the oldest that can has the most parallax
+    if (step == Step::kStarts) {  // the oldest reference has the most parallax
       references_.clear();
       return tried;
     }
@@ -150,7 +150,7 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
   references_ = std::move(kept);
   if (references_.empty() ||
       frame->number - references_.back().frame->number >= settings_.reference_gap) {
-    // The oldest pairs have the most parallax; a newer one gives way.
+    // Old references have the most parallax, so the newest one is replaced.
     if (static_cast<int>(references_.size()) >= settings_.references) references_.pop_back();
     Reference reference{frame, {}};
     for (const Keypoint& keypoint : frame->keypoints)
@@ -160,30 +160,30 @@ std::optional<MonoStartResult> MonoStart::Add(std::shared_ptr<const Frame> frame
   return {};
 }
 
-const char* MonoStart::reason() const {
+TrackFailure MonoStart::failure() const {
   switch (farthest_) {
     case Step::kNoFrame:
-      return "no frame yet";
+      return TrackFailure::kFirstView;
     case Step::kFewCorners:
-      return "too few corners in the image";
+      return TrackFailure::kFewCorners;
     case Step::kFewMatches:
-      return "too few matches between frames";
+      return TrackFailure::kFewMatches;
     case Step::kLittleMotion:
-      return "the camera hardly moves";
+      return TrackFailure::kLittleMotion;
     case Step::kNoModel:
-      return "too few points agree on one motion";
+      return TrackFailure::kNoMotionModel;
     case Step::kLowParallax:
-      return "too little parallax: move the camera sideways";
+      return TrackFailure::kLowParallax;
     case Step::kUnknownLens:
-      return "a turn on the spot explains what is seen: move the camera sideways";
+      return TrackFailure::kPureRotation;
     case Step::kAmbiguous:
-      return "two motions explain what is seen";
+      return TrackFailure::kTwoMotions;
     case Step::kStillCamera:
-      return "something moves, the camera seems to stand still";
+      return TrackFailure::kStillCamera;
     case Step::kStarts:
       break;
   }
-  return "";
+  return TrackFailure::kNone;
 }
 
 }  // namespace alidade

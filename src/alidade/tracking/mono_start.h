@@ -1,5 +1,6 @@
-// How a map begins from one moving camera, with no target: wait for two views that tell.
-// Several reference frames are kept, so that a bad one (blurred, or before a turn) costs nothing.
+// Initialization of a monocular map: searches for a pair of frames with sufficient parallax. Keeps
+// several reference frames, so that a bad one (blurred, or before a rotation) does not delay the
+// start.
 #pragma once
 
 #include <memory>
@@ -11,6 +12,7 @@
 #include "alidade/features/frame.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/two_view.h"
+#include "alidade/tracking/track_failure.h"
 
 namespace ALIDADE_API alidade {
 
@@ -61,6 +63,7 @@ struct MonoStartResult {
   std::shared_ptr<const Frame> a, b;
   Se3 T_b_a;  // |t| = 1
   struct Point {
+    // In the frame of a.
     Eigen::Vector3d p_a;
     int keypoint_a, keypoint_b;
   };
@@ -71,19 +74,18 @@ struct MonoStartResult {
 class MonoStart {
  public:
   MonoStart(const Camera& camera, MonoStartSettings settings);
-  // The next frame; a result once it and an earlier one tell where the points are.
+  // Adds a frame. Returns a result if it and an earlier frame determine a two-view reconstruction.
   std::optional<MonoStartResult> Add(std::shared_ptr<const Frame> frame);
   void Reset() { references_.clear(); }
-  // Why the last frame did not start a map: of the pairs it was tried in, the one that came nearest
-  // to a start.
-  const char* reason() const;
+  // Why the last frame did not start a map: the furthest step that any of its pairs reached.
+  TrackFailure failure() const;
 
  private:
   struct Reference {
     std::shared_ptr<const Frame> frame;
-    std::vector<Eigen::Vector2f> guess;  // where each keypoint was last seen
+    std::vector<Eigen::Vector2f> guess;  // last observed position of each keypoint
   };
-  // How far a pair came, and why no farther.
+  // Progress of a pair, and what stopped it.
   enum class Step {
     kNoFrame,
     kFewCorners,
@@ -97,7 +99,7 @@ class MonoStart {
     kStarts
   };
   static Step StepOf(TwoViewFailure failure);
-  // Whether too many matches stay where they were (settings).
+  // True if too many matches stay in place (see settings).
   bool StandsStill(std::span<const Eigen::Vector2d> a, std::span<const Eigen::Vector2d> b) const;
   bool PictureStays(const Frame& a, const Frame& b) const;
   Step Try(Reference& reference, const std::shared_ptr<const Frame>& frame,
@@ -107,7 +109,7 @@ class MonoStart {
   MonoStartSettings settings_;
   std::vector<Reference> references_;  // oldest first
   Step farthest_ = Step::kNoFrame;     // of the last frame's pairs
-  // Number of the last frame that a pair was refused with because the camera stands still.
+  // Number of the last frame for which a pair was rejected because of a stationary camera.
   std::optional<int> still_;
 };
 

@@ -44,8 +44,8 @@ Vector6d Motion::Velocity() const {
   const Vector6d last = steps_[0].T_after_before.Log() / steps_[0].seconds;
   if (steps_.size() < 2 || !(steps_[1].seconds > 0)) return last;
   const Vector6d before = steps_[1].T_after_before.Log() / steps_[1].seconds;
-  // Means of two intervals are velocities at their middles, (a + b) / 2 apart; the end of the last
-  // is a / 2 after its middle.
+  // Means over two intervals are velocities at their midpoints, (a + b) / 2 apart; the end of the
+  // last interval is a / 2 after its midpoint.
   const double a = steps_[0].seconds, b = steps_[1].seconds;
   return last + (last - before) * a / (a + b);
 }

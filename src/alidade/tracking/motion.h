@@ -1,4 +1,4 @@
-// How the camera moves from frame to frame: evenly, in time.
+// Constant-velocity motion model, based on time stamps.
 #pragma once
 
 #include <deque>
@@ -25,16 +25,17 @@ class Motion {
 
   void Clear() { steps_.clear(); }
   bool known() const { return !steps_.empty(); }
-  // The last frame's, from the frame before, `seconds` earlier.
+  // Adds the motion from the previous to the current frame, `seconds` apart.
   void Add(const Se3& T_now_last, double seconds);
-  void Scale(double factor);  // the map's unit has changed
-  // T_next_now of the frame `seconds` later; the identity when nothing is known. As the last step
-  // when that took as long; else Exp(seconds / s · Log(T)) of the last steps T that took s seconds
-  // together, at least as long where so much is known: the noise of a short step is not drawn out.
+  void Scale(double factor);  // factor of a change of the map's scale
+  // T_next_now for a frame `seconds` later; identity if no motion is known. The last step if that
+  // took as long. Otherwise Exp(seconds / s · Log(T)) of the last steps T that took s seconds in
+  // total, with s at least `seconds` if known, so that the noise of a short step is not
+  // extrapolated.
   Se3 After(double seconds) const;
-  // At the last frame, per second: T_camera_world s seconds later is Exp(s v) T_camera_world. The
-  // mean of the last step, and half of what changed since the one before; zero when nothing is
-  // known.
+  // Velocity at the last frame: T_camera_world s seconds later is Exp(s v) T_camera_world. The mean
+  // velocity of the last step, extrapolated to its end with the change since the step before; zero
+  // if no motion is known. Map units and radians per second.
   Vector6d Velocity() const;
 
  private:
@@ -43,7 +44,7 @@ class Motion {
     Se3 T_after_before;
     double seconds = 0;
   };
-  std::deque<Step> steps_;  // newest first, as far back as max_extrapolation
+  std::deque<Step> steps_;  // newest first, back to max_extrapolation
 };
 
 }  // namespace alidade

@@ -7,8 +7,8 @@
 namespace alidade {
 namespace {
 
-// The map around them is adjusted meanwhile, and nobody sits quite still.
-constexpr int kOldest = 60;  // frames
+// Frames. The map is adjusted meanwhile, and the object may move slightly.
+constexpr int kOldest = 60;
 
 bool IsDoubtful(const PlacedFrame& placed, int keypoint) {
   const float p = placed.frame->Static(keypoint);

@@ -1,5 +1,5 @@
-// Points on what may stand still and is not certain to, such as someone who sits: they help the
-// pose for as long as they hold, by their probability, and never enter the map.
+// Temporary points on objects that are possibly static, such as a seated person. They contribute to
+// the pose with their static probability while they are consistent, and never enter the map.
 #pragma once
 
 #include <Eigen/Core>
@@ -15,13 +15,13 @@ class PassingPoints {
  public:
   explicit PassingPoints(const Camera& camera) : camera_(camera) {}
 
-  // Those that the frame shows near where they should be seen, at keypoints which may stand still
-  // but are not certain to (Frame::kUsable … kMappable) and are no landmark's. `radius`: pixels at
-  // level 0; `max_distance`: bits.
+  // Finds the points near their predicted positions, at keypoints of uncertain static probability
+  // (Frame::kUsable to kMappable) without a landmark. `radius`: pixels on level 0; `max_distance`:
+  // Hamming distance, bits.
   std::vector<PassingMatch> Find(const PlacedFrame& placed, float radius, int max_distance) const;
-  // After the pose: keeps the points that agreed with it (placed.passing) and takes on the frame's
-  // other doubtful keypoints with depth. `world`: changes when poses of another are no longer
-  // comparable; then nothing is kept.
+  // After the pose estimate: keeps the points consistent with it (placed.passing) and adds the
+  // frame's other uncertain keypoints with depth. A changed `world` (count of map corrections)
+  // invalidates all points.
   void Update(const PlacedFrame& placed, uint64_t world);
   void Clear() { points_.clear(); }
   size_t size() const { return points_.size(); }
@@ -30,7 +30,7 @@ class PassingPoints {
   struct Point {
     Eigen::Vector3d p_world;
     Descriptor descriptor;
-    int level = 0;  // it was last found on
+    int level = 0;  // level of the last match
     int age = 0;    // frames
   };
 

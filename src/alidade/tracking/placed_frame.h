@@ -1,4 +1,4 @@
-// A frame with its pose and the landmarks it shows: what tracking passes along.
+// A frame with its pose and landmark matches: the data passed between tracking steps.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,21 +11,21 @@
 
 namespace alidade {
 
-// A keypoint that shows a point which is no landmark, and stays out of the map.
+// A match with a temporary point that is not a landmark (PassingPoints).
 struct PassingMatch {
   int keypoint = -1;
-  int point = -1;  // index, as PassingPoints has it
+  int point = -1;  // index in PassingPoints
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
 };
 
-// A frame placed in the map.
+// A frame with its pose in the map.
 struct PlacedFrame {
   std::shared_ptr<const Frame> frame;
   Se3 T_camera_world;
-  std::vector<LandmarkId> matches;         // one for each keypoint; none where nothing is known
-  int inliers = 0;                         // matches that agree with the pose
-  std::vector<PassingMatch> passing;       // what else has a say in the pose
-  Matrix6d covariance = Matrix6d::Zero();  // of the pose (PoseOnlyResult); zero: not known
+  std::vector<LandmarkId> matches;         // one per keypoint; invalid: none
+  int inliers = 0;                         // matches consistent with the pose
+  std::vector<PassingMatch> passing;       // temporary points used for the pose
+  Matrix6d covariance = Matrix6d::Zero();  // of the pose (see PoseOnlyResult); zero: unknown
 };
 
 }  // namespace alidade

@@ -9,7 +9,7 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kLeastMatches = 30;  // of a frame: six unknowns are its pose's
+constexpr size_t kLeastMatches = 30;  // per frame; its pose has six unknowns
 
 }  // namespace
 

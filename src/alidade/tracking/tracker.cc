@@ -12,7 +12,8 @@
 namespace alidade {
 namespace {
 
-constexpr int kRelocaliseKeyFrames = 10;  // whose landmarks are looked for before all around are
+// Keyframes whose landmarks are searched before the whole local map.
+constexpr int kRelocaliseKeyFrames = 10;
 
 }  // namespace
 
@@ -35,7 +36,7 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
   if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
   if (!right.empty())
     MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
-  frame->pyramid.clear();  // only extraction and stereo matching need it
+  frame->pyramid.clear();  // needed only for extraction and stereo matching
   frame->image.release();
   return frame;
 }
@@ -89,7 +90,7 @@ std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
   return matches;
 }
 
-// Of what a placed frame shows.
+// Inverse depths of a placed frame's landmarks.
 Tracker::InverseDepthsSeen Tracker::InverseDepths(const PlacedFrame& placed,
                                                   const MapSnapshot& map) {
   InverseDepthsSeen seen;
@@ -122,7 +123,7 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     TrackEstimate estimate = Estimate(std::move(guess), map);
     estimate.tracked = estimate.tracked && IsCertain(estimate) && (!may_be || may_be(estimate));
     if (estimate.tracked) return estimate;
-    passing_.Clear();  // of a pose that is not believed
+    passing_.Clear();  // of a rejected pose
   }
   return lost;
 }
@@ -142,8 +143,9 @@ TrackEstimate Tracker::PlaceAgain(const std::shared_ptr<const Frame>& frame, con
   return estimate;
 }
 
-// A place only like the one in view shows some of the same, and leaves much of the rest unseen. And
-// one poster, however well seen, leaves open whether the camera is moved or turned.
+// A place that merely looks similar shares some landmarks but leaves most of the expected ones
+// unmatched. Matches in a small region (one poster) do not distinguish translation from rotation,
+// hence the minimum spread.
 bool Tracker::IsCertain(const TrackEstimate& estimate) const {
   const auto expected = static_cast<double>(estimate.sightings.size());
   return estimate.placed.inliers >= Scaled(settings_.min_relocalised) &&
@@ -151,7 +153,8 @@ bool Tracker::IsCertain(const TrackEstimate& estimate) const {
          Spread(estimate.placed) >= settings_.min_relocalised_spread;
 }
 
-// Root mean square distance of what was found from its middle, in diagonals of the picture.
+// Root mean square distance of the matched keypoints from their mean, relative to the image
+// diagonal.
 double Tracker::Spread(const PlacedFrame& placed) const {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
   double squares = 0, count = 0;
@@ -184,14 +187,14 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
                        placed.frame->Static(match.keypoint)});
   }
   PoseOnlyResult result = OptimizePose(camera_, placed.T_camera_world, matches);
-  const auto agreeing = [&] {  // of the landmarks
+  const auto agreeing = [&] {  // landmarks only, without temporary points
     const auto end = result.inlier.begin() + static_cast<std::ptrdiff_t>(landmarks);
     return static_cast<int>(std::count(result.inlier.begin(), end, true));
   };
   const double enough = settings_.good_agreement * static_cast<double>(landmarks);
   if (agreeing() < enough && settings_.bad_frame_sigma > 1) {
-    // Blur and a rolling shutter bend whole frames: with wider gates all of the picture has a say,
-    // not just the part that happened to agree first.
+    // Motion blur and rolling shutter distort whole frames. A wider gate uses the whole image
+    // instead of only the part consistent with the first estimate.
     for (PoseMatch& match : matches)
       match.inv_sigma2 /= settings_.bad_frame_sigma * settings_.bad_frame_sigma;
     result = OptimizePose(camera_, placed.T_camera_world, matches);
@@ -212,7 +215,7 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   TrackEstimate estimate;
-  // What was matched for the guess and has proved to move since has no say.
+  // Drop matches of the guess whose keypoints were classified as moving since.
   for (size_t k = 0; k < guess.matches.size(); ++k) {
     if (!guess.matches[k].valid() || guess.frame->IsUsable(static_cast<int>(k))) continue;
     guess.matches[k] = {};
@@ -241,16 +244,17 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     if (!counted.Contains(id)) estimate.sightings.push_back({id, false});
   }
   estimate.reference = local.reference;
-  // What agrees with a wrong pose is little of what that pose should see.
+  // A wrong pose matches only few of the landmarks that it predicts to be visible.
   estimate.tracked =
       guess.inliers >= Scaled(settings_.min_tracked) &&
       guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
-  // Where the view is suddenly another, chance finds as much as the hardest frame shows: then the
-  // pose must prove itself like one that was found anew.
+  // After an abrupt change of view (a cut), chance matches can be as many as in the hardest valid
+  // frame: apply the relocalization test.
   const bool torn = motion_.known() && guess.inliers < settings_.torn_share * last_.inliers;
   estimate.placed = std::move(guess);
   if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
-  // Wide windows find something like most landmarks near any pose; at a wrong one it fits badly.
+  // Wide search windows find matches for most landmarks at any nearby pose; at a wrong pose they
+  // fit badly.
   if (estimate.tracked && IsLate(*estimate.placed.frame)) {
     estimate.tracked =
         Agreement(estimate.placed, map) >= settings_.min_late_agreement * estimate.placed.inliers;
@@ -265,8 +269,8 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
 
 bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   const int since = placed.frame->number - last_keyframe_number_;
-  // A blurred or badly placed frame would bend the map; a better one comes soon, unless tracking is
-  // at its end.
+  // A blurred or poorly fitting frame would distort the map. Wait for a better one unless tracking
+  // is about to fail.
   if (agreement < settings_.min_agreement && placed.inliers > 2 * Scaled(settings_.min_tracked))
     return false;
   if (since >= settings_.keyframe_max_gap) return true;
@@ -284,7 +288,8 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {
-  PlacedFrame copy = placed;  // what needs memory comes first: then all is told, or nothing
+  // Allocations come first, so that bad_alloc leaves the tracker unchanged.
+  PlacedFrame copy = placed;
   const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
   unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unproven_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
@@ -300,7 +305,8 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
 void Tracker::Reanchor(const MapSnapshot& map) {
   if (!last_anchor_.keyframe.valid() || map.Find(last_anchor_.keyframe)) return;
   const KeyFrameId heir = Reanchored(map.state(), last_anchor_).keyframe;
-  // In the scale of the day; AnchorTo() notes the heir's, which grows alike from here on.
+  // Converts to current map units. AnchorTo() stores the scale of the new anchor, which changes by
+  // the same factors from now on.
   motion_.Scale(map.ScaleOf(last_anchor_.keyframe) / last_anchor_.scale);
   last_anchor_ =
       heir.valid() ? AnchorTo(map.state(), heir, PoseOf(map.state(), last_anchor_)) : Anchor{};

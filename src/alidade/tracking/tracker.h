@@ -1,5 +1,5 @@
-// Where the camera is at this frame, from the map as it stands. Reads the map, never writes it.
-// ORB-SLAM §V (Mur-Artal, Montiel & Tardós 2015), with depth as in ORB-SLAM2 (2017).
+// Tracking: camera pose of the current frame relative to the map. Reads the map only. Mur-Artal,
+// Montiel & Tardós 2015, §V; with depth as in Mur-Artal & Tardós 2017.
 #pragma once
 
 #include <array>
@@ -22,75 +22,75 @@
 
 namespace alidade {
 
+// A landmark expected in the frame.
 struct SightingCount {
   LandmarkId landmark;
-  bool found = false;  // expected in the frame, and: was it matched?
+  bool found = false;  // it was matched
 };
 
 struct TrackEstimate {
   bool tracked = false;
   PlacedFrame placed;
-  KeyFrameId reference;                  // keyframe that shares most landmarks with the frame
-  std::vector<SightingCount> sightings;  // landmarks that should have been seen
+  KeyFrameId reference;                  // keyframe that shares the most landmarks with the frame
+  std::vector<SightingCount> sightings;  // landmarks expected to be visible
   bool wants_keyframe = false;
 };
 
+// One thread at a time.
 class Tracker {
  public:
-  // `camera`: as the frames are; with depth_factor and baseline 0 for monocular use.
+  // `camera`: of the frames; depth_factor and baseline are 0 for monocular use.
   Tracker(const Camera& camera, TrackerSettings settings);
 
-  // Turns images into a frame. `right` and `depth` may be empty. `avoid`: see Extractor.
+  // Extracts features. `right` and `depth` may be empty. `avoid`: see Extractor::Extract().
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number, const cv::Mat& avoid = {});
-  // Of the camera, from the next frame on; see Camera.
+  // Changes the readout time (Camera::readout) from the next frame on.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
-  // All frames from now on, and what is kept of the last one.
+  // Changes the camera model for the following frames and the stored last frame.
   void SetCamera(const Camera& camera);
-  // Rolling shutters only: keypoints as if read all at once, by how the camera is taken to move.
+  // Rolling shutters: corrects the keypoints with the predicted motion.
   void UndoShutter(Frame& frame, const MapSnapshot& map) const;
-  // The same of a frame that was placed, by how it did move, and its pose with that. `frame` is the
-  // estimate's.
+  // Repeats the correction with the estimated motion, and optimizes the pose again. `frame` is the
+  // estimate's frame.
   void UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const;
-  // What that frame says of the readout.
+  // Residuals of the frame for estimating the readout time.
   std::vector<ReadoutMatch> ReadoutMatches(const PlacedFrame& placed, const MapSnapshot& map) const;
-  // First guess of the pose: an even motion and the last frame's landmarks, or the reference
-  // keyframe.
+  // Initial pose: constant velocity and matches with the last frame's landmarks, or matches with
+  // the reference keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // Pose from the local map, starting at the guess.
   TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
-  // Pose with no last frame to lean on (ORB-SLAM §V-C): descriptors against each of the keyframes
-  // that may show the place, RANSAC, then the landmarks around. Tracked only when certain, and
-  // where the camera `may_be` (empty: anywhere).
+  // Pose without a previous frame (Mur-Artal et al. 2015, §V-C): descriptor matches with each
+  // candidate keyframe, RANSAC, then the surrounding landmarks. `tracked` only if certain and
+  // accepted by `may_be` (empty: always).
   TrackEstimate Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            std::span<const KeyFrameId> candidates,
                            const std::function<bool(const TrackEstimate&)>& may_be = {});
 
-  // The same for a frame of earlier, near a keyframe in time. What is known of the last frame
-  // stays.
+  // The same for an earlier frame, with a keyframe near it in time as candidate. The state of the
+  // last frame is not changed.
   TrackEstimate PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            KeyFrameId near);
 
-  // Pose of a frame that follows some without one, near where PredictedPose() has it. Tracked only
-  // when certain, as Relocalise().
+  // Pose of a frame after frames without a pose, near PredictedPose(). `tracked` only if certain,
+  // as in Relocalise().
   TrackEstimate GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map);
 
-  // Tells what the last frame was: an estimate (perhaps with the landmarks a new keyframe added),
-  // or a loss.
-  // `map`: the one its pose is in.
+  // Sets the last frame: its pose in `map` and its matches (perhaps with the landmarks of a new
+  // keyframe).
   void Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map);
-  void Forget();  // where the camera was says nothing of where it is: no motion is known
-  // A frame has no pose; the last one that had is remembered for a while.
+  void Forget();  // resets last frame and motion, e.g. after a cut
+  // The frame has no pose; the last frame and the motion are kept.
   void Lose() { passing_.Clear(); }
-  // Of a frame that has no pose (yet): where the last motion leads if it goes on evenly. None when
-  // no motion is known or it is too long ago (settings.predict_seconds).
-  std::optional<Se3> PredictedPose(double time, const MapSnapshot& map) const;  // T_camera_world
-  // From now on the last frame hangs on no keyframe that is culled in `map`.
+  // Extrapolated T_camera_world of a frame without a pose; nullopt if no motion is known or the
+  // last frame is older than settings.predict_seconds.
+  std::optional<Se3> PredictedPose(double time, const MapSnapshot& map) const;
+  // Moves the last frame's anchor to a live keyframe if its keyframe was culled in `map`.
   void Reanchor(const MapSnapshot& map);
 
-  KeyFrameId reference() const {
-    return last_anchor_.keyframe;
-  }  // of the last frame that was tracked
+  // Reference keyframe of the last tracked frame.
+  KeyFrameId reference() const { return last_anchor_.keyframe; }
   const Camera& camera() const { return camera_; }
   void KeyFrameInserted(int frame_number) {
     last_keyframe_number_ = frame_number;
@@ -99,23 +99,24 @@ class Tracker {
 
  private:
   struct InverseDepthsSeen {
-    std::vector<float> of_keypoints;  // 1 / map units; 0: not known
-    double common = 0;                // their median
+    std::vector<float> of_keypoints;  // 1 / map units; 0: unknown
+    double common = 0;                // median
   };
   static InverseDepthsSeen InverseDepths(const PlacedFrame& placed, const MapSnapshot& map);
   PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
-  // No frame was placed shortly before: how the camera moved says little of where it is.
+  // True if no recent frame has a pose, so that the motion model is unreliable.
   bool IsLate(const Frame& frame) const {
     return !last_.frame || frame.time - last_.frame->time > settings_.unproven_seconds;
   }
-  // By descriptors alone, wherever in the picture; what of the two more of the map agrees with.
+  // Matches the whole image by descriptors only, and returns this guess or the given one, whichever
+  // agrees better with the map.
   PlacedFrame BetterByLooks(PlacedFrame guess, const MapSnapshot& map);
   void FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyframes);
-  Se3 MotionUntil(double time, const MapSnapshot& map) const;  // T_now_last, in lengths of today
+  Se3 MotionUntil(double time, const MapSnapshot& map) const;  // T_now_last, in current map units
   double Agreement(const PlacedFrame& placed, const MapSnapshot& map) const;
   void MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float radius) const;
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
-  // Returns the share of the matches that agree with the pose found; the others are dropped.
+  // Returns the share of matches consistent with the optimized pose; the others are removed.
   double Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
   bool IsCertain(const TrackEstimate& estimate) const;
   double Spread(const PlacedFrame& placed) const;
@@ -130,11 +131,11 @@ class Tracker {
   PassingPoints passing_;
 
   PlacedFrame last_;
-  Anchor last_anchor_;  // where the last frame is, by its reference keyframe
-  Motion motion_;       // up to the last frame, in the scale of the anchor
-  int unproven_ = 0;    // frames left in which motion is not yet believed (settings)
+  Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
+  Motion motion_;       // up to the last frame, in the anchor's scale
+  int unproven_ = 0;    // remaining frames in which the motion model is not trusted (settings)
   int last_keyframe_number_ = 0;
-  int most_inliers_ = 0;  // of a frame since the last keyframe: what it could show at best
+  int most_inliers_ = 0;  // largest number of inliers since the last keyframe
 };
 
 }  // namespace alidade

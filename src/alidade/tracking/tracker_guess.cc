@@ -1,5 +1,5 @@
-// Where the tracker first takes a frame to be: by the motion so far and the last frame's landmarks,
-// else by the looks of the reference keyframe.
+// Initial pose of a frame: from the motion model and the last frame's landmarks, or else from
+// descriptor matches with the reference keyframe.
 #include <cmath>
 
 #include "alidade/features/guided_search.h"
@@ -32,12 +32,12 @@ PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
   if (other.inliers >= enough) FindAround(other_around, map, settings_.local_keyframes);
   const bool better =
       other.inliers >= enough && Agreement(other_around, map) > Agreement(guess_around, map);
-  // A late frame's guess is rough: what narrow windows find around it would be chance.
+  // The guess of a late frame is inaccurate: matches in narrow windows around it would be chance.
   if (IsLate(*guess.frame)) return better ? other_around : guess_around;
   return better ? other : guess;
 }
 
-// The landmarks around, in windows as wide as where a pose was found by descriptors alone.
+// Matches the surrounding landmarks in windows as wide as after relocalization by descriptors.
 void Tracker::FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyframes) {
   TrackerSettings wide = settings_;
   wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
@@ -46,8 +46,8 @@ void Tracker::FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyfra
   Optimise(placed, map);
 }
 
-// How well the matches fit the pose: each counts from 1 (no error) to 0 (at the gate, 95 % of
-// chi²), whatever the noise the pose was found with.
+// Sum over matches of 1 (no error) to 0 (at the 95 % gate of chi²), with the nominal noise, even if
+// the pose was found with a wider gate.
 double Tracker::Agreement(const PlacedFrame& placed, const MapSnapshot& map) const {
   double sum = 0;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
@@ -80,8 +80,8 @@ PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const M
     guess.T_camera_world = motion_.known() ? motion * T_last_world : T_last_world;
     MatchLastFrame(guess, map, widen * radius);
     const double share = Optimise(guess, map);
-    // A window that misses the true places still finds something in them: then few agree on one
-    // pose.
+    // A window that misses the true positions still finds chance matches, but few of them agree on
+    // one pose.
     if (guess.inliers >= Scaled(settings_.min_predicted) && share > settings_.min_agreement)
       return guess;
     if (guess.inliers > best.inliers) best = guess;
@@ -107,8 +107,8 @@ void Tracker::MatchLastFrame(PlacedFrame& guess, const MapSnapshot& map, float r
   const Frame& now = *guess.frame;
   guess.matches.assign(now.keypoints.size(), {});
   const Se3 T_last_now = last_.T_camera_world * guess.T_camera_world.Inverse();
-  const double forward =
-      T_last_now.t.z();  // metres; what is nearer now is found on a coarser level
+  // Meters; objects that came closer are found on a coarser level.
+  const double forward = T_last_now.t.z();
   const double baseline = camera_.StereoBaseline();
 
   std::vector<int> matched;

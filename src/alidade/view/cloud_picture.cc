@@ -12,13 +12,13 @@
 namespace alidade {
 namespace {
 
-constexpr int kFiner = 2;  // drawn this many times larger and scaled down: soft edges
+constexpr int kFiner = 2;  // oversampling factor, for anti-aliasing
 const cv::Vec3b kBackground(27, 23, 20), kGray(190, 190, 190);  // blue green red
 const cv::Scalar kPathColor(255, 169, 90), kStartColor(80, 200, 60);
 
-// Rows: right, down and forward of a camera that looks at the scene.
+// Axes of the virtual camera as rows: right, down, forward.
 Eigen::Matrix3d ViewAxes(const Eigen::Matrix3d& upright, CloudView view) {
-  // Where it looks, in right, forward, up.
+  // viewing direction as right, forward, up
   const Eigen::Vector3d look = [&]() -> Eigen::Vector3d {
     switch (view) {
       case CloudView::kBehind:
@@ -41,18 +41,18 @@ Eigen::Matrix3d ViewAxes(const Eigen::Matrix3d& upright, CloudView view) {
   return axes * upright;
 }
 
-// `values` in any order; share 0..1.
+// Quantile of unsorted values; `share` 0..1.
 double Quantile(std::vector<double> values, double share) {
   const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<size_t>(rank)];
 }
 
-// A pinhole that looks at the scene; p_eye is right, down, forward.
+// The virtual pinhole camera; p_eye is right, down, forward.
 struct Eye {
   Eigen::Matrix3d axes;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the scene, along the axes
-  double distance = 1;                               // from there
+  double distance = 1;                               // from the camera to the center
   double focal = 1, cx = 0, cy = 0;                  // pixels
 
   Eigen::Vector3d Place(const Eigen::Vector3d& p_world) const {
@@ -60,7 +60,7 @@ struct Eye {
     p.z() += distance;
     return p;
   }
-  Eigen::Vector3d Centre() const {  // in the world
+  Eigen::Vector3d Centre() const {  // position of the camera in the world
     return axes.transpose() * (centre - Eigen::Vector3d(0, 0, distance));
   }
   double Nearest() const { return 0.05 * distance; }
@@ -69,7 +69,7 @@ struct Eye {
   }
 };
 
-// Range of most of the values.
+// Range that contains most of the values.
 struct Range {
   double low = 0, high = 0;
   double Middle() const { return 0.5 * (low + high); }
@@ -78,13 +78,13 @@ Range MostOf(const std::vector<double>& values, double left_out) {
   return {Quantile(values, left_out), Quantile(values, 1 - left_out)};
 }
 
-// What must be in the picture, along the eye's axes: some of the points, all of the path.
+// What the image must show, along the camera's axes: a sample of the points and all of the path.
 struct Subject {
   std::vector<Eigen::Vector3d> points, path;
 };
 
 Subject SubjectOf(const CloudScene& scene, const Eigen::Matrix3d& axes) {
-  constexpr size_t kEnough = 50000;  // points, to know the quantiles well
+  constexpr size_t kEnough = 50000;  // number of points that determines the quantiles well
   Subject subject;
   const size_t step = 1 + scene.cloud.points.size() / kEnough;
   for (size_t i = 0; i < scene.cloud.points.size(); i += step)
@@ -118,7 +118,7 @@ Eye LookAt(const CloudScene& scene, CloudView view, const CloudPictureSettings& 
     const auto along = [&](const Eigen::Vector3d& p) { return p[axis]; };
     eye.centre[axis] = MostOf(of_points(along), left_out).Middle();
   }
-  // How far off it must be for a point to be in the picture.
+  // Distance at which a point is inside the image.
   const auto needed = [&](const Eigen::Vector3d& p) {
     const Eigen::Vector3d q = p - eye.centre;
     return std::max(std::abs(q.x()) / wide, std::abs(q.y()) / tall) - q.z();
@@ -129,7 +129,8 @@ Eye LookAt(const CloudScene& scene, CloudView view, const CloudPictureSettings& 
     eye.distance = std::max(1.05 * eye.distance, 1e-6);
   };
   fit();
-  // What is near looms larger: to the middle of the picture, not of the place.
+  // Perspective shifts the visible center, because near points appear larger: center the projected
+  // range.
   for (int round = 0; round < 4; ++round) {
     for (int axis = 0; axis < 2; ++axis) {
       const auto slope = [&](const Eigen::Vector3d& p) {
@@ -153,7 +154,7 @@ struct Dot {
   cv::Vec3b color;
 };
 
-// Some of the path's poses, which stand for all from where points were seen.
+// A sample of the path's poses, used to find from where a point was seen.
 std::vector<Se3> Witnesses(const CloudScene& scene) {
   constexpr size_t kMost = 64;
   std::vector<Se3> all, some;
@@ -163,14 +164,16 @@ std::vector<Se3> Witnesses(const CloudScene& scene) {
   return some;
 }
 
-// Whether the surface at `p` turns its back to the eye, as far as can be told: the nearest camera
-// that had it before it looked from the far side, and not down on it, as on a floor.
+// true when the surface at `p` faces away from the virtual camera: the nearest path camera that had
+// `p` in its view looked from the other side. Surfaces seen from above, such as floors, are never
+// excluded.
 bool ShowsItsBack(const Eigen::Vector3d& p, const Eigen::Vector3d& p_eye, const Eigen::Vector3d& up,
                   const std::vector<Se3>& witnesses) {
-  constexpr double kAhead = 0.8;  // cosine of the angle from the optical axis: about the image
+  // Cosine of the angle to the optical axis, approximately the image.
+  constexpr double kAhead = 0.8;
   constexpr double kDown = 0.42;  // sine of 25°
   double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d from = Eigen::Vector3d::Zero();  // where it was seen from, as a direction
+  Eigen::Vector3d from = Eigen::Vector3d::Zero();  // direction from p to the camera that saw it
   for (const Se3& T : witnesses) {
     const Eigen::Vector3d ray = p - T.t;
     const double length = ray.norm();
@@ -191,7 +194,7 @@ bool ShowsItsBack(const Eigen::Vector3d& p, const Eigen::Vector3d& p_eye, const 
          (from_the_side && cosine(level(from), level(to_eye)) < -0.3);
 }
 
-// Dark edges would drown in the dark background.
+// Gamma correction, so that dark points stand out from the dark background.
 cv::Vec3b Lifted(const std::array<uint8_t, 3>& rgb) {
   static const std::array<uint8_t, 256> kLift = [] {
     std::array<uint8_t, 256> lift{};
@@ -225,7 +228,7 @@ std::vector<Dot> Dots(const CloudScene& scene, const Eye& eye, cv::Size size, do
   return dots;
 }
 
-// Pixels: so that dots about fill the parts of the picture where there are any.
+// Radius in pixels with which the dots approximately fill the occupied parts of the image.
 double DotRadius(const std::vector<Dot>& dots, cv::Size size) {
   constexpr int kCell = 16;
   cv::Mat1b met(size.height / kCell + 1, size.width / kCell + 1, uchar{0});
@@ -264,7 +267,7 @@ void DrawLine(const Eigen::Vector3d& p_world, const Eigen::Vector3d& q_world, co
   cv::line(picture, at(p), at(q), color, kFiner + 1, cv::LINE_AA, kFractionBits);
 }
 
-// A camera as the pyramid it sees, `size` long.
+// Draws a camera as a viewing pyramid of length `size`.
 void DrawCamera(const Se3& T_world_camera, double size, const Eye& eye, cv::Mat3b& picture) {
   std::array<Eigen::Vector3d, 4> corners;
   for (size_t i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// Several runs beside each other as one HTML file: no script, nothing loaded from elsewhere.
+// Compares several runs in one HTML file without scripts or external resources.
 #pragma once
 
 #include <string>
@@ -11,21 +11,21 @@ namespace alidade {
 
 struct ComparedRun {
   std::string name;
-  std::vector<std::string> values;  // one for each of the comparison's measures
-  DrawnPath path;                   // in the comparison's world; empty: cannot be laid there
+  std::vector<std::string> values;  // one per measure of the comparison
+  DrawnPath path;                   // in the comparison's world; empty: could not be aligned
   std::vector<FateSpan> fates;
-  Curve error;                          // metres over seconds; empty: no truth
-  std::vector<MedianBar> milliseconds;  // one for each of the comparison's stages
+  Curve error;                          // meters over seconds; empty: no ground truth
+  std::vector<MedianBar> milliseconds;  // one per stage of the comparison
 };
 
 struct RunComparison {
   std::vector<std::string> measures;
-  std::vector<std::string> stages;  // the first: whole frames
+  std::vector<std::string> stages;  // the first is the whole frame
   std::vector<ComparedRun> runs;
   DrawnPath truth;
   std::string unit;                // of the paths
-  double seconds = 0;              // the longest recording
-  std::vector<std::string> notes;  // on what could not be compared, and how paths were laid
+  double seconds = 0;              // duration of the longest recording
+  std::vector<std::string> notes;  // what could not be compared, and how the paths were aligned
 };
 
 std::string RenderComparison(const RunComparison& comparison);

@@ -53,7 +53,7 @@ std::string DrawSeries(const std::vector<double>& values, double top, const std:
            SvgNumber(kPictureWidth) + "\"/>\n";
     svg += SvgText(kLeft - 6, y(value) + 4, "end", SvgNumber(value, top < 10 ? 1 : 0) + " " + unit);
   }
-  // Each point of the page shows the largest of the frames that fall on it.
+  // Each horizontal unit shows the maximum of its frames.
   const size_t columns =
       std::min<size_t>(values.size(), static_cast<size_t>(kPictureWidth - kLeft));
   std::string points;

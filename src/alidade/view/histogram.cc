@@ -10,11 +10,11 @@
 namespace alidade {
 namespace {
 
-constexpr double kWide = 440, kTall = 150;  // two fit beside each other
-constexpr double kFloor = 24;               // pixels under the bars, for the figures
+constexpr double kWide = 440, kTall = 150;  // so that two fit side by side
+constexpr double kFloor = 24;               // pixels below the bars, for the numbers
 constexpr size_t kBars = 40;
 
-// What 99 % of the values are not above; values from 0.
+// The 99th percentile; the axis starts at 0.
 double TopOf(std::vector<double> values) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(99 * (values.size() - 1) / 100);
   std::nth_element(values.begin(), at, values.end());
@@ -37,7 +37,7 @@ std::string DrawHistogram(const std::vector<double>& values, const std::string& 
   const double wide = kWide / kBars;
   for (size_t i = 0; i < kBars; ++i) {
     if (counts[i] == 0) continue;
-    // One value among thousands is still to be seen.
+    // at least one pixel high, so that single values stay visible
     const double tall = std::max(1.0, (bottom - 4) * static_cast<double>(counts[i]) / most);
     svg += "<rect class=\"bar\" x=\"" + SvgNumber(wide * static_cast<double>(i)) + "\" y=\"" +
            SvgNumber(bottom - tall) + "\" width=\"" + SvgNumber(wide - 1) + "\" height=\"" +

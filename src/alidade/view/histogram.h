@@ -1,4 +1,4 @@
-// How often a value was how large.
+// Histograms as SVG elements.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace alidade {
 
-// Bars from 0 to what 99 % are below, the last with all that is above; a line at the median, a
-// dashed one at the 95th percentile. None: an empty drawing.
+// Bars from 0 to the 99th percentile; the last bar includes all larger values. A line marks the
+// median, a dashed line the 95th percentile. Without values the drawing is empty.
 std::string DrawHistogram(const std::vector<double>& values, const std::string& unit,
                           const std::string& label);
 

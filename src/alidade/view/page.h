@@ -1,4 +1,4 @@
-// What our HTML pages have in common: one file each, no script, nothing loaded from elsewhere.
+// Common parts of Alidade's HTML pages: single files without scripts or external resources.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace alidade {
 
-// Light or dark as the reader's system is; fit for a phone. `body` is markup.
+// Light or dark as the system is set; responsive for phones. `body` is markup.
 std::string HtmlPage(const std::string& title, const std::string& body);
 
-// `text` and `items` are words of others: what would be markup is escaped.
+// `text` and `items` are untrusted and are escaped.
 std::string Cell(const std::string& tag, const std::string& text);
 std::string PairTable(const std::vector<std::pair<std::string, std::string>>& rows);
 std::string HtmlList(const std::string& heading, const std::vector<std::string>& items);

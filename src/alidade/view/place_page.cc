@@ -14,7 +14,7 @@ namespace {
 constexpr double kMargin = 30;  // pixels
 constexpr size_t kMostDots = 8000;
 
-// All but the outermost 2 % on either side.
+// The range without the outermost 2 % on either side.
 std::array<double, 2> MiddleRange(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const auto rank = [&](double share) {
@@ -24,7 +24,7 @@ std::array<double, 2> MiddleRange(std::vector<double> values) {
 }
 
 Eigen::Matrix<double, 2, 3> AxesOf(const DrawnPath& path, PlaceView view) {
-  const Eigen::Matrix3d axes = UprightAxes(path);  // right, forward, up
+  const Eigen::Matrix3d axes = UprightAxes(path);  // rows: right, forward, up
   if (view == PlaceView::kAbove) return axes.topRows<2>();
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
   for (const auto& stretch : path) {
@@ -89,7 +89,7 @@ std::string PlacePage::Lines(const DrawnPath& path, const std::string& name) con
   return svg;
 }
 
-// Dots are strokes without length: the shortest way to say many.
+// Dots are zero-length strokes with round caps, the most compact encoding.
 std::string PlacePage::Dots(const std::vector<Eigen::Vector3d>& points,
                             const std::string& name) const {
   const size_t step = 1 + points.size() / kMostDots;

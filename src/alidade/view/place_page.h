@@ -1,4 +1,4 @@
-// How a place is laid on the page, and what is marked there.
+// Projects a place to the page and draws its elements.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,19 +9,20 @@
 
 namespace alidade {
 
-// T_world_camera; one list for each stretch without a gap.
+// T_world_camera; one list per uninterrupted stretch.
 using DrawnPath = std::vector<std::vector<Se3>>;
 
 enum class PlaceView {
-  kAbove,  // where the first camera looked is up on the page
-  kSide,   // up is up; to the right is right or forward, whichever the path goes along further
+  kAbove,  // the first camera's forward direction is up on the page
+  // Up is up; the horizontal axis is right or forward, whichever has the larger extent of the path.
+  kSide,
 };
 
-// From world to page; fits what matters of the place into the picture: all of the path, and the
-// landmarks but for the few that lie far off.
+// Maps world coordinates to the page. Fits all of the path into the drawing, and the landmarks
+// except for distant outliers.
 class PlacePage {
  public:
-  // `upright`: the path that says which way is up and forward.
+  // `upright`: the path from which up and forward are estimated.
   PlacePage(const std::vector<DrawnPath>& paths, const std::vector<Eigen::Vector3d>& landmarks,
             const DrawnPath& upright, PlaceView view);
 
@@ -29,11 +30,11 @@ class PlacePage {
   double scale() const { return scale_; }  // pixels per unit
   Eigen::Vector2d At(const Eigen::Vector3d& p) const;
 
-  // As SVG elements; `name`: the CSS class.
+  // SVG elements; `name`: the CSS class.
   std::string Lines(const DrawnPath& path, const std::string& name) const;
   std::string Dots(const std::vector<Eigen::Vector3d>& points, const std::string& name) const;
   std::string Marker(const Eigen::Vector3d& p, const std::string& name) const;
-  std::string ScaleBar(const std::string& unit) const;  // about an eighth of the picture long
+  std::string ScaleBar(const std::string& unit) const;  // about an eighth of the drawing's width
 
  private:
   Eigen::Matrix<double, 2, 3> axes_;

@@ -28,7 +28,7 @@ std::string Short(double value, const std::string& unit) {
   return unit.empty() ? text : text + (" " + unit);
 }
 
-// Ticks along x under a drawing of height `y`.
+// Time axis with ticks below a drawing of height `y`.
 std::string TimeAxis(double x_end, double y, const std::string& unit) {
   std::string svg;
   const double step = RoundStep(x_end / 4);
@@ -98,7 +98,7 @@ std::string DrawCurves(const std::vector<Curve>& curves, double x_end, const std
       Eigen::Vector2d last(-10, -10);
       for (const auto& point : stretch) {
         const Eigen::Vector2d at(kPictureWidth * point.x() / x_end, y(point.y()));
-        if ((at - last).cwiseAbs().maxCoeff() < 0.5) continue;  // would not be seen
+        if ((at - last).cwiseAbs().maxCoeff() < 0.5) continue;  // less than half a pixel
         points += SvgNumber(at.x()) + "," + SvgNumber(at.y()) + " ";
         last = at;
       }

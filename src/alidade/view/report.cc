@@ -37,7 +37,7 @@ std::string TimingTable(
   return html + "</table>\n</div>\n";
 }
 
-// How long each stage took how often.
+// One histogram of processing times per stage.
 std::string Histograms(
     const std::vector<std::pair<std::string, std::vector<double>>>& milliseconds) {
   std::string html = "<div class=\"stages\">\n";
@@ -66,7 +66,7 @@ std::string Figure(const ReportPicture& picture) {
 std::string Shape(const RunReport& report) {
   const bool turnable = !report.cloud.cloud.points.empty();
   if (!turnable && report.shape.empty()) return "";
-  // Without further views the cloud is the landmarks'.
+  // Without further views the cloud consists of the landmarks.
   std::string html = report.shape.empty() ? "<h2>Landmarks</h2>\n" : "<h2>Shape</h2>\n";
   if (turnable) html += TurnableHtml(report.cloud, report.cloud_picture);
   if (report.shape.empty()) return html;
@@ -103,7 +103,7 @@ std::string Legend(bool with_truth) {
          (with_truth ? " <span>dashed: the truth</span>" : "") + "</p>\n";
 }
 
-// Each map from above and from the side.
+// Draws each map from above and from the side.
 std::string Maps(const std::vector<ReportMap>& maps) {
   std::string html;
   for (size_t i = 0; i < maps.size(); ++i) {

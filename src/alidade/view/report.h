@@ -1,5 +1,5 @@
-// A run as one HTML file: nothing loaded from elsewhere, all that matters readable without scripts,
-// fit to be mailed.
+// Report of a run as one HTML file without external resources. All essential content is readable
+// without scripts; the size is suitable for mail.
 #pragma once
 
 #include <string>
@@ -12,21 +12,20 @@
 
 namespace alidade {
 
-// An image file's bytes, to be shown within the page.
+// An image file's bytes, embedded in the page.
 struct ReportPicture {
   std::string caption;
   std::string type;  // "image/png", "image/jpeg"
   std::string bytes;
 };
 
-// A keyframe: its picture with the features found in it, and the depth known there (no bytes:
-// none).
+// A keyframe's image with its features, and its depth (no bytes: none).
 struct ReportKeyframe {
   std::string caption;
   ReportPicture features, depth;
 };
 
-// One map of a run: a world of its own.
+// One map of a run, in its own world frame.
 struct ReportMap {
   std::string caption;
   PlaceDrawing place;
@@ -34,18 +33,18 @@ struct ReportMap {
 
 struct RunReport {
   std::string title;                                       // of the recording
-  std::vector<std::pair<std::string, std::string>> facts;  // name and value, in the order shown
+  std::vector<std::pair<std::string, std::string>> facts;  // name and value, in order of display
   std::vector<ReportMap> maps;
-  CloudScene cloud;                  // to be turned; empty: there is none
-  ReportPicture cloud_picture;       // of it, where it cannot be
-  std::vector<ReportPicture> shape;  // further views of the semi-dense cloud; empty: there are none
+  CloudScene cloud;                  // shown interactively; empty: none
+  ReportPicture cloud_picture;       // the cloud as a still image, for pages without scripts
+  std::vector<ReportPicture> shape;  // further views of the semi-dense cloud; empty: none
   std::vector<ReportKeyframe> keyframes;
   std::vector<FrameFate> frames;
-  std::vector<std::pair<std::string, std::vector<double>>> milliseconds;  // of each stage; first:
-                                                                          // of whole frames
-  std::vector<std::string> lost_spans;  // in words, with what helps
-  Curve error;         // distance to the truth, metres over seconds; empty: not known
-  double seconds = 0;  // how long the recording is
+  // Per stage; the first is the whole frame.
+  std::vector<std::pair<std::string, std::vector<double>>> milliseconds;
+  std::vector<std::string> lost_spans;  // as sentences, with advice
+  Curve error;         // distance to the ground truth, meters over seconds; empty: unknown
+  double seconds = 0;  // duration of the recording
   std::vector<std::string> warnings;
   std::vector<std::pair<std::string, std::string>> settings;
 };

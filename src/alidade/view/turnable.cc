@@ -20,11 +20,11 @@ struct Box {
   }
 };
 
-// All but the outermost 2 % of the points along each axis, half as large again, and all of the
+// Box of all points except the outermost 2 % along each axis, enlarged by half, and of all of the
 // path.
 Box BoxOf(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::Vector3f>& path) {
   constexpr double kLeftOut = 0.02;
-  constexpr float kRoomAround = 0.25f;  // of the extent, to either side
+  constexpr float kRoomAround = 0.25f;  // share of the extent, added on either side
   Box box{Eigen::Vector3f::Constant(INFINITY), Eigen::Vector3f::Constant(-INFINITY)};
   std::vector<float> along(points.size());
   for (int axis = 0; axis < 3 && !points.empty(); ++axis) {
@@ -43,21 +43,22 @@ Box BoxOf(const std::vector<Eigen::Vector3f>& points, const std::vector<Eigen::V
   return box;
 }
 
-void AppendUint16(std::string& bytes, uint16_t value) {  // little endian, as all browsers run on
+// Little endian, as on all platforms with browsers.
+void AppendUint16(std::string& bytes, uint16_t value) {
   bytes.push_back(static_cast<char>(value & 255));
   bytes.push_back(static_cast<char>(value >> 8));
 }
 
-// What the script is given.
+// Data for the script.
 struct Packed {
-  std::string bytes;      // of points, then path: x, y, z, 16 bits each; then the points' colours
-  size_t points = 0;      // how many
-  std::string stretches;  // of the path, how many poses each
+  std::string bytes;      // points, then path: x, y, z with 16 bits each; then the points' colors
+  size_t points = 0;      // number of points
+  std::string stretches;  // number of poses of each stretch of the path
   bool colored = false;
 };
 
 Packed Pack(const CloudScene& scene) {
-  const Eigen::Matrix3f axes = UprightAxes(scene.path).cast<float>();  // right, forward, up
+  const Eigen::Matrix3f axes = UprightAxes(scene.path).cast<float>();  // rows: right, forward, up
   std::vector<Eigen::Vector3f> points, path;
   for (const Eigen::Vector3f& p : scene.cloud.points) points.emplace_back(axes * p);
   Packed packed;
@@ -76,7 +77,7 @@ Packed Pack(const CloudScene& scene) {
   packed.points = std::min(kept.size(), kMostTurnablePoints);
   packed.colored = !scene.cloud.colors.empty();
   const auto append = [&](const Eigen::Vector3f& p) {
-    // Centred: where the box is shorter than its longest edge the place is in the middle.
+    // centered along the axes that are shorter than the longest one
     const Eigen::Vector3f at =
         (p - 0.5f * (box.low + box.high)) / extent + Eigen::Vector3f::Constant(0.5f);
     for (int axis = 0; axis < 3; ++axis)

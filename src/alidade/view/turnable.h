@@ -1,4 +1,4 @@
-// A cloud in a page that can be turned with a mouse, a finger or the keys.
+// An interactive point cloud for HTML pages, rotated with mouse, touch or keys.
 #pragma once
 
 #include <string>
@@ -8,15 +8,15 @@
 
 namespace alidade {
 
-inline constexpr size_t kMostTurnablePoints = 50000;  // 0.6 MB of page, drawn at once by any GPU
+inline constexpr size_t kMostTurnablePoints = 50000;  // 0.6 MB of HTML; fast on any GPU
 
-// As HTML: `picture`, and where there are scripts and WebGL a canvas in its place. The points are
-// in the page, to a 65,535th of the place's extent; of more than kMostTurnablePoints some, evenly.
-// Points far off, or known worse than a hundredth of the extent, are left out. An empty scene gives
-// the picture alone.
+// Returns HTML: `picture`, replaced by a canvas where scripts and WebGL are available. The points
+// are embedded with a resolution of 1/65535 of the extent and evenly subsampled to
+// kMostTurnablePoints. Points far outside, or with a standard deviation above 1 % of the extent,
+// are omitted. An empty scene gives the picture alone.
 std::string TurnableHtml(const CloudScene& scene, const ReportPicture& picture);
 
-// The picture alone, as an element.
+// The still image alone, as an HTML element.
 std::string PictureHtml(const ReportPicture& picture);
 
 }  // namespace alidade

@@ -1,10 +1,11 @@
-// The script of a turnable cloud (turnable.h): plain WebGL 1, no library, nothing loaded.
+// JavaScript of the interactive point cloud (turnable.h): WebGL 1, without libraries or downloads.
 #pragma once
 
 namespace alidade {
 
-// World of the script: right, forward, up in a cube of edge 1 about the origin. The eye looks at
-// `at` from `far` away; `turn` and `tilt` in radians, 0: forward, level.
+// The script's world has the axes right, forward, up, and is a cube of edge 1 centered at the
+// origin. The camera looks at `at` from distance `far`; `turn` and `tilt` in radians, 0: forward,
+// level.
 inline constexpr char kTurnableScript[] = R"script(
 (() => {
   'use strict';

@@ -6,11 +6,12 @@
 namespace alidade {
 namespace {
 
-// Hand-held cameras look down more often than they lean: their right axes are level whatever the
-// pitch. So up is what is most nearly at right angles to all of them; where they all point the same
-// way, that says little, and the mean of the cameras' own up directions decides.
+// Hand-held cameras pitch more than they roll, so their right axes are level. Up is therefore the
+// direction most nearly perpendicular to all right axes. When all of them are parallel this is
+// undetermined, and the mean of the cameras' up axes decides.
 Eigen::Vector3d UpOf(const std::vector<std::vector<Se3>>& path) {
-  constexpr double kOwnWeight = 0.02;  // against 1 of the right axes: sin² of 8° of turning
+  // Relative to a weight of 1 of the right axes; sin² of 8° of rotation.
+  constexpr double kOwnWeight = 0.02;
   Eigen::Vector3d own = Eigen::Vector3d::Zero();
   Eigen::Matrix3d right = Eigen::Matrix3d::Zero();
   double count = 0;

@@ -1,4 +1,4 @@
-// Which way is up in a world that a camera found.
+// Estimates the up direction of a world from the camera path.
 #pragma once
 
 #include <Eigen/Core>
@@ -8,9 +8,10 @@
 
 namespace alidade {
 
-// Rows: right, forward and up, in world coordinates, orthonormal. Cameras are held without leaning,
-// and upright, on average; forward is where the first one looked, as far as that is level. `path`
-// is T_world_camera, in stretches; empty: as if of one camera, the world's own.
+// Rows: right, forward and up in world coordinates, orthonormal. Assumes that on average cameras
+// are held upright without roll. Forward is the horizontal part of the first camera's viewing
+// direction. `path`: T_world_camera in stretches; when empty, the world's own axes are used as
+// those of one camera.
 Eigen::Matrix3d UprightAxes(const std::vector<std::vector<Se3>>& path);
 
 }  // namespace alidade

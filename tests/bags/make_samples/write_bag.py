@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""write_bag.py FOLDER OUT.bag none|bz2|lz4: a TUM RGB-D folder as a ROS 1 bag, by rosbag itself.
+"""write_bag.py FOLDER OUT.bag none|bz2|lz4: converts a TUM RGB-D folder to a ROS 1 bag with rosbag.
 
-Pictures are CompressedImage with the very bytes of the files, CameraInfo is as camera.yaml has it.
-Depth is Image (16UC1); large pictures, which plain Python takes long to unpack, are compressedDepth.
+Images are CompressedImage messages with the unchanged bytes of the files; CameraInfo is from camera.yaml. Depth is Image
+(16UC1); large images, which plain Python decodes slowly, are compressedDepth.
 """
 import struct
 import sys
@@ -31,7 +31,7 @@ def stamped(folder, name):
 
 
 def depth_of(data):
-    """Width, height and the 16 bit samples of a PNG, little endian."""
+    """Width, height and the 16-bit little-endian samples of a PNG."""
     at, packed = 8, b""
     while at < len(data):
         length, kind = struct.unpack(">I4s", data[at:at + 8])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""write_db3.py MCAP FOLDER: the messages of an MCAP file without chunks as rosbag2's database.
+"""write_db3.py MCAP FOLDER: converts the messages of an MCAP file without chunks to rosbag2's database.
 
 The tables are those of rosbag2_storage_default_plugins (version 3 of its schema).
 """

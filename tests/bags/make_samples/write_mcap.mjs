@@ -1,5 +1,5 @@
-// node write_mcap.mjs BAG OUT.mcap none|lz4|zstd|unchunked [ros1]: the messages of a ROS 1 bag that is not packed, as
-// MCAP by @mcap/core: as ROS 2 messages by Foxglove's serialisers, or with `ros1` as they are.
+// node write_mcap.mjs BAG OUT.mcap none|lz4|zstd|unchunked [ros1]: converts the messages of an uncompressed ROS 1 bag
+// to MCAP with @mcap/core, as ROS 2 messages with Foxglove's serializers, or unchanged with `ros1`.
 import fs from "node:fs";
 import { createRequire } from "node:module";
 import path from "node:path";
@@ -17,7 +17,7 @@ const lz4js = require("lz4js");
 const [source, out, packing, generation] = process.argv.slice(2);
 const asRos1 = generation === "ros1";
 
-// Records of a bag: fields and data. Chunks that are not packed are walked into.
+// Records of a bag: fields and data. Descends into uncompressed chunks.
 function* records(bytes) {
   let at = 13;
   while (at < bytes.length) {
@@ -44,7 +44,7 @@ function fieldsOf(header) {
   return fields;
 }
 
-// All definitions a message needs, its own first.
+// All definitions that a message needs, starting with its own.
 function closure(all, name) {
   const list = [all[name]];
   const names = new Set([name]);

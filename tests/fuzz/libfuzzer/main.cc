@@ -1,5 +1,5 @@
-// build-fuzz/bin/fuzz --target=NAME, and libFuzzer's own options and folders (it leaves options
-// with two dashes to us).
+// build-fuzz/bin/fuzz --target=NAME, with libFuzzer's options and folders (libFuzzer ignores
+// options with two dashes).
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   std::exit(2);
 }
 
-// What is thrown but Error ends the program, which is a finding.
+// Any exception other than Error ends the program and is a finding.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   alidade::fuzz::Accepts(*target, {reinterpret_cast<const char*>(data), size});
   return 0;

@@ -1,4 +1,4 @@
-// The ROS recordings the fuzzer starts from.
+// ROS recordings of the seed corpus.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,5 @@
-// build/bin/fuzz_make_corpus FOLDER: writes the files of tests/fuzz/corpus that are not text:
-// small maps, networks, ROS recordings, and a rendered room in the kinds of PNG and JPEG there
-// are.
+// build/bin/fuzz_make_corpus FOLDER: writes the binary files of tests/fuzz/corpus: small maps,
+// networks, ROS recordings, and a rendered room in all kinds of PNG and JPEG.
 #include <png.h>
 
 #include <filesystem>
@@ -26,7 +25,7 @@ void Write(const std::string& target, const std::string& name, const std::string
   AtomicWriteFile(folder + "/" + target + "/" + name, bytes);
 }
 
-// A few kilobytes: what the fuzzer mutates should be offsets and counts, not descriptors.
+// A few kilobytes, so that mutations hit offsets and counts rather than descriptors.
 SavedMap SmallMap(int points, int maps, bool extras) {
   const SyntheticWorld world =
       MakeSyntheticWorld({.points = points, .cameras = 3, .depth = extras});
@@ -83,7 +82,8 @@ void WriteNetworks() {
   Write("onnx", "good-old-exporter", file.Node("Sub", {"x", "w"}, "y").Bytes());
 }
 
-// What EncodePng() has no use for: palettes, transparency, interlacing, few bits, text.
+// Kinds of PNG that EncodePng() does not write: palettes, transparency, interlacing, few bits,
+// text.
 std::string OddPng(const cv::Mat& gray, int bits, int color_type, bool transparent,
                    bool interlaced) {
   std::string bytes;
@@ -123,7 +123,7 @@ std::string OddPng(const cv::Mat& gray, int bits, int color_type, bool transpare
                                                                    : 1;
   std::vector<std::vector<png_byte>> rows;
   std::vector<png_bytep> pointers;
-  const size_t per_row = static_cast<size_t>(gray.cols) * samples * 2;  // room for any depth
+  const size_t per_row = static_cast<size_t>(gray.cols) * samples * 2;  // enough for any depth
   for (int y = 0; y < gray.rows; ++y) {
     std::vector<png_byte> row(per_row);
     for (size_t i = 0; i < per_row; ++i)

@@ -1,13 +1,16 @@
-// Visual SLAM in JavaScript: pictures of one moving camera in, its pose and a map out.
+// Visual SLAM in JavaScript: images of one moving camera in, its pose and a map out.
 //
 //   import { Slam } from 'alidade';
 //   const slam = await Slam.create({ width: 640, height: 480 });
 //   const frame = slam.track(imageData, seconds);
 //   if (frame.pose) console.log(frame.pose.position, frame.counts.keyframes);
 //
-// The core is the C++ one, as WebAssembly. Calls are synchronous and take milliseconds: in a page, make them in a Worker.
+// The core is the C++ library compiled to WebAssembly. Calls are synchronous and take milliseconds; in a page, make
+// them in a Worker.
 
-/** What the compiled module offers; `memory` may be replaced when it grows, so views are made anew for each use. */
+/**
+ * Interface of the compiled module. Its memory may be replaced when it grows, so views must be created for each use.
+ */
 interface Core {
   HEAPU8: Uint8Array;
   _malloc(bytes: number): number;
@@ -28,62 +31,70 @@ interface Core {
   _alidade_finish(session: number): number;
 }
 type CreateCore = (options: { wasmBinary?: ArrayBuffer | Uint8Array; locateFile?: (name: string) => string; threadPool?: number }) => Promise<Core>;
-const STAGES = 4; // threads that are there besides those of `threads`: mapping, loop closing, semi-dense, what OpenCV takes
+const STAGES = 4; // additional threads besides `threads`: mapping, loop closing, semi-dense mapping, OpenCV
 
 export interface Calibration {
-  fx: number; fy: number; cx: number; cy: number;             // pixels; the centre of the top-left pixel is 0, 0
-  distortion?: [number, number, number, number, number];      // k1 k2 p1 p2 k3 (Brown)
+  fx: number; fy: number; cx: number; cy: number; // pixels; the center of the top-left pixel is 0, 0
+  distortion?: [number, number, number, number, number]; // k1 k2 p1 p2 k3 (Brown)
 }
 
 export interface SlamOptions {
-  width: number;                    // of the pictures, pixels
+  width: number; // of the images, pixels
   height: number;
-  fov?: number;                     // horizontal field of view, degrees; left out: found on the way
-  camera?: Calibration;             // instead of `fov`
-  settings?: Record<string, string | number | boolean>;  // as after --set of the program, e.g. { 'semidense.enabled': true }
-  /** Names of the classes of a detector whose answers will come (detected()): what it finds of people, animals and vehicles is left out. */
+  fov?: number; // horizontal field of view, degrees; omitted: self-calibrated
+  camera?: Calibration; // used instead of `fov`
+  // As after --set of the program, for example { 'semidense.enabled': true }.
+  settings?: Record<string, string | number | boolean>;
+  /**
+   * Class names of an external detector, whose results are passed to detected(). Detected people, animals and vehicles
+   * are excluded.
+   */
   classes?: readonly string[];
-  /** Threads; needs a page that is cross-origin isolated, and the threaded module. Default: 1. */
+  /** Number of threads; more than 1 requires a cross-origin isolated page and the threaded module. Default: 1. */
   threads?: number;
-  /** Where alidade.mjs and alidade.wasm are: a folder's address, ending in /. Default: beside this file, in single/ or threads/. */
+  /**
+   * URL of the folder with alidade.mjs and alidade.wasm, ending in /. Default: single/ or threads/ beside this file.
+   */
   base?: string;
-  wasmBinary?: ArrayBuffer | Uint8Array;                 // instead of fetching alidade.wasm (Node)
+  wasmBinary?: ArrayBuffer | Uint8Array; // used instead of fetching alidade.wasm (Node)
 }
 
 export type State = 'initialising' | 'tracking' | 'lost';
 
 export interface Pose {
-  position: [number, number, number];            // of the camera in the world, map units
-  orientation: [number, number, number, number]; // quaternion x y z w: turns the camera's x right, y down, z ahead into the world's
+  position: [number, number, number]; // of the camera in the world, map units
+  // Quaternion x y z w: rotates the camera's axes (x right, y down, z forward) into the world.
+  orientation: [number, number, number, number];
 }
 
 export interface Frame {
-  number: number;           // of the pictures given to track(), from 0
+  number: number; // number of the image passed to track(), from 0
   state: State;
-  pose: Pose | null;        // null: not known
-  predicted: boolean;       // the pose is a guess: lost for a moment only
-  reason: string;           // why there is none; '' while tracking
+  pose: Pose | null; // null unless tracking
+  predicted: Pose | null; // recently lost: extrapolated from the motion, a guess; null otherwise
+  reason: string; // why there is no pose; '' while tracking
   counts: { keyframes: number; landmarks: number; matches: number; features: number; maps: number };
-  milliseconds: number;     // it took
-  fov: number;              // horizontal field of view as it is believed to be, degrees
-  fovSigma: number;         // its standard deviation, degrees; 0: it was given
-  cameraChanges: number;    // how often the map was changed to another camera, found from it
+  milliseconds: number; // processing time
+  fov: number; // current estimate of the horizontal field of view, degrees
+  fovSigma: number; // its standard deviation, degrees; 0: the field of view was given
+  cameraChanges: number; // number of times the map was rebuilt with a new estimate of the camera
 }
 
-export interface Feature { x: number; y: number; matched: boolean }  // pixels of the picture as it is worked on
+export interface Feature { x: number; y: number; matched: boolean } // pixels of the processed image
 
 export interface Detection {
-  class: number;                                           // of the classes named
-  score: number;                                           // 0…1
-  x: number; y: number; width: number; height: number;     // pixels of the picture, from edge to edge: the first one covers 0 to 1
+  class: number; // index into the class names
+  score: number; // 0…1
+  // Pixels of the image, from edge to edge: the first pixel covers 0 to 1.
+  x: number; y: number; width: number; height: number;
 }
 
 const STATES: State[] = ['initialising', 'tracking', 'lost'];
 const NUMBERS = 20;
-const DETECTION = 6; // numbers of one
+const DETECTION = 6; // numbers per detection
 const enum Bytes { Messages = 0, Trajectory = 1, Map = 2, Cloud = 3 }
 
-/** What went wrong, as the core says it. */
+/** An error of the core, with its message. */
 export class AlidadeError extends Error {
   override name = 'AlidadeError';
 }
@@ -93,7 +104,7 @@ export class Slam {
   readonly height: number;
   #core: Core;
   #session: number;
-  #out: number;  // four bytes, for addresses
+  #out: number; // four bytes for returned addresses
 
   private constructor(core: Core, session: number, width: number, height: number) {
     this.#core = core;
@@ -103,7 +114,7 @@ export class Slam {
     this.height = height;
   }
 
-  /** Loads the core and begins. Throws AlidadeError on sizes, cameras and settings that cannot be. */
+  /** Loads the core and creates a session. Throws AlidadeError for invalid sizes, cameras and settings. */
   static async create(options: SlamOptions): Promise<Slam> {
     const threads = options.threads ?? 1;
     const base = options.base ?? new URL(threads > 1 ? './threads/' : './single/', import.meta.url).href;
@@ -140,7 +151,10 @@ export class Slam {
     return new Slam(core, session, width, height);
   }
 
-  /** One picture: ImageData, or its bytes, 4 (red green blue alpha) or 1 (grey) a pixel. `time` in seconds. */
+  /**
+   * Processes one image: ImageData, or bytes with 4 (red green blue alpha) or 1 (gray) per pixel. `time` in seconds.
+   * Throws AlidadeError.
+   */
   track(picture: ImageData | Uint8Array | Uint8ClampedArray, time: number): Frame {
     const core = this.#live();
     const bytes = 'data' in picture ? picture.data : picture;
@@ -152,18 +166,22 @@ export class Slam {
     if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
     const n = Array.from(new Float64Array(core.HEAPU8.buffer, at, NUMBERS)) as [number, ...number[]];
     const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, cameraChanges] = n as number[] & { length: 19 };
+    const pose: Pose | null = placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null;
     return {
       number: n[19]!,
       state: STATES[state!] ?? 'lost',
-      pose: placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null,
-      predicted: predicted === 1,
+      pose: predicted ? null : pose,
+      predicted: predicted ? pose : null,
       reason: state === 1 ? '' : core.UTF8ToString(core._alidade_reason(this.#session)),
       counts: { keyframes: keyframes!, landmarks: landmarks!, matches: matches!, features: features!, maps: maps! },
       milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, cameraChanges: cameraChanges!,
     };
   }
 
-  /** What a detector found in an earlier picture, Frame.number; it may come many pictures late. The numbers of a Detection one after the other will do as well. */
+  /**
+   * Passes the detections in an earlier image (Frame.number), which may be many images late. `found` may also be an
+   * array of 6 numbers per detection, in the order of Detection's fields.
+   */
   detected(number: number, found: readonly Detection[] | Float32Array): void {
     const core = this.#live();
     const numbers = found instanceof Float32Array ? found : Float32Array.from(found.flatMap((d) => [d.class, d.score, d.x, d.y, d.width, d.height]));
@@ -174,7 +192,7 @@ export class Slam {
     if (told !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
   }
 
-  /** The last picture's features. */
+  /** The features of the last image. */
   features(): Feature[] {
     const core = this.#live();
     const count = core._alidade_features(this.#session, this.#out);
@@ -182,33 +200,33 @@ export class Slam {
     return Array.from({ length: count }, (_, i) => ({ x: numbers[3 * i]!, y: numbers[3 * i + 1]!, matched: numbers[3 * i + 2] === 1 }));
   }
 
-  /** The viewer's messages since they were asked for last: src/alidade/stream, decoded and drawn by web/scene. */
+  /** The viewer's messages since the previous call: src/alidade/stream, decoded and drawn by web/scene. */
   messages(): Uint8Array[] {
     const all = this.#bytes(Bytes.Messages);
     const view = new DataView(all.buffer, all.byteOffset, all.byteLength);
     const messages: Uint8Array[] = [];
     for (let at = 0; at < all.length;) {
       const size = view.getUint32(at, true);
-      messages.push(all.slice(at + 4, at + 4 + size));  // of their own, so that they begin aligned
+      messages.push(all.slice(at + 4, at + 4 + size)); // copies, so that each message is aligned
       at += 4 + size;
     }
     return messages;
   }
 
-  /** Every frame with a pose, TUM format: seconds, position, quaternion x y z w. */
+  /** All frames with a pose in TUM format: seconds, position, quaternion x y z w. */
   trajectory(): string { return new TextDecoder().decode(this.#bytes(Bytes.Trajectory)); }
-  /** map.alidade: `alidade view`, `alidade run --load`. */
+  /** The bytes of map.alidade, for `alidade view` and `alidade run --load`. */
   map(): Uint8Array { return this.#bytes(Bytes.Map); }
   /** Landmarks as a binary PLY file. */
   cloud(): Uint8Array { return this.#bytes(Bytes.Cloud); }
 
-  /** Ends what is still in work, and adjusts the map as a whole once more. */
+  /** Completes pending work and adjusts the whole map once more. */
   finish(): void {
     const core = this.#live();
     if (core._alidade_finish(this.#session) !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
   }
 
-  /** Gives its memory back; no other call may follow. */
+  /** Frees the session's memory; must be the last call. */
   delete(): void {
     if (this.#session === 0) return;
     this.#core._alidade_delete(this.#session);

@@ -1,4 +1,4 @@
-// The package as a program in Node uses it, over rendered frames and, where ALIDADE_DATA is, over a real recording.
+// Uses the package as a Node program does, on rendered frames and, if ALIDADE_DATA is set, on a real recording.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
@@ -6,7 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
-import { grayOf, openRecording } from '../../phone/test/y4m.ts';
+import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 import { decode } from '../../scene/src/decode.ts';
 import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
 
@@ -20,7 +20,7 @@ const { Slam } = (built ? await import(pathToFileURL(join(dist, 'index.js')).hre
 const create = (more: Partial<SlamOptions> & { width: number; height: number }) =>
   Slam.create({ wasmBinary: readFileSync(join(dist, 'single/alidade.wasm')), ...more });
 
-// ATE of the program's own evaluation, metres.
+// ATE as evaluated by the program, meters.
 function ate(folder: string, trajectory: string): { rmse: number; coverage: number } {
   const file = join(mkdtempSync(join(tmpdir(), 'alidade-')), 'trajectory.txt');
   writeFileSync(file, trajectory);
@@ -41,7 +41,7 @@ test('a real recording: as good as the native core', onKitchen, async () => {
   });
   const milliseconds: number[] = [];
   let messages = slam.messages();
-  assert.equal(messages.length, 1);  // hello
+  assert.equal(messages.length, 1); // hello
   for (let i = 0; i < recording.times.length; ++i) {
     const frame = slam.track(grayOf(recording, i), recording.times[i]!);
     milliseconds.push(frame.milliseconds);
@@ -91,7 +91,8 @@ test('a detector that answers late: what it finds is left out', onKitchen, async
     assert.equal(frame.number, i);
     if (i >= 10 && i % 5 === 0) slam.detected(i - 10, [box]);
   }
-  const inside = slam.features().filter(({ x, y }) => Math.abs(x - 200) < 60 && Math.abs(y - 170) < 60); // pictures are worked on 400 wide
+  // Processed images are 400 pixels wide.
+  const inside = slam.features().filter(({ x, y }) => Math.abs(x - 200) < 60 && Math.abs(y - 170) < 60);
   const matched = inside.filter((feature) => feature.matched).length;
   assert.ok(matched < 0.2 * slam.features().filter((feature) => feature.matched).length, `${matched} of ${slam.features().length}`);
   assert.throws(() => slam.detected(59, [{ ...box, class: 2 }]), /class 2 of 2/);
@@ -112,10 +113,10 @@ test('shape: what it costs a keyframe', onKitchen, async () => {
     slam.delete();
     return { milliseconds: (user + system) / 1000, keyframes };
   };
-  await cost(true); // Node compiles what is hot a second time
+  await cost(true); // warm-up: Node recompiles hot code
   const [without, withShape] = [await cost(false), await cost(true)];
   console.log(`semi-dense depth: ${((withShape.milliseconds - without.milliseconds) / withShape.keyframes).toFixed(1)} ms of CPU a keyframe (${withShape.keyframes} of ${frames} frames, ${without.milliseconds.toFixed(0)} ms without, ${withShape.milliseconds.toFixed(0)} with)`);
-  assert.equal(withShape.keyframes, without.keyframes); // it changes nothing of the map
+  assert.equal(withShape.keyframes, without.keyframes); // the map is the same
 });
 
 test('what cannot be is refused in words, and nothing is lost', options, async () => {

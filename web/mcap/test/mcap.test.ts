@@ -1,4 +1,5 @@
-// MCAP files of the real program, by readers that are not ours, against the files of the run: field by field.
+// Reads the program's MCAP files with third-party readers and compares them with the run's result files, field by
+// field.
 import assert from 'node:assert/strict';
 import { spawn } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, statSync } from 'node:fs';
@@ -16,7 +17,7 @@ const DATA = process.env.ALIDADE_DATA;
 const folder = mkdtempSync(join(tmpdir(), 'alidade-mcap-'));
 const at = (name: string) => join(folder, name);
 const ROOM = ['synth:room?frames=60&width=320&height=240', '--sensor', 'rgbd', '--semidense', '--quiet'];
-// trajectory.txt has 9 digits behind the point; of times, doubles have 7 at most.
+// trajectory.txt has 9 decimals; a double holds 7 decimals of a time at most.
 const POSE = 1e-8;
 const TIME = 1e-6;
 
@@ -34,7 +35,8 @@ function assertRows(found: number[][], expected: number[][]): void {
   assert.equal(found.length, expected.length);
   found.forEach((pose, i) => {
     assert.ok(Math.abs(pose[0] - expected[i][0]) < TIME, `${pose[0]} is not ${expected[i][0]}`);
-    const sign = Math.sign(pose.slice(4).reduce((sum, value, k) => sum + value * expected[i][4 + k], 0)); // q and -q are one rotation
+    // Q and -q are the same rotation.
+    const sign = Math.sign(pose.slice(4).reduce((sum, value, k) => sum + value * expected[i][4 + k], 0));
     pose.slice(1).forEach((value, k) => assert.ok(Math.abs((k < 3 ? value : sign * value) - expected[i][1 + k]) < POSE, `pose ${i}: ${pose} is not ${expected[i]}`));
   });
 }
@@ -45,7 +47,7 @@ const tfRows = (transforms: any[]) => transforms.map(({ header, transform }) => 
 const stats = (results: string) => JSON.parse(readFileSync(join(results, 'stats.json'), 'utf8'));
 const vertices = (path: string) => Number(/element vertex (\d+)/.exec(readFileSync(path, 'latin1').slice(0, 1000))![1]);
 
-// What the file ends with is what the results are.
+// The last messages of the file equal the results.
 function assertEnd(file: File, results: string): void {
   const trajectory = table(join(results, 'trajectory.txt'));
   const path = file.on('/alidade/path').at(-1)!.message;
@@ -68,7 +70,7 @@ function assertEnd(file: File, results: string): void {
   });
 }
 
-// Frame by frame.
+// Compares frame by frame.
 function assertFrames(file: File, results: string): void {
   const { frames, tracked } = stats(results);
   const live = table(join(results, 'trajectory_live.txt'));
@@ -90,7 +92,7 @@ function assertFrames(file: File, results: string): void {
 test(`frames, poses, path and points are those of the results (${BINARY})`, options, () => {
   assertFrames(recorded, at('results'));
   assertEnd(recorded, at('results'));
-  // At the end the camera is told of once more, where it is known to have been; before, more and more of the path is.
+  // At the end a final path is written; earlier ones grow with the run.
   const paths = recorded.on('/alidade/path').map(({ message }) => message.poses.length);
   assert.ok(paths.length >= 3 && paths[0] < paths[1]);
 });
@@ -101,7 +103,7 @@ test('frames of coordinates hang together, upright', options, () => {
   for (const { child_frame_id, transform: { rotation: { x, y, z, w }, translation } } of up) {
     assert.equal(child_frame_id, 'map_optical');
     assert.deepEqual([translation.x, translation.y, translation.z], [0, 0, 0]);
-    // y of a camera is down: -z of the map.
+    // The camera's y axis points down: -z of the map.
     const down = [2 * (x * y - z * w), 1 - 2 * (x * x + z * z), 2 * (y * z + x * w)];
     [0, 0, -1].forEach((value, k) => assert.ok(Math.abs(down[k] - value) < 1e-12));
   }
@@ -117,7 +119,7 @@ test('frames of coordinates hang together, upright', options, () => {
 test('pictures come with the camera that takes such', options, () => {
   const pictures = recorded.on('/camera/image/compressed');
   const infos = recorded.on('/camera/camera_info');
-  assert.ok(pictures.length >= 15); // 2 seconds, 10 a second
+  assert.ok(pictures.length >= 15); // 2 seconds with 10 images per second
   assert.equal(infos.length, pictures.length);
   const { camera } = stats(at('results'));
   pictures.forEach(({ time, message }, i) => {
@@ -128,7 +130,7 @@ test('pictures come with the camera that takes such', options, () => {
     assert.equal(infos[i].time, time);
     assert.equal(info.header.frame_id, 'camera_optical');
     assert.deepEqual([info.width, info.height], [width, height]);
-    assert.deepEqual([width, height], [camera.width, camera.height]); // below stream.picture_width
+    assert.deepEqual([width, height], [camera.width, camera.height]); // smaller than stream.picture_width
     assert.deepEqual([...info.k], [camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1]);
     assert.deepEqual([...info.p], [camera.fx, 0, camera.cx, 0, 0, camera.fy, camera.cy, 0, 0, 0, 1, 0]);
     assert.equal(info.distortion_model, 'plumb_bob');
@@ -169,16 +171,17 @@ test('a recorded stream that is exported gives the same messages', options, asyn
   await run('run', ...ROOM, '--record', '--set', 'stream.whole_seconds=0.4', '--out', at('streamed'));
   await run('export', at('streamed'), '--to', 'mcap', at('exported.mcap'));
   const exported = await readIndexed(at('exported.mcap'));
-  const timeless = ({ told }: File) => told.filter(({ topic }) => topic !== '/diagnostics' && topic !== '/alidade/path') // milliseconds; below
+  // Processing times differ; the path is compared below.
+  const timeless = ({ told }: File) => told.filter(({ topic }) => topic !== '/diagnostics' && topic !== '/alidade/path')
     .map(({ topic, time, bytes }) => `${time} ${topic} ${Buffer.from(bytes).toString('base64')}`);
   assert.deepEqual(timeless(exported), timeless(recorded));
-  // Whole states carry a path whose poses were joined when keyframes went, with other roundings.
+  // Paths after a whole state contain poses that were composed when keyframes were culled, with different rounding.
   const paths = (file: File) => file.on('/alidade/path').map(({ message }) => message.poses.map(({ header, pose }: any) => row(header.stamp, pose.position, pose.orientation)));
   assert.equal(paths(exported).length, paths(recorded).length);
   paths(exported).forEach((path, i) => assertRows(path, paths(recorded)[i]));
   assertFrames(exported, at('streamed'));
   assertEnd(exported, at('streamed'));
-  // Without the stream: the same end, and the poses as they were.
+  // Without the stream: the same final state, and the live poses.
   rmSync(at('streamed/run.stream'));
   await run('export', at('streamed'), '--to', 'mcap', at('results.mcap'));
   const still = await readIndexed(at('results.mcap'));
@@ -187,12 +190,12 @@ test('a recorded stream that is exported gives the same messages', options, asyn
   const [run_, ms] = still.on('/diagnostics').at(-1)!.message.status;
   assert.equal(run_.message, '60 of 60 frames tracked');
   assert.equal(Number(ms.values[0].value), Number(stats(at('streamed')).ms.frame.median.toFixed(2)));
-  // A map: its keyframes.
+  // From a map: its keyframes.
   await run('export', at('streamed/map.alidade'), '--to', 'mcap', at('map.mcap'));
   const map = await readIndexed(at('map.mcap'));
   assertRows(poseRows(map), table(at('streamed/keyframes.txt')));
   assert.equal(points(map.on('/alidade/landmarks')[0].message).length, vertices(at('streamed/landmarks.ply')));
-  assert.equal(map.on('/alidade/semidense').length, 0); // which saved maps do not hold
+  assert.equal(map.on('/alidade/semidense').length, 0); // saved maps do not contain it
 });
 
 async function interrupted(signal: NodeJS.Signals, name: string): Promise<number | null> {
@@ -225,7 +228,7 @@ test('a real pair of cameras: poses are of the camera as mounted, pictures of th
   assertFrames(euroc, at('euroc'));
   assertEnd(euroc, at('euroc'));
   assert.ok(euroc.on('/camera/camera_info').every(({ message }) => message.header.frame_id === 'camera_rectified_optical'));
-  // Pictures are smaller than what was tracked, and so is their camera: the same share of the picture, edges on edges.
+  // The images and their camera are scaled down; the outer image edges coincide.
   const { camera } = stats(at('euroc'));
   const near = (a: number, b: number) => assert.ok(Math.abs(a - b) < 1e-9, `${a} is not ${b}`);
   for (const { message: { width, height, k } } of euroc.on('/camera/camera_info')) {

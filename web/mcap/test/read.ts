@@ -1,15 +1,17 @@
-// MCAP files by the public readers: @mcap/core for the container, @foxglove/rosmsg for the schemas, @foxglove/rosmsg2-serialization for CDR.
+// Reads MCAP files with public libraries: @mcap/core for the container, @foxglove/rosmsg for the schemas,
+// @foxglove/rosmsg2-serialization for CDR.
 import { readFileSync } from 'node:fs';
 import { parse } from '@foxglove/rosmsg';
 import { MessageReader } from '@foxglove/rosmsg2-serialization';
 import { McapIndexedReader, McapStreamReader } from '@mcap/core';
 import { decompress } from 'fzstd';
 
-export interface Told { topic: string; time: bigint; bytes: Uint8Array; message: any } // any: what the schema in the file says
+// Any: described by the schema in the file.
+export interface Told { topic: string; time: bigint; bytes: Uint8Array; message: any }
 
 const decompressHandlers = { zstd: (packed: Uint8Array, size: bigint) => decompress(packed, new Uint8Array(Number(size))) };
 
-// By the index; every checksum of a chunk is looked at.
+// Reads by the index and verifies the checksum of every chunk.
 export async function readIndexed(path: string) {
   const bytes = readFileSync(path);
   const reader = await McapIndexedReader.Initialize({
@@ -31,7 +33,7 @@ export async function readIndexed(path: string) {
   return { reader, told, on: (topic: string) => told.filter((each) => each.topic === topic) };
 }
 
-// From the first byte on, as far as the file goes: messages, and whether its end was found.
+// Reads sequentially as far as possible; returns the number of messages and whether the end was complete.
 export function readThrough(path: string): { messages: number; complete: boolean } {
   const reader = new McapStreamReader({ decompressHandlers, validateCrcs: true });
   reader.append(readFileSync(path));
@@ -43,10 +45,10 @@ export function readThrough(path: string): { messages: number; complete: boolean
 export const seconds = ({ sec, nsec, nanosec }: { sec: number; nsec?: number; nanosec?: number }) => sec + 1e-9 * (nsec ?? nanosec ?? NaN);
 
 type Vector = { x: number; y: number; z: number; w?: number };
-// As a line of a trajectory: t x y z qx qy qz qw.
+// A row of a trajectory: t x y z qx qy qz qw.
 export const row = (stamp: { sec: number; nsec?: number }, t: Vector, q: Vector) => [seconds(stamp), t.x, t.y, t.z, q.x, q.y, q.z, q.w!];
 
-// A PointCloud2 as rows x y z and, where it has colours, red green blue.
+// A PointCloud2 as rows x y z and, if colored, red green blue.
 export function points(cloud: any): number[][] {
   const view = new DataView(cloud.data.buffer, cloud.data.byteOffset, cloud.data.byteLength);
   const rows: number[][] = [];

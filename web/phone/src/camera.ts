@@ -1,4 +1,4 @@
-// The phone's camera: asked for, its focus held, and what to do when it cannot be had, in words.
+// Opens the phone's camera and fixes its focus; errors are explained for users.
 
 export class CameraProblem extends Error {}
 
@@ -12,7 +12,7 @@ const PROBLEMS: Record<string, string> = {
 interface FocusCapabilities extends MediaTrackCapabilities { focusMode?: string[]; focusDistance?: { min: number; max: number } }
 interface FocusSettings extends MediaTrackSettings { focusDistance?: number }
 
-// The rear camera where there are several.
+// Prefers the rear camera.
 export async function openCamera(): Promise<MediaStream> {
   if (!navigator.mediaDevices) {
     throw new CameraProblem(isSecureContext ? 'This browser gives pages no camera. A video can be opened instead.'
@@ -28,9 +28,9 @@ export async function openCamera(): Promise<MediaStream> {
   }
 }
 
-const SETTLING = 1500; // milliseconds that the lens is given to focus by itself before it is held
+const SETTLING = 1500; // milliseconds for the lens to focus by itself before the focus is fixed
 
-// A lens that focuses changes the focal length by a per cent or two. Whether it is held now.
+// Fixes the focus, because focusing changes the focal length by one or two percent. Returns whether it is fixed.
 export async function holdFocus(stream: MediaStream): Promise<boolean> {
   const track = stream.getVideoTracks()[0];
   const can = (track?.getCapabilities?.() ?? {}) as FocusCapabilities;
@@ -46,10 +46,10 @@ export async function holdFocus(stream: MediaStream): Promise<boolean> {
   }
 }
 
-const AREA = 400 * 300; // pixels that are worked on: the paper's 400 columns of a lying 4:3 picture
+const AREA = 400 * 300; // pixels of a processed image: the phone profile's 400 columns of a 4:3 landscape image
 const FEWEST = 64;
 
-// As large as is worked on, the picture's proportions kept; even numbers.
+// Scaled size with the image's aspect ratio; even numbers.
 export function workingSize(width: number, height: number): { width: number; height: number } {
   const scale = Math.min(1, Math.sqrt(AREA / (width * height)));
   const even = (length: number) => Math.max(FEWEST, 2 * Math.round((length * scale) / 2));

@@ -1,23 +1,26 @@
-// A virtual object on a tapped surface. It hangs on the keyframe it was placed from, so that it goes along when the map is corrected.
+// A virtual cube on a tapped surface. It is anchored to the keyframe it was placed from, so that it moves with map
+// corrections.
 import type { Camera, Culled, Message, Pose, State } from '@alidade/scene';
 import { USES } from '../../scene/src/messages.ts';
-import { compose, inverse, rotate, transform } from '../../scene/src/pose.ts'; // not by the package: its scene wants a browser
+import { compose, inverse, rotate, transform } from '../../scene/src/pose.ts'; // directly, because the package's scene requires a browser
 import { project, unproject } from './lens.ts';
 import type { Point, Ray } from './lens.ts';
 
 type Vector = readonly [number, number, number];
 
-// How a surface is told from the points about a tap.
-const REACH = 0.06;        // of the picture's width: points so near say where the surface is; more and more, until there are …
+// Parameters of the surface estimate from the map points around a tap.
+// Share of the image width: points within this radius are used; if fewer than ENOUGH, the radius grows up to FARTHEST.
+const REACH = 0.06;
 const FARTHEST = 0.15;
-const ENOUGH = 8;         // … so many
-const NEAR = 0.03;         // of the picture's width: no point so near, and they must lie all about the tap: what is seen is not gone beyond
-const WIDEST = 150;        // degrees without a point, as seen from the tap: they lie all about it
-const SAME = 3;            // pixels from a landmark to its feature
-const FLAT = 0.02;         // of the depth: points so near to a plane lie on it
-const TRIES = 200;         // planes through three of them
-const STEEPEST = 0.2;      // cosine between a surface and the sight: flatter ones are not believed
-const EDGE = 0.12;         // of the depth: the cube's
+const ENOUGH = 8; // number of points
+// Share of the image width: if no point is this near, the points must surround the tap, to prevent extrapolation.
+const NEAR = 0.03;
+const WIDEST = 150; // degrees: largest gap in direction between points that surround the tap
+const SAME = 3; // pixels from a landmark to its feature
+const FLAT = 0.02; // share of the depth: distance of inliers to the plane
+const TRIES = 200; // RANSAC iterations with three points each
+const STEEPEST = 0.2; // cosine between surface normal and viewing ray; surfaces at grazing angles are rejected
+const EDGE = 0.12; // share of the depth: edge length of the cube
 
 const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const minus = (a: Vector, b: Vector): Vector => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
@@ -31,11 +34,11 @@ interface Seen { p: Vector; pixel: Point }
 export class Cube {
   private constructor(
     private keyframe: number,
-    private at: Vector,                 // middle of its foot, in the keyframe (lengths as if its scale were 1)
-    private axes: readonly [Vector, Vector, Vector], // edges in the keyframe; the last one up from the surface
+    private at: Vector, // center of the base, in the keyframe (with lengths scaled as if its scale were 1)
+    private axes: readonly [Vector, Vector, Vector], // edges in the keyframe; the last one is the surface normal
   ) {}
 
-  // On what is seen at `tap` (pixels of the stream's camera) from where the camera is; null: no point of the map near it.
+  // Places a cube on the surface at `tap` (pixels of the stream's camera); null: no map points near it.
   static place(state: State, tap: Point): Cube | null {
     const camera = state.hello?.camera;
     const T_world_camera = state.cameraPose();
@@ -54,7 +57,7 @@ export class Cube {
       [turn(scaled(side, edge)), turn(scaled(cross(up, side), edge)), turn(scaled(up, edge))]);
   }
 
-  // Before the state takes the message in: a keyframe that goes hands the cube to the one it follows.
+  // Call before the state applies the message: re-anchors the cube when its keyframe is culled.
   follow(message: Message): void {
     if (message.kind !== 'map') return;
     for (let moved = true; moved;) {
@@ -68,13 +71,13 @@ export class Cube {
     }
   }
 
-  // Middle of its foot in the world; null: what it hung on is gone.
+  // Center of its base in the world; null: its keyframe was removed without a replacement.
   position(state: State): Vector | null {
     const keyframe = state.keyframes.get(this.keyframe);
     return keyframe ? transform(keyframe.T_world_camera, keyframe.scale, ...this.at) : null;
   }
 
-  // Faces to draw, the farthest first: corners in pixels of the stream's camera, and how light they are (0…1).
+  // Faces to draw, back to front: corners in pixels of the stream's camera, and brightness (0…1).
   faces(state: State, T_world_camera: Pose): { corners: Point[]; light: number }[] {
     const keyframe = state.keyframes.get(this.keyframe);
     const camera = state.hello?.camera;
@@ -107,7 +110,8 @@ export class Cube {
   }
 }
 
-// Landmarks in the camera's frame that are seen now: those with a feature of the latest frame at their place. Others may be behind something.
+// Visible landmarks in the camera's frame: those with a feature of the latest frame at their projection. Others may be
+// occluded.
 function pointsBefore(state: State, camera: Camera, T_world_camera: Pose): Seen[] {
   const T_camera_world = inverse(T_world_camera);
   const map = state.activeMap;
@@ -140,7 +144,7 @@ function matchedFeatures(state: State, camera: Camera): Point[] {
 
 interface Surface { at: Vector; normal: Vector }
 
-// The plane that most of the points about the tap lie on, where the tap's ray meets it; facing the camera.
+// Intersection of the tap's ray with the plane of most points around the tap; the normal faces the camera.
 function surfaceAt(all: readonly Seen[], camera: Camera, tap: Point): Surface | null {
   const byDistance = all.map((seen) => ({ ...seen, off: Math.hypot(seen.pixel[0] - tap[0], seen.pixel[1] - tap[1]) }))
     .filter(({ off }) => off <= FARTHEST * camera.width).sort((a, b) => a.off - b.off);
@@ -164,7 +168,8 @@ function surrounded(pixels: readonly Point[], [x, y]: Point): boolean {
   return angles.every((angle, i) => (i + 1 < angles.length ? angles[i + 1]! : angles[0]! + 360) - angle <= WIDEST);
 }
 
-// RANSAC over three points, then least squares over what agrees: the normal is the direction of least spread. Null: most agree on none.
+// RANSAC with three points, then least squares over the inliers: the normal is the direction of least spread. Null: no
+// majority.
 function planeOf(points: readonly Vector[], bound: number): { through: Vector; normal: Vector } | null {
   let best: Vector[] = [];
   let seed = 1;
@@ -182,7 +187,7 @@ function planeOf(points: readonly Vector[], bound: number): { through: Vector; n
   }
   if (best.length < 6 || best.length < 0.5 * points.length) return null;
   const through = scaled(best.reduce((sum, p) => plus(sum, p), [0, 0, 0] as Vector), 1 / best.length);
-  // Inverse power iteration on the scatter matrix, kept regular by a little of its trace.
+  // Inverse power iteration on the scatter matrix, regularized by a small multiple of its trace.
   const m = [0, 0, 0, 0, 0, 0, 0, 0, 0];
   for (const p of best) {
     const d = minus(p, through);
@@ -192,7 +197,8 @@ function planeOf(points: readonly Vector[], bound: number): { through: Vector; n
   for (const k of [0, 4, 8]) m[k]! += 1e-6 * trace;
   const row = (r: number): Vector => [m[3 * r]!, m[3 * r + 1]!, m[3 * r + 2]!];
   const [a, b, c] = [row(0), row(1), row(2)];
-  const solve = (v: Vector): Vector => plus(plus(scaled(cross(b, c), v[0]), cross(c, a), v[1]), cross(a, b), v[2]); // adj(M) v, M symmetric
+  // Adj(M) v for symmetric M.
+  const solve = (v: Vector): Vector => plus(plus(scaled(cross(b, c), v[0]), cross(c, a), v[1]), cross(a, b), v[2]);
   let normal: Vector = unit([0.3, 0.5, 0.8]);
   for (let i = 0; i < 30; ++i) normal = unit(solve(normal));
   return { through, normal };

@@ -1,5 +1,5 @@
-// People left out: a detector's file that the user adds is run in a Worker of its own, beside the core's.
-import { byId, write } from '../../viewer/src/dom.ts';
+// Excludes people: runs the user's detector network in a Worker of its own.
+import { byId, write } from '../../shared/src/dom.ts';
 import { forgetFile, keepFile, keptFile, MOST_BYTES } from './detector_file.ts';
 import type { LocalEngine } from './engine.ts';
 import type { DetectorNews, ToDetector } from './protocol.ts';
@@ -7,13 +7,13 @@ import { keep } from './settings.ts';
 import type { Choices } from './settings.ts';
 
 export class DetectorHost {
-  looks = 0;              // pictures that it has answered
-  things = 0;             // found in the last one
-  milliseconds = 0;       // that one took
+  looks = 0; // number of processed images
+  things = 0; // detections in the last one
+  milliseconds = 0; // processing time of the last one
   private worker: Worker | null = null;
-  private opened: Promise<readonly string[]> | null = null; // the classes of the one in `worker`
+  private opened: Promise<readonly string[]> | null = null; // class names of the network in `worker`
 
-  // `stopped`: it has failed in the middle of things, said in words.
+  // `stopped` is called with a text for users when the detector fails.
   constructor(private readonly choices: Choices, private readonly stopped: (text: string) => void) {
     const input = byId('set-detector') as HTMLInputElement;
     input.addEventListener('change', () => {
@@ -25,7 +25,8 @@ export class DetectorHost {
     this.tell();
   }
 
-  // Beside an engine that has begun with the classes of choices.detector; returns at once, the file is read meanwhile.
+  // Connects the detector to an engine that began with the classes of choices.detector. Does not block; the file is
+  // loaded meanwhile.
   connect(engine: LocalEngine): void {
     const { detector } = this.choices;
     if (!detector) return;
@@ -39,7 +40,7 @@ export class DetectorHost {
     })().catch((error: Error) => this.stopped(`The detector ${detector.name} does not run: ${error.message}. Only what is seen to move is left out.`));
   }
 
-  // Taken when it works: read, and run once.
+  // Accepts the file once it was loaded and run successfully.
   private async add(file: File): Promise<void> {
     this.tell(`Trying ${file.name} …`);
     try {

@@ -1,10 +1,10 @@
-// The user's detector, kept on the device: its file in the browser's cache, so that it is there without a network.
+// Stores the user's detector network in the browser's cache, for offline use.
 
-const CACHE = 'detector'; // not one of the service worker's, which go with each version of the page
+const CACHE = 'detector'; // separate from the service worker's caches, which are replaced with each version of the page
 const KEY = 'detector.onnx';
-export const MOST_BYTES = 200e6; // what a page's memory holds besides the core
+export const MOST_BYTES = 200e6; // bytes; limit of the page's memory besides the core
 
-let here: ArrayBuffer | null = null; // where the browser keeps nothing (no secure page)
+let here: ArrayBuffer | null = null; // used when the page is not secure and the browser stores nothing
 
 export async function keepFile(model: ArrayBuffer): Promise<void> {
   here = model;

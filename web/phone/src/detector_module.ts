@@ -1,4 +1,4 @@
-// wasm/detector.cc: what goes into a detector's network, and what its outputs mean.
+// Wrapper of wasm/detector.cc: prepares the input of a detector network and decodes its outputs.
 
 interface Core {
   HEAPU8: Uint8Array;
@@ -22,7 +22,7 @@ export interface Output { dims: readonly number[]; data: Float32Array }
 export class DetectorModule {
   private constructor(private readonly core: Core, readonly width: number, readonly height: number) {}
 
-  // `base`: folder of alidade_detector.mjs. Throws Error, in words, on a file that is no detector.
+  // `base`: folder of alidade_detector.mjs. Throws Error with a text for users when the file is not a detector.
   static async open(base: string, model: Uint8Array): Promise<DetectorModule> {
     const { default: create } = await import(base + 'alidade_detector.mjs') as { default: (options: object) => Promise<Core> };
     const core = await create({ locateFile: (name: string) => base + name });
@@ -34,12 +34,13 @@ export class DetectorModule {
     return new DetectorModule(core, core._alidade_detector_width(), core._alidade_detector_height());
   }
 
-  // The network's input, 1 x 3 x height x width: of the trial picture first, then of the one prepared last. A copy.
+  // A copy of the network's input, 1 x 3 x height x width: of the trial run, later of the last prepare().
   input(): Float32Array {
     return new Float32Array(this.core.HEAPU8.buffer, this.core._alidade_detector_input(), 3 * this.width * this.height).slice();
   }
 
-  // By all outputs for the trial picture: which of them read() wants, and what the classes are called.
+  // Detects the network's family from all outputs of the trial run. Returns the index of the output for read(), and the
+  // class names.
   recognise(outputs: readonly Output[]): { output: number; classes: string[] } {
     outputs.forEach((output, index) => this.give(index, output));
     const output = this.checked(this.core._alidade_detector_recognise());
@@ -56,7 +57,7 @@ export class DetectorModule {
     return this.input();
   }
 
-  // Class, score, x, y, width, height of each thing, pixels of the picture of that size.
+  // Class, score, x, y, width, height of each detection, in pixels of an image of this size.
   read(output: Output, width: number, height: number): Float32Array {
     this.give(0, output);
     const at = this.core._malloc(4);

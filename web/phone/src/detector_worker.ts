@@ -1,11 +1,12 @@
-// The Worker of the detector: runs the user's network over the pictures that the core's Worker hands it, one at a time.
-// Nobody waits for it.
+// The detector's Worker: runs the user's network on the images it gets from the core's Worker, one at a time. Tracking
+// does not wait for it.
 import { DetectorModule } from './detector_module.ts';
 import type { DetectorNews, FromDetector, Look, ToDetector } from './protocol.ts';
 
-const REST = 0.5; // of the time that a picture took: tracking has the processor meanwhile (dynamics.detector_rest)
+// Share of an image's processing time to pause afterwards, so that tracking gets CPU time (dynamics.detector_rest).
+const REST = 0.5;
 
-// As much of onnxruntime-web as is used.
+// The part of onnxruntime-web's interface that is used.
 interface Tensor { readonly type: string; readonly dims: readonly number[]; readonly data: Float32Array }
 interface Session { readonly inputNames: readonly string[]; readonly outputNames: readonly string[]; run(feeds: Record<string, Tensor>, wanted?: readonly string[]): Promise<Record<string, Tensor>> }
 interface Runtime {
@@ -21,7 +22,7 @@ let module: DetectorModule | null = null;
 let output = '';
 let port: MessagePort | null = null;
 
-// What cannot work fails here: the network is run once, on a grey picture.
+// Runs the network once on a gray image, so that unusable networks fail here.
 async function open(base: string, model: ArrayBuffer): Promise<void> {
   const bytes = new Uint8Array(model);
   module = await DetectorModule.open(base, bytes);

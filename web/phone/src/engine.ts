@@ -1,18 +1,19 @@
-// Where pictures are worked on: in a Worker of this page, or on the computer that serves it (remote.ts).
+// Processes images: in a Worker of this page, or on the computer that serves the page (remote.ts).
 import type { Done, FromWorker, Saved, Start, ToWorker } from './protocol.ts';
 
 export interface Hooks {
   done(result: Done): void;
-  messages(messages: Uint8Array[]): void; // of the stream, that came with no picture
-  failed(error: string): void;            // it is over
-  lost(text: string): void;               // a connection, tried again by itself; '': it is back
+  messages(messages: Uint8Array[]): void; // stream messages that do not belong to an image
+  anew(): void; // messages of another map follow
+  failed(error: string): void; // the session has ended
+  lost(text: string): void; // the connection was lost and is being retried; '': restored
 }
 
 export interface Engine {
-  readonly free: boolean; // takes a picture now
+  readonly free: boolean; // ready for an image
   begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void>;
   push(bitmap: ImageBitmap, time: number, turn: number): void;
-  ask(what: Saved): Promise<Uint8Array<ArrayBuffer>>; // rejects where it cannot be had
+  ask(what: Saved): Promise<Uint8Array<ArrayBuffer>>; // rejects if unavailable
   close(): void;
 }
 
@@ -26,7 +27,7 @@ export class LocalEngine implements Engine {
   private refuse: ((error: Error) => void) | null = null;
   private readonly waiting = new Map<Saved, { resolve(bytes: Uint8Array<ArrayBuffer>): void; reject(error: Error): void }>();
 
-  // `threads`: the module that has them is there.
+  // `threads`: the threaded module is available.
   constructor(private readonly hooks: Hooks, private readonly threads: boolean) {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.hear(data);
     this.worker.onerror = (event) => this.fail(event.message || 'the Worker could not be started');
@@ -34,7 +35,7 @@ export class LocalEngine implements Engine {
 
   get free(): boolean { return this.ready === null && this.working === 0; }
 
-  // With threads where the page is cross-origin isolated.
+  // Uses threads if the page is cross-origin isolated.
   async begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void> {
     const cores = Math.min(MOST_THREADS, navigator.hardwareConcurrency || 1);
     const threads = self.crossOriginIsolated && cores > 1 && this.threads ? cores : 1;
@@ -46,7 +47,7 @@ export class LocalEngine implements Engine {
     });
   }
 
-  // The Worker of a detector, at any time after begin().
+  // Connects the Worker of a detector; may be called at any time after begin().
   connect(port: MessagePort): void { this.send({ kind: 'detector', port }, [port]); }
 
   push(bitmap: ImageBitmap, time: number, turn: number): void {

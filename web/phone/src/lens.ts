@@ -1,17 +1,18 @@
-// A pinhole camera with radial and tangential distortion (Brown): k1 k2 p1 p2 k3, pixels with the centre of the top-left one at 0, 0.
+// A pinhole camera with radial and tangential distortion (Brown): k1 k2 p1 p2 k3; pixels with 0, 0 at the center of the
+// top-left one.
 import type { Camera } from '@alidade/scene';
 
 export type Point = readonly [number, number];
 export type Ray = readonly [number, number, number];
 
-// Of a point in the camera's frame (x right, y down, z ahead); null: behind it.
+// Projects a point of the camera's frame (x right, y down, z forward); null: behind the camera.
 export function project(camera: Camera, [x, y, z]: Ray): Point | null {
   if (z <= 0) return null;
   const [u, v] = distort(camera, x / z, y / z);
   return [camera.fx * u + camera.cx, camera.fy * v + camera.cy];
 }
 
-// The ray of a pixel, z = 1: the fixed point of u = observed - distortion(u), in 20 steps.
+// Ray of a pixel, z = 1: fixed-point iteration of u = observed - distortion(u), 20 steps.
 export function unproject(camera: Camera, [px, py]: Point): Ray {
   const [a, b] = [(px - camera.cx) / camera.fx, (py - camera.cy) / camera.fy];
   let [u, v] = [a, b];

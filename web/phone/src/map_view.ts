@@ -1,7 +1,8 @@
-// The map in 3D: the viewer's scene, drawn some times a second so that a phone has time for the rest.
+// The map in 3D: the viewer's scene, updated at a limited rate to save the phone's CPU time.
 import { NoWebGL, Scene } from '@alidade/scene';
-import type { Colours, State, ViewMode } from '@alidade/scene';
-import { byId } from '../../viewer/src/dom.ts';
+import type { State, ViewMode } from '@alidade/scene';
+import { sceneColours } from '../../shared/src/colours.ts';
+import { byId } from '../../shared/src/dom.ts';
 
 const LEAST = 100; // milliseconds between two updates
 
@@ -15,7 +16,7 @@ export class MapView {
     const system = matchMedia('(prefers-color-scheme: dark)');
     const theme = () => {
       document.documentElement.dataset.theme = system.matches ? 'dark' : 'light';
-      this.scene?.colours(colours());
+      this.scene?.colours(sceneColours());
     };
     system.addEventListener('change', theme);
     theme();
@@ -49,13 +50,4 @@ function make(): Scene | null {
     document.body.classList.add('no-webgl');
     return null;
   }
-}
-
-function colours(): Colours {
-  const style = getComputedStyle(document.documentElement);
-  const of = (name: string) => style.getPropertyValue(name).trim();
-  return {
-    page: of('--space'), ink: of('--ink'), soft: of('--soft'), path: of('--path'), dot: of('--dot'), loop: of('--loop'), truth: of('--truth'),
-    camera: of('--fresh'), worst: of('--lost'),
-  };
 }

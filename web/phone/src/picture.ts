@@ -1,7 +1,7 @@
-// The camera picture as it was worked on, with its features and the cube.
+// The processed camera image with its features and the cube.
+import { marks } from '@alidade/scene';
 import type { Frame as StreamFrame, State } from '@alidade/scene';
-import { boxes, features, outlines } from '../../viewer/src/picture_marks.ts';
-import { byId } from '../../viewer/src/dom.ts';
+import { byId } from '../../shared/src/dom.ts';
 import type { Cube } from './cube.ts';
 import type { Point } from './lens.ts';
 
@@ -12,8 +12,9 @@ export class PictureView {
   private readonly draw = this.canvas.getContext('2d')!;
   private turn = 0;
 
-  // `turn`: quarters the screen was turned clockwise since the start. What is told in pixels is told for the picture as it lay then.
-  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marks: boolean): void {
+  // `turn`: clockwise quarter turns of the screen since the start. Pixel coordinates refer to the image as oriented at
+  // the start.
+  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marked: boolean): void {
     const { canvas, draw } = this;
     this.turn = turn;
     if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
@@ -29,22 +30,23 @@ export class PictureView {
     const style = getComputedStyle(document.documentElement);
     const onto = { draw, w, h, ratio: Math.max(w, h) / 480, colour: (name: string) => style.getPropertyValue(name) };
     const camera = state.hello?.camera;
-    if (marks && frame) {
-      outlines(onto, frame);
-      features(onto, frame, MARKS);
-      if (camera) boxes(onto, frame, camera.width, camera.height);
+    if (marked && frame) {
+      marks.outlines(onto, frame);
+      marks.features(onto, frame, MARKS);
+      if (camera) marks.boxes(onto, frame, camera.width, camera.height);
     }
     if (cube) this.drawCube(cube, state, w, h);
   }
 
-  // Pixels of the stream's camera where the page was tapped; null: beside the picture.
+  // Pixel of the stream's camera at the tap; null: outside the image.
   at(event: PointerEvent, state: State): Point | null {
     const camera = state.hello?.camera;
     if (!camera) return null;
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const { width: cw, height: ch } = this.canvas;
     const scale = Math.min(width / cw, height / ch); // object-fit: contain
-    const [x, y] = [(event.clientX - left - width / 2) / scale, (event.clientY - top - height / 2) / scale]; // from the middle
+    // Relative to the center.
+    const [x, y] = [(event.clientX - left - width / 2) / scale, (event.clientY - top - height / 2) / scale];
     const [w, h] = this.size();
     const angle = (this.turn * Math.PI) / 2;
     const [u, v] = [x * Math.cos(angle) - y * Math.sin(angle) + w / 2, x * Math.sin(angle) + y * Math.cos(angle) + h / 2];
@@ -52,7 +54,7 @@ export class PictureView {
     return [(u * camera.width) / w - 0.5, (v * camera.height) / h - 0.5];
   }
 
-  // Of the picture as it lay at the start.
+  // Size of the image as oriented at the start.
   private size(): [number, number] {
     const { width, height } = this.canvas;
     return this.turn % 2 ? [height, width] : [width, height];

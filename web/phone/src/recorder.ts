@@ -1,10 +1,17 @@
-// What the camera saw, as a TUM folder in an archive: rgb.txt and rgb/, motion.csv, device.json. `alidade run` reads it.
+// Records the camera images as a TUM folder in a zip archive: rgb.txt and rgb/, motion.csv, device.json. Readable by
+// `alidade run`.
 import { Zip, ZipPassThrough, strToU8 } from 'fflate';
 
-const QUALITY = 0.9;         // of the JPEGs
-const MOST_BYTES = 1.5e9;    // some 15 minutes: what a page can hold
+const QUALITY = 0.9; // JPEG quality
+const MOST_BYTES = 1.5e9; // about 15 minutes; limited by the page's memory
 
 export interface Device { userAgent: string; width: number; height: number; focusHeld: boolean; fov: number | null; began: string }
+
+// camera.yaml of images of this size with a horizontal field of view in degrees.
+export function cameraYaml(width: number, height: number, fov: number): string {
+  const focal = width / (2 * Math.tan((fov * Math.PI) / 360));
+  return `width: ${width}\nheight: ${height}\nfx: ${focal.toFixed(3)}\nfy: ${focal.toFixed(3)}\ncx: ${(width - 1) / 2}\ncy: ${(height - 1) / 2}\n`;
+}
 
 export class Recorder {
   readonly name: string;
@@ -24,7 +31,7 @@ export class Recorder {
     this.context = this.canvas.getContext('2d')!;
     this.zip = new Zip((error, data) => {
       if (error) this.problem = error;
-      this.chunks.push(new Blob([data as Uint8Array<ArrayBuffer>])); // browsers keep these out of the page's memory
+      this.chunks.push(new Blob([data as Uint8Array<ArrayBuffer>])); // browsers store Blobs outside the page's memory
       this.bytes_ += data.length;
     });
     window.addEventListener('devicemotion', this.moved);
@@ -34,7 +41,7 @@ export class Recorder {
   get pictures(): number { return this.lines.length; }
   get full(): boolean { return this.bytes_ > MOST_BYTES; }
 
-  // A picture that comes while the two before are still being compressed is left out. `time`: seconds.
+  // Skips the image while two earlier ones are still being compressed. `time`: seconds.
   add(picture: CanvasImageSource, time: number): void {
     if (this.compressing >= 2 || this.full) return;
     ++this.compressing;
@@ -46,7 +53,7 @@ export class Recorder {
       .catch((error: Error) => { this.problem = error; }).finally(() => { --this.compressing; });
   }
 
-  // The archive. `camera`: lines of camera.yaml; '' when nothing is known.
+  // Returns the archive. `camera`: content of camera.yaml; '' if unknown.
   async finish(camera: string): Promise<Blob> {
     window.removeEventListener('devicemotion', this.moved);
     while (this.compressing > 0) await new Promise((resolve) => { setTimeout(resolve, 10); });

@@ -1,19 +1,21 @@
-// The computer that serves the page does the work: pictures go there as JPEGs, what it tells comes back (docs/phone.md).
-// At most IN_FLIGHT pictures are on their way; of those that come meanwhile only the newest is sent, by main.ts.
-import type { Frame } from '../../core/src/index.ts';
+// Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/reference/phone-protocol.md). At most
+// IN_FLIGHT images are unanswered; control.ts then skips to the newest.
+import type { Frame, Pose } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
 import type { Saved, Start } from './protocol.ts';
 
 const IN_FLIGHT = 2;
-const QUALITY = 0.8;            // of the JPEGs
-const AGAIN = [500, 1000, 2000, 4000]; // milliseconds between tries to connect
-const PATIENCE = 8000;          // milliseconds without a sign of the computer that owes one: browsers take minutes to see that a network is gone
-const MOST_BUFFERED = 1 << 20;  // bytes that the browser has not sent yet: beyond, pictures are left out
+const QUALITY = 0.8; // JPEG quality
+const AGAIN = [500, 1000, 2000, 4000]; // milliseconds between connection attempts
+// Milliseconds without a due reply before the connection is given up, because browsers take minutes to detect a lost
+// network.
+const PATIENCE = 8000;
+const MOST_BUFFERED = 1 << 20; // bytes not yet sent by the browser; beyond this, images are skipped
 
 interface Told {
   welcome?: boolean; last?: number; resumed?: boolean; error?: string;
   frame?: number; state?: Frame['state']; reason?: string; milliseconds?: number; skipped?: boolean;
-  keyframes?: number; landmarks?: number; matches?: number; features?: number; fov?: number; fovSigma?: number; pose?: number[] | null;
+  keyframes?: number; landmarks?: number; matches?: number; features?: number; fov?: number; fovSigma?: number; pose?: number[] | null; predicted?: number[] | null;
 }
 
 export class RemoteEngine implements Engine {
@@ -24,11 +26,10 @@ export class RemoteEngine implements Engine {
   private tries = 0;
   private number = 0;
   private compressing = 0;
-  private patience = 0; // the timer
+  private patience = 0; // timer
   private start: Omit<Start, 'kind' | 'base' | 'threads'> | null = null;
   private readonly sent = new Map<number, { time: number; bitmap: ImageBitmap; turn: number }>();
-  private pending: Uint8Array[] = []; // messages since the last frame's text
-  private other = false; // the next hello is of another map than the one that is known
+  private pending: Uint8Array[] = []; // messages since the last frame's result
   private begun: { resolve(): void; reject(error: Error): void } | null = null;
 
   constructor(private readonly hooks: Hooks) {}
@@ -55,13 +56,6 @@ export class RemoteEngine implements Engine {
     return Promise.reject(new Error('it is on the computer that does the work'));
   }
 
-  // A hello has come: whether the map that was there before the connection was lost is gone.
-  beginsAnew(): boolean {
-    const { other } = this;
-    this.other = false;
-    return other;
-  }
-
   close(): void {
     this.over = true;
     clearTimeout(this.patience);
@@ -79,8 +73,8 @@ export class RemoteEngine implements Engine {
     const [w, h] = turn % 2 ? [height, width] : [width, height];
     context.drawImage(bitmap, -w / 2, -h / 2, w, h);
     const jpeg = await (await canvas.convertToBlob({ type: 'image/jpeg', quality: QUALITY })).arrayBuffer();
-    // The network went while this was compressed: there will be newer ones. A socket that is closing takes nothing, and
-    // says so in the console; its `onclose`, which clears `open`, comes later.
+    // The connection was lost during compression; newer images will follow. Sending on a closing socket only logs an
+    // error, and `onclose`, which resets `open`, is called later.
     if (!this.open || this.socket?.readyState !== WebSocket.OPEN) return bitmap.close();
     const number = this.number++;
     const head = new DataView(new ArrayBuffer(16));
@@ -91,13 +85,13 @@ export class RemoteEngine implements Engine {
     if (this.sent.size === 1) this.wait();
   }
 
-  // Until something is heard, which `owed` says there should be; nothing within PATIENCE: the connection is given up.
+  // Starts the timeout for a due reply; after PATIENCE the connection is given up.
   private wait(owed = this.sent.size > 0): void {
     clearTimeout(this.patience);
     if (owed) this.patience = window.setTimeout(() => this.drop(), PATIENCE);
   }
 
-  // Without waiting for the good-bye of one that may be gone.
+  // Closes the socket without waiting for the closing handshake, because the other side may be unreachable.
   private drop(): void {
     const { socket } = this;
     if (!socket) return;
@@ -130,9 +124,10 @@ export class RemoteEngine implements Engine {
   private closed(): void {
     this.open = false;
     clearTimeout(this.patience);
-    for (const { bitmap } of this.sent.values()) bitmap.close(); // unknown whether they came: newer ones follow
+    // It is unknown whether they arrived; newer ones follow.
+    for (const { bitmap } of this.sent.values()) bitmap.close();
     this.sent.clear();
-    this.pending = []; // the whole follows
+    this.pending = []; // the whole state follows
     if (this.over) return;
     this.hooks.lost('No connection to the computer that does the work. Trying again …');
     setTimeout(() => { if (!this.over) this.connect(); }, AGAIN[Math.min(this.tries++, AGAIN.length - 1)]);
@@ -150,7 +145,7 @@ export class RemoteEngine implements Engine {
     if (told.welcome) {
       this.open = true;
       this.tries = 0;
-      this.other = told.resumed !== true;
+      if (!this.begun && told.resumed !== true) this.hooks.anew();
       this.number = Math.max(this.number, (told.last ?? -1) + 1);
       this.hooks.lost('');
       this.begun?.resolve();
@@ -161,14 +156,12 @@ export class RemoteEngine implements Engine {
     if (!sent) return;
     this.sent.delete(told.frame!);
     if (told.skipped) return sent.bitmap.close();
-    const pose = told.pose ?? null;
     const messages = this.pending;
     this.pending = [];
     this.hooks.done({
       kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn,
       frame: {
-        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', predicted: false,
-        pose: pose && { position: [pose[4]!, pose[5]!, pose[6]!], orientation: [pose[0]!, pose[1]!, pose[2]!, pose[3]!] },
+        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
         milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0,
       },
@@ -180,4 +173,11 @@ export class RemoteEngine implements Engine {
     this.pending = [];
     this.hooks.messages(messages);
   }
+}
+
+// Seven numbers: quaternion x y z w, position.
+function poseFrom(numbers: number[] | null | undefined): Pose | null {
+  return numbers
+    ? { position: [numbers[4]!, numbers[5]!, numbers[6]!], orientation: [numbers[0]!, numbers[1]!, numbers[2]!, numbers[3]!] }
+    : null;
 }

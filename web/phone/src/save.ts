@@ -1,5 +1,5 @@
-// The dialog of what can be kept: each file to the device's downloads, or to another app where the browser can share files.
-import { byId, make } from '../../viewer/src/dom.ts';
+// Dialog to save results: downloads each file, or shares it with another app where the browser supports this.
+import { byId, make } from '../../shared/src/dom.ts';
 
 export interface Offer { name: string; what: string; bytes(): Promise<Blob> }
 
@@ -36,7 +36,7 @@ export function showOffers(offers: readonly Offer[], note: string, failed: (text
   (byId('save') as HTMLDialogElement).showModal();
 }
 
-// Browsers share files of few kinds only: what they do not know goes as text or plain bytes.
+// Browsers share only a few file types; others are shared as text or plain bytes.
 function asFile(blob: Blob, name: string): File {
   return new File([blob], name, { type: name.endsWith('.txt') ? 'text/plain' : blob.type || 'application/octet-stream' });
 }

@@ -1,22 +1,22 @@
-// What the user chose, kept on the device.
-import { byId } from '../../viewer/src/dom.ts';
+// The user's choices, stored on the device.
+import { byId } from '../../shared/src/dom.ts';
 
 export interface Choices {
-  fov: number | null;      // horizontal, degrees; null: found on the way
+  fov: number | null; // horizontal, degrees; null: self-calibrated
   shape: boolean; moving: boolean; features: boolean; focus: boolean; connected: boolean;
-  more: string;            // name=value lines
-  detector: { name: string; classes: readonly string[] } | null; // of the file that is kept (detector_file.ts)
+  more: string; // name=value lines
+  detector: { name: string; classes: readonly string[] } | null; // describes the stored file (detector_file.ts)
 }
 
 const KEY = 'alidade-phone';
-const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
+export const DEFAULTS: Choices = { fov: null, shape: false, moving: false, features: true, focus: true, connected: false, more: '', detector: null };
 
 export function load(): Choices {
   try {
     const kept = JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Choices>;
     return { ...DEFAULTS, ...kept };
   } catch {
-    return { ...DEFAULTS }; // storage is switched off, or holds something else
+    return { ...DEFAULTS }; // storage is disabled or has other content
   }
 }
 
@@ -24,11 +24,11 @@ export function keep(choices: Choices): void {
   try {
     localStorage.setItem(KEY, JSON.stringify(choices));
   } catch {
-    // storage is switched off: nothing is remembered
+    // storage is disabled: not stored
   }
 }
 
-// Of the detector in use: none, where what moves is not left out.
+// Class names of the active detector; none unless moving objects are excluded.
 export function detectorClasses({ moving, detector }: Choices): readonly string[] { return moving ? detector?.classes ?? [] : []; }
 
 // As after --set of the program.
@@ -43,7 +43,7 @@ export function coreSettings(choices: Choices): Record<string, string | number |
   return settings;
 }
 
-// Fills the dialog, and keeps what is changed in it.
+// Fills the dialog and stores changes.
 export function bind(choices: Choices, changed: () => void): void {
   const box = (name: 'shape' | 'moving' | 'features' | 'focus' | 'connected') => {
     const input = byId('set-' + name) as HTMLInputElement;

@@ -1,5 +1,6 @@
-// The service worker: the page's files are kept when it is first opened, and come from there, so that it works offline. VERSION is a digest of all
-// of them (tools/build.mjs): a new version is taken in whole, beside the old one, and used from the next opening on.
+// The service worker: caches the page's files on first use, so that the page works offline. VERSION is a digest of all
+// files (tools/build.mjs): a new version is cached completely beside the old one and used the next time the page is
+// opened.
 /// <reference lib="webworker" />
 declare const VERSION: string;
 declare const FILES: readonly string[];
@@ -9,7 +10,7 @@ const CACHE = `alidade-${VERSION}`;
 worker.addEventListener('install', (event) => {
   event.waitUntil((async () => {
     const cache = await caches.open(CACHE);
-    // With the page's own query, which may hold the token that the first one of them asks for.
+    // Keep the page's query, which may contain the token required for the main page.
     await Promise.all(FILES.map(async (name) => {
       const answer = await fetch(new Request(name + worker.location.search, { cache: 'reload' }));
       if (!answer.ok) throw new Error(`${name}: ${answer.status}`);
@@ -26,7 +27,7 @@ worker.addEventListener('activate', (event) => {
   })());
 });
 
-// The core's files (core/) are kept when they are first asked for: only one of its two modules is.
+// The core's files (core/) are cached on first use, because only one of the two modules is needed.
 worker.addEventListener('fetch', (event) => {
   const { request } = event;
   const address = new URL(request.url);
@@ -46,7 +47,7 @@ worker.addEventListener('fetch', (event) => {
   })());
 });
 
-// What the server offers now; offline what it offered last, but for the work that it did.
+// Current capabilities of the server; offline the last known ones, without processing on the computer.
 async function freshInfo(request: Request, name: string): Promise<Response> {
   const cache = await caches.open(CACHE);
   try {

@@ -1,20 +1,20 @@
-// A video file, picture by picture, at the speed at which they are worked on: none is left out.
+// Reads a video file image by image, at the speed of processing, without skipping any.
 
-const MOST_WAITING = 3;          // pictures
-const SLOWEST = 0.0625, FASTEST = 4; // of playing: browsers take no less and no more
-const STEADY = 30;               // pictures without a miss, after which it may go faster
+const MOST_WAITING = 3; // images
+const SLOWEST = 0.0625, FASTEST = 4; // playback rates supported by browsers
+const STEADY = 30; // images without a miss before playback speeds up
 
 interface Waiting { bitmap: ImageBitmap; time: number }
 
-// Plays a video element and takes each picture as it is shown. One that was missed (the browser counts what it shows) is
-// gone back for, and it goes on more slowly.
+// Plays a video element and captures each displayed image. When one was missed (the browser counts displayed images),
+// seeks back and plays more slowly.
 export class VideoFile {
   private readonly address: string;
   private readonly canvas: OffscreenCanvas;
   private readonly context: OffscreenCanvasRenderingContext2D;
   private waiting: Waiting[] = [];
-  private last = -1; // seconds: the time of the last picture taken
-  private shown = -1; // pictures shown so far, by the browser's count
+  private last = -1; // time of the last captured image, seconds
+  private shown = -1; // images displayed so far, as counted by the browser
   private dropped = 0;
   private steady = 0;
   private closed = false;
@@ -26,7 +26,7 @@ export class VideoFile {
     this.context = this.canvas.getContext('2d')!;
   }
 
-  // Throws Error, in words, when the browser cannot read it.
+  // Throws Error with a text for users when the browser cannot read the file.
   static async open(video: HTMLVideoElement, file: Blob): Promise<VideoFile> {
     const address = URL.createObjectURL(file);
     await new Promise<void>((resolve, reject) => {
@@ -47,7 +47,7 @@ export class VideoFile {
   get share(): number { return this.video.duration ? Math.max(0, this.last) / this.video.duration : 0; }
   get duration(): number { return this.video.duration; }
 
-  // The next picture, and its time in seconds; null: that was the last one.
+  // The next image and its time in seconds; null: end of the video.
   async next(): Promise<Waiting | null> {
     for (;;) {
       const first = this.waiting.shift();

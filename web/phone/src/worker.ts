@@ -1,4 +1,4 @@
-// The Worker: scales each picture, hands it to the core, and tells what came of it.
+// The core's Worker: scales each image, passes it to the core and returns the result.
 import { Slam } from '../../core/src/index.ts';
 import type { FromDetector, FromWorker, Look, Picture, Start, ToWorker } from './protocol.ts';
 
@@ -37,7 +37,7 @@ function track({ number, time, bitmap, turn }: Picture): void {
   detector.postMessage({ number: frame.number, width, height, pixels: image.data.buffer } satisfies Look, [image.data.buffer]);
 }
 
-// Between two pictures.
+// Called between two images.
 function connect(port: MessagePort): void {
   detector = port;
   port.onmessage = ({ data }: MessageEvent<FromDetector>) => {
@@ -46,7 +46,7 @@ function connect(port: MessagePort): void {
   };
 }
 
-// Of every 16th pixel: enough to tell the dark.
+// Mean of every 16th pixel's green channel, to detect dark images.
 function meanGreen(data: Uint8ClampedArray): number {
   let sum = 0;
   for (let i = 1; i < data.length; i += 64) sum += data[i]!;

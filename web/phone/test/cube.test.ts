@@ -1,4 +1,4 @@
-// The cube in Node: on a rendered recording it stays where it was put, by the true depth and the true poses.
+// Tests the cube in Node: on a rendered recording it stays at the true position, given true depth and poses.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -75,7 +75,7 @@ for (const [scene, seed] of [['room', 1], ['desk', 2]] as const) {
           if (!cube || z === 0) continue;
           const [u, v] = unproject(camera, [x, y]);
           cubes.push({ cube, tap: [x, y], p: transform(truth[i]!, 1, u * z, v * z, z), off: [] });
-          // Where it was tapped it is now.
+          // The cube is drawn at the tap.
           const drawn = project(camera, transform(inverse(pose), 1, ...cube.position(state)!))!;
           assert.ok(Math.hypot(drawn[0] - x, drawn[1] - y) < 0.5);
           assert.ok(cube.faces(state, pose).length === 6);

@@ -1,12 +1,13 @@
-// Minutes of the fake camera, forth and back: memory stays within its bound, the rate holds. ALIDADE_MINUTES=10 asks for it.
+// Minutes of the fake camera, forwards and backwards: memory is bounded and the rate constant. Enabled by
+// ALIDADE_MINUTES=10.
 import assert from 'node:assert/strict';
 import { existsSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { launch, open, SKIP } from '../../viewer/test/browser.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
 import { startSite } from './server.ts';
-import { openRecording, writeY4m } from './y4m.ts';
+import { openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 
@@ -30,7 +31,7 @@ test('minutes of camera: memory and rate hold', { skip: lacks, timeout: (minutes
   let [frames, at] = [0, begin];
   while (Date.now() - begin < minutes * 60e3) {
     await page.waitForTimeout(20e3);
-    // Chromium answers when it next collects garbage.
+    // Chromium answers at the next garbage collection.
     const bytes = await page.evaluate(async () => (await (performance as unknown as { measureUserAgentSpecificMemory(): Promise<{ bytes: number }> }).measureUserAgentSpecificMemory()).bytes);
     const now = await page.evaluate(() => ({ frames: window.phone.counters.processed, keyframes: window.phone.state.keyframes.size, points: window.phone.state.landmarks.size }));
     const rate = (1000 * (now.frames - frames)) / (Date.now() - at);

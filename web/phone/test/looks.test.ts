@@ -1,5 +1,5 @@
-// The page at the size of a phone, in light and dark, in every state: nothing is cut off, nothing lies over what must be
-// read, axe finds nothing serious. ALIDADE_SCREENS=FOLDER keeps the pictures. The scenes are rendered.
+// The page at a phone's size, in light and dark, in every state: nothing is cut off or covered, and axe reports no
+// serious problem. ALIDADE_SCREENS=FOLDER stores screenshots. The scenes are rendered.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
@@ -7,11 +7,11 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
-import { launch, open, violations } from '../../viewer/test/browser.ts';
-import { BINARY, endAll, NO_PROGRAM, start } from '../../viewer/test/program.ts';
+import { launch, open, violations } from '../../shared/test/browser.ts';
+import { BINARY, endAll, NO_PROGRAM, start } from '../../shared/test/program.ts';
 import { startSite } from './server.ts';
 import type { Site } from './server.ts';
-import { DARK, openRecording, writeY4m } from './y4m.ts';
+import { DARK, openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 
@@ -24,9 +24,9 @@ const keep = process.env.ALIDADE_SCREENS;
 
 const folder = mkdtempSync(join(tmpdir(), 'alidade-looks-'));
 let site: Site;
-let walking: Browser; // through a room, forth and back
-let losing: Browser;  // through a room, then into the dark
-let still: Browser;   // never moves
+let walking: Browser; // camera moves through a room forwards and backwards
+let losing: Browser; // camera moves through a room, then into the dark
+let still: Browser; // camera does not move
 let refusing: Browser;
 
 before(async () => {
@@ -57,7 +57,7 @@ after(async () => {
 const phone = (scheme: 'light' | 'dark', size = SIZE) =>
   ({ viewport: size, isMobile: true, hasTouch: true, deviceScaleFactor: 2, colorScheme: scheme, permissions: ['camera'] });
 
-// What can be read is on the screen, whole: nothing that is visible reaches beyond it, no words are cut off.
+// Elements that reach beyond the screen, or whose text is cut off.
 const cutOff = (page: Page) => page.evaluate(() => {
   const found: string[] = [];
   const dialog = document.querySelector('dialog[open]');
@@ -73,7 +73,7 @@ const cutOff = (page: Page) => page.evaluate(() => {
   return found;
 });
 
-// What lies over what: the centre of each visible button is its own.
+// Visible buttons whose center is covered by another element.
 const covered = (page: Page) => page.evaluate(() => [...(document.querySelector('dialog[open]') ?? document.body).querySelectorAll<HTMLElement>('button, label.button')].filter((button) => {
   const box = button.getBoundingClientRect();
   if (box.width < 2 || box.height < 2 || box.bottom > innerHeight || box.top < 0) return false;
@@ -156,7 +156,7 @@ for (const scheme of ['light', 'dark'] as const) {
     await page.tap('#start');
     await state(page, 'tracking');
     await state(page, 'lost');
-    await page.waitForTimeout(1500); // what is guessed for a moment is over
+    await page.waitForTimeout(1500); // until the predicted pose expires
     assert.match((await page.textContent('#advice'))!, /dark/);
     await look(page, `${scheme}-lost`);
     await page.context().close();

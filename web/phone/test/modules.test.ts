@@ -1,21 +1,22 @@
-// The module with threads, asked to work inline on one, beside the one without: the same bytes. In a browser, since that is what the first is made for.
+// The threaded module with the inline schedule and one thread gives the same bytes as the single-threaded one. Runs in
+// a browser, because the threaded module is built for one.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { test } from 'node:test';
-import { launch, open, SKIP } from '../../viewer/test/browser.ts';
-import { BINARY, NO_PROGRAM } from '../../viewer/test/program.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
+import { BINARY, NO_PROGRAM } from '../../shared/test/program.ts';
 import { startSite } from './server.ts';
-import { grayOf, openRecording } from './y4m.ts';
+import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 
 const built = ['single', 'threads'].every((name) => existsSync(join(WEB, 'core/dist', name, 'alidade.wasm')));
 const FRAMES = 120;
 
-// A Worker: it gets the name of a module, and answers with hashes of what came out.
+// Source of a Worker that gets a module's name and replies with hashes of the results.
 const WORKER = `
 import { Slam } from './core/index.js';
 const hash = async (bytes) => Array.from(new Uint8Array(await crypto.subtle.digest('SHA-256', bytes)), (byte) => byte.toString(16).padStart(2, '0')).join('');

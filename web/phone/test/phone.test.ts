@@ -1,4 +1,4 @@
-// The page for phones in a real browser with a fake camera: a real recording, seen through it, becomes a map.
+// Tests the phone page in a real browser with a fake camera that plays a real recording.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
@@ -7,12 +7,12 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { devices } from 'playwright-core';
 import type { Browser, Page } from 'playwright-core';
-import { CHROMIUM, differing, launch, open, screenshot, SKIP, violations } from '../../viewer/test/browser.ts';
+import { CHROMIUM, differing, launch, open, screenshot, SKIP, violations } from '../../shared/test/browser.ts';
 import type { Done, FromWorker } from '../src/protocol.ts';
 import { startSite } from './server.ts';
 import type { Site } from './server.ts';
-import { BITS, CELL, openRecording, writeY4m } from './y4m.ts';
-import type { Recording } from './y4m.ts';
+import { BITS, CELL, openRecording, writeY4m } from '../../shared/test/y4m.ts';
+import type { Recording } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 
@@ -62,7 +62,7 @@ after(async () => {
 const processed = (page: Page, least: number) =>
   page.waitForFunction((n) => Number(document.body.dataset.frames ?? 0) >= n, least, { timeout: 120e3 });
 
-// Notes which frame of the recording each picture was.
+// Records which frame of the recording each image was.
 const noting = (page: Page) => page.evaluate(([cell, bits]) => {
   window.seen = [];
   const canvas = new OffscreenCanvas(cell! * bits!, cell!);
@@ -76,7 +76,7 @@ const noting = (page: Page) => page.evaluate(([cell, bits]) => {
   });
 }, [CELL, BITS]);
 
-// ATE in metres of what the page tracked, against the truth of the frames that it saw.
+// ATE in meters of the page's trajectory against the ground truth of the frames it processed.
 async function error(page: Page): Promise<{ rmse: number; tracked: number; frames: number }> {
   const text = await page.evaluate(async () => new TextDecoder().decode(await window.phone.engine!.ask('trajectory')));
   const seen = await page.evaluate(() => window.seen);
@@ -113,9 +113,9 @@ for (const kind of ['isolated', 'plain'] as const) {
     const { rmse, tracked, frames } = await error(page);
     const ms = await page.evaluate(() => [...window.phone.counters.milliseconds].sort((a, b) => a - b)[window.phone.counters.milliseconds.length >> 1]!);
     console.log(`${kind}: ${tracked} of ${frames} pictures tracked, ATE ${(100 * rmse).toFixed(1)} cm, ${(100 / seconds).toFixed(1)} pictures/s, median ${ms.toFixed(1)} ms, ${((Date.now() - begin) / 1000).toFixed(0)} s in all; lens ${await page.textContent('#lens')}`);
-    assert.ok(rmse < 0.1, `${rmse} m`); // 0.04 to 0.07: which pictures are worked on, the machine decides
+    assert.ok(rmse < 0.1, `${rmse} m`); // which images are processed depends on the machine
     assert.ok(tracked > 0.7 * frames, `${tracked} of ${frames}`);
-    // The tab goes away, and comes back.
+    // The tab is hidden and shown again.
     const other = await page.context().newPage();
     await other.goto('about:blank');
     await other.bringToFront();
@@ -168,7 +168,8 @@ test('a cube is put on a tapped surface', options, async () => {
   const { page, problems } = await open(browser, sites.plain.address, { ...PHONE, permissions: ['camera'] });
   await page.tap('#start');
   await page.waitForFunction(() => document.body.dataset.state === 'tracking' && window.phone.state.landmarks.size > 300, undefined, { timeout: 60e3 });
-  // A map can be begun anew while the lens is found, and a busy machine loses the camera for a while: tapped until it is there.
+  // The map may be restarted during self-calibration, and a busy machine may lose the camera: repeat the tap until the
+  // cube exists.
   for (let i = 0; i < 150 && !(await page.evaluate(() => window.phone.cube !== null)); ++i) {
     const box = (await page.locator('#picture').boundingBox())!;
     await page.touchscreen.tap(box.x + box.width * (0.3 + 0.02 * (i % 20)), box.y + box.height * 0.55);
@@ -197,7 +198,7 @@ test('opened once, it works without a network', options, async () => {
   await page.tap('#start');
   await processed(page, 5);
   await page.waitForFunction(() => document.body.dataset.offline === 'ready');
-  await page.reload(); // through the service worker: the core is kept now
+  await page.reload(); // through the service worker, so that the core is cached
   await page.tap('#start');
   await processed(page, 5);
   await site.close();
@@ -216,7 +217,7 @@ test('what was recorded is a folder that the program runs', options, async () =>
   await page.tap('#start');
   await processed(page, 10);
   await page.tap('#record');
-  // Pictures that come while one is written are not kept: on a busy machine a hundred worked on were 38 kept.
+  // Images that arrive while one is being written are not recorded, so wait for the number of recorded images.
   await page.waitForFunction(() => Number(/\d+/.exec(document.getElementById('record')!.textContent!)) >= 60, undefined, { timeout: 120e3 });
   const saved = page.waitForEvent('download');
   await page.tap('#record');

@@ -1,4 +1,5 @@
-// `alidade phone` and the page: the core in the page, or pictures sent to the program; networks that go, programs that end, callers that may not.
+// `alidade phone` and the page: with the core in the page, or with images sent to the program; lost networks, ended
+// programs, refused clients.
 import assert from 'node:assert/strict';
 import { existsSync, readdirSync, rmSync, mkdtempSync } from 'node:fs';
 import { request } from 'node:http';
@@ -9,9 +10,9 @@ import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
 import { WebSocket } from 'ws';
-import { launch, open } from '../../viewer/test/browser.ts';
-import { endAll, NO_PROGRAM, start } from '../../viewer/test/program.ts';
-import { openRecording, writeY4m } from './y4m.ts';
+import { launch, open } from '../../shared/test/browser.ts';
+import { endAll, NO_PROGRAM, start } from '../../shared/test/program.ts';
+import { openRecording, writeY4m } from '../../shared/test/y4m.ts';
 
 declare const WEB: string;
 
@@ -43,7 +44,7 @@ const connected = async (page: Page) => {
 const processed = (page: Page, more: number) => page.evaluate(() => window.phone.counters.processed).then((now) =>
   page.waitForFunction((n) => window.phone.counters.processed >= n, now + more, { timeout: 120e3 }));
 const tracking = (page: Page) => page.waitForFunction(() => document.body.dataset.state === 'tracking' && window.phone.state.landmarks.size > 100, undefined, { timeout: 90e3 });
-// Numbers of the pictures that were answered, as they come.
+// Collects the numbers of the processed images.
 const noting = (page: Page) => page.evaluate(() => {
   const numbers: number[] = [];
   Object.assign(window, { numbers });
@@ -73,7 +74,7 @@ test('two pages send their pictures; the network goes and comes; each has a map 
   for (const { page } of pages) await tracking(page);
   const [one, two] = pages.map(({ page }) => page) as [Page, Page];
   const before = await one.evaluate(() => window.phone.state.keyframes.size);
-  // The network goes away under one of them, three times.
+  // One page loses its connection three times.
   for (let i = 0; i < 3; ++i) {
     await one.evaluate(() => (window.phone.engine as unknown as { socket: WebSocket }).socket.close());
     await one.waitForSelector('#notice:not([hidden])');
@@ -98,7 +99,7 @@ test('two pages send their pictures; the network goes and comes; each has a map 
   for (const name of readdirSync(out)) assert.deepEqual(readdirSync(join(out, name)).sort(), ['landmarks.ply', 'map.alidade', 'trajectory.txt']);
 });
 
-// What lies between: a network that can fall silent, as one does when a phone leaves its reach. Nobody is told.
+// A proxy that can fall silent without closing connections, as a network does when a phone leaves its range.
 async function network(to: number): Promise<{ port: number; cut(): void; heal(): void; close(): void }> {
   let silent = false;
   const sockets = new Set<Socket>();
@@ -108,7 +109,7 @@ async function network(to: number): Promise<{ port: number; cut(): void; heal():
       sockets.add(from);
       from.on('data', (data) => {
         if (silent) return;
-        // The program answers to its own name only.
+        // The program accepts requests to its own host name only.
         const asked = from === near && data.subarray(0, 4).toString('latin1') === 'GET ';
         into.write(asked ? data.toString('latin1').replaceAll(`127.0.0.1:${port}`, `127.0.0.1:${to}`) : data, asked ? 'latin1' : undefined);
       });
@@ -121,7 +122,7 @@ async function network(to: number): Promise<{ port: number; cut(): void; heal():
   return {
     port,
     cut: () => { silent = true; },
-    heal: () => { // those that were cut stay so
+    heal: () => { // interrupted connections stay interrupted
       for (const socket of sockets) socket.removeAllListeners('data').resume();
       sockets.clear();
       silent = false;
@@ -202,7 +203,8 @@ test('who may not is told so, and what is no picture harms nobody', options, asy
   });
   assert.ok(await refused(dial('')));
   assert.ok(await refused(dial(`?token=${token}`, { Origin: 'https://evil.example' })));
-  // What comes back for a hello and what follows it, until it is closed or an answer to the last comes.
+  // Sends a hello and further messages; resolves with all replies up to the reply to the last one, or when the
+  // connection closes.
   const talk = (hello: string | Buffer, ...then: (string | Buffer)[]) => new Promise<string[]>((resolve) => {
     const socket = dial(`?token=${token}`);
     const told: string[] = [];
@@ -234,8 +236,8 @@ test('who may not is told so, and what is no picture harms nobody', options, asy
   assert.match(garbage[1]!, /skipped":true/);
   assert.match((await talk(hello(name('b')), frame(1, Buffer.from('again'))))[0]!, /"last":1.*"resumed":true/);
   assert.match((await talk(hello(name('b')), Buffer.alloc(4))).at(-1)!, /error/);
-  await talk(hello(name('b')), frame(9, Buffer.alloc(5 << 20))); // too large: closed
-  // Four maps at a time; one that nobody looks at makes room.
+  await talk(hello(name('b')), frame(9, Buffer.alloc(5 << 20))); // too large: the connection is closed
+  // At most four maps; one without a viewer is replaced.
   for (const digit of ['c', 'd', 'e', 'f', '0']) assert.match((await talk(hello(name(digit))))[0]!, /welcome/);
   assert.equal(await status(`/info.json?token=${token}`), 200);
   program.kill('SIGTERM');

@@ -1,10 +1,10 @@
-// The page as plain static files: with the headers that make it cross-origin isolated, or without any.
+// Serves the page as static files, with the headers for cross-origin isolation or without.
 import { existsSync, readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { join, normalize } from 'node:path';
 
-declare const WEB: string; // by tools/test.mjs
+declare const WEB: string; // defined by tools/test.mjs
 
 const TYPES: Record<string, string> = {
   html: 'text/html; charset=utf-8', js: 'text/javascript', mjs: 'text/javascript', css: 'text/css', svg: 'image/svg+xml', txt: 'text/plain; charset=utf-8',
@@ -13,12 +13,13 @@ const TYPES: Record<string, string> = {
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; " +
   "style-src 'self'; img-src 'self' blob: data:; media-src 'self' blob:; connect-src 'self'; manifest-src 'self'";
 
-export const DETECTOR = join(process.env.ALIDADE_WASM ?? join(WEB, '../build-wasm'), 'detector/bin'); // scripts/wasm/build detector
+// Built by scripts/wasm/build detector.
+export const DETECTOR = join(process.env.ALIDADE_WASM ?? join(WEB, '../build-wasm'), 'detector/bin');
 
 export interface Site { address: string; close(): Promise<void> }
 
-// `more`: other files, by name.
-export async function startSite(isolated: boolean, more: Readonly<Record<string, string>> = {}): Promise<Site> {
+// `more`: additional files, by name. `info`: replaces values of info.json.
+export async function startSite(isolated: boolean, more: Readonly<Record<string, string>> = {}, info: object = {}): Promise<Site> {
   const http = createServer((request, response) => {
     const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
     const name = path === '/' ? 'index.html' : path.slice(1);
@@ -28,9 +29,9 @@ export async function startSite(isolated: boolean, more: Readonly<Record<string,
       response.setHeader('Cross-Origin-Embedder-Policy', 'require-corp');
       response.setHeader('Content-Security-Policy', POLICY);
     }
-    if (name === 'info.json') { // as the program's
+    if (name === 'info.json') { // the same as the program's
       response.setHeader('Content-Type', 'application/json');
-      return response.end(JSON.stringify({ mode: 'phone', connected: false, core: true, threads: existsSync(join(WEB, 'core/dist/threads/alidade.wasm')) }));
+      return response.end(JSON.stringify({ mode: 'phone', connected: false, core: true, threads: existsSync(join(WEB, 'core/dist/threads/alidade.wasm')), ...info }));
     }
     if (!existsSync(file)) {
       response.statusCode = 404;

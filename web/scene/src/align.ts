@@ -1,17 +1,17 @@
-// The truth laid over a map: the similarity that brings them nearest, by Horn (1987), "Closed-form solution of absolute orientation
-// using unit quaternions"; without a scale where lengths are metres already.
+// Aligns the ground truth to a map by a similarity, or by a rigid motion where lengths are already in meters. Horn
+// 1987, "Closed-form solution of absolute orientation using unit quaternions".
 import type { Pose, TruePose } from './messages.ts';
 import { NONE } from './messages.ts';
 import { transform } from './pose.ts';
 import type { State } from './state.ts';
 
-const LATE = 0.02; // seconds between a frame and the true pose nearest to it, at most
+const LATE = 0.02; // seconds, the largest difference between a frame and its true pose
 const FEWEST = 3; // pairs
 
 export interface Alignment {
-  truth: number[][]; // positions in the world of the map
-  errors: Float64Array; // by frame of the path, metres (of the truth); NaN: not known
-  rmse: number; // metres
+  truth: number[][]; // positions in the map's world
+  errors: Float64Array; // per frame of the path, meters (of the truth); NaN: unknown
+  rmse: number; // meters
   worst: number;
 }
 
@@ -45,7 +45,7 @@ export function alignTruth(state: State, map: number): Alignment | null {
   return { truth, errors, rmse: Math.sqrt(sum / pairs.length), worst };
 }
 
-// b ≈ T (scale a). Null: a has no extent.
+// The similarity with b ≈ T (scale a). Null: all points of a coincide.
 export function similarity(a: readonly (readonly number[])[], b: readonly (readonly number[])[], scaled: boolean): { T: Pose; scale: number } | null {
   const mean = (points: readonly (readonly number[])[]) => [0, 1, 2].map((k) => points.reduce((sum, p) => sum + p[k], 0) / points.length);
   const [ma, mb] = [mean(a), mean(b)];
@@ -77,7 +77,7 @@ export function similarity(a: readonly (readonly number[])[], b: readonly (reado
   return { T: [...turn.slice(0, 4), mb[0] - c[0], mb[1] - c[1], mb[2] - c[2]], scale };
 }
 
-// Of a symmetric 4×4 matrix, by Jacobi's rotations.
+// Eigenvector of the largest eigenvalue of a symmetric 4×4 matrix, by Jacobi rotations.
 function greatestEigenvector(A: number[][]): number[] {
   const V: number[][] = [0, 1, 2, 3].map((r) => [0, 1, 2, 3].map((c) => Number(r === c)));
   for (let sweep = 0; sweep < 30; ++sweep) {

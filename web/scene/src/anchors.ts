@@ -1,6 +1,6 @@
-// Poses of keyframes in a texture, one slot each, so that moving the map moves points, edges and the path without touching them:
-// what is drawn carries a slot and a place in that slot's keyframe. Slot 0 is the world, slot 1 is nowhere (not drawn). Keyframes of
-// other maps than the one the camera is in are drawn faintly, each map in its own world: how they lie to each other is not known.
+// Poses of keyframes in a texture, one slot each. Vertices store a slot and a position in that slot's keyframe, so that
+// moving keyframes does not change points, edges and the path. Slot 0 is the world, slot 1 is hidden. Keyframes of maps
+// other than the active one are drawn faintly, each map in its own world, because their relative pose is unknown.
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from 'three';
 import { IDENTITY } from './pose.ts';
 import type { Pose } from './messages.ts';
@@ -8,11 +8,12 @@ import type { State } from './state.ts';
 
 export const WORLD = 0;
 export const NOWHERE = 1;
-const WIDTH = 1024; // texels; two for each slot: quaternion · translation and scale (0: hidden; below 0: faint)
+// Texels per row; two per slot: the quaternion, then translation and scale (0: hidden; negative: faint).
+const WIDTH = 1024;
 
-const FAINT = 0.3; // of full strength
+const FAINT = 0.3; // opacity relative to the active map
 
-// GLSL. `place` gives world coordinates of p in a slot, and how strongly it is to be seen: 0…1.
+// GLSL. `place` returns the world coordinates of p in a slot, and its strength 0…1.
 export const PLACE = /* glsl */ `
 uniform highp sampler2D poses;
 vec4 texelOf(int slot, int half_) {
@@ -41,7 +42,7 @@ export class Anchors {
     this.put(NOWHERE, IDENTITY, 0);
   }
 
-  // Of a keyframe; one for ever, also before it is known and after it has gone.
+  // Slot of a keyframe; permanent, even before the keyframe is known and after it is removed.
   slot(keyframe: number): number {
     let slot = this.slots.get(keyframe);
     if (slot === undefined) {
@@ -52,7 +53,7 @@ export class Anchors {
     return slot;
   }
 
-  // Shows the keyframes of `map`, those of others faintly or not at all. Whether there are others.
+  // Shows the keyframes of `map`, and those of other maps faintly or not at all. Returns whether there are other maps.
   update(state: State, map: number, others: boolean): boolean {
     let several = false;
     for (const [id, slot] of this.slots) if (!state.keyframes.has(id)) this.data[8 * slot + 7] = 0;

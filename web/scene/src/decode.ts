@@ -1,4 +1,4 @@
-// Bytes → message. Pure; what is malformed throws DecodeError and nothing else.
+// Decodes bytes to a message. A pure function; malformed input throws DecodeError.
 import * as flatbuffers from 'flatbuffers';
 import * as fb from '../generated/stream_generated.ts';
 import { EVENT_KINDS, STATES } from './messages.ts';
@@ -7,9 +7,10 @@ import { DecodeError, verify } from './verify.ts';
 
 export { DecodeError } from './verify.ts';
 
-export const VERSION = 1; // of the format; higher ones are refused
+export const VERSION = 1; // of the format; higher versions are rejected
 
-// The message holds copies, so `bytes` may go. They may start anywhere: accessors and views need 8-byte alignment, else they are copied.
+// The message contains copies of the data. `bytes` may start at any offset; unaligned bytes are copied first, because
+// FlatBuffers requires 8-byte alignment.
 export function decode(bytes: Uint8Array): Message {
   const aligned = bytes.byteOffset % 8 === 0 ? bytes : bytes.slice();
   verify(aligned);

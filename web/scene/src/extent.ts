@@ -1,4 +1,4 @@
-// How large a map is, from a sample of it: medians, as a few landmarks are always far off.
+// Size of a map from a sample of it. Uses medians, because some landmarks are far off.
 import { transform } from './pose.ts';
 import type { State } from './state.ts';
 import type { Extent } from './view.ts';
@@ -9,7 +9,7 @@ function median(values: number[]): number {
   return values.sort((a, b) => a - b)[values.length >> 1];
 }
 
-// Median distance of landmarks from their keyframes, world units; 1 while there are none.
+// Median distance of landmarks to their keyframes, world units; 1 without landmarks.
 export function typicalDistance(state: State, map: number): number {
   const distances: number[] = [];
   const { landmarks } = state;
@@ -21,7 +21,7 @@ export function typicalDistance(state: State, map: number): number {
     if (Number.isFinite(distance)) distances.push(distance);
   }
   const result = distances.length > 0 ? median(distances) : 1;
-  // In steps of an eighth of a power of two, so that sizes stay as they are while the map grows.
+  // Quantized to steps of 1/8 of a power of two, so that drawn sizes stay constant while the map grows.
   return result > 0 ? 2 ** (Math.round(8 * Math.log2(result)) / 8) : 1;
 }
 

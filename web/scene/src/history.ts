@@ -1,6 +1,6 @@
-// All messages so far, and the state after any of them: the nearest state kept before it, and what was told since.
-// Memory is bounded: first the pictures and features of old frames go, then old changes of the map (going back there shows the
-// map in steps), then the oldest messages altogether.
+// Stores all messages and computes the state after any of them, from the nearest earlier stored state and the messages
+// since. Memory is bounded: first the images and features of old frames are dropped, then old map changes (seeking
+// there shows the map in coarser steps), then the oldest messages.
 import { decode } from './decode.ts';
 import type { Event, Frame, MapChange, Message } from './messages.ts';
 import { State } from './state.ts';
@@ -10,37 +10,37 @@ export interface Entry {
   number: number; // of the latest frame
   time: number;
   bytes: number;
-  message: Uint8Array | Message | null; // as it came, or what is left of it
+  message: Uint8Array | Message | null; // as received, or reduced
 }
 
 export interface HistorySettings {
-  budget: number; // bytes of messages kept
-  stride: number; // bytes of messages between kept states
-  states: number; // kept at most; each holds what changed in the map since the one before
-  events: number; // kept at most
-  thinned: number; // of old frames one in so many keeps its picture
+  budget: number; // largest size of the stored messages, bytes
+  stride: number; // bytes of messages between stored states
+  states: number; // largest number of stored states; each holds the map pages that changed since the previous one
+  events: number; // largest number of stored events
+  thinned: number; // one of this many old frames keeps its image
 }
 
 export const HISTORY: HistorySettings = { budget: 256e6, stride: 4e6, states: 64, events: 5000, thinned: 10 };
 
-interface Kept { index: number; state: State } // after entry `index`
+interface Kept { index: number; state: State } // the state after entry `index`
 
 export class History {
-  readonly entries: (Entry | null)[] = []; // null: gone
-  readonly events: Event[] = []; // by number
+  readonly entries: (Entry | null)[] = []; // null: dropped
+  readonly events: Event[] = []; // sorted by frame number
   readonly frames: { index: number; number: number; time: number; ms: readonly number[] }[] = [];
-  first = 0; // entries before it are gone
+  first = 0; // entries before this index are dropped
   private kept: Kept[] = [];
   private bytes = 0;
   private sinceKept = 0;
-  private thin = 0; // entries before it have lost their pictures
-  private coarse = 0; // … and their changes of the map
+  private thin = 0; // entries before this index lost their images
+  private coarse = 0; // entries before this index lost their map changes as well
 
   constructor(private readonly settings: HistorySettings = HISTORY) {}
 
   get last(): number { return this.entries.length - 1; }
 
-  // Returns its index. `bytes` is kept: it must not change.
+  // Returns the entry's index. Keeps a reference to `bytes`, which must not change.
   add(bytes: Uint8Array, message: Message): number {
     const index = this.entries.length;
     const before = this.entries[index - 1];
@@ -59,7 +59,8 @@ export class History {
     return index;
   }
 
-  // `state` is the one after the last message; kept when enough was told since the one before. Of too many old ones every other goes.
+  // Stores `state`, the state after the last message, if enough messages arrived since the last stored one. Drops every
+  // second old state when there are too many.
   keep(state: State): void {
     if (this.sinceKept < this.settings.stride) return;
     this.sinceKept = 0;
@@ -70,7 +71,8 @@ export class History {
     }
   }
 
-  // The state after entry `index`, to be changed at will. `from`, if it is the state after `fromIndex`, may be taken on from.
+  // The state after entry `index`; the caller may modify it. `from`, the state after `fromIndex`, may be reused and
+  // modified.
   at(index: number, from?: State, fromIndex = -1): State {
     let state: State | undefined;
     let done = this.first - 1;
@@ -107,11 +109,11 @@ export class History {
     return kept instanceof Uint8Array ? decode(kept) : kept ?? null;
   }
 
-  // Keeps within the budget. Call now and then.
+  // Reduces memory to the budget; call periodically.
   trim(): void {
     const { budget, thinned } = this.settings;
     const end = this.entries.length;
-    const recent = Math.floor(this.first + 0.75 * (end - this.first)); // stays as it is
+    const recent = Math.floor(this.first + 0.75 * (end - this.first)); // newer entries are not reduced
     while (this.bytes > budget && this.thin < recent) {
       const index = this.thin++;
       const entry = this.entries[index];
@@ -135,7 +137,7 @@ export class History {
 
   get size(): number { return this.bytes; }
 
-  // Index into `frames` of the last one not after `time`; 0 if all are.
+  // Index into `frames` of the last frame at or before `time`; 0 if there is none.
   frameAt(time: number): number {
     let low = 0;
     let high = this.frames.length - 1;
@@ -147,7 +149,7 @@ export class History {
     return low;
   }
 
-  // All are told again after a whole state.
+  // Ignores duplicates, because all events are sent again after a whole state.
   private addEvent(event: Event): void {
     let at = this.events.length;
     while (at > 0 && this.events[at - 1].number > event.number) --at;
@@ -167,7 +169,8 @@ export class History {
     entry.message = message;
   }
 
-  // The last whole state told in a run of entries, -1: none. It tells all but hello, playback and the latest frame.
+  // Index of the last whole state in a range of entries, -1: none. It contains everything except hello, playback and
+  // the latest frame.
   private lastWhole(from: number, to: number): number {
     for (let i = to; i >= from; --i) {
       if (this.entries[i]?.kind !== 'map') continue;

@@ -4,6 +4,7 @@ export { State } from './state.ts';
 export * as poses from './pose.ts';
 export { History, HISTORY } from './history.ts';
 export { StreamFileReader } from './stream_file.ts';
+export * as marks from './picture_marks.ts';
 export { LAYERS, NoWebGL, Scene } from './scene.ts';
 export type { Colours, LayerName } from './scene.ts';
 export type { ViewMode } from './view.ts';

@@ -1,17 +1,17 @@
-// The landmarks of a map: id, keyframe, place in that keyframe (lengths as if its scale were 1). Kept without gaps: the last one
-// takes the place of one that goes.
+// The landmarks of a map: id, keyframe and position in the keyframe (with lengths scaled as if its scale were 1).
+// Stored without gaps: the last one replaces a removed one.
 import type { Culled } from './messages.ts';
 import { NONE } from './messages.ts';
 import { Pages, PAGE } from './pages.ts';
 import { transform } from './pose.ts';
 
-const WORDS = 5; // of 32 bits: id, keyframe, x, y, z
+const WORDS = 5; // 32-bit words per record: id, keyframe, x, y, z
 
 export interface Landmark { id: number; keyframe: number; p: [number, number, number] }
 
 export class Landmarks {
   private records = new Pages(4 * WORDS);
-  private slots: Map<number, number> | null = new Map(); // by id; null: to be made again from the records
+  private slots: Map<number, number> | null = new Map(); // by id; null: must be rebuilt from the records
 
   get size(): number { return this.records.length; }
   get pages() { return this.records.pages; }
@@ -65,7 +65,7 @@ export class Landmarks {
     return { id: page.u32[at], keyframe: page.u32[at + 1], p: [page.f32[at + 2], page.f32[at + 3], page.f32[at + 4]] };
   }
 
-  // Those told in a culled keyframe are told in the one it follows, or go with it.
+  // Moves landmarks of culled keyframes to the keyframes that replace them, or removes them.
   follow(culled: ReadonlyMap<number, Culled>): void {
     const gone: number[] = [];
     for (let slot = 0; slot < this.records.length; ++slot) {

@@ -1,4 +1,4 @@
-// What of the state is drawn, by layer; each fills its GPU buffers from the state, where it is other than what was drawn last.
+// Uploads the layers of a state to GPU buffers; each uploads only what changed since the last drawing.
 import type { Anchors } from './anchors.ts';
 import { NOWHERE } from './anchors.ts';
 import type { LineLayer } from './lines.ts';
@@ -36,7 +36,7 @@ export class LandmarkUpload {
 
 const BLOCK = 256; // points
 
-// Points of a keyframe lie in blocks that may be anywhere; those of one that went are used again.
+// A keyframe's points are stored in blocks anywhere in the buffer; blocks of removed keyframes are reused.
 export class CloudUpload {
   private drawn = new Map<number, { cloud: DepthCloud; blocks: number[] }>();
   private unused: number[] = [];
@@ -88,7 +88,7 @@ export class CloudUpload {
 
 const ORIGIN = [0, 0, 0];
 
-// Corners of the picture at depth 1, times `size`.
+// Image corners at depth 1, times `size`.
 export function corners(camera: Camera | null, size: number): number[][] {
   const { width, height, fx, fy, cx, cy } = camera ?? { width: 640, height: 480, fx: 500, fy: 500, cx: 320, cy: 240 };
   const at = (u: number, v: number) => [(size * (u - cx)) / fx, (size * (v - cy)) / fy, size];
@@ -109,7 +109,7 @@ export function drawFrusta(layer: LineLayer, state: State, anchors: Anchors, siz
   layer.end();
 }
 
-// Each edge once, though both ends tell it.
+// Draws each edge once, although both keyframes list it.
 export function drawEdges(layer: LineLayer, state: State, anchors: Anchors, of: (keyframe: KeyFrame) => readonly number[]): void {
   const done = new Set<string>();
   const edges: [number, number][] = [];
@@ -127,14 +127,14 @@ export function drawEdges(layer: LineLayer, state: State, anchors: Anchors, of: 
   layer.end();
 }
 
-// From frame to frame where both are known. While the map stays as it is, what is new is added to what there is.
+// Connects consecutive frames that both have a pose. Appends new frames while the map is unchanged.
 export class PathUpload {
-  private done = 0; // frames
+  private done = 0; // number of frames
   private before: { slot: number; t: number[]; map: number } | null = null;
 
   constructor(private readonly layer: LineLayer, private readonly anchors: Anchors) {}
 
-  // `tint`: 0…1 for each frame's end.
+  // `tint`: 0…1 at the end of each frame's segment.
   update(state: State, anew: boolean, tint: (i: number) => number): void {
     const { path } = state;
     if (anew || path.length < this.done) {

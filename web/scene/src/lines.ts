@@ -1,12 +1,13 @@
-// Segments of lines in one call: both ends carry a slot and a place in that slot's keyframe. WebGL's own lines are one pixel wide,
-// so each is two triangles, widened on the screen, with soft edges. Not instanced: software GL takes each instance as a call of its own.
+// Draws line segments in one call; each end has a slot and a position in the slot's keyframe. WebGL lines are one pixel
+// wide, so each segment consists of two triangles with soft edges. Not instanced, because software renderers execute
+// one call per instance.
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, DynamicDrawUsage, GLSL3, InterleavedBuffer, InterleavedBufferAttribute, Mesh, ShaderMaterial,
   Vector2 } from 'three';
 import { PLACE } from './anchors.ts';
 import type { Anchors } from './anchors.ts';
 
-const FLOATS = 9; // of a corner: place and slot of each end, a number for the segment's colour
-const CORNERS = 4; // of a segment
+const FLOATS = 9; // per corner: position and slot of both ends, and a number for the segment's color
+const CORNERS = 4; // per segment
 
 const VERTEX = /* glsl */ `
 ${PLACE}
@@ -66,9 +67,9 @@ export class LineLayer {
   private data = new Float32Array(0);
   private buffer: InterleavedBuffer | null = null;
   private count = 0;
-  private uploaded = 0; // segments
+  private uploaded = 0; // number of uploaded segments
 
-  // `scaled`: places are told as if the keyframe's scale were 1, else as they are.
+  // `scaled`: positions are relative to the keyframe's scale; otherwise they are absolute.
   constructor(anchors: Anchors, resolution: { value: Vector2 }, width: number, opacity: number, scaled = true) {
     const material = new ShaderMaterial({
       glslVersion: GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, transparent: true, depthWrite: false, side: DoubleSide,
@@ -88,14 +89,14 @@ export class LineLayer {
 
   set width(pixels: number) { this.object.material.uniforms.width.value = pixels; }
 
-  // Begins anew, with room for so many.
+  // Starts over, with capacity for `count` segments.
   begin(count: number): void {
     this.count = 0;
     this.uploaded = 0;
     this.reserve(count);
   }
 
-  // Room for so many; keeps what there is.
+  // Ensures capacity for `count` segments; keeps the existing ones.
   reserve(count: number): void {
     const size = FLOATS * CORNERS;
     if (this.buffer && size * count <= this.data.length) return;
@@ -135,7 +136,7 @@ export class LineLayer {
     for (let corner = 1; corner < CORNERS; ++corner) data.copyWithin(first + FLOATS * corner, first, first + FLOATS);
   }
 
-  // What was added since the last time goes to the GPU.
+  // Uploads the segments added since the last call.
   end(): void {
     this.object.geometry.setDrawRange(0, 6 * this.count);
     this.object.visible = this.count > 0;

@@ -1,6 +1,6 @@
-// What a message of the stream says, as plain values. Names, units and frames are those of src/alidade/stream/stream.fbs.
+// Messages of the stream as plain values. Names, units and frames are those of src/alidade/stream/stream.fbs.
 
-export const NONE = 0xffffffff; // the id that is none
+export const NONE = 0xffffffff; // the invalid id
 
 export type Pose = readonly number[]; // qx qy qz qw tx ty tz; T_a_b maps points of b into a
 
@@ -20,7 +20,7 @@ export interface Camera {
   width: number; height: number; // pixels
   fx: number; fy: number; cx: number; cy: number;
   distortion: number[]; // k1 k2 p1 p2 k3
-  baseline: number; // metres; 0: one camera
+  baseline: number; // meters; 0: monocular
 }
 
 export interface TruePose { time: number; T_world_camera: Pose }
@@ -35,23 +35,24 @@ export interface Hello {
   truth: TruePose[];
 }
 
-export interface Detection { x: number; y: number; width: number; height: number; score: number; label: string } // pixels, from edge to edge: the first one covers 0 to 1
+// Pixels, from edge to edge: the first pixel covers 0 to 1.
+export interface Detection { x: number; y: number; width: number; height: number; score: number; label: string }
 export interface Picture { width: number; height: number; type: string; bytes: Uint8Array<ArrayBuffer> }
 
 export interface Frame {
   kind: 'frame';
   number: number; time: number;
   state: TrackingState; reason: string; cut: string;
-  predicted: boolean; // lost, and T_world_camera is where the last motion leads
+  predicted: boolean; // lost; T_world_camera is extrapolated from the last motion
   keyframe: boolean;
   reference: number; map: number;
   T_reference_camera: Pose | null; T_world_camera: Pose | null;
   keyframes: number; landmarks: number; matches: number; maps: number;
   foundShare: number;
-  ms: number[]; // of STAGES; -1: not run
+  ms: number[]; // per STAGES; -1: did not run
   features: Uint8Array; // 6 bytes each: x u16, y u16, use u8, static probability u8
   detections: Detection[];
-  detectionAge: number; // seconds from the frame they were found in to this one; below 0: the detector has not answered
+  detectionAge: number; // seconds from the frame of the detections to this one; negative: no result yet
   outlines: Uint16Array[]; // x, y, x, y, … of a closed polygon
   picture: Picture | null;
 }
@@ -67,7 +68,7 @@ export interface Culled { id: number; follows: number; scale: number; T_follows_
 export interface DepthCloud {
   keyframe: number;
   least: number; most: number; // inverse depth
-  points: Uint16Array; // 4 each: x, y, depth, colour (rgb 565)
+  points: Uint16Array; // 4 per point: x, y, depth, color (rgb 565)
 }
 export interface PathFrame { number: number; time: number; state: TrackingState; reference: number; T_reference_camera: Pose }
 

@@ -1,14 +1,14 @@
-// Records of a fixed size in pages of 1024. A clone shares the pages; who writes to a shared page gets a copy of its own first.
-// So keeping a state costs what changes after it, and a reader that remembers a page and its version knows whether to read it again.
+// Fixed-size records in pages of 1024 with copy-on-write: a clone shares the pages until one is written to. Storing a
+// state therefore costs what changes after it, and a reader can detect changed pages by their version.
 
-export const PAGE = 1024; // records
+export const PAGE = 1024; // records per page
 
 export interface Page {
   readonly f32: Float32Array;
   readonly u32: Uint32Array;
   readonly f64: Float64Array;
-  version: number; // other after each write
-  owner: object; // who may write without copying
+  version: number; // changes with every write
+  owner: object; // may write without copying
 }
 
 let versions = 0;
@@ -25,17 +25,17 @@ export class Pages {
   length = 0;
   private owner = {};
 
-  constructor(readonly bytes: number) {} // of a record: a multiple of 4, of 8 if it holds doubles
+  constructor(readonly bytes: number) {} // per record; a multiple of 4, and of 8 if it holds doubles
 
   clone(): Pages {
     const copy = new Pages(this.bytes);
     copy.pages.push(...this.pages);
     copy.length = this.length;
-    this.owner = {}; // what there is belongs to nobody from now on
+    this.owner = {}; // both copies must now copy before writing
     return copy;
   }
 
-  // The page of record i, to be written to. i = length adds a record.
+  // The page of record i for writing. i = length appends a record.
   write(i: number): Page {
     const number = Math.floor(i / PAGE);
     if (i >= this.length) this.length = i + 1;

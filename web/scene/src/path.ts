@@ -1,10 +1,12 @@
-// The frames so far, by number: state, and where the camera was against a keyframe (lengths as if its scale were 1).
+// The frames so far, by number: state, and the camera's pose relative to a keyframe (with lengths scaled as if its
+// scale were 1).
 import type { Culled, PathFrame, Pose } from './messages.ts';
 import { NONE, STATES } from './messages.ts';
 import { Pages, PAGE } from './pages.ts';
 import { compose, IDENTITY } from './pose.ts';
 
-const WORDS = 20; // of 32 bits: time and 7 of the pose as doubles, number, reference, state, none
+// 32-bit words per record: time and the pose's 7 numbers as doubles, number, reference, state, padding.
+const WORDS = 20;
 const DOUBLES = WORDS / 2;
 
 export class Path {
@@ -29,7 +31,7 @@ export class Path {
     };
   }
 
-  // Frames come in order, mostly; one told again replaces what was there.
+  // Adds frames, which mostly arrive in order; replaces frames that are already stored.
   set(frames: readonly PathFrame[]): void {
     let late: PathFrame[] | null = null;
     for (const frame of frames) {
@@ -40,7 +42,8 @@ export class Path {
     if (late) this.insert(late);
   }
 
-  // Frames told in a culled keyframe are told in the one it follows; without one nothing is known of where they were.
+  // Re-anchors frames of culled keyframes to the keyframes that replace them; without a replacement the pose becomes
+  // unknown.
   follow(culled: ReadonlyMap<number, Culled>): void {
     for (let i = 0; i < this.length; ++i) {
       const move = culled.get(this.records.read(i).u32[(i % PAGE) * WORDS + 17]);
@@ -52,7 +55,7 @@ export class Path {
     }
   }
 
-  // Number and state (index into STATES) of each.
+  // Calls visit(number, index into STATES) for every frame.
   states(visit: (number: number, state: number) => void): void {
     for (let i = 0; i < this.length; ++i) {
       const { u32 } = this.records.read(i);
@@ -61,7 +64,7 @@ export class Path {
     }
   }
 
-  // The first frame whose number is not below; `length` when there is none.
+  // Index of the first frame with this number or a higher one; `length` if there is none.
   find(number: number): number {
     let low = 0;
     let high = this.length;

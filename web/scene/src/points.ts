@@ -1,4 +1,4 @@
-// Many points in one call: x y z in a keyframe, its slot, and a colour (rgb 565, clouds only).
+// Draws points in one call: x y z in a keyframe, its slot, and a color (rgb 565, clouds only).
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, GLSL3, Points, ShaderMaterial } from 'three';
 import { PLACE } from './anchors.ts';
 import type { Anchors } from './anchors.ts';
@@ -44,14 +44,14 @@ export class PointLayer {
       uniforms: { poses: anchors.uniform, ink: { value: new Color() }, ground: { value: new Color() }, coloured: { value: coloured }, size: { value: size } },
     });
     this.object = new Points(new BufferGeometry(), material);
-    this.object.frustumCulled = false; // positions are those in keyframes
+    this.object.frustumCulled = false; // positions are relative to keyframes, so three.js cannot cull
   }
 
   set ground(colour: string) { this.object.material.uniforms.ground.value.setStyle(colour); }
   set ink(colour: string) { this.object.material.uniforms.ink.value.setStyle(colour); }
   set size(pixels: number) { this.object.material.uniforms.size.value = pixels; }
 
-  // Room for so many; keeps what there is.
+  // Ensures capacity for `count` points; keeps the existing ones.
   reserve(count: number): void {
     if (count <= this.slots.length) return;
     const room = Math.max(4096, Math.ceil(1.5 * count));

@@ -20,7 +20,8 @@ export function transform(T: Pose, scale: number, x: number, y: number, z: numbe
   return [p[0] + T[4], p[1] + T[5], p[2] + T[6]];
 }
 
-// T_a_c from T_a_b and T_b_c, where lengths of c are told as if the scale of b were 1, and are `scale` longer in a.
+// T_a_c from T_a_b and T_b_c, where lengths in c are given as if the scale of b were 1 and are multiplied by `scale` in
+// a.
 export function compose(T_a_b: Pose, scale: number, T_b_c: Pose): Pose {
   const [ax, ay, az, aw] = T_a_b;
   const [bx, by, bz, bw] = T_b_c;

@@ -1,4 +1,4 @@
-// The three.js scene of a state. Draws what the state says; keeps nothing but GPU buffers and where it is looked at from.
+// The three.js scene of a state. Keeps no data except GPU buffers and the viewpoint.
 import { ColorManagement, Group, Scene as ThreeScene, Vector2, Vector3, WebGLRenderer } from 'three';
 import type { Alignment } from './align.ts';
 import { Anchors, WORLD } from './anchors.ts';
@@ -15,7 +15,7 @@ import { upright } from './upright.ts';
 import { View } from './view.ts';
 import type { ViewMode } from './view.ts';
 
-ColorManagement.enabled = false; // colours are the page's own
+ColorManagement.enabled = false; // colors are those of the page, without conversion
 
 const LEANING = 0.1; // radians
 
@@ -24,7 +24,7 @@ export type LayerName = (typeof LAYERS)[number];
 
 export interface Colours { page: string; ink: string; soft: string; path: string; dot: string; loop: string; truth: string; camera: string; worst: string }
 
-// Why the scene cannot be shown.
+// WebGL is not available.
 export class NoWebGL extends Error {}
 
 export class Scene {
@@ -43,11 +43,11 @@ export class Scene {
   private readonly thinning: Thinning | undefined;
   private drawn: { keyframes: unknown; path: unknown; frame: unknown; map: bigint; active: number } | null = null;
   private state: State | null = null;
-  private active = NONE; // the map the camera is in
-  several = false; // there are other maps than the active one
+  private active = NONE; // the active map, in which the camera is
+  several = false; // there are maps other than the active one
   private placed = false;
   private covered = { left: 0, right: 0 };
-  private levelled = 0; // keyframes when `up` was last asked for
+  private levelled = 0; // number of keyframes when `up` was last estimated
   private frameRequest = 0;
   private before = 0;
   private errors: ((i: number) => number) | null = null;
@@ -101,7 +101,7 @@ export class Scene {
   show(layer: LayerName, visible: boolean): void {
     this.layers[layer].visible = visible;
     if ((layer === 'truth' || layer === 'others') && this.state) {
-      this.drawn = null; // the path is coloured by its errors; poses say what is faint
+      this.drawn = null; // force an update, because it changes the path's colors or the visible keyframes
       this.update(this.state);
     }
     this.invalidate();
@@ -115,7 +115,7 @@ export class Scene {
     this.invalidate();
   }
 
-  // Everything in sight.
+  // Fits the whole map into the view.
   fit(): void {
     if (!this.state) return;
     const extent = extentOf(this.state, this.active);
@@ -124,7 +124,7 @@ export class Scene {
     this.invalidate();
   }
 
-  // The truth as it lies in the world of the map, and how far off each frame of the path is; null: not known.
+  // The ground truth aligned to the map, with the error of each frame of the path; null: unknown.
   overlay(alignment: Alignment | null): void {
     const layer = this.lines.truth;
     layer.begin(alignment?.truth.length ?? 0);
@@ -161,7 +161,7 @@ export class Scene {
     this.invalidate();
   }
 
-  // Another run: nothing of the old one is left.
+  // Clears everything for another run.
   forget(): void {
     this.placed = false;
     this.levelled = 0;
@@ -172,7 +172,7 @@ export class Scene {
     this.overlay(null);
   }
 
-  // Where a point of the world is on the page, CSS pixels from the canvas's corner; null: behind the eye.
+  // Projects a world point to CSS pixels relative to the canvas; null: behind the camera.
   project(p: readonly number[]): { x: number; y: number } | null {
     this.view.camera.updateMatrixWorld();
     const at = new Vector3(p[0], p[1], p[2]).applyMatrix4(this.world.matrix).applyMatrix4(this.view.camera.matrixWorldInverse);
@@ -181,7 +181,7 @@ export class Scene {
     return { x: (0.5 * at.x + 0.5) * this.canvas.clientWidth, y: (0.5 - 0.5 * at.y) * this.canvas.clientHeight };
   }
 
-  // CSS pixels of the canvas's sides that are covered by something else.
+  // Widths in CSS pixels on the left and right of the canvas that are covered by other elements.
   insets(left: number, right: number): void {
     this.covered = { left, right };
     this.resize();
@@ -206,7 +206,7 @@ export class Scene {
     this.frameRequest = requestAnimationFrame((now) => this.render(now));
   }
 
-  // Milliseconds that a picture takes, all points, drawn to its end: the least of some.
+  // Milliseconds to render an image with all points completely; the minimum of several.
   measure(pictures = 8): number {
     this.thinning?.apply(1);
     const gl = this.renderer.getContext();
@@ -245,7 +245,8 @@ export class Scene {
     layer.end();
   }
 
-  // Up is asked for again as the map grows, and followed when it was far off and nobody has turned the view.
+  // Re-estimates the up direction whenever the number of keyframes has doubled, and applies it if it changed and the
+  // user has not moved the view.
   private level(state: State): void {
     const count = state.keyframes.size;
     if (count === 0 || (this.levelled > 0 && (count < 2 * this.levelled || this.view.touched))) return;

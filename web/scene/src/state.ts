@@ -1,4 +1,4 @@
-// What a viewer knows: the sum of the messages so far. apply() is the only thing that changes it; clone() is cheap (see pages.ts).
+// State of a viewer: the sum of all messages. Only apply() changes it; clone() is cheap (see pages.ts).
 import { Landmarks } from './landmarks.ts';
 import type { Culled, DepthCloud, Frame, Hello, KeyFrame, MapChange, Message, Playback, Pose, TrackingState } from './messages.ts';
 import { NONE } from './messages.ts';
@@ -7,16 +7,16 @@ import { compose, IDENTITY, transform } from './pose.ts';
 
 export class State {
   hello: Hello | null = null;
-  frame: Frame | null = null; // the latest
-  pictured: Frame | null = null; // the latest with a picture: not every frame brings one
+  frame: Frame | null = null; // the latest frame
+  pictured: Frame | null = null; // the latest frame with an image, because not every frame has one
   playback: Playback | null = null;
   mapVersion = 0n;
-  // Objects in these two are never changed, only replaced.
+  // Objects in these two maps are replaced, never modified.
   keyframes = new Map<number, KeyFrame>();
   clouds = new Map<number, DepthCloud>();
   landmarks = new Landmarks();
   path = new Path();
-  incomplete = false; // something was told in a keyframe that is not known: only a whole state helps
+  incomplete = false; // a message referred to an unknown keyframe; only a whole state resolves this
 
   clone(): State {
     const copy = new State();
@@ -48,17 +48,17 @@ export class State {
         this.playback = message;
         break;
       case 'event':
-        break; // kept in the history
+        break; // stored in the history
     }
   }
 
-  // Of the latest frame; one who joins late knows it from the path only.
+  // The latest frame; after joining late it is known from the path only.
   get latest(): { number: number; time: number; state: TrackingState } | null {
     const last = this.path.length > 0 ? this.path.at(this.path.length - 1) : null;
     return !this.frame || (last && last.number > this.frame.number) ? last : this.frame;
   }
 
-  // Where the camera of the latest frame is, by the map as it is now, or predicted; null: not known.
+  // Pose of the latest frame in the current map, or the predicted pose; null: unknown.
   cameraPose(): Pose | null {
     if (this.path.length === 0) return this.frame?.T_world_camera ?? null;
     const last = this.path.at(this.path.length - 1);
@@ -68,7 +68,7 @@ export class State {
     return this.frame?.number === last.number ? this.frame.T_world_camera : null;
   }
 
-  // The map that the latest frame is in; NONE while there is none.
+  // The map of the latest frame; NONE if there is none.
   get activeMap(): number {
     for (let i = this.path.length - 1; i >= 0; --i) {
       const keyframe = this.keyframes.get(this.path.at(i).reference);
@@ -80,7 +80,7 @@ export class State {
     return newest?.map ?? NONE;
   }
 
-  // Of a landmark, in the world; undefined: no such landmark.
+  // World position of a landmark; undefined: unknown id.
   landmarkInWorld(id: number): [number, number, number] | undefined {
     const landmark = this.landmarks.get(id);
     const keyframe = landmark && this.keyframes.get(landmark.keyframe);
@@ -118,7 +118,7 @@ export class State {
     if (change.path.length > 0) this.path.set(change.path);
   }
 
-  // The semi-dense points of a culled keyframe go with it, as in the program.
+  // Removes culled keyframes with their semi-dense points, as the program does.
   private cull(culled: readonly Culled[]): void {
     const moves = new Map<number, Culled>();
     for (const one of culled) {
@@ -132,8 +132,8 @@ export class State {
   }
 }
 
-// A keyframe that is followed may be culled by the same message: such moves are put together, so that all end at living ones.
-// A circle ends as `none`.
+// A replacing keyframe may be culled by the same message: chains are composed so that all end at existing keyframes. A
+// cycle ends as `none`.
 function resolve(moves: ReadonlyMap<number, Culled>): Map<number, Culled> {
   const resolved = new Map<number, Culled>();
   for (const first of moves.values()) {

@@ -1,16 +1,16 @@
-// run.stream, bit by bit as it comes: 8 bytes "ALIDSTR1", then for each message its length (u32, little-endian), 4 bytes zero,
-// the message, zeros up to a multiple of 8.
+// Incremental reader of run.stream: 8 bytes "ALIDSTR1", then for each message its length (u32, little-endian), 4 zero
+// bytes, the message, and zeros up to a multiple of 8.
 import { DecodeError } from './verify.ts';
 
 const MAGIC = 'ALIDSTR1';
-const MOST = 256 * 1024 * 1024; // bytes of one message
+const MOST = 256 * 1024 * 1024; // bytes per message
 
 export class StreamFileReader {
   private pending: Uint8Array[] = [];
   private size = 0;
   private started = false;
 
-  // The messages that are complete by now; each starts at a multiple of 8 of its buffer.
+  // Returns the messages completed by this chunk; each starts at a multiple of 8 of its buffer.
   push(chunk: Uint8Array): Uint8Array[] {
     this.pending.push(chunk);
     this.size += chunk.byteLength;
@@ -30,7 +30,7 @@ export class StreamFileReader {
       if (length > MOST || view.getUint32(4, true) !== 0) throw new DecodeError('the recorded stream is damaged');
       const padded = 8 * Math.ceil(length / 8);
       if (this.size < 8 + padded) {
-        // The end of a file whose program was stopped may lack the padding, not more.
+        // wait for the padding, which alone may be missing at the end of an interrupted file
         return messages;
       }
       this.take(8);
@@ -38,7 +38,7 @@ export class StreamFileReader {
     }
   }
 
-  // Bytes that belong to no complete message: of a file that was cut off.
+  // Number of bytes of an incomplete message, as in a truncated file.
   get rest(): number { return this.size; }
 
   private peek(count: number): Uint8Array<ArrayBuffer> | null {

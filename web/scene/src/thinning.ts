@@ -1,32 +1,35 @@
-// Too many points for this machine to draw in time: while the picture moves only every 2nd, 4th, … is drawn; once it is still, all are.
+// Adapts the number of drawn points to the machine's speed: while the view moves, every 2nd, 4th, … point is drawn; a
+// still view shows all.
 import type { PointLayer } from './points.ts';
 
-const SLOW = 80; // ms from picture to picture: thin more
-const FAST = 35; // thin less
-const STILL = 250; // ms without a new picture before all is drawn
-const SOON = 100; // ms after a picture: who asks for the next one by then is in motion, and waits for the drawing only
-const FEW = 20000; // points that are never thinned: any machine draws them
-const AT_FIRST = 100000; // points while moving, until the machine has shown that it can draw more
+const SLOW = 80; // ms between images: draw fewer points
+const FAST = 35; // ms: draw more points
+const STILL = 250; // ms without a new image before all points are drawn
+// Milliseconds after an image: a request within this time means that the view is moving and is limited by drawing speed
+// only.
+const SOON = 100;
+const FEW = 20000; // points that are never thinned
+const AT_FIRST = 100000; // initial limit of points while moving, until the machine proves faster
 const MOST = 64;
 
 export class Thinning {
   private step = 1;
-  private last = 0; // time of the last picture
-  private asked = 0; // time the next one was asked for
+  private last = 0; // time of the last image
+  private asked = 0; // time the next image was requested
   private timer: ReturnType<typeof setTimeout> | undefined;
-  private full = false; // the next picture is the one for which the timer asked
+  private full = false; // the next image is the still one requested by the timer
   private wasFull = false;
-  private tried = 0; // number of points that AT_FIRST was applied to
+  private tried = 0; // number of points when AT_FIRST was last applied
 
   constructor(private readonly layers: readonly PointLayer[], private readonly invalidate: () => void) {}
 
-  // The next picture is asked for. Whatever moves goes before the picture with all points.
+  // Call when the next image is requested. Motion takes precedence over the still image with all points.
   request(now: number): void {
     this.asked = now;
     if (!this.full) clearTimeout(this.timer);
   }
 
-  // Before each picture.
+  // Call before each image.
   before(now: number): void {
     const interval = now - this.last;
     const moving = this.asked - this.last < SOON && !this.wasFull;
@@ -48,7 +51,7 @@ export class Thinning {
     this.apply(this.step);
     clearTimeout(this.timer);
     if (this.step > 1) {
-      // A slow machine is not still while it draws.
+      // scale the delay with the drawing time, so that a slow machine is not considered still
       this.timer = setTimeout(() => {
         this.full = true;
         this.invalidate();

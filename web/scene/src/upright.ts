@@ -1,9 +1,9 @@
-// Which way is up in a world that a camera found: src/alidade/view/upright.cc, by power iteration.
+// Estimates the up direction of a world as src/alidade/view/upright.cc does, by power iteration.
 import type { Pose } from './messages.ts';
 import { rotate } from './pose.ts';
 import type { Vector } from './pose.ts';
 
-const OWN_WEIGHT = 0.02; // of the mean up direction against 1 of the right axes: sin² of 8° of turning
+const OWN_WEIGHT = 0.02; // of the mean up axis, relative to 1 of the right axes; sin² of 8° of rotation
 
 const dot = (a: Vector, b: Vector) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
@@ -27,7 +27,7 @@ export function upright(poses: Iterable<Pose>): Upright {
   let up: Vector = [0, -1, 0];
   if (count > 0 && Math.hypot(...own) > 1e-9) {
     own = unit(own);
-    // Smallest eigenvector of M / count - weight own ownᵀ: largest of what it lacks to a multiple of one.
+    // Smallest eigenvector of M / count - weight own ownᵀ, as the largest one of the identity minus this matrix.
     const A = M.map((value, i) => (i % 4 === 0 ? 1 : 0) - value / count + OWN_WEIGHT * own[Math.floor(i / 3)] * own[i % 3]);
     up = own;
     for (let i = 0; i < 200; ++i) up = unit([0, 3, 6].map((r) => A[r] * up[0] + A[r + 1] * up[1] + A[r + 2] * up[2]) as unknown as Vector);

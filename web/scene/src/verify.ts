@@ -1,5 +1,6 @@
-// Is this a well-formed FlatBuffer of the schema? The same questions as the C++ verifier's: every offset, vector and string lies
-// inside, aligned. flatc gives TypeScript none; its accessors read defaults, or throw anything, from what is broken.
+// Checks that bytes are a well-formed FlatBuffer of the schema, as the C++ verifier does: every offset, vector and
+// string is inside and aligned. flatc generates no verifier for TypeScript, and its accessors misbehave on malformed
+// data.
 import { SCHEMA } from '../generated/schema.ts';
 
 export class DecodeError extends Error {
@@ -20,7 +21,8 @@ export function verify(bytes: Uint8Array): void {
 }
 
 class Verifier {
-  // Offsets may share what they point to, so few bytes could stand for very many: what is visited may be at most four times what is there.
+  // Objects may be shared by several offsets, so that a small message could expand to a huge one. Limits the visited
+  // bytes to about four times the message's size.
   private budget: number;
 
   constructor(private readonly view: DataView) {

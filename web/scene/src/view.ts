@@ -1,4 +1,4 @@
-// From where the scene is looked at: `follow` goes along with the camera that is tracked, `orbit` stays where one left it, `top` looks
+// Viewpoint of the scene: `follow` moves with the tracked camera, `orbit` stays where the user left it, `top` looks
 // down. World → three.js: upright, y up, first camera looking along -z.
 import CameraControls from 'camera-controls';
 import { Box3, Matrix4, PerspectiveCamera, Quaternion, Raycaster, Sphere, Spherical, Vector2, Vector3, Vector4, MathUtils } from 'three';
@@ -16,10 +16,10 @@ export class View {
   readonly camera = new PerspectiveCamera(50, 1, 0.01, 1000);
   readonly controls: CameraControls;
   mode: ViewMode = 'follow';
-  touched = false; // somebody has turned or moved the view: it is theirs
-  private drawn: number[] = Array(16).fill(NaN) as number[]; // the camera's matrix at the last picture that was other
-  private free = 1; // share of the width
-  private size = 1; // how far away things are: length of a typical view
+  touched = false; // the user has moved the view: no automatic changes
+  private drawn: number[] = Array(16).fill(NaN) as number[]; // the camera's matrix at the last changed image
+  private free = 1; // visible share of the width
+  private size = 1; // typical viewing distance
 
   constructor(element: HTMLElement, private readonly toScene: Matrix4, changed: () => void) {
     this.controls = new CameraControls(this.camera, element);
@@ -29,10 +29,10 @@ export class View {
     this.controls.addEventListener('controlstart', () => { this.touched = true; });
     this.controls.addEventListener('control', changed);
     this.controls.addEventListener('wake', changed);
-    this.controls.setLookAt(0, 1.2, 3, 0, 0, -2, false);
+    void this.controls.setLookAt(0, 1.2, 3, 0, 0, -2, false);
   }
 
-  // Goes on for so long; whether anybody could see the difference.
+  // Advances the animation; returns whether the change is visible.
   step(seconds: number): boolean {
     if (!this.controls.update(seconds)) return false;
     this.camera.updateMatrix();
@@ -43,7 +43,8 @@ export class View {
     return moved;
   }
 
-  // Typical distance of what is seen, world units: near and far planes, and how far off to stand, come from it.
+  // Sets the typical distance of the scene, world units, from which near and far planes and the viewing distance
+  // follow.
   setSize(size: number): void {
     const first = this.size !== size;
     this.size = size;
@@ -55,7 +56,7 @@ export class View {
     this.controls.maxDistance = 300 * size;
   }
 
-  // Behind and above the tracked camera, looking where it looks.
+  // Places the view behind and above the tracked camera, in its viewing direction.
   behind(T_world_camera: Pose, smooth: boolean): void {
     const at = this.vector([T_world_camera[4], T_world_camera[5], T_world_camera[6]]);
     const forward = this.direction(rotate(T_world_camera, 0, 0, 1));
@@ -97,7 +98,7 @@ export class View {
     this.controls.touches.one = mode === 'top' ? ACTION.TOUCH_TRUCK : ACTION.TOUCH_ROTATE;
   }
 
-  // CSS pixels; `left` and `right` are covered by something else: what is looked at is in the middle of the rest.
+  // CSS pixels; `left` and `right` are covered by other elements, so the scene is centered in the remaining width.
   resize(width: number, height: number, left: number, right: number): void {
     this.camera.aspect = width / Math.max(1, height);
     this.free = Math.max(0.3, (width - left - right) / width);

@@ -1,14 +1,14 @@
-// The real program, run to its end by tests. ALIDADE_BINARY names it.
+// Runs the real program, set by ALIDADE_BINARY, to its end.
 import { spawn } from 'node:child_process';
 import { existsSync, readFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 
-declare const WEB: string; // by tools/test.mjs
+declare const WEB: string; // defined by tools/test.mjs
 
 export const BINARY = process.env.ALIDADE_BINARY ? resolve(process.env.ALIDADE_BINARY) : join(WEB, '../build/bin/alidade');
 export const NO_BINARY = existsSync(BINARY) ? false : `no ${BINARY} (scripts/build, or ALIDADE_BINARY)`;
 
-// Until it ends; throws what it said when that was no success.
+// Waits for the end; throws the program's messages on failure.
 export async function run(...args: string[]): Promise<void> {
   const child = spawn(BINARY, args, { stdio: ['ignore', 'ignore', 'pipe'] });
   let said = '';
@@ -17,7 +17,7 @@ export async function run(...args: string[]): Promise<void> {
   if (status !== 0) throw new Error(`alidade ${args.join(' ')}: ${status}\n${said}`);
 }
 
-// Lines of numbers, those of comments and heads left out.
+// Rows of numbers; comments and headers are skipped.
 export function table(path: string): number[][] {
   return readFileSync(path, 'utf8').split('\n').filter((line) => /^[-+\d.]/.test(line)).map((line) => line.trim().split(/\s+/).map(Number));
 }

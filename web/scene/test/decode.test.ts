@@ -41,7 +41,7 @@ test('many offsets to the same bytes do not make a small message a large one', (
   const sample = new Sample(SMALL);
   const bytes = encode({ ...sample.whole(), keyframes });
   decode(bytes);
-  // All 2000 elements of the vector point to the keyframe with the long list.
+  // Let all 2000 elements of the vector refer to the keyframe with the long list.
   const view = new DataView(bytes.buffer);
   const at = vectorOf(view, 2000);
   const long = [...Array(2000).keys()].map((i) => at + 4 + 4 * i + view.getUint32(at + 4 + 4 * i, true)).find((table) => hasLongList(view, table))!;
@@ -63,7 +63,7 @@ function hasLongList(view: DataView, table: number): boolean {
   return view.getUint32(vector, true) === 20000;
 }
 
-// Floats are told as float32.
+// Floats are sent as float32.
 function comparable(message: Message): unknown {
   const round = (value: unknown): unknown => {
     if (value instanceof DataView) return [...new Uint8Array(value.buffer)];

@@ -1,4 +1,4 @@
-// Message → bytes, by flatc's builder: what tests and samples send.
+// Encodes messages with flatc's builder, for tests and samples.
 import * as flatbuffers from 'flatbuffers';
 import * as fb from '../generated/stream_generated.ts';
 import { EVENT_KINDS, STATES } from '../src/messages.ts';
@@ -31,7 +31,7 @@ function bodyOf(b: Builder, message: Message): [fb.Body, Offset] {
   }
 }
 
-// Vectors of structs are built from their end.
+// Vectors of structs are built backwards.
 function structs<T>(b: Builder, values: readonly T[], start: (b: Builder, n: number) => void, one: (value: T) => Offset): Offset {
   start(b, values.length);
   for (let i = values.length - 1; i >= 0; --i) one(values[i]);
@@ -48,7 +48,8 @@ function hello(b: Builder, m: Hello): Offset {
   if (m.camera) {
     const c = m.camera;
     const distortion = fb.Camera.createDistortionVector(b, c.distortion);
-    camera = fb.Camera.createCamera(b, c.width, c.height, c.fx, c.fy, c.cx, c.cy, distortion, c.baseline, 0); // no rotation: as mounted
+    // No rotation: not rectified.
+    camera = fb.Camera.createCamera(b, c.width, c.height, c.fx, c.fy, c.cx, c.cy, distortion, c.baseline, 0);
   }
   const truth = structs(b, m.truth, fb.Hello.startTruthVector,
     ({ time, T_world_camera: T }) => fb.TruePose.createTruePose(b, time, T[0], T[1], T[2], T[3], T[4], T[5], T[6]));

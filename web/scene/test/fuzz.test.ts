@@ -1,4 +1,4 @@
-// What is damaged is refused or read, never more: 100,000 messages of the sample, each changed as by a bad line or an evil program.
+// Damaged messages are rejected or read, but cause no other error: 100,000 modified messages of the sample.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { decode, DecodeError } from '../src/decode.ts';
@@ -14,13 +14,13 @@ const random = new Random(11);
 const below = (count: number) => Math.floor(random.next() * count);
 const seeds = [...new Sample(SMALL).messages()].map(encode);
 
-// Numbers that lengths and offsets go wrong at.
+// Critical values for lengths and offsets.
 const EDGES = [0, 1, 2, 3, 4, 7, 8, 0x7f, 0x80, 0xff, 0x7fff, 0x8000, 0xffff, 0x7fffffff, 0x80000000, 0xfffffffc, 0xffffffff];
 
 function damaged(): Uint8Array {
   let bytes = seeds[below(seeds.length)].slice();
   if (random.next() < 0.2) bytes = bytes.slice(0, below(bytes.length));
-  if (random.next() < 0.1) { // the head of one, the rest of another
+  if (random.next() < 0.1) { // the beginning of one message and the rest of another
     const other = seeds[below(seeds.length)];
     const at = below(Math.min(bytes.length, other.length) + 1);
     bytes.set(other.subarray(at, bytes.length), Math.min(at, bytes.length));
@@ -28,7 +28,7 @@ function damaged(): Uint8Array {
   if (bytes.length === 0) return bytes;
   const view = new DataView(bytes.buffer);
   for (let changes = 1 + below(4); changes > 0; --changes) {
-    const near = Math.floor(random.next() ** 2 * bytes.length); // tables and vtables are at both ends
+    const near = Math.floor(random.next() ** 2 * bytes.length); // favor both ends, where tables and vtables are
     const at = random.next() < 0.5 ? near : bytes.length - 1 - near;
     const how = random.next();
     if (how < 0.4) bytes[at] = below(256);
@@ -39,7 +39,7 @@ function damaged(): Uint8Array {
   return bytes;
 }
 
-// Nothing but DecodeError comes out.
+// Returns whether DecodeError was thrown; rethrows any other error.
 function refused(of: () => void): boolean {
   try {
     of();
@@ -56,7 +56,7 @@ test('no damaged message does anything but throw DecodeError, and what is read c
   for (let round = 0; round < ROUNDS; ++round) {
     const bytes = damaged();
     if (refused(() => state.apply(decode(bytes)))) ++bad;
-    if (round % 1000 === 999) { // what it holds can be asked for
+    if (round % 1000 === 999) { // use the state
       state.cameraPose();
       state.clone();
       state = new State();

@@ -1,4 +1,4 @@
-// Pictures for the sample's stream, and pictures that are looked at.
+// Encodes images for the sample's stream, and decodes screenshots.
 import { deflateSync, inflateSync } from 'node:zlib';
 
 const CRC = Uint32Array.from({ length: 256 }, (_, n) => {
@@ -6,7 +6,7 @@ const CRC = Uint32Array.from({ length: 256 }, (_, n) => {
   return n;
 });
 
-// Rows begin with their filter, 0; 8 bits RGB.
+// 8-bit RGB; each row begins with its filter type, 0.
 export function png(width: number, height: number, rows: Uint8Array): Uint8Array<ArrayBuffer> {
   const chunk = (type: string, data: Uint8Array) => {
     const out = Buffer.alloc(12 + data.length);
@@ -26,7 +26,7 @@ export function png(width: number, height: number, rows: Uint8Array): Uint8Array
   return new Uint8Array(Buffer.concat([signature, chunk('IHDR', head), chunk('IDAT', deflateSync(rows, { level: 1 })), chunk('IEND', new Uint8Array(0))]));
 }
 
-// Grey, RGB or RGBA of 8 or 16 bits, or black and white (0, 1) of one; not interlaced.
+// Gray, RGB or RGBA with 8 or 16 bits, or 1-bit black and white (0, 1); not interlaced.
 export function readPng(file: Buffer): { width: number; height: number; channels: number; samples: Uint16Array } {
   let at = 8;
   const data: Buffer[] = [];

@@ -1,5 +1,6 @@
-// A stream without a program: a camera goes round a room twice, its map drifts until a loop closes, keyframes and landmarks are
-// culled, it is lost for a while behind a white sheet. World: x right, y down, z forward, as of the first keyframe.
+// A synthetic stream: a camera moves twice around a room; its map drifts until a loop closes; keyframes and landmarks
+// are culled; it is lost for a while in front of a white sheet. World: x right, y down, z forward of the first
+// keyframe.
 import type { Culled, DepthCloud, Frame, KeyFrame, MapChange, Message, PathFrame, Pose } from '../src/messages.ts';
 import { NONE } from '../src/messages.ts';
 import { compose, inverse, rotate, transform } from '../src/pose.ts';
@@ -9,14 +10,14 @@ import { png } from './png.ts';
 export interface SampleSettings {
   frames?: number;
   every?: number; // frames between keyframes
-  landmarks?: number; // in the whole room
-  depthPoints?: number; // of a keyframe
+  landmarks?: number; // number in the whole room
+  depthPoints?: number; // number per keyframe
   pictures?: boolean;
   seed?: number;
 }
 
 const WIDTH = 320, HEIGHT = 240, FOCAL = 260;
-const ROOM = { x: 3, y: 1.4, z: 4 }; // half sizes, metres
+const ROOM = { x: 3, y: 1.4, z: 4 }; // half sizes, meters
 const CAMERA = { width: WIDTH, height: HEIGHT, fx: FOCAL, fy: FOCAL, cx: 159.5, cy: 119.5, distortion: [0, 0, 0, 0, 0], baseline: 0 };
 
 export class Random { // mulberry32
@@ -35,7 +36,7 @@ const about = (axis: 0 | 1 | 2, angle: number): Pose => {
   return q;
 };
 
-// In the room: once round is `turn` = 1.
+// Camera pose in the room; a full round is `turn` = 1.
 function roomPose(turn: number): Pose {
   const angle = 2 * Math.PI * turn;
   const at: Pose = [0, 0, 0, 1, 1.5 * Math.sin(angle), 0.15 * Math.sin(3 * angle), -2 * Math.cos(angle) + 0.1];
@@ -47,11 +48,11 @@ interface Point { id: number; room: [number, number, number]; keyframe: number; 
 export class Sample {
   readonly frames: number;
   readonly keyframes = new Map<number, KeyFrame>();
-  readonly points = new Map<number, Point>(); // those of the map
+  readonly points = new Map<number, Point>(); // landmarks of the map
   readonly clouds = new Map<number, DepthCloud>();
   readonly path: PathFrame[] = [];
   readonly events: Message[] = []; // so far
-  told: Frame | null = null; // last
+  told: Frame | null = null; // the last one
   private readonly room: [number, number, number][] = [];
   private readonly inMap = new Map<number, number>(); // room point → landmark
   private readonly truth: Pose[] = [];
@@ -80,7 +81,7 @@ export class Sample {
     };
   }
 
-  // All that is known, for a client that joins now.
+  // The whole state, for a client that joins now.
   whole(): MapChange {
     return {
       kind: 'map', version: this.version, whole: true, keyframes: [...this.keyframes.values()], moves: [],
@@ -220,7 +221,7 @@ export class Sample {
     change.culled.push(one);
   }
 
-  // The drift is spread over the keyframes, and taken back.
+  // Distributes the drift over the keyframes and removes it.
   private closeLoop(change: MapChange): void {
     this.closed = true;
     const back = inverse(this.drift);
@@ -260,7 +261,7 @@ export class Sample {
     }
   }
 
-  // How far the wall is along a ray of the room, and its colour there.
+  // Distance to the wall along a ray, and the wall's color there.
   private cast(o: readonly number[], d: readonly number[]): [number, number, number, number] {
     let t = Infinity;
     let axis = 0;

@@ -21,17 +21,19 @@ function near(a: readonly number[], b: readonly number[], bound: number, what: s
   a.forEach((value, i) => assert.ok(Math.abs(value - b[i]) <= bound, `${what}: ${a} is not ${b}`));
 }
 
+const ascending = (a: number, b: number) => a - b;
+
 function assertSame(a: State, b: State): void {
-  assert.deepEqual([...a.keyframes.keys()].sort(), [...b.keyframes.keys()].sort());
+  assert.deepEqual([...a.keyframes.keys()].sort(ascending), [...b.keyframes.keys()].sort(ascending));
   for (const [id, keyframe] of a.keyframes) assert.deepEqual(keyframe, b.keyframes.get(id));
   assert.equal(a.landmarks.size, b.landmarks.size);
   for (let i = 0; i < a.landmarks.size; ++i) {
     const one = a.landmarks.at(i);
     const other = b.landmarks.get(one.id)!;
     assert.equal(one.keyframe, other.keyframe);
-    near(one.p, other.p, 1e-6, `landmark ${one.id}`); // told in another keyframe, rounded once more
+    near(one.p, other.p, 1e-6, `landmark ${one.id}`); // anchored to another keyframe and rounded once more
   }
-  assert.deepEqual([...a.clouds.keys()].sort(), [...b.clouds.keys()].sort());
+  assert.deepEqual([...a.clouds.keys()].sort(ascending), [...b.clouds.keys()].sort(ascending));
   for (const [id, cloud] of a.clouds) assert.deepEqual(cloud, b.clouds.get(id));
   assert.equal(a.path.length, b.path.length);
   for (let i = 0; i < a.path.length; ++i) {

@@ -1,6 +1,6 @@
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 
-declare const BUNDLED: readonly { name: string; version: string; licence: string }[]; // by tools/build.mjs
+declare const BUNDLED: readonly { name: string; version: string; licence: string }[]; // defined by tools/build.mjs
 
 export function fillAbout(): void {
   const list = byId('about-bundled');

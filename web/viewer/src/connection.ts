@@ -1,7 +1,7 @@
-// The stream of a running program, over a WebSocket; connects again by itself when it ends.
+// WebSocket connection to a running program's stream; reconnects automatically.
 export type Ask = 'pause' | 'resume' | 'step' | 'whole';
 
-const WAITS = [500, 1000, 2000, 4000]; // ms before trying again
+const WAITS = [500, 1000, 2000, 4000]; // ms before reconnecting
 
 export interface ConnectionEvents {
   opened(): void;
@@ -53,7 +53,7 @@ export class Connection {
   }
 }
 
-// The token of the page's own address, for all that it asks for.
+// The token of the page's own URL, to be added to all requests.
 export function query(): string {
   const token = new URLSearchParams(location.search).get('token');
   return token === null ? '' : '?' + new URLSearchParams({ token });

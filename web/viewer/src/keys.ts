@@ -1,4 +1,4 @@
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 
 type Key = readonly [key: string, name: string, what: string, act: () => void];
 
@@ -15,7 +15,8 @@ export function keys(all: readonly Key[]): void {
     if (event.ctrlKey || event.altKey || event.metaKey || document.querySelector('dialog[open]')) return;
     const target = event.target as HTMLElement;
     if (target.closest('select')) return;
-    if (event.key === ' ' && target.closest('button, input[type=checkbox]')) return; // presses them
+    // These elements react to the space bar themselves.
+    if (event.key === ' ' && target.closest('button, input[type=checkbox]')) return;
     const key = all.find(([name]) => name === event.key.toLowerCase());
     if (!key) return;
     event.preventDefault();

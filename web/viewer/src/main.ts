@@ -1,9 +1,10 @@
-// The viewer's page: bytes come in, the player holds the state, the parts draw what it says, at most once a picture.
+// The viewer's page: messages arrive, the player holds the state, and the parts draw it at most once per display frame.
 import { alignTruth, DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
-import type { Colours, ViewMode } from '@alidade/scene';
+import type { ViewMode } from '@alidade/scene';
+import { sceneColours } from '../../shared/src/colours.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 import { fillAbout } from './about.ts';
 import { Connection, query } from './connection.ts';
-import { byId, write } from './dom.ts';
 import { keys } from './keys.ts';
 import { layerSwitches, Panel } from './panel.ts';
 import { Picture } from './picture.ts';
@@ -12,15 +13,15 @@ import { Plot } from './plot.ts';
 import { onTheme } from './theme.ts';
 import { Timeline } from './timeline.ts';
 
-const MOST_BYTES = 1.5e9; // of a recorded stream: what a page can hold
+const MOST_BYTES = 1.5e9; // bytes of a recorded stream that a page can hold
 
 let player = new Player();
 let replay = false;
 let connection: Connection | null = null;
 let dirty = true;
 let before = performance.now();
-const notices = new Map<string, string>(); // by what they are about
-let fresh = false; // a connection has been made, and has said nothing yet
+const notices = new Map<string, string>(); // by topic
+let fresh = false; // a connection was opened but no message has arrived yet
 
 const seek = (number: number) => {
   player.seek(number);
@@ -138,7 +139,8 @@ async function begin(): Promise<void> {
   connect();
 }
 
-// What the buttons below mean depends on what is shown: now (the program is asked to pause, if it may), or the past.
+// The buttons control the program (if it can pause) when the current state is shown, otherwise the playback of the
+// past.
 function paused(): boolean {
   if (player.attached && !replay) return Boolean(player.latest.playback?.paused);
   return !player.playing;
@@ -174,7 +176,7 @@ function setView(mode: ViewMode): void {
 
 const narrow = matchMedia('(max-width: 760px)');
 
-// Wide: a panel that is open at first; narrow: a sheet that is not.
+// On wide screens a panel that is open by default, on narrow screens a sheet that is closed by default.
 function togglePanel(): void {
   const open = narrow.matches ? document.body.classList.toggle('sheet-open') : !document.body.classList.toggle('panel-closed');
   byId('panel-toggle').setAttribute('aria-expanded', String(open));
@@ -194,7 +196,7 @@ function update(): void {
   switches.get('others')!.parentElement!.hidden = !scene?.several;
 }
 
-// The truth is laid over the map again when the map has moved or the path has grown by some, at most once a second.
+// Realigns the ground truth when the map changed or the path grew by 30 frames, at most once per second.
 let aligned = { version: -1n, length: 0, time: 0 };
 function overlayTruth(now: number): void {
   const { shown } = player;
@@ -227,19 +229,10 @@ function tick(now: number): void {
   requestAnimationFrame(tick);
 }
 
-function colours(): Colours {
-  const style = getComputedStyle(document.documentElement);
-  const of = (name: string) => style.getPropertyValue(name).trim();
-  return {
-    page: of('--space'), ink: of('--ink'), soft: of('--soft'), path: of('--path'), dot: of('--dot'), loop: of('--loop'), truth: of('--truth'),
-    camera: of('--fresh'), worst: of('--lost'),
-  };
-}
-
 const sizes = new ResizeObserver(layout);
 for (const id of ['scene', 'picture', 'panel']) sizes.observe(byId(id));
 onTheme(() => {
-  scene?.colours(colours());
+  scene?.colours(sceneColours());
   plot.make();
   timeline.refresh();
   picture.reset();
@@ -270,7 +263,7 @@ keys([
   ['t', 'T', 'light or dark', () => byId('theme').click()],
   ['?', '?', 'these keys', () => (byId('keys') as HTMLDialogElement).showModal()],
 ]);
-// For tests, and for the curious.
+// For tests and debugging.
 Object.assign(window, {
   alidade: {
     get state() { return player.shown; },

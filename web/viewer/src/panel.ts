@@ -1,9 +1,10 @@
-// Counts, state in words, the run, events.
+// Panel: counts, state, run description, events.
 import { LAYERS } from '@alidade/scene';
 import type { Alignment, Event, LayerName, State } from '@alidade/scene';
-import { byId, make, write } from './dom.ts';
+import { byId, make, write } from '../../shared/src/dom.ts';
+import { STATE_WORDS } from '../../shared/src/words.ts';
 import type { Player } from './player.ts';
-import { clock, endText, eventText, reasonText, STATE_WORDS } from './words.ts';
+import { clock, endText, eventText, reasonText } from './words.ts';
 
 const LAYER_WORDS: Record<LayerName, string> = {
   path: 'Path', keyframes: 'Keyframes', landmarks: 'Landmarks', cloud: 'Depth', covisibility: 'Covisibility', loops: 'Loops',
@@ -22,7 +23,8 @@ export class Panel {
   update(state: State): void {
     const { frame, hello } = state;
     const { latest } = state;
-    const now = frame && frame.number === latest?.number ? frame : null; // null: joined late, no frame has come yet
+    // Null: joined late and no frame has arrived yet.
+    const now = frame && frame.number === latest?.number ? frame : null;
     const numbers = {
       keyframes: now?.keyframes ?? state.keyframes.size, landmarks: now?.landmarks ?? state.landmarks.size,
       matches: now?.matches ?? 0, frames: latest ? latest.number + 1 : 0,
@@ -48,14 +50,14 @@ export class Panel {
     byId('events').replaceChildren();
   }
 
-  // How far the path is from the truth, where that is known.
+  // Error of the path relative to the ground truth, if known.
   error(alignment: Alignment | null, state: State): void {
     const metres = (value: number) => (value < 1 ? `${(100 * value).toFixed(1)} cm` : `${value.toFixed(2)} m`);
     const scaled = state.hello?.unit !== 'm' ? ', scale fitted' : '';
     write(byId('error'), alignment ? `From the truth: ${metres(alignment.rmse)} RMSE, at most ${metres(alignment.worst)}${scaled}` : '');
   }
 
-  // Newest first. Told seldom: the list is made anew when there is one more.
+  // Newest first. Events are rare, so the list is rebuilt when one is added.
   private listEvents(): void {
     const { events } = this.player().history;
     const { path } = this.player().latest;

@@ -1,11 +1,9 @@
-// The camera picture with its features, boxes and outlines.
-import { USES } from '@alidade/scene';
+// The camera image with features, detections and outlines.
+import { marks, USES } from '@alidade/scene';
 import type { Frame, State } from '@alidade/scene';
-import { byId, write } from './dom.ts';
-import { boxes, features, OLD, outlines } from './picture_marks.ts';
-import type { Canvas } from './picture_marks.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 
-const kPictureSeconds = 1; // programs send some ten a second
+const kPictureSeconds = 1; // seconds; programs send about ten images per second
 const MARKS = [...USES, 'things'] as const;
 type Mark = (typeof MARKS)[number];
 
@@ -16,7 +14,7 @@ export class Picture {
   private readonly counts = MARKS.map((mark) => byId('use-' + mark));
   private readonly visible = new Set<Mark>(MARKS);
   private image: ImageBitmap | null = null;
-  private imageOf: Frame | null = null; // whose picture is shown
+  private imageOf: Frame | null = null; // the frame whose image is shown
   private decoding: Frame | null = null;
   private wanted: Frame | null = null;
   private shown: { frame: Frame | null; width: number; height: number } | null = null;
@@ -29,7 +27,7 @@ export class Picture {
     }
   }
 
-  // A kind of mark is drawn, or is not.
+  // Shows or hides one kind of mark.
   show(mark: Mark, visible: boolean): void {
     if (visible) this.visible.add(mark);
     else this.visible.delete(mark);
@@ -44,7 +42,7 @@ export class Picture {
   }
 
   update(state: State): void {
-    // The latest picture, with its own features, unless pictures have ceased.
+    // The latest image with its own features; without recent images the latest frame's features.
     const { pictured } = state;
     const since = pictured && state.frame ? state.frame.time - pictured.time : -1;
     const frame = since >= 0 && since < kPictureSeconds ? pictured : state.frame;
@@ -58,8 +56,8 @@ export class Picture {
     counts[USES.length] = frame?.detections.length ?? 0;
     this.counts.forEach((element, mark) => write(element, String(counts[mark])));
     const age = frame?.detectionAge ?? -1;
-    write(byId('things-age'), frame && frame.detections.length > 0 && age > OLD ? `${age.toFixed(1)} s ago` : '');
-    if (age >= 0) document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = false; // a detector runs
+    write(byId('things-age'), frame && frame.detections.length > 0 && age > marks.OLD ? `${age.toFixed(1)} s ago` : '');
+    if (age >= 0) document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = false; // a detector is running
     if (frame?.picture) void this.decode(frame);
     else this.draw();
   }
@@ -72,7 +70,7 @@ export class Picture {
     this.shown = null;
   }
 
-  // Another run: nothing of the old one is left.
+  // Clears everything for another run.
   forget(): void {
     this.reset();
     this.canvas.getContext('2d')!.clearRect(0, 0, this.canvas.width, this.canvas.height);
@@ -80,7 +78,7 @@ export class Picture {
     document.querySelector<HTMLElement>('[data-mark=things]')!.hidden = true;
   }
 
-  // One at a time; of those that come meanwhile only the latest. A picture is shown with the features of its own frame.
+  // Decodes one image at a time and skips to the latest. An image is shown with the features of its own frame.
   private async decode(frame: Frame): Promise<void> {
     this.wanted = frame;
     if (this.decoding) return;
@@ -90,7 +88,7 @@ export class Picture {
       try {
         const { bytes, type } = next.picture!;
         const image = await createImageBitmap(new Blob([bytes], { type }));
-        if (this.wanted === null) { // forgotten meanwhile
+        if (this.wanted === null) { // cleared meanwhile
           image.close();
           break;
         }
@@ -98,7 +96,7 @@ export class Picture {
         this.image = image;
         this.imageOf = next;
       } catch {
-        this.imageOf = next; // cannot be decoded: features alone
+        this.imageOf = next; // cannot be decoded: show the features only
       }
       this.draw();
     }
@@ -124,10 +122,10 @@ export class Picture {
     if (!frame) return;
     if (hasPicture) draw.drawImage(this.image!, 0, 0, w, h);
     const style = getComputedStyle(document.documentElement);
-    const on: Canvas = { draw, w, h, ratio, colour: (name) => style.getPropertyValue(name) };
-    if (this.visible.has('moving')) outlines(on, frame);
-    features(on, frame, this.visible);
-    if (this.visible.has('things')) boxes(on, frame, width, height);
+    const on: marks.Canvas = { draw, w, h, ratio, colour: (name) => style.getPropertyValue(name) };
+    if (this.visible.has('moving')) marks.outlines(on, frame);
+    marks.features(on, frame, this.visible);
+    if (this.visible.has('things')) marks.boxes(on, frame, width, height);
   }
 
   private movable(): void {

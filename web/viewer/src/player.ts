@@ -1,4 +1,4 @@
-// What is shown: the latest state (attached), or one of the past, standing still or playing on.
+// Selects the state to show: the latest one (attached), or a past one, paused or playing.
 import { decode, History, HISTORY, State } from '@alidade/scene';
 import type { Message } from '@alidade/scene';
 
@@ -6,17 +6,17 @@ export class Player {
   history: History;
   latest = new State(); // the sum of all messages
   shown = this.latest;
-  index = -1; // of the last message that is in `shown`
+  index = -1; // index of the last message included in `shown`
   attached = true;
   playing = false;
   speed = 1;
-  private debt = 0; // seconds of the recording to be played
+  private debt = 0; // seconds of the recording still to be played
 
   constructor(private readonly budget = HISTORY.budget) {
     this.history = new History({ ...HISTORY, budget });
   }
 
-  // Another run.
+  // Clears everything for another run.
   reset(): void {
     this.history = new History({ ...HISTORY, budget: this.budget });
     this.latest = new State();
@@ -44,7 +44,7 @@ export class Player {
     this.index = this.history.last;
   }
 
-  // Stands still at what is shown now.
+  // Pauses at the state shown now.
   detach(): void {
     if (!this.attached) return;
     this.attached = false;
@@ -52,7 +52,7 @@ export class Player {
     this.shown = this.latest.clone();
   }
 
-  // To the last frame whose number is not above.
+  // Seeks to the last frame up to this number.
   seek(number: number): void {
     const { frames } = this.history;
     let at = 0;
@@ -77,14 +77,15 @@ export class Player {
     this.playing = true;
   }
 
-  // Some time has gone by. Returns whether something else is shown now; at the end it attaches when `toLatest`, else stops.
+  // Advances playback by `seconds`. Returns whether another frame is shown. At the end it attaches when `toLatest`,
+  // else stops.
   tick(seconds: number, toLatest: boolean): boolean {
     if (!this.playing) return false;
     const { frames } = this.history;
     this.debt += seconds * this.speed;
     let at = this.frame();
     const from = at;
-    // Pauses of the recording longer than a second are shortened to one.
+    // gaps in the recording are shortened to one second
     for (; at + 1 < frames.length; ++at) {
       const lasts = Math.min(1, Math.max(0, frames[at + 1].time - frames[at].time));
       if (lasts > this.debt) break;
@@ -99,7 +100,7 @@ export class Player {
     return at !== from;
   }
 
-  // Index into history.frames of what is shown.
+  // Index into history.frames of the frame shown.
   frame(): number {
     const { frames } = this.history;
     let low = 0;
@@ -114,7 +115,7 @@ export class Player {
   private showFrame(at: number, goesOn = false): void {
     const { frames } = this.history;
     const i = Math.max(0, Math.min(frames.length - 1, at));
-    // What a frame changed in the map is told before it; after the last one what was done at the end.
+    // A frame's map changes precede its message; after the last frame include the final changes.
     const end = i + 1 < frames.length ? frames[i].index : this.history.last;
     this.attached = false;
     if (!goesOn) this.playing = false;
@@ -124,7 +125,7 @@ export class Player {
   private show(index: number): void {
     const from = this.shown === this.latest ? undefined : this.shown;
     this.shown = this.history.at(index, from, this.index);
-    this.shown.hello = this.latest.hello; // the truth of a rendered recording is told at its end
+    this.shown.hello = this.latest.hello; // the ground truth of a rendered recording arrives at its end
     this.index = index;
   }
 }

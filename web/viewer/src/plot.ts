@@ -1,11 +1,11 @@
-// Milliseconds of each stage over the last frames.
+// Processing time of each stage over the last frames, in milliseconds.
 import uPlot from 'uplot';
 import { STAGES } from '@alidade/scene';
-import { byId, make } from './dom.ts';
+import { byId, make } from '../../shared/src/dom.ts';
 import type { Player } from './player.ts';
 
 const FRAMES = 240;
-// Stages that run on each frame are lines, the others (now and then) are dots.
+// Lines for stages that run on every frame, dots for the others.
 const SERIES: { stage: number; colour: string; dots: boolean }[] = [
   { stage: 0, colour: '--ink', dots: false }, { stage: 1, colour: '--path', dots: false }, { stage: 2, colour: '--matched', dots: false },
   { stage: 3, colour: '--fresh', dots: true }, { stage: 4, colour: '--truth', dots: true }, { stage: 5, colour: '--soft', dots: true },
@@ -23,7 +23,7 @@ export class Plot {
     new ResizeObserver(() => this.make()).observe(this.place);
   }
 
-  // Of the player's frames those up to the one that is shown.
+  // The player's frames up to the one shown.
   update(player: Player): void {
     const { frames } = player.history;
     const end = frames.length > 0 ? player.frame() + 1 : 0;
@@ -34,14 +34,14 @@ export class Plot {
     this.dirty = true;
   }
 
-  // Another run: nothing of the old one is left.
+  // Clears everything for another run.
   forget(): void {
     this.frames = [];
     this.shown = '';
     this.dirty = true;
   }
 
-  // Coloured anew, as after light has become dark.
+  // Recreates the chart, for example after a change of the theme.
   make(): void {
     const width = this.place.clientWidth;
     if (!width) return;
@@ -80,13 +80,13 @@ export class Plot {
   }
 }
 
-// The axis ends at 1, 2 or 5 times a power of ten, so that it stays as it is for long.
+// Rounds up to 1, 2 or 5 times a power of ten, so that the axis rarely changes.
 function nice(most: number): number {
   const power = 10 ** Math.floor(Math.log10(Math.max(1, most)));
   return [1, 2, 5, 10].map((k) => k * power).find((end) => end >= most) ?? most;
 }
 
-// Of an axis with these labels, pixels.
+// Width of an axis with these labels, pixels.
 function widthOf(_: uPlot, labels: string[] | null): number {
   return Math.max(30, 10 + 7 * Math.max(0, ...(labels ?? []).map((label) => label.length)));
 }

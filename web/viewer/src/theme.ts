@@ -1,5 +1,5 @@
-// Light or dark: as the system says, until somebody chooses.
-import { byId } from './dom.ts';
+// Light or dark theme: the system's until the user chooses.
+import { byId } from '../../shared/src/dom.ts';
 
 const KEY = 'alidade-theme';
 
@@ -10,7 +10,7 @@ export function onTheme(changed: () => void): void {
   try {
     chosen = localStorage.getItem(KEY);
   } catch {
-    // storage is switched off: nothing is remembered
+    // storage is disabled: the choice is not stored
   }
   const apply = () => {
     root.dataset.theme = chosen ?? (system.matches ? 'dark' : 'light');

@@ -1,11 +1,11 @@
-// The time line: what became of each frame, events as marks, and a handle to go back.
+// Timeline: the state of each frame, events as marks, and a handle to seek.
 import { STATES } from '@alidade/scene';
 import type { State } from '@alidade/scene';
-import { byId, write } from './dom.ts';
+import { byId, write } from '../../shared/src/dom.ts';
 import type { Player } from './player.ts';
 import { clock, eventText } from './words.ts';
 
-const RANK = { tracking: 0, initialising: 1, lost: 2 }; // of the frames that fall on one pixel the worst is shown
+const RANK = { tracking: 0, initialising: 1, lost: 2 }; // each pixel shows the worst state of its frames
 
 export class Timeline {
   private readonly canvas = byId('timeline-canvas') as HTMLCanvasElement;
@@ -23,7 +23,7 @@ export class Timeline {
     }).observe(this.canvas);
   }
 
-  // Coloured anew, as after light has become dark.
+  // Redraws, for example after a change of the theme.
   refresh(): void {
     this.drawn = '';
     this.update();
@@ -50,7 +50,7 @@ export class Timeline {
     return (state.latest?.time ?? first) - first;
   }
 
-  // The greatest frame number of the axis.
+  // The largest frame number of the axis.
   private end(): number {
     const { latest } = this.player();
     const last = latest.path.length > 0 ? latest.path.at(latest.path.length - 1).number : 0;
@@ -80,7 +80,7 @@ export class Timeline {
       const x = Math.floor((frame / (end + 1)) * w);
       for (let k = 0; k < wide && x + k <= w; ++k) if (x + k >= 0) columns[x + k] = Math.max(columns[x + k], RANK[STATES[state]]);
     });
-    // Height says it too: tracked is full, starting half, lost full with gaps.
+    // The bar's height differs too: tracking full, initializing half, lost full with gaps.
     for (let x = 0; x < w; ++x) {
       if (columns[x] < 0) continue;
       if (columns[x] === RANK.tracking) {

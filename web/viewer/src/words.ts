@@ -1,7 +1,6 @@
-// What the program says, for people: what is going on, and what to do about it.
-import type { Event, Frame, State, TrackingState } from '@alidade/scene';
-
-export const STATE_WORDS: Record<TrackingState, string> = { initialising: 'Starting', tracking: 'Tracking', lost: 'Lost' };
+// Texts for users: what the program is doing, and what to do.
+import type { Event, Frame, State } from '@alidade/scene';
+import { sentence } from '../../shared/src/words.ts';
 
 const ADVICE: readonly [RegExp, string][] = [
   [/hardly moves/, 'Move the camera sideways, slowly.'],
@@ -28,17 +27,13 @@ export function reasonText(frame: Frame): string {
   return [sentence(frame.reason), guess || advice(frame.reason)].filter(Boolean).join(' ');
 }
 
-// When there is nothing more to come.
+// For the end of the run.
 export function endText({ hello, frame, latest, keyframes }: State): { word: string; reason: string } {
   if (!frame && hello && hello.frames < 0 && !hello.live) return { word: 'Map', reason: 'As it was saved.' };
   const why = sentence(frame?.reason ?? '');
   if (latest?.state === 'tracking') return { word: 'Ended', reason: 'Tracked to the last frame.' };
   if (keyframes.size === 0) return { word: 'Ended', reason: `It did not start. ${why}`.trimEnd() };
   return { word: 'Ended', reason: `Lost at the last frame. ${why}`.trimEnd() };
-}
-
-function sentence(text: string): string {
-  return text && `${text.charAt(0).toUpperCase()}${text.slice(1)}.`;
 }
 
 export function clock(seconds: number): string {
@@ -52,7 +47,7 @@ export const EVENT_WORDS = {
   new_map: 'New map', given_up: 'Map given up', cut: 'Cut in the recording', warning: 'Warning', finished: 'Finished',
 } as const;
 
-// Some events say in their text what they are.
+// Some event texts already contain the kind of event.
 export function eventText({ what, text }: Event): string {
   const word = EVENT_WORDS[what];
   if (!text || text.toLowerCase() === word.toLowerCase()) return word;

@@ -1,12 +1,12 @@
-// The kinds of marks in the camera picture can be told apart, also by the colour-blind.
+// Kinds of marks in the camera image are distinguishable, also for color-blind users.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { test } from 'node:test';
 
-declare const WEB: string; // by tools/test.mjs
+declare const WEB: string; // defined by tools/test.mjs
 
-// What is left of linear RGB without one of the three cones: Machado, Oliveira & Fernandes 2009, severity 1.
+// Matrices on linear RGB that simulate the loss of one kind of cone: Machado, Oliveira & Fernandes 2009, severity 1.
 const SIGHT: Record<string, number[]> = {
   all: [1, 0, 0, 0, 1, 0, 0, 0, 1],
   protanopia: [0.152286, 1.052583, -0.204868, 0.114503, 0.786281, 0.099216, -0.003882, -0.048116, 1.051998],
@@ -27,7 +27,7 @@ function lab(rgb: number[]): number[] {
 }
 
 test('marks of different kinds are at least 20 apart in CIELAB, whatever cones one has', () => {
-  const css = readFileSync(join(WEB, 'viewer/src/palette.css'), 'utf8');
+  const css = readFileSync(join(WEB, 'shared/src/palette.css'), 'utf8');
   const kinds = ['matched', 'fresh', 'moving', 'things'];
   const colours = kinds.map((kind) => linear(new RegExp(`--${kind}: (#[0-9a-f]{6})`).exec(css)![1]));
   for (const [name, sight] of Object.entries(SIGHT)) {

@@ -1,13 +1,13 @@
-// A large map: 2,000 keyframes, 500,000 points. Times are told, not asserted.
+// A large map: 2,000 keyframes, 500,000 points. Times are reported, not asserted.
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import type { MapChange, Message } from '@alidade/scene';
 import { encode } from '../../scene/test/encode.ts';
 import { Random } from '../../scene/test/sample.ts';
-import { launch, open, SKIP } from './browser.ts';
+import { launch, open, SKIP } from '../../shared/test/browser.ts';
 import { startServer } from './server.ts';
 
-const KEYFRAMES = 2000, LANDMARKS = 125, POINTS = 125; // landmarks and semi-dense points of each
+const KEYFRAMES = 2000, LANDMARKS = 125, POINTS = 125; // landmarks and semi-dense points per keyframe
 
 function large(): Message {
   const random = new Random(2);
@@ -73,7 +73,7 @@ test('a large map is shown, and can be turned', { skip: SKIP, timeout: 300e3 }, 
   }
   await page.mouse.up();
   t.diagnostic(`${(await pictures).toFixed(1)} pictures a second while turning`);
-  // What a picture costs with one layer alone, all its points.
+  // Time per image with one layer and all its points.
   for (const layer of ['landmarks', 'cloud', 'keyframes', 'path', 'covisibility', 'none']) {
     const ms = await page.evaluate(async (only) => {
       const { alidade } = window as unknown as { alidade: { scene: { show(name: string, on: boolean): void; layers: object; measure(): number } } };

@@ -1,9 +1,9 @@
-// The page in a real browser, with the sample's stream: what is drawn is what the sample says.
+// Tests the page in a real browser with the sample's stream: compares what is drawn with the sample.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Browser } from 'playwright-core';
 import type { LayerName } from '@alidade/scene';
-import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from './browser.ts';
+import { CHROMIUM, count, differing, frames, launch, open, sceneOnly, SKIP, violations } from '../../shared/test/browser.ts';
 import { encode } from '../../scene/test/encode.ts';
 import { startServer } from './server.ts';
 import type { Server, ServerSettings } from './server.ts';
@@ -26,7 +26,7 @@ async function serve(settings: ServerSettings): Promise<Server> {
   return server;
 }
 
-// The page's own view of things, as a test may ask for it.
+// The page's internal state, exposed for tests.
 interface Debug {
   state: {
     keyframes: Map<number, { T_world_camera: number[]; scale: number }>;
@@ -91,7 +91,8 @@ test('landmarks are drawn where they are: a dot within 2 pixels of each, nothing
     await page.keyboard.press('f');
     await page.waitForTimeout(1500);
     const picture = await sceneOnly(page);
-    const world = [...server.sample.points.keys()].map((id) => server.sample.worldOf(id)); // by the sample, not by the page
+    // Computed by the sample, not by the page.
+    const world = [...server.sample.points.keys()].map((id) => server.sample.worldOf(id));
     const at = await page.evaluate((points) => points.map((p) => window.alidade.project(p)), world);
     const ground = picture.at(2, 2);
     const dotted = (x: number, y: number) => {
@@ -105,12 +106,12 @@ test('landmarks are drawn where they are: a dot within 2 pixels of each, nothing
     const inside = at.filter((p) => p && p.x > 5 && p.y > 5 && p.x < picture.width - 6 && p.y < picture.height - 6) as { x: number; y: number }[];
     assert.ok(inside.length > 300, `${inside.length}`);
     assert.equal(inside.filter((p) => !dotted(p.x, p.y)).length, 0);
-    // Dots and nothing else: what is far from all of them is empty.
+    // No other dots: positions far from all landmarks are empty.
     let stray = 0;
     for (let y = 10; y < picture.height; y += 11) for (let x = 10; x < picture.width; x += 11) {
       if (inside.every((p) => Math.hypot(p.x - x, p.y - y) > 6) && dotted(x, y)) ++stray;
     }
-    assert.ok(stray <= 3, `${stray}`); // of landmarks at the border
+    assert.ok(stray <= 3, `${stray}`); // landmarks at the border
   }
   await page.context().close();
 });
@@ -127,8 +128,8 @@ test('the camera picture shows what became of features, boxes and outlines, each
   assert.ok(detections.length === 1 && outlines.length === 1 && uses[1] > 20 && uses[3] > 3, `${uses}`);
   for (const [use, name] of ['free', 'matched', 'fresh', 'moving'].entries()) assert.equal(await page.textContent(`#use-${name}`), String(uses[use]));
   assert.equal(await page.textContent('#use-things'), '1');
-  assert.equal(await page.textContent('#things-age'), '0.3 s ago'); // 0.25
-  // How many pixels of the canvas other than without it; the marks are drawn alone, one after the other.
+  assert.equal(await page.textContent('#things-age'), '0.3 s ago'); // from 0.25
+  // Number of canvas pixels that differ from an empty canvas; the kinds of marks are drawn one at a time.
   const pixels = () => page.evaluate(() => {
     const canvas = document.getElementById('picture-canvas') as HTMLCanvasElement;
     const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
@@ -163,9 +164,9 @@ test('all maps are drawn, others than the one the camera is in faintly', options
   await page.keyboard.press('2');
   await page.keyboard.press('f');
   await page.waitForTimeout(1500);
-  assert.equal(await page.isVisible('[data-layer=others]'), false); // there is but one map
+  assert.equal(await page.isVisible('[data-layer=others]'), false); // there is only one map
   const one = await sceneOnly(page);
-  // Another map: its one keyframe has landmarks around the origin.
+  // Add another map: one keyframe with landmarks around the origin.
   const keyframe = { ...server.sample.keyframes.get(0)!, id: 5000, map: 7, parent: 0xffffffff, covisible: [], loops: [] };
   const landmarks = new DataView(new ArrayBuffer(20 * 400));
   for (let i = 0; i < 400; ++i) {
@@ -179,17 +180,17 @@ test('all maps are drawn, others than the one the camera is in faintly', options
   await page.waitForFunction(() => window.alidade.state.keyframes.has(5000));
   const two = await sceneOnly(page);
   assert.ok(differing(two, one) > 300, `${differing(two, one)}`);
-  // Fainter: nearer to the ground than what is drawn of the first.
+  // Fainter: closer to the background than points of the first map.
   const ground = one.at(2, 2);
   const strength = (p: number[]) => Math.hypot(...p.map((value, k) => value - ground[k]));
   let full = 0;
-  const more: number[] = []; // pixels that were ground before
+  const more: number[] = []; // pixels that were background before
   for (let y = 0; y < one.height; ++y) for (let x = 0; x < one.width; ++x) {
     full = Math.max(full, strength(one.at(x, y)));
     if (strength(one.at(x, y)) === 0 && strength(two.at(x, y)) > 0) more.push(strength(two.at(x, y)));
   }
   const faint = more.filter((value) => value > 0.1 * full && value < 0.5 * full).length;
-  // The view comes to rest by less than is worth drawing: a dot in fifty is one pixel on.
+  // The view's animation stops when changes are no longer visible, so a few dots may be one pixel off.
   assert.ok(faint > 300 && faint > 0.9 * more.length, `${faint} of ${more.length}`);
   await page.setChecked('[data-layer=others]', false);
   assert.ok(differing(await sceneOnly(page), one) < 0.2 * faint);
@@ -264,20 +265,20 @@ test('a program that ends is noticed; one that starts again is shown', options, 
   await page.waitForFunction(() => document.body.dataset.connection === 'open');
   server.advance(160);
   await frames(page, 160);
-  await page.fill('#seek', '120'); // somebody looks at the past, and turns the view
+  await page.fill('#seek', '120'); // the user looks at the past and moves the view
   await page.waitForFunction(() => document.body.dataset.shown === 'past');
   await page.click('[data-view=orbit]');
   await server.close();
   await page.waitForSelector('#notice:not([hidden])');
   assert.match((await page.textContent('#notice'))!, /No connection/);
-  assert.equal(await count(page, 'frames'), 121); // what was told stays
+  assert.equal(await count(page, 'frames'), 121); // the received messages remain
   const again = await serve({ sample: { ...SMALL, seed: 5, pictures: false }, speed: 0, port: server.port });
   await page.waitForFunction(() => document.body.dataset.connection === 'open', undefined, { timeout: 30e3 });
   again.advance(20);
   await page.waitForFunction(() => document.querySelector('[data-count=frames]')!.textContent === '20');
   assert.equal(await page.isHidden('#notice'), true);
   assert.equal(await page.evaluate(() => window.alidade.state.path.length), 20);
-  // Nothing of the old run is left: its past, events, picture, map.
+  // Nothing of the old run remains: its past, events, image, map.
   assert.equal(await page.getAttribute('body', 'data-shown'), 'now');
   assert.equal(await page.evaluate(() => window.alidade.player.history.frames.length), 20);
   assert.equal(await page.evaluate(() => window.alidade.state.landmarks.size), again.sample.points.size);

@@ -1,18 +1,20 @@
-// The page and the real program: what the page shows is what the program's files say.
+// Tests the page with the real program: compares what the page shows with the program's files.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Browser, Page } from 'playwright-core';
 import type { State } from '@alidade/scene';
-import { count, frames, launch, open, violations } from './browser.ts';
-import type { Opened } from './browser.ts';
-import { BINARY, endAll, inFolder, NO_PROGRAM, run, start, table } from './program.ts';
+import { count, frames, launch, open, violations } from '../../shared/test/browser.ts';
+import type { Opened } from '../../shared/test/browser.ts';
+import { BINARY, endAll, inFolder, NO_PROGRAM, run, start, table } from '../../shared/test/program.ts';
 
 const options = { skip: NO_PROGRAM, timeout: 600e3 };
 const ROOM = 'synth:room?frames=150';
 const LONG = 'synth:room?frames=600'; // not run to its end
-const LANDMARK_MOVED = 0.001; // stream/settings.h: told again when moved by more, of the distance to its keyframe
+// Stream/settings.h: landmarks are sent again when they moved by more than this share of the distance to their
+// keyframe.
+const LANDMARK_MOVED = 0.001;
 const DATA = process.env.ALIDADE_DATA;
 
 let browser: Browser;
@@ -24,7 +26,7 @@ after(async () => {
   await endAll();
 });
 
-// Nothing was complained of, and nothing asked of anybody else. A connection that is gone is said by the browser itself.
+// No errors and no requests to other hosts. The browser itself reports lost connections.
 function assertClean({ problems, requests }: Opened, address: string): void {
   assert.deepEqual(problems.filter((text) => !/WebSocket connection to .* failed/.test(text)), []);
   const origin = new URL(address).origin;
@@ -32,7 +34,8 @@ function assertClean({ problems, requests }: Opened, address: string): void {
   assert.deepEqual(requests.filter((url) => !own(url)), []);
 }
 
-// How many colours the camera picture has: one that is not drawn has those of the features. Read off a copy, which may be read.
+// Number of distinct colors in the camera image; without an image only the features' colors. Counted on a readable
+// copy.
 const colours = (page: Page) => page.evaluate(() => {
   const canvas = document.getElementById('picture-canvas') as HTMLCanvasElement;
   const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext('2d', { willReadFrequently: true })!;
@@ -104,14 +107,15 @@ const told = (page: Page): Promise<Told> => page.evaluate(() => {
   return { keyframes: keyframes.map(({ number, time, T_world_camera }) => ({ number, time, T: [...T_world_camera] })), landmarks };
 });
 
-// Against the files of the run.
+// Compares with the files of the run.
 function assertRight({ keyframes, landmarks }: Told, folder: string): void {
   const saved = table(join(folder, 'keyframes.txt'));
   assert.equal(keyframes.length, saved.length);
   keyframes.forEach(({ time, T }, i) => {
     const [at, ...pose] = saved[i];
     assert.ok(Math.abs(time - at) < 1e-5, `${time} is not ${at}`);
-    const sign = Math.sign(T[0] * pose[3] + T[1] * pose[4] + T[2] * pose[5] + T[3] * pose[6]); // q and -q are one rotation
+    // Q and -q are the same rotation.
+    const sign = Math.sign(T[0] * pose[3] + T[1] * pose[4] + T[2] * pose[5] + T[3] * pose[6]);
     const page = [T[4], T[5], T[6], ...T.slice(0, 4).map((value) => sign * value)];
     page.forEach((value, k) => assert.ok(Math.abs(value - pose[k]) < 1e-6, `keyframe ${i}: ${page} is not ${pose}`));
   });
@@ -141,7 +145,7 @@ test('a recorded run is replayed: its end is the saved map, what was before is t
   assert.equal(await page.getAttribute('body', 'data-shown'), 'past');
   assert.ok(await count(page, 'keyframes') < keyframes && await count(page, 'landmarks') < landmarks && await count(page, 'keyframes') > 0);
   assert.equal(await stateWord(page), 'Tracking');
-  // The truth is known then too, though a rendered recording tells it at its end.
+  // The ground truth is known here as well, although a rendered recording sends it at its end.
   assert.equal(await page.evaluate(() => (window as unknown as { alidade: { state: State } }).alidade.state.hello!.truth.length), 150);
   assert.deepEqual(await violations(page), []);
   assertClean(opened, program.address);
@@ -168,7 +172,7 @@ test('a program that was killed and started again at the same port is noticed, a
   first.kill('SIGKILL');
   await page.waitForSelector('#notice:not([hidden])');
   assert.match((await page.textContent('#notice'))!, /No connection/);
-  assert.ok(await count(page, 'frames') >= 20); // what was told stays
+  assert.ok(await count(page, 'frames') >= 20); // the received messages remain
   await first.ended;
   const again = await start('run', LONG, '--viewer', String(first.port), '--out', inFolder('again'));
   assert.equal(again.port, first.port);
@@ -190,7 +194,8 @@ test('the program is paused, stepped and let go on', options, async () => {
   await page.click('#play');
   await page.waitForSelector('body.paused');
   let stood = -1;
-  for (let now = await count(page, 'frames'); now !== stood; now = await count(page, 'frames')) { // what was on its way comes yet
+  // Until messages in flight have arrived.
+  for (let now = await count(page, 'frames'); now !== stood; now = await count(page, 'frames')) {
     stood = now;
     await page.waitForTimeout(3000);
   }

@@ -1,9 +1,10 @@
-// report.html and compare.html as somebody opens them: from the disk, on a screen or a phone, in light and dark, with and without scripts.
+// report.html and compare.html opened as files, on a screen and on a phone, in light and dark, with and without
+// scripts.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
-import { differing, launch, open, screenshot, violations } from './browser.ts';
-import { endAll, inFolder, NO_PROGRAM, run } from './program.ts';
+import { differing, launch, open, screenshot, violations } from '../../shared/test/browser.ts';
+import { endAll, inFolder, NO_PROGRAM, run } from '../../shared/test/program.ts';
 
 const options = { skip: NO_PROGRAM, timeout: 600e3 };
 const PHONE = { viewport: { width: 400, height: 800 } };
@@ -74,7 +75,7 @@ for (const name of PAGES.slice(0, 2)) {
     assert.ok(differing(turned, await canvas(page)) > 500);
     await page.click('#turn button[data-view=behind]');
     await page.locator('#turn canvas').blur();
-    assert.ok(differing(first, await canvas(page)) < 200); // where it began
+    assert.ok(differing(first, await canvas(page)) < 200); // back at the initial view
     assert.deepEqual(problems, []);
     await page.context().close();
   });

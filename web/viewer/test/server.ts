@@ -1,4 +1,4 @@
-// What the program does towards a browser, with a sample stream: the pages with their policy, info.json, the stream or the file.
+// Imitates the program's server with a sample stream: the pages with their policy, info.json, the stream or the file.
 import { readFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import type { AddressInfo, Socket } from 'node:net';
@@ -10,7 +10,7 @@ import { encode } from '../../scene/test/encode.ts';
 import { Sample } from '../../scene/test/sample.ts';
 import type { SampleSettings } from '../../scene/test/sample.ts';
 
-declare const WEB: string; // by tools/test.mjs
+declare const WEB: string; // defined by tools/test.mjs
 
 export const POLICY = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; script-src 'self'; style-src 'self'; " +
   "img-src 'self'; connect-src 'self'; require-trusted-types-for 'script'; trusted-types 'none'";
@@ -23,9 +23,9 @@ export interface ServerSettings {
   port?: number;
   mode?: 'live' | 'replay';
   file?: string;
-  speed?: number; // times real time; 0: frames only when told
+  speed?: number; // times real time; 0: frames are sent on request only
   sample?: SampleSettings;
-  start?: number; // frames that have been before anybody looked
+  start?: number; // number of frames sent before the first client
 }
 
 export interface Server {

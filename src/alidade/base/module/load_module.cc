@@ -13,21 +13,22 @@ std::vector<std::string> PlacesToLook(const std::string& file) {
   std::vector<std::string> places;
   const auto add = [&](const fs::path& binary) {
     const fs::path folder = binary.parent_path();
-    places.push_back((folder / file).string());             // what holds both: a Python wheel
-    places.push_back((folder / "../lib" / file).string());  // the build folder
-    places.push_back((folder / ALIDADE_MODULES / file).string());  // an installed library
+    places.push_back((folder / file).string());  // beside the loading binary, e.g. a Python wheel
+    places.push_back((folder / "../lib" / file).string());         // build folder
+    places.push_back((folder / ALIDADE_MODULES / file).string());  // installed shared library
     places.push_back(
-        (folder / ".." / ALIDADE_LIBDIR / ALIDADE_MODULES / file).string());  // program
+        (folder / ".." / ALIDADE_LIBDIR / ALIDADE_MODULES / file).string());  // installed program
   };
   std::error_code error;
-  // What holds this code first: beside Python's interpreter may lie modules of another version.
+  // The binary that contains this code comes first: the folder of the Python interpreter may
+  // contain modules of another version.
   Dl_info here{};
   if (dladdr(reinterpret_cast<void*>(&LoadModule), &here) != 0 && here.dli_fname != nullptr) {
     add(fs::absolute(here.dli_fname, error));
   }
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) add(program);
-  places.push_back(file);  // on the search path of who is linked with the static library
+  places.push_back(file);  // the loader's search path, for programs that link the static library
   places.push_back(std::string(ALIDADE_INSTALLED) + "/" + file);
   return places;
 }
@@ -41,7 +42,8 @@ LoadedModule LoadModule(const std::string& file, const std::vector<std::string>&
     if (place.find('/') != std::string::npos && !fs::exists(place, error)) continue;
     void* handle = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
-      // The last place is the system's: that the file isn't there says less than what went before.
+      // Keep the first error: the last place is the system path, where "file not found" says
+      // little.
       if (problem.empty()) problem = dlerror();
       continue;
     }

@@ -1,6 +1,6 @@
-// Loads a part of the program that lives in a shared library of its own, because linking what it
-// stands on would cost every start (77 MB and 0.1 s for OpenCV's media), or because most runs do
-// without it (its networks).
+// Loads optional parts of the program from shared libraries at run time. Linking them would slow
+// down every start (OpenCV's media libraries: 77 MB and 0.1 s), and most runs do not need them
+// (OpenCV's networks).
 #pragma once
 
 #include <string>
@@ -9,13 +9,14 @@
 namespace alidade {
 
 struct LoadedModule {
-  std::vector<void*> symbols;  // one for each name asked for; empty when there is a problem
-  std::string problem;         // why there is none, one line
+  std::vector<void*> symbols;  // one per requested name; empty on failure
+  std::string problem;         // one line that says why loading failed
 };
 
-// Looks beside what holds this code (the program, or a library such as a Python module), in the
-// folder of modules below the library folder next to it, where the system keeps libraries, and
-// where this version was meant to be installed. Never unloaded: call it once.
+// Searches, in this order: the folder of the binary that contains this code (the program, or a
+// library such as a Python module), the module folder below the neighboring library folder, the
+// system's library path, and the installation folder of this version. The module is never unloaded,
+// so call this once per module. Does not throw: failures are in `problem`.
 LoadedModule LoadModule(const std::string& file, const std::vector<std::string>& names);
 
 }  // namespace alidade

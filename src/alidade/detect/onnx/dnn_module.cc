@@ -8,9 +8,10 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kLongest = 200;  // characters of a reason
+constexpr size_t kLongest = 200;  // characters of an error message
 
-// The text between `before` and the first of `ends` after it; "" when it isn't there.
+// The text between `before` and the first of the characters `ends` after it; "" when `before` is
+// missing.
 std::string Between(const std::string& text, const std::string& before, const char* ends) {
   const size_t at = text.find(before);
   if (at == std::string::npos) return "";
@@ -18,11 +19,10 @@ std::string Between(const std::string& text, const std::string& before, const ch
   return text.substr(from, text.find_first_of(ends, from) - from);
 }
 
-// What a damaged file may have put into it stays out.
+// Removes unprintable characters, which may come from a damaged file, and shortens the text.
 std::string Shown(const std::string& text) { return Printable(text).substr(0, kLongest); }
 
-// OpenCV's reasons go over several lines and name its source files: what a user can make use of,
-// which is the operator it stumbled over, in one line.
+// Reduces OpenCV's multi-line message to one line that names the unsupported operator.
 std::string Reason(const cv::Exception& error) {
   const std::string text = error.what();
   std::string operation = Between(text, "Node [", "@]");
@@ -33,7 +33,7 @@ std::string Reason(const cv::Exception& error) {
   return line.empty() ? "an unknown reason" : line;
 }
 
-// Whatever `run` throws, as a reason.
+// Runs `run` and returns the reason when it throws, else "".
 template <typename Function>
 std::string ReasonOf(const Function& run) {
   try {
@@ -53,7 +53,7 @@ std::string ReasonOf(const Function& run) {
 class DnnNetwork : public Network {
  public:
   explicit DnnNetwork(const cv::dnn::Net& net) : net_(net) {
-    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);  // the same bits wherever it runs
+    net_.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);  // gives the same bits on every machine
     net_.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
     names_ = net_.getUnconnectedOutLayersNames();
   }
@@ -83,7 +83,8 @@ using alidade::DnnNetwork, alidade::Network, alidade::ReasonOf;
 extern "C" __attribute__((visibility("default"))) Network* alidade_dnn_open(const char* bytes,
                                                                             size_t size,
                                                                             std::string* problem) {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);  // we say it ourselves
+  // The caller reports the problem.
+  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   std::unique_ptr<Network> network;
   *problem = ReasonOf(
       [&] { network = std::make_unique<DnnNetwork>(cv::dnn::readNetFromONNX(bytes, size)); });

@@ -19,7 +19,8 @@ constexpr char kAdvice[] =
     "; networks of the YOLOv5 and YOLOX families can be, others may need the layers of a newer "
     "OpenCV";
 
-// Refused by size or start before there is memory for it: a sparse file takes none on the disk.
+// Checks size and first bytes before it allocates memory, because a sparse file can be large
+// without using disk space.
 std::string ReadNetworkFile(const std::string& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);

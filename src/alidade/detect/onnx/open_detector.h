@@ -1,4 +1,4 @@
-// A detector from an ONNX file of the YOLO family.
+// Opens a detector from an ONNX file of the YOLO family.
 #pragma once
 
 #include <memory>
@@ -10,10 +10,11 @@
 
 namespace ALIDADE_API alidade {
 
-// Reads the file and runs the network once on a grey picture, so that what cannot work fails here:
-// throws Error (input) naming the file when it is missing, no ONNX, damaged, needs an operator that
-// OpenCV doesn't have, or gives outputs that are no known detector's or not finite. So does Detect.
-// Which files work, and how colours and sizes are chosen: docs/detectors.md.
+// Reads the file and runs the network once on a gray image, so that unusable files fail here.
+// Throws Error (input) naming the file when it is missing, damaged or not ONNX, needs an operator
+// that OpenCV lacks, or has outputs that are not finite or not those of a known detector. Detect()
+// throws likewise. docs/guides/detectors.md lists supported files and explains the choice of color order
+// and size.
 std::unique_ptr<Detector> OpenDetector(const std::string& path,
                                        const DetectorSettings& settings = {});
 

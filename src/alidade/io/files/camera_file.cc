@@ -19,7 +19,7 @@ double Positive(const YamlFile& file, const YAML::Node& parent, const char* key)
   return value;
 }
 
-// A name that means nothing may be a misspelt one: `distorsion` must not silently mean no
+// Warns of unknown keys, which may be misspelled: `distorsion` must not silently mean no
 // distortion.
 void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool right) {
   static constexpr std::array kCommon = {"model", "width", "height", "fx",
@@ -65,7 +65,8 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
   return raw;
 }
 
-// One number: from the top row to the bottom row; two: [left to right, top to bottom].
+// One number: time from the top row to the bottom row. Two numbers: [left to right, top to bottom].
+// Seconds.
 std::array<double, 2> ReadReadout(const YamlFile& file, const YAML::Node& node) {
   if (!node.IsSequence()) return {0, file.Number(node, "readout")};
   const auto both = file.Numbers(node, "readout");

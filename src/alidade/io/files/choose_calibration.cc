@@ -31,7 +31,7 @@ double AssumedFov(cv::Size size) {
 }
 
 double FovOfFocalLength35(double millimetres, cv::Size size) {
-  constexpr double kDiagonal35 = 43.266615;  // mm, of 36 x 24
+  constexpr double kDiagonal35 = 43.266615;  // mm, the diagonal of a 36 x 24 frame
   const double focal = millimetres / kDiagonal35 * std::hypot(size.width, size.height);
   return 360 / std::numbers::pi * std::atan(size.width / (2 * focal));
 }
@@ -46,7 +46,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
   }
   ChosenCalibration chosen;
   double assumed = AssumedFov(size);
-  // From fisheyes to telescopes: what else is written there is no focal length.
+  // Values outside the range from fisheye to telephoto lenses are not focal lengths.
   if (!options.fov_degrees && focal_length_35 >= kShortest35 && focal_length_35 <= kLongest35) {
     assumed = FovOfFocalLength35(focal_length_35, size);
     char text[60];
@@ -55,7 +55,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
   }
   chosen.calibration =
       GuessedCalibration(size.width, size.height, options.fov_degrees.value_or(assumed));
-  if (found) {  // what a field of view says nothing about
+  if (found) {  // properties that do not depend on the field of view
     chosen.calibration.baseline = found->baseline;
     chosen.calibration.fps = found->fps;
     chosen.calibration.depth_factor = found->depth_factor;

@@ -1,4 +1,5 @@
-// Which calibration counts: what the user gave, what lies beside the images, or a guess.
+// Chooses the calibration: the user's, the one found beside the images, or an assumed field of
+// view.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,21 +12,24 @@ namespace alidade {
 
 struct ChosenCalibration {
   Calibration calibration;
-  bool guessed = false;   // nothing was known, or a field of view that is only a guess
-  std::string lens_told;  // SourceInfo's
+  bool guessed = false;   // no calibration was found, or the field of view is only approximate
+  std::string lens_told;  // see SourceInfo
 };
 
-// Horizontal field of view in degrees that is assumed when nothing is known. A phone's is that of
-// its longer side: of an upright picture, the horizontal one is 2 atan(width / height tan(fov /
-// 2)), 40 degrees for 9:16. Taken for the horizontal one, 66 makes a walk of a turn on the spot.
+// Horizontal field of view in degrees that is assumed without a calibration. kDefaultFovDegrees
+// applies to the longer side; for an upright image the horizontal one is 2 atan(width / height
+// tan(fov / 2)), 40 degrees at 9:16. Taking 66 degrees as the horizontal field of view would make a
+// translation look like a rotation.
 double AssumedFov(cv::Size size);
 
-// Of the full picture of a lens with that focal length in 35 mm equivalents: f = f35 × diagonal /
-// 43.27 mm (CIPA DCG-001), whichever way the picture is held.
+// Horizontal field of view in degrees of a full-frame image of `size`, from the lens's focal length
+// in 35 mm equivalents: f = f35 × diagonal / 43.27 mm (CIPA DCG-001). Valid for upright images as
+// well.
 double FovOfFocalLength35(double millimetres, cv::Size size);
 
-// `focal_length_35`: what the recording says of its lens, mm; 0: nothing. For images of `size`;
-// throws Error when the calibration is for another.
+// `found`: calibration beside the images. `size`: size of the recording's images, pixels.
+// `focal_length_35`: focal length stated by the recording, mm in 35 mm equivalents; 0: none. Throws
+// Error (input) when the calibration is for another size.
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& found, cv::Size size,
                                     const SourceOptions& options, double focal_length_35 = 0);
 

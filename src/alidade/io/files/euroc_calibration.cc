@@ -66,7 +66,7 @@ EurocCamera ParseEurocCamera(const std::string& text, const std::string& name) {
     if (!(camera.fps > 0)) file.Fail(rate, "`rate_hz` must be positive");
   }
   const YAML::Node T_BS = file.Need(file.root(), "T_BS");
-  // Either {rows, cols, data: [...]} as EuRoC has it, or the 16 numbers themselves.
+  // EuRoC writes {rows, cols, data: [...]}; a plain list of 16 numbers is accepted as well.
   camera.T_body_camera = file.Transform(T_BS.IsMap() ? file.Need(T_BS, "data") : T_BS, "T_BS");
   return camera;
 }

@@ -1,4 +1,4 @@
-// EuRoC's sensor.yaml of a camera.
+// EuRoC's sensor.yaml of one camera.
 #pragma once
 
 #include <string>
@@ -10,12 +10,12 @@ namespace alidade {
 
 struct EurocCamera {
   RawCamera raw;
-  Se3 T_body_camera;  // T_BS
-  double fps = 20;    // rate_hz
+  Se3 T_body_camera;  // T_BS, meters
+  double fps = 20;    // rate_hz, frames per second
 };
 
-// Throws Error with file:line. distortion_model: radial-tangential (4 or 5 coefficients) or
-// equidistant (4).
+// Throw Error (input) with file:line. Supported values of distortion_model: radial-tangential (4 or
+// 5 coefficients) and equidistant (4 coefficients).
 EurocCamera ReadEurocCamera(const std::string& path);
 EurocCamera ParseEurocCamera(const std::string& text, const std::string& name);
 

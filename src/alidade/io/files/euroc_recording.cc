@@ -9,8 +9,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMaxPairDelay =
-    0.001;  // seconds: the cameras are triggered together, stamps may differ by microseconds
+// Seconds. The cameras are triggered together; their stamps may differ by microseconds.
+constexpr double kMaxPairDelay = 0.001;
 
 std::string Mav0Of(const std::string& folder) {
   return IsFolder(folder + "/mav0") ? folder + "/mav0" : folder;
@@ -20,7 +20,7 @@ std::vector<StampedName> ListOf(const std::string& camera) {
   return ReadStampedList(camera + "/data.csv", StampUnit::kNanoseconds, true);
 }
 
-// Frames without a partner are used as they are: one picture, and no depth from it.
+// Frames without a right image are kept; they have no stereo depth.
 void AddRight(Recording& recording, const std::string& camera) {
   const int found = AttachByTime(recording.frames, &RecordedFrame::right, ListOf(camera),
                                  camera + "/data", kMaxPairDelay);

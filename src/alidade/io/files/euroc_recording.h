@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-bool IsEurocFolder(const std::string& folder);  // holds mav0/cam0, or is mav0 itself
+bool IsEurocFolder(const std::string& folder);  // true when `folder` contains mav0/cam0 or is mav0
 Recording ReadEurocRecording(const std::string& folder);
 
 }  // namespace alidade

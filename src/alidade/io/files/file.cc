@@ -17,9 +17,9 @@
 namespace alidade {
 namespace {
 
-constexpr const char* kTemporary = ".tmp";  // path.tmpPID-NUMBER
+constexpr const char* kTemporary = ".tmp";  // temporary files are named PATH.tmpPID-NUMBER
 
-// Closes on the way out, whatever that is.
+// Closes a file descriptor on destruction.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -49,8 +49,8 @@ bool WriteAll(int fd, std::string_view bytes) {
   return true;
 }
 
-// The rename itself must reach the disk too; not all file systems can sync a folder, so no error
-// here.
+// Flushes the rename to the disk. Errors are ignored, because not all file systems can sync a
+// folder.
 void SyncFolderOf(const std::string& path) {
   const size_t slash = path.rfind('/');
   const std::string folder = slash == std::string::npos ? "."
@@ -60,7 +60,7 @@ void SyncFolderOf(const std::string& path) {
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
-// A pipe that was open when the process began: somebody is at its other end.
+// A pipe the process was started with: its other end is open, so reading cannot block for ever.
 bool WasHandedOver(const std::string& path) {
   return path.rfind("/dev/fd/", 0) == 0 || path.rfind("/proc/self/fd/", 0) == 0 ||
          path == "/dev/stdin";
@@ -87,18 +87,18 @@ std::string ReadFile(const std::string& path, size_t most_bytes, const StartChec
   const auto fail = [&path] { ThrowInput("cannot read " + path + ": " + std::strerror(errno)); };
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) fail();
-  CheckEnds(path, status);  // before it is opened: that alone waits for a pipe's writer
+  CheckEnds(path, status);  // before open(), which would block until a pipe has a writer
   const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (fd.get() < 0 || ::fstat(fd.get(), &status) != 0) fail();
-  CheckEnds(path, status);                                      // it may be another by now
-  if (S_ISFIFO(status.st_mode)) ::fcntl(fd.get(), F_SETFL, 0);  // its writer may take his time
+  CheckEnds(path, status);  // again: another file may have this name by now
+  if (S_ISFIFO(status.st_mode)) ::fcntl(fd.get(), F_SETFL, 0);  // wait for the pipe's writer
   const auto check_size = [&](size_t size) {
     if (size <= most_bytes) return;
     ThrowInput(path + " is longer than " + std::to_string(most_bytes >> 20) +
                " MB: it cannot be what it is taken for");
   };
   check_size(static_cast<size_t>(status.st_size));
-  // The size is a hint: pipes and /proc have none.
+  // The size is only a hint: pipes and files in /proc report 0.
   const auto hint = static_cast<size_t>(status.st_size > 0 ? status.st_size : 0) + 1;
   std::string bytes;
   bytes.resize(std::min(hint, kStartBytes));
@@ -143,6 +143,11 @@ bool IsThere(const std::string& path) {
   return ::lstat(path.c_str(), &status) == 0;
 }
 
+std::string NameAsTyped(const std::string& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+  return (whole.has_filename() ? whole : whole.parent_path()).filename().string();
+}
+
 std::vector<std::string> NamesIn(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code error;
@@ -171,7 +176,7 @@ std::vector<std::string> StaleTemporaries(const std::string& path) {
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().filename().string();
     if (name.compare(0, stem.size(), stem) != 0) continue;
-    const std::string rest = name.substr(stem.size());  // PID-NUMBER, and nothing else
+    const std::string rest = name.substr(stem.size());  // must be PID-NUMBER
     const size_t dash = rest.find('-');
     const bool ours = dash != std::string::npos && dash > 0 && dash + 1 < rest.size() &&
                       rest.find_first_not_of("0123456789") == dash &&
@@ -185,8 +190,7 @@ std::vector<std::string> StaleTemporaries(const std::string& path) {
 
 namespace {
 
-// Renaming onto a pipe or a device would take it away from everybody (root can do that to
-// /dev/null).
+// Renaming onto a pipe or a device would replace it for every process (as root, even /dev/null).
 void CheckReplaceable(const std::string& path) {
   struct stat status {};
   const bool stream =
@@ -211,11 +215,11 @@ void AtomicWriteFile(const std::string& path, std::string_view bytes, Sync sync)
     return ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   };
   int opened = open_new();
-  // In containers a process may well have the number of one that was killed.
+  // In containers the id of a killed process, and so its temporary's name, may be this process's.
   for (; opened < 0 && errno == EEXIST; opened = open_new()) temporary = TemporaryBeside(path);
   Descriptor fd(opened);
   if (fd.get() < 0) fail();
-  Occupy(fd.get());  // where that cannot be, the temporary of a killed program stays
+  Occupy(fd.get());  // without file locks the temporary of a killed program remains
   const bool written = WriteAll(fd.get(), bytes) && (sync == Sync::kNo || ::fsync(fd.get()) == 0) &&
                        fd.Close() && std::rename(temporary.c_str(), path.c_str()) == 0;
   if (!written) {

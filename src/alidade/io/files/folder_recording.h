@@ -1,4 +1,4 @@
-// A plain folder of images: frame i was taken at i / fps.
+// A folder of images without times: image i was taken at i / fps seconds.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@ namespace alidade {
 
 bool IsImageFolder(const std::string& folder);
 
-// `fps`: of the camera file given by the user; without one that of camera.yaml in the folder,
-// else 30.
+// `fps`: frame rate of the user's camera file. Without it, that of camera.yaml in the folder is
+// used, else 30.
 Recording ReadFolderRecording(const std::string& folder, std::optional<double> fps);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Images to and from bytes. `problem` results are texts for people, without the file's name.
+// Encodes and decodes images. A `problem` is a message for users without the file's name.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,13 +10,14 @@ namespace alidade {
 enum class ImageUse { kGray, kColor, kDepth, kGrayAndColor };
 
 struct DecodedImage {
-  cv::Mat image;        // CV_8UC1, CV_8UC3 or, for depth, what is stored
-  std::string problem;  // not empty: why there is no image
-  cv::Mat color = {};   // CV_8UC3; with kGrayAndColor only (`image` is the grey one then), and
-                        // empty when what is stored is grey
+  cv::Mat image;        // CV_8UC1, CV_8UC3 or, for depth, the type stored
+  std::string problem;  // why there is no image; empty: no problem
+  // Only with kGrayAndColor, when `image` is the gray one: CV_8UC3, blue green red; empty for a
+  // gray file.
+  cv::Mat color = {};
 };
 
-// Whatever they are, by how they begin: JPEG, PNG, or what else the media module knows.
+// Detects the format by the first bytes: JPEG, PNG, or a format of the media module.
 DecodedImage DecodeImageBytes(std::string_view bytes, ImageUse use);
 
 bool LooksLikeJpeg(std::string_view bytes);

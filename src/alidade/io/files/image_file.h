@@ -1,6 +1,5 @@
-// Images in files. JPEG and PNG are read and written by libjpeg and libpng themselves; what else
-// OpenCV knows goes through the media module, which is loaded when such a file is first met (see
-// media.h).
+// Image files. JPEG and PNG are read and written by libjpeg and libpng directly. Other formats that
+// OpenCV supports go through the media module, which is loaded on first use (see media.h).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,26 +10,27 @@
 
 namespace ALIDADE_API alidade {
 
-// What a file is, by its first bytes. All throw Error (input) naming the file and what is wrong
-// with it: cut short, empty, no image. A damaged image is an error, never a half grey picture.
-cv::Mat ReadImageGray(
-    const std::string& path);  // CV_8UC1; colours by BT.601 weights (JPEG: its luma as stored)
+// Detect the format by the file's first bytes. All throw Error (input) with the file's name and the
+// reason: truncated, empty, not an image. A damaged image is an error; it is never decoded in part.
+// ReadImageGray() returns CV_8UC1: the BT.601 luma, which for JPEG is the luma as stored.
+cv::Mat ReadImageGray(const std::string& path);
 cv::Mat ReadImageColor(const std::string& path);  // CV_8UC3, blue green red
 cv::Mat ReadDepth(const std::string& path);       // CV_16UC1 (or CV_32FC1), values as stored
 
 struct GrayAndColor {
-  cv::Mat gray;   // as ReadImageGray() gives it, bit for bit
-  cv::Mat color;  // CV_8UC3, blue green red; empty when the file is grey
+  cv::Mat gray;   // equal to the result of ReadImageGray() bit for bit
+  cv::Mat color;  // CV_8UC3, blue green red; empty when the file is gray
 };
-GrayAndColor ReadImageGrayAndColor(const std::string& path);  // decodes once
+GrayAndColor ReadImageGrayAndColor(const std::string& path);  // decodes the file once
 
-// Width and height; for JPEG and PNG from the header alone.
+// Width and height, from the header alone for JPEG and PNG.
 cv::Size ReadImageSize(const std::string& path);
 
-// By the ending: .png (8 bit grey or blue green red, 16 bit grey) or .jpg (8 bit, quality 95). The
-// file is written whole or not at all, but not flushed to the disk (Sync::kNo).
+// Format by the ending: .png (8-bit gray or blue green red, 16-bit gray) or .jpg (8 bit, quality
+// 95). The file is complete or absent, but not flushed to the disk (Sync::kNo).
 void WriteImage(const std::string& path, const cv::Mat& image);
 
-bool HasImageEnding(std::string_view path);  // one that the readers above may understand
+// True for an ending that the readers above may support.
+bool HasImageEnding(std::string_view path);
 
 }  // namespace alidade

@@ -10,7 +10,7 @@ namespace {
 
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-// The digits at `at`, without leading zeros; moves `at` behind them.
+// Returns the digits at position `at` without leading zeros, and moves `at` past them.
 std::string_view TakeNumber(std::string_view text, size_t& at) {
   while (at + 1 < text.size() && text[at] == '0' && IsDigit(text[at + 1])) ++at;
   const size_t begin = at;
@@ -34,12 +34,12 @@ bool NaturallyBefore(const std::string& a, const std::string& b) {
     }
   }
   if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
-  return a < b;  // equal but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
 std::vector<std::string> ImagesIn(const std::string& folder) {
   std::vector<std::string> names;
-  // What is no file is told when it is its turn to be read.
+  // Entries that are neither files nor folders stay in the list; reading them reports the error.
   for (const std::string& name : NamesIn(folder)) {
     if (name.front() != '.' && HasImageEnding(name) && !IsFolder(folder + "/" + name))
       names.push_back(name);

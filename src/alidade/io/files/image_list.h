@@ -6,8 +6,7 @@
 
 namespace alidade {
 
-// Names (without the folder) of the images, by their endings, sorted as people count: img2 before
-// img10.
+// Names of the images in a folder, detected by their endings, in natural order: img2 before img10.
 std::vector<std::string> ImagesIn(const std::string& folder);
 
 bool NaturallyBefore(const std::string& a, const std::string& b);

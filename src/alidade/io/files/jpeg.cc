@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <csetjmp>
-#include <cstdio>  // jpeglib.h needs it first
+#include <cstdio>  // must precede jpeglib.h
 #include <cstdlib>
 #include <cstring>
 #include <limits>
@@ -18,9 +18,9 @@
 namespace alidade {
 namespace {
 
-// libjpeg reports errors by a function that must not return: it jumps. No object with a destructor
-// may be born between setjmp and longjmp, hence the plain functions below that are handed
-// everything.
+// libjpeg's error function must not return, so it calls longjmp. No object with a destructor may be
+// created between setjmp and longjmp; therefore the plain functions below get all objects as
+// arguments.
 struct JumpingErrors {
   jpeg_error_mgr manager;
   std::jmp_buf target;
@@ -33,7 +33,8 @@ void JumpOut(j_common_ptr info) {
   std::longjmp(errors->target, 1);
 }
 
-// Level -1 are the warnings libjpeg would paper over with grey: data cut short or damaged.
+// Level -1 are warnings after which libjpeg would fill the rest with gray: truncated or damaged
+// data.
 void OnMessage(j_common_ptr info, int level) {
   const int code = info->err->msg_code;
   if (level == -1 &&
@@ -41,8 +42,8 @@ void OnMessage(j_common_ptr info, int level) {
     JumpOut(info);
 }
 
-// Each scan of a progressive JPEG is a pass over the whole picture, however short it is in the
-// file: encoders make some ten.
+// Every scan of a progressive JPEG, however short, is a pass over the whole image. Encoders write
+// about ten; the limit bounds the decoding time of a crafted file.
 constexpr int kMostScans = 100;
 
 // libjpeg calls this for every row of blocks.
@@ -96,10 +97,10 @@ class Decompressor {
   jpeg_progress_mgr progress{};
 };
 
-// Every block of 8 x 8 samples takes a bit at least; not so in JPEGs with arithmetic coding, which
-// nobody has.
+// Every 8 x 8 block needs at least one bit. This does not hold for arithmetic coding, which is
+// hardly ever used.
 bool IsTooShort(const jpeg_decompress_struct& info, size_t bytes) {
-  size_t blocks = std::numeric_limits<size_t>::max();  // of the coarsest colour
+  size_t blocks = std::numeric_limits<size_t>::max();  // of the component with the fewest blocks
   for (int i = 0; i < info.num_components; ++i) {
     const jpeg_component_info& component = info.comp_info[i];
     blocks =
@@ -132,7 +133,7 @@ bool WriteRows(jpeg_compress_struct& info, JumpingErrors& errors, const cv::Mat&
   return true;
 }
 
-// The luma as stored, which is what JCS_GRAYSCALE gives, and the colours.
+// Gray is the luma as stored, equal to what JCS_GRAYSCALE decodes.
 DecodedImage FromLumaAndChroma(const cv::Mat& y_cb_cr) {
   DecodedImage both;
   cv::extractChannel(y_cb_cr, both.image, 0);
@@ -159,7 +160,7 @@ DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
     return {{}, "is a damaged JPEG: it is too short for its width and height"};
   const J_COLOR_SPACE stored = decoder.info.jpeg_color_space;
   const bool both = use == ImageUse::kGrayAndColor && stored != JCS_GRAYSCALE;
-  if (both && stored != JCS_YCbCr) {  // rare: without luma of its own
+  if (both && stored != JCS_YCbCr) {  // rare: the file does not store luma
     DecodedImage decoded = DecodeJpeg(bytes, ImageUse::kGray);
     if (decoded.problem.empty()) decoded.color = DecodeJpeg(bytes, ImageUse::kColor).image;
     return decoded;

@@ -11,14 +11,14 @@
 namespace alidade {
 namespace {
 
-using Projection =
-    std::array<double, 12>;  // 3x4, row by row; pixels, and metres times pixels in the last column
+// A 3x4 matrix, row-major: pixels; the last column in meters times pixels.
+using Projection = std::array<double, 12>;
 
 std::optional<Projection> FindProjection(const std::string& text, const std::string& path,
                                          const std::string& name) {
   for (const TextLine& line : ContentLines(text)) {
     const auto fields = Fields(line.text);
-    if (fields.empty() || fields[0] != name + ":") continue;  // a line of commas has none
+    if (fields.empty() || fields[0] != name + ":") continue;  // a line of commas has no fields
     const std::string where = path + ":" + std::to_string(line.number) + ": ";
     if (fields.size() != 13) ThrowInput(where + name + " needs 12 numbers");
     Projection projection{};
@@ -54,7 +54,7 @@ Calibration ParseKittiCalibration(const std::string& text, const std::string& pa
   calibration.origin = path;
   calibration.fps = 10;
   calibration.left = {Lens::kPinhole, size.width, size.height, P[0], P[5], P[2], P[6], {}};
-  // The last column's first number is -fx times the camera's place along x.
+  // The first number of the last column is -fx times the camera's x position in meters.
   if (const auto right = FindProjection(text, path, right_name)) {
     calibration.baseline = P[3] / P[0] - (*right)[3] / (*right)[0];
     if (!(calibration.baseline > 0)) {

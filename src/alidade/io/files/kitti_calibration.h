@@ -8,10 +8,10 @@
 
 namespace alidade {
 
-// Of the camera `left_number` (0 grey, 2 colour), whose images are of `size`, with the one to its
-// right where there is one. Throws Error (input) with file:line.
+// Calibration of camera `left_number` (0 gray, 2 color), with images of `size`, and of the camera
+// to its right if the file has one. Throws Error (input) with file:line.
 Calibration ReadKittiCalibration(const std::string& path, int left_number, cv::Size size);
-// The same of a file's text; `name` is what it is called in errors.
+// The same for a file's text; `name` appears in errors.
 Calibration ParseKittiCalibration(const std::string& text, const std::string& name, int left_number,
                                   cv::Size size);
 

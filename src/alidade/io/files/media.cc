@@ -17,7 +17,7 @@ struct Module {
 };
 
 Module LoadMediaModule() {
-  // OpenCV's own limit is a thousand million pixels. It reads this while it is loaded.
+  // OpenCV's default limit is 2^30 pixels. It reads this variable when it is loaded.
   setenv("OPENCV_IO_MAX_IMAGE_PIXELS", std::to_string(kMostPixels).c_str(), 0);
   const LoadedModule loaded = LoadModule(
       kMediaModuleFile, {"alidade_media_decode", "alidade_media_open", "alidade_media_focal"});

@@ -1,6 +1,6 @@
-// Images that are neither JPEG nor PNG, videos and live cameras, by OpenCV's imgcodecs and videoio.
-// Linking those costs 77 MB and 0.1 s at every start, so they live in a shared module of their own,
-// loaded when first needed.
+// Videos, live cameras and images other than JPEG and PNG, by OpenCV's imgcodecs and videoio. These
+// libraries are large and slow to load, so they are linked by a shared module only, which is loaded
+// on first use.
 #pragma once
 
 #include <memory>
@@ -12,14 +12,13 @@
 
 namespace alidade {
 
-// A problem, too, when there is no module to ask.
-// What an image's EXIF data say of the lens: focal length in 35 mm equivalents, mm; 0: nothing, or
-// no module.
+// Focal length of the lens from an image's EXIF data, mm in 35 mm equivalents; 0: not stated, or
+// the module is missing.
 double FocalLength35OfImage(std::string_view bytes);
 
 DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use);
 
-// Throw Error when it cannot be opened, or the module is missing.
+// Throw Error (input) when the source cannot be opened or the module is missing.
 std::unique_ptr<MediaStream> OpenVideo(const std::string& path);
 std::unique_ptr<MediaStream> OpenLiveCamera(int number);
 

@@ -1,7 +1,6 @@
 #include "alidade/io/files/open_source.h"
 
 #include <cmath>
-#include <filesystem>
 #include <utility>
 
 #include "alidade/base/error.h"
@@ -23,9 +22,7 @@
 namespace alidade {
 namespace {
 
-namespace fs = std::filesystem;
-
-// A folder of images, listed or not, whatever else lies in it.
+// A folder of images in any supported layout; other files in it are ignored.
 bool IsKnownFolder(const std::string& path) {
   return IsFolder(path) &&
          (IsTumFolder(path) || IsEurocFolder(path) || IsKittiFolder(path) || IsImageFolder(path));
@@ -62,29 +59,28 @@ Sensor ChooseSensor(const Recording& recording, const std::string& path,
   return sensor;
 }
 
-// Focal length in 35 mm equivalents that the first image has in its EXIF data; 0: it has none, or a
-// calibration says better.
+// Focal length from the EXIF data of the first image, mm in 35 mm equivalents; 0: not stated, or
+// not needed because a calibration or a field of view is given.
 double LensToldBy(const Recording& recording, const SourceOptions& options) {
   if (recording.calibration || options.camera_file || options.fov_degrees ||
       recording.frames.empty())
     return 0;
   try {
     return FocalLength35OfImage(ReadFile(recording.frames.front().image));
-  } catch (const Error&) {  // whoever reads it next says so
+  } catch (const Error&) {  // reported when the image is read as a frame
     return 0;
   }
 }
 
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
-  std::error_code error;
-  recording.name = fs::weakly_canonical(path, error).filename().string();
+  recording.name = NameAsTyped(path);
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(recording.calibration, size, options, LensToldBy(recording, options));
   if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;
-  // A factor of 0 says: no depth, whatever lies in the folder.
+  // A factor of 0 disables depth even when the folder has depth images.
   recording.has_depth = recording.has_depth && *calibration.depth_factor > 0;
   const Sensor sensor = ChooseSensor(recording, path, options);
   if (sensor == Sensor::kStereo && !calibration.right && !(calibration.baseline > 0)) {
@@ -97,7 +93,7 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
 }
 
-// N of "camera:N".
+// The N of "camera:N".
 std::optional<int> LiveCameraNumber(const std::string& path) {
   const std::string prefix = "camera:";
   if (path.rfind(prefix, 0) != 0) return std::nullopt;
@@ -122,7 +118,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
   } else if (!IsThere(path)) {
     ThrowInput("there is no file or folder " + path);
   } else {
-    CheckIsFile(path);  // else FFmpeg would wait for a pipe's writer
+    CheckIsFile(path);  // otherwise FFmpeg would wait for a pipe's writer
     source = OpenVideoSource(path, options);
   }
   return Clip(std::move(source), options.first, options.last);

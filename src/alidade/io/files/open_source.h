@@ -1,4 +1,4 @@
-// The front door: a recording, video or camera from what the user typed.
+// Opens a recording, a video or a live camera from the path or name the user gives.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,23 @@
 namespace ALIDADE_API alidade {
 
 struct SourceOptions {
-  // Nothing: rgbd when there is depth, stereo when there is a second camera, else mono.
+  // nullopt: kRgbd when the source has depth, kStereo when it has a second camera, otherwise kMono.
   std::optional<Sensor> sensor = {};
-  // Instead of the calibration found beside the images.
+  // Used instead of the calibration found beside the images.
   std::optional<std::string> camera_file = {};
-  // Horizontal, degrees, 0..180: a plain pinhole instead of any calibration's lens.
+  // Horizontal, degrees, 0..180: a pinhole without distortion, used instead of any calibration.
   std::optional<double> fov_degrees = {};
-  bool fov_rough = false;  // it is only a guess, to begin with: SourceInfo::camera_guessed
-  int first = 0;           // frame numbers from 0, both included; the frames keep their numbers
-  int last = -1;           // -1: to the end
-  bool color = false;      // frames have their colours as well, where there are any
+  bool fov_rough = false;  // `fov_degrees` is only approximate; sets SourceInfo::camera_guessed
+  int first = 0;           // first frame, counted from 0; frames keep their numbers
+  int last = -1;           // last frame, included; -1: to the end
+  bool color = false;      // read the frames' colors as well, if there are any
 };
 
-// `path` is known by what it holds: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/), KITTI odometry
-// (image_0/ times.txt), a folder of images, a video file, a ROS recording (.bag, .db3, .mcap or
-// rosbag2's folder; `?image=TOPIC&depth=TOPIC…` behind it chooses), or `camera:N`. Throws Error:
-// kInput when it cannot be read or is none of these, kUsage when it has not what the options ask
-// for.
+// The kind of source is detected from its content: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/),
+// KITTI odometry (image_0/ times.txt), a folder of images, a video file, a ROS recording (.bag,
+// .db3, .mcap or the folder of a rosbag2; `?image=TOPIC&depth=TOPIC…` after the path selects
+// topics), or `camera:N`. Throws Error: kInput when the source cannot be read or recognized, kUsage
+// when it lacks what the options require.
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options = {});
 
 }  // namespace alidade

@@ -15,23 +15,23 @@
 namespace alidade {
 namespace {
 
-// Deflate makes no more than 1032 bytes of one (zlib, "Technical Details").
+// Largest expansion factor of Deflate (zlib, "Technical Details").
 constexpr size_t kMostInflated = 1032;
 
 struct Trouble {
   char message[160] = "";
 };
 
-// libpng reports errors by a function that must not return: it jumps. No object with a destructor
-// may be born between setjmp and longjmp, hence the plain functions below that are handed
-// everything.
+// libpng's error function must not return, so it calls longjmp. No object with a destructor may be
+// created between setjmp and longjmp; therefore the plain functions below get all objects as
+// arguments.
 void OnError(png_structp png, png_const_charp message) {
   auto* trouble = static_cast<Trouble*>(png_get_error_ptr(png));
   std::strncpy(trouble->message, message, sizeof trouble->message - 1);
   png_longjmp(png, 1);
 }
 void OnWarning(png_structp, png_const_charp) {
-}  // odd colour profiles and the like: pixels are unharmed
+}  // warnings, for example about color profiles, do not concern the pixels
 
 struct Reader {
   std::string_view rest;
@@ -60,8 +60,8 @@ class Decoder {
       throw std::bad_alloc();
     }
     png_set_read_fn(png, &reader, ReadBytes);
-    // Comments, colour profiles and the like are left packed: a thousand of them, 8 MB each once
-    // unpacked, fit into a small file.
+    // Skip comments, color profiles and other chunks: a small file can hold a thousand of them that
+    // unpack to 8 MB each.
     png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, nullptr, -1);
   }
   ~Decoder() { png_destroy_read_struct(&png, &info, nullptr); }
@@ -80,7 +80,7 @@ bool ReadHeader(Decoder& decoder) {
   return true;
 }
 
-// Asks libpng for samples as `use` wants them; false after an error.
+// Configures libpng to deliver samples as `use` requires; false after an error.
 bool SetUp(Decoder& decoder, ImageUse use) {
   png_structp png = decoder.png;
   if (setjmp(png_jmpbuf(png))) return false;
@@ -88,7 +88,7 @@ bool SetUp(Decoder& decoder, ImageUse use) {
   const int bits = png_get_bit_depth(png, decoder.info);
   if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
   if (color == PNG_COLOR_TYPE_GRAY && bits < 8) png_set_expand_gray_1_2_4_to_8(png);
-  png_set_strip_alpha(png);  // of palettes too, where it is a chunk of its own
+  png_set_strip_alpha(png);  // also the transparency chunk of palettes
   if (bits == 16 && use != ImageUse::kDepth) png_set_scale_16(png);
   if (bits == 16 && use == ImageUse::kDepth && std::endian::native == std::endian::little)
     png_set_swap(png);
@@ -119,8 +119,8 @@ bool WriteRows(png_structp png, png_infop info, const cv::Mat& image, png_bytepp
                static_cast<png_uint_32>(image.rows), bits,
                image.channels() == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  // Recordings are thousands of images: level 1 is several times faster than the usual 6 for a
-  // tenth more bytes.
+  // Recordings have thousands of images: level 1 is several times faster than the default 6 for
+  // about a tenth more bytes.
   png_set_compression_level(png, 1);
   png_set_filter(png, 0, bits == 16 ? PNG_FILTER_NONE : PNG_FILTER_SUB);
   png_write_info(png, info);
@@ -141,7 +141,7 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
     return DecodedImage{{}, std::string("is a damaged PNG: ") + decoder.trouble.message};
   };
   if (!ReadHeader(decoder)) return failed();
-  // A damaged header may claim any size: told before there are rows to be filled.
+  // A damaged header may state any size: check it before allocating rows.
   const int64_t width = png_get_image_width(decoder.png, decoder.info);
   const int64_t height = png_get_image_height(decoder.png, decoder.info);
   if (!IsPictureSize(width, height)) return {{}, "cannot be used: " + TooLargeText(width, height)};

@@ -59,7 +59,7 @@ class RecordingSource : public FrameSource {
       frame.problem = error.what();
       return frame;
     }
-    // A frame whose second image is bad is still a picture.
+    // A frame whose right or depth image is bad is still used as a monocular frame.
     if (info_.sensor == Sensor::kStereo && !recorded.right.empty()) {
       frame.right = OrWarn([&] {
         return preparation_.Right(Checked(ReadImageGray(recorded.right), recorded.right));
@@ -108,7 +108,8 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
       list.begin(), list.end(), [](const StampedName& item) { return item.problem.empty(); });
   if (first_good == list.end())
     ThrowInput(list.front().problem + " (and so it is with every line)");
-  double time = first_good->time;  // lines without a usable time stay with the line before
+  // Unusable lines get the time of the line before, to keep their place.
+  double time = first_good->time;
   for (const StampedName& item : list) {
     if (item.problem.empty()) time = item.time;
     frames.push_back({time, item.stamp, folder + "/" + item.name, {}, {}, item.problem});
@@ -137,7 +138,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
 int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
                  const std::vector<StampedName>& list, const std::string& folder, double max_dt) {
   std::vector<double> frame_times, list_times;
-  // NaN matches nothing.
+  // AssociateByTime() never pairs a NaN.
   const double never = std::numeric_limits<double>::quiet_NaN();
   for (const RecordedFrame& frame : frames)
     frame_times.push_back(frame.problem.empty() ? frame.time : never);

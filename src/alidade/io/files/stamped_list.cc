@@ -21,7 +21,7 @@ std::vector<StampedName> ParseStampedList(std::string_view text, const std::stri
     StampedName item;
     const size_t end = line.text.find_first_of(" \t,");
     item.stamp = line.text.substr(0, end);
-    // Everything after the stamp: names may hold blanks.
+    // The name is everything after the stamp, because names may contain spaces.
     const size_t begin =
         end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
     if (begin != std::string_view::npos) item.name = line.text.substr(begin);

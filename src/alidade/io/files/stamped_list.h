@@ -1,4 +1,4 @@
-// Lists of time stamps with what was taken then: rgb.txt, data.csv, times.txt.
+// Lists of time stamps with file names: rgb.txt, data.csv, times.txt.
 #pragma once
 
 #include <string>
@@ -8,18 +8,18 @@
 namespace alidade {
 
 struct StampedName {
-  double time = 0;    // seconds; meaningless with a problem
-  std::string stamp;  // as written
-  std::string name;   // what follows the stamp: a file's name, perhaps with a folder; may be empty
-  std::string problem;  // not empty: the line cannot be used, and why (file:line)
+  double time = 0;      // seconds; undefined when there is a problem
+  std::string stamp;    // time as text in seconds
+  std::string name;     // rest of the line: a file name, possibly with a folder; may be empty
+  std::string problem;  // why the line cannot be used (file:line); empty: no problem
 };
 
 enum class StampUnit { kSeconds, kNanoseconds };
 
-// In the file's order. Lines whose stamp is no finite number, or without a name where one is
-// wanted, have a problem. Throws Error when the file cannot be read or holds no lines.
+// Returns the lines in the file's order. A line whose stamp is not a finite number, or that lacks a
+// required name, gets a problem. Throws Error (input) when the file cannot be read or has no lines.
 std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names);
-// The same of a file's text; `name` is what it is called in errors.
+// The same for a file's text; `name` appears in errors.
 std::vector<StampedName> ParseStampedList(std::string_view text, const std::string& name,
                                           StampUnit unit, bool with_names);
 

@@ -9,8 +9,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMaxDepthDelay =
-    0.02;  // seconds: over half a frame at 30 Hz, as TUM's tools have it
+// Seconds, more than half a frame interval at 30 Hz; the default of TUM's associate.py.
+constexpr double kMaxDepthDelay = 0.02;
 
 void AddDepth(Recording& recording, const std::string& folder) {
   const auto list = ReadStampedList(folder + "/depth.txt", StampUnit::kSeconds, true);

@@ -1,5 +1,5 @@
-// TUM RGB-D recordings (Sturm et al. 2012): rgb.txt and depth.txt list images with times; depth
-// belongs to the image nearest in time.
+// TUM RGB-D recordings (Sturm et al. 2012): rgb.txt and depth.txt list images with times. A depth
+// image is assigned to the color image nearest in time.
 #pragma once
 
 #include <string>

@@ -16,13 +16,14 @@
 namespace alidade {
 namespace {
 
-// Frames on end with a time told before that are taken for slips of the writer. Phones and screen
-// recorders repeat one now and then; after more, the clock is taken to stand still.
+// Up to this many consecutive frames whose time does not increase are treated as isolated errors,
+// which phones and screen recorders make; after more, the stream's clock is considered stopped or
+// restarted.
 constexpr int kMostRepeated = 2;
 
 class VideoSource : public FrameSource {
  public:
-  // `stream` has grabbed its first frame. Without a path (a live camera) there is no seeking.
+  // `stream` has grabbed its first frame. A live camera has an empty path and cannot seek.
   VideoSource(SourceInfo info, std::string path, std::unique_ptr<MediaStream> stream,
               ImagePreparation preparation, cv::Size raw_size, bool color)
       : info_(std::move(info)),
@@ -63,7 +64,7 @@ class VideoSource : public FrameSource {
   }
 
  private:
-  // Frame next_ is the one grabbed last, its time known; false at the end.
+  // Grabs frame next_ unless it is already grabbed, and records its time. Returns false at the end.
   bool GrabNext() {
     if (!grabbed_ && !stream_->Grab()) {
       WarnIfShort();
@@ -77,9 +78,10 @@ class VideoSource : public FrameSource {
     return true;
   }
 
-  // The stream's own time, as long as it goes on. A time that was told before is put between its
-  // neighbours, so that the frames after it keep theirs. A stream whose clock stands still (those
-  // without usable times say 0 for ever) or begins anew goes on by the frame rate.
+  // Time of the frame grabbed last, seconds. Normally it is the stream's time. An isolated time
+  // that does not increase is replaced by the mean of its neighbors' times, so that later frames
+  // keep theirs. If the clock stands still (a stream without usable times reports 0) or restarts,
+  // time advances by the frame rate.
   double TimeOfNewest() {
     const double told = stream_times_.back() + offset_;
     if (times_.empty()) return told;
@@ -89,7 +91,7 @@ class VideoSource : public FrameSource {
       return told;
     }
     const double next = times_.back() + 1 / info_.camera.fps;
-    if (!expected_) return next;  // the clock has never moved
+    if (!expected_) return next;  // the clock has never advanced
     if (++repeated_ <= kMostRepeated) return (times_.back() + *expected_) / 2;
     offset_ += next - told;
     return next;
@@ -100,9 +102,9 @@ class VideoSource : public FrameSource {
     grabbed_ = false;
   }
 
-  // FFmpeg finds frames by time, and OpenCV takes the rate for constant: which frame we have got is
-  // told by its time, known from the way forth. Tried from ever further back, at last from the
-  // start.
+  // Seeks to a frame that was already played. FFmpeg seeks by time and OpenCV assumes a constant
+  // frame rate, so the frame reached is identified by its time from the first pass. Tries targets
+  // 2, 16 and 64 frames earlier, then reopens the stream.
   bool SeekBack(int frames) {
     for (const int margin : {2, 16, 64}) {
       if (margin >= frames) break;
@@ -136,14 +138,15 @@ class VideoSource : public FrameSource {
   std::unique_ptr<MediaStream> stream_;
   ImagePreparation preparation_;
   cv::Size raw_size_;
-  bool color_;  // frames are to have their colours as well
-  std::vector<double> stream_times_,
-      times_;          // seconds, of the frames met so far: as the stream has them, as given
-  double offset_ = 0;  // seconds from the stream's clock to the times given
-  std::optional<double> expected_;  // time of the next frame by the rate, once the clock has moved
-  int repeated_ = 0;                // frames on end whose time was told before
-  int next_ = 0;                    // number of the frame the next call gives
-  bool grabbed_ = true;             // it is grabbed already
+  bool color_;  // read the frames' colors as well
+  // Times of the frames played so far, seconds: the stream's own, and those returned.
+  std::vector<double> stream_times_, times_;
+  double offset_ = 0;  // seconds, from the stream's clock to the returned times
+  // Expected time of the next frame by the frame rate, once the clock advanced.
+  std::optional<double> expected_;
+  int repeated_ = 0;     // consecutive frames whose time did not increase
+  int next_ = 0;         // number of the frame the next call returns
+  bool grabbed_ = true;  // frame next_ is already grabbed
   bool warned_ = false;
 };
 
@@ -159,7 +162,8 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(beside, first.size(), options, stream->FocalLength35());
   const double fps = stream->FramesPerSecond();
-  // A camera file's rate is for streams that tell none: times do not depend on the calibration.
+  // The camera file's rate is used only when the stream states none, so that times do not depend on
+  // the calibration.
   if (std::isfinite(fps) && fps > 0) calibration.fps = fps;
   ImagePreparation preparation(calibration, Sensor::kMono);
   info.camera = preparation.camera();

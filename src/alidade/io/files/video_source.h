@@ -9,12 +9,13 @@
 
 namespace alidade {
 
-// Mono. Frames have the video's presentation times, seconds, and stand upright. The calibration is
-// camera.yaml in the video's folder unless the options say otherwise. `first` and `last` of the
-// options are the caller's to see to.
+// A monocular source. Times are the video's presentation times in seconds; images are rotated
+// upright. The calibration is camera.yaml in the video's folder unless the options specify another.
+// Ignores `first` and `last` of the options: the caller clips. Throws Error (input) when the file
+// cannot be read as a video.
 std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path, const SourceOptions& options);
 
-// Times are seconds since the first picture.
+// Times are seconds since the first image.
 std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOptions& options);
 
 }  // namespace alidade

@@ -12,7 +12,7 @@ namespace alidade {
 
 namespace {
 
-// For errors: a word of it, should it be a book.
+// Shortens text for error messages.
 std::string Start(const std::string& text) {
   constexpr size_t kEnough = 60;
   return text.size() <= kEnough ? text : text.substr(0, kEnough) + "...";
@@ -23,7 +23,7 @@ std::string Start(const std::string& text) {
 YamlFile::YamlFile(const std::string& path) : YamlFile(ReadFile(path, kMostConfigBytes), path) {}
 
 YamlFile::YamlFile(std::string text, const std::string& name) : path_(name) {
-  if (text.rfind("%YAML:", 0) == 0) text[0] = '#';  // a comment keeps the line numbers
+  if (text.rfind("%YAML:", 0) == 0) text[0] = '#';  // as a comment it does not shift line numbers
   CheckYaml(text, name);
   try {
     root_ = YAML::Load(text);

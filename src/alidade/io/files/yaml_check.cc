@@ -12,8 +12,8 @@
 namespace alidade {
 namespace {
 
-// yaml-cpp's parser calls this for one piece after the other; only what is open at the moment is
-// kept.
+// Receives yaml-cpp's parser events; memory use is bounded by the nesting depth and the keys of
+// open maps.
 class Checker : public YAML::EventHandler {
  public:
   explicit Checker(const std::string& name) : name_(name) {}
@@ -45,7 +45,7 @@ class Checker : public YAML::EventHandler {
  private:
   struct Level {
     bool is_map;
-    bool name_next = true;  // in a map, names and values take turns
+    bool name_next = true;  // in a map, keys and values alternate
     std::set<std::string> names = {};
   };
 

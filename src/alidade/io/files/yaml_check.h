@@ -1,17 +1,18 @@
-// A look through a YAML text before anything is built of it.
+// Checks a YAML text before a document tree is built from it.
 #pragma once
 
 #include <string>
 
 namespace alidade {
 
-// What a file of ours can need. A camera file has some 30 values two deep, the settings some 150.
-inline constexpr int kMostYamlDepth = 16;     // lists and maps in one another
-inline constexpr int kMostYamlNodes = 10000;  // names, values, lists and maps
+// Limits of YAML files. A camera file has about 30 values in 2 levels; a settings file about 150
+// values.
+inline constexpr int kMostYamlDepth = 16;     // levels of nested lists and maps
+inline constexpr int kMostYamlNodes = 10000;  // keys, values, lists and maps
 
-// Throws Error (input) with `name`:line when `text` is no YAML, goes deeper or holds more than the
-// above, gives a name twice in one map, holds a second document, or uses anchors and aliases (`&a`
-// and `*a`): by these a few lines stand for millions of values, or for one that holds itself.
+// Throws Error (input) with `name`:line when `text` is not valid YAML, exceeds the limits above,
+// repeats a key within a map, contains a second document, or uses anchors and aliases (`&a`, `*a`).
+// Aliases could expand a few lines to millions of values or make a value contain itself.
 void CheckYaml(const std::string& text, const std::string& name);
 
 }  // namespace alidade

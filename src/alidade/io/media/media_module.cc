@@ -21,26 +21,26 @@ extern "C" {
 namespace alidade {
 namespace {
 
-// What is wrong with a file we say ourselves, in one line. The user's own setting of these
-// variables wins.
+// Suppresses the libraries' messages, because Alidade reports each problem in one line. Values the
+// user has set for these variables are kept.
 void SilenceLibraries() {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  setenv("OPENCV_FFMPEG_DEBUG", "1", 0);  // lets the next line count
+  setenv("OPENCV_FFMPEG_DEBUG", "1", 0);  // required for the next line to take effect
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
 }
 
-// Quarter turns clockwise that make the pictures upright.
+// Clockwise quarter turns that make the images upright.
 int QuarterTurns(const cv::VideoCapture& capture) {
   const int degrees = static_cast<int>(capture.get(cv::CAP_PROP_ORIENTATION_META));
   const int turns = ((degrees / 90) % 4 + 4) % 4;
-  // OpenCV 4.6.0 alone has the sign of the angle wrong (its issue 22088): portrait videos came
-  // upside down.
+  // OpenCV 4.6.0 returns the angle with the wrong sign (its issue 22088), so portrait videos would
+  // be upside down.
   const bool wrong =
       cv::getVersionMajor() == 4 && cv::getVersionMinor() == 6 && cv::getVersionRevision() == 0;
   return wrong ? (4 - turns) % 4 : turns;
 }
 
-// What phones of one maker write into QuickTime files and their offspring, for all or for a track.
+// QuickTime metadata key that Apple phones write for the file or for a track.
 constexpr char kFocalLengthKey[] = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
 
 double Millimetres(const AVDictionary* metadata) {
@@ -92,7 +92,7 @@ class Stream : public MediaStream {
   double Time() const override { return time_; }
 
   cv::Mat Gray() override try {
-    cv::Mat color, gray;  // new ones: frames given before may still be in use
+    cv::Mat color, gray;  // new buffers: the caller may still use the previous images
     color_.release();
     if (!capture_.retrieve(color) || color.empty()) return {};
     if (color.channels() == 1) {
@@ -134,7 +134,7 @@ class Stream : public MediaStream {
   bool live_;
   int turns_;
   double focal_length_35_;
-  cv::Mat color_;  // of the picture Gray() gave last
+  cv::Mat color_;  // color of the image that Gray() returned last
   Clock::time_point start_{};
   double time_ = 0;
 };

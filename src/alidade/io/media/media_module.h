@@ -1,6 +1,6 @@
-// What libalidade_media.so offers: the formats that OpenCV's imgcodecs and videoio know. It is
-// loaded by io/files/media.cc when such a file is first met, and linked by nobody. Both sides are
-// built together: the interface may hold C++ types, only its two names are C. No exception leaves
+// Interface of libalidade_media.so, which decodes the formats of OpenCV's imgcodecs and videoio.
+// io/files/media.cc loads it on first use; no target links it. The program and the module are built
+// together, so the interface may use C++ types; only the function names are C. No exception leaves
 // the module.
 #pragma once
 
@@ -13,30 +13,32 @@ namespace alidade {
 class MediaStream {
  public:
   virtual ~MediaStream() = default;
-  // Frames the container says it has; 0 when it doesn't say.
+  // Number of frames that the container states; 0: not stated.
   virtual int FrameCount() const = 0;
   virtual double FramesPerSecond() const = 0;  // 0 when unknown
-  // What the container says of the lens: its focal length in 35 mm equivalents, mm; 0: nothing.
+  // Focal length of the lens that the container states, mm in 35 mm equivalents; 0: not stated.
   virtual double FocalLength35() const = 0;
-  // On to the next frame; false at the end. Upright: the rotation flag is honoured.
+  // Grabs the next frame; false at the end. The rotation flag of the video is applied: images are
+  // upright.
   virtual bool Grab() = 0;
-  // Of the frame grabbed last: presentation time (seconds), and its picture (CV_8UC1; empty when
-  // undecodable).
+  // Presentation time (seconds) and image (CV_8UC1; empty when it cannot be decoded) of the frame
+  // grabbed last.
   virtual double Time() const = 0;
   virtual cv::Mat Gray() = 0;
-  // After Gray(): the same picture, CV_8UC3 blue green red; empty when it has no colours.
+  // Call after Gray(): the same image as CV_8UC3, blue green red; empty when the image has no
+  // color.
   virtual cv::Mat Color() = 0;
-  // The next Grab() gives a frame near `time`, as far as the container allows.
+  // The next Grab() returns a frame near `time` (seconds), as precisely as the container allows.
   virtual bool SeekNear(double time) = 0;
 };
 
 inline constexpr char kMediaModuleFile[] = "libalidade_media.so";
 
-// `use` is an ImageUse. False when it is no image.
+// `use` is an ImageUse. Returns false when the bytes are not an image.
 using MediaDecodeFunction = bool(const char* bytes, size_t size, int use, cv::Mat* image);
-// The same of an image file's EXIF data.
+// Focal length from EXIF data, mm in 35 mm equivalents; 0: not stated.
 using MediaFocalFunction = double(const char* bytes, size_t size);
-// A video file, or with an empty path the live camera `camera`. Null when it cannot be opened.
+// Opens a video file or, with an empty path, live camera `camera`. Null when it cannot be opened.
 using MediaOpenFunction = MediaStream*(const char* path, int camera);
 
 }  // namespace alidade

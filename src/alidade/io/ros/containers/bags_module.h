@@ -1,7 +1,7 @@
-// What libalidade_bags.so offers: files of stamped messages, whatever their container. It is loaded
-// by io/ros/source/bag_file.cc when such a file is first met, and linked by nobody. Both sides are
-// built together: the interface may hold C++ types, only its name is C. No exception but
-// std::bad_alloc leaves the module.
+// Interface of libalidade_bags.so, which reads files of stamped messages in several container
+// formats. io/ros/source/bag_file.cc loads it on first use; no target links it. The program and the
+// module are built together, so the interface may use C++ types; only the function name is C. Only
+// std::bad_alloc may leave the module as an exception.
 #pragma once
 
 #include <cstdint>
@@ -11,41 +11,42 @@
 
 namespace alidade {
 
-// How messages are laid out.
+// Encoding of a message's fields.
 enum class Serialization { kRos1, kCdr, kOther };
 
 struct BagTopic {
   std::string name;  // "/cam0/image_raw"
-  std::string type;  // "sensor_msgs/Image", as ROS 1 has it: what ROS 2 calls sensor_msgs/msg/Image
+  std::string type;  // ROS 1 spelling "sensor_msgs/Image", also for ROS 2's sensor_msgs/msg/Image
   Serialization serialization = Serialization::kOther;
-  int64_t messages = 0;  // all there are, indexed or not
+  int64_t messages = 0;  // number of all messages, including those of unwanted types
 };
 
-// Where one message is. `place` and `offset` are the container's own.
+// Location of one message. The meaning of `place` and `offset` depends on the container.
 struct BagMessage {
-  int64_t log_time = 0;  // when it was written down, nanoseconds
+  int64_t log_time = 0;  // time of recording, nanoseconds
   uint64_t place = 0;
   uint32_t offset = 0;
-  uint32_t file = 0;  // of recordings in several files
+  uint32_t file = 0;  // index of the file in a recording of several files
 };
 
-// A recording. Not thread-safe.
+// One recording. Not thread-safe.
 class BagFile {
  public:
   virtual ~BagFile() = default;
   virtual const std::vector<BagTopic>& Topics() const = 0;
-  // Of a topic whose type is wanted (see WantedTypes()), in the order of log times; else empty.
+  // Messages of a topic in order of log time. Empty unless IsWantedType() holds for the topic's
+  // type.
   virtual const std::vector<BagMessage>& Messages(size_t topic) const = 0;
-  // Reads a message, or its first bytes, `most` or more of them (all, where they cannot be had for
-  // less). Not empty: why it cannot be read, for people.
+  // Reads a message, or at least its first `most` bytes if it is longer (possibly all of it, where
+  // a part costs as much). Returns an empty string, or for users why the message cannot be read.
   virtual std::string Read(const BagMessage& message, std::string& bytes,
                            uint64_t most = kWholeMessage) = 0;
   static constexpr uint64_t kWholeMessage = ~uint64_t{0};
-  // What was found to be damaged when it was opened.
+  // Damage found when the recording was opened.
   virtual const std::vector<std::string>& Warnings() const = 0;
 };
 
-// Types whose messages are looked for; of others only how many there are.
+// Types whose messages are indexed; messages of other types are only counted.
 inline bool IsWantedType(const std::string& type) {
   return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage" ||
          type == "sensor_msgs/CameraInfo";
@@ -53,7 +54,8 @@ inline bool IsWantedType(const std::string& type) {
 
 inline constexpr char kBagsModuleFile[] = "libalidade_bags.so";
 
-// `paths`: the parts of one recording, in order. Null with a `problem` when it cannot be read.
+// Opens the parts of one recording, given in order. Returns null and sets `problem` when nothing
+// can be read.
 using BagOpenFunction = BagFile*(const std::vector<std::string>& paths, std::string* problem);
 
 }  // namespace alidade

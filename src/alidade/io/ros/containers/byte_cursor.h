@@ -1,5 +1,5 @@
-// Reads numbers and texts off bytes that somebody else wrote: little endian, each length compared
-// with what is there before anything is done with it.
+// Reads little-endian numbers and length-prefixed strings from untrusted bytes. Every length is
+// checked against the remaining bytes before use.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ class ByteCursor {
     return taken;
   }
 
-  // The next sizeof(T) bytes as an unsigned number.
+  // The next sizeof(T) bytes as an unsigned little-endian integer.
   template <typename T>
   T Number() {
     const std::string_view bytes = Take(sizeof(T));
@@ -32,7 +32,7 @@ class ByteCursor {
     return static_cast<T>(value);
   }
 
-  // Bytes that have their number before them.
+  // Bytes preceded by their number as a `Length`.
   template <typename Length>
   std::string_view Sized() {
     return Take(Number<Length>());

@@ -1,4 +1,5 @@
-// The chunks unpacked last: messages that follow each other are mostly of one chunk.
+// Keeps the most recently used unpacked chunks, because consecutive messages are mostly in the same
+// chunk.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@ namespace alidade {
 
 class ChunkCache {
  public:
-  // The chunk at `place`, by `unpack` when it is not known any more. What `unpack` throws is not
-  // remembered.
+  // Returns the chunk at `place`; calls `unpack` when it is not cached. An exception of `unpack`
+  // passes through and nothing is cached.
   const std::string& Get(uint64_t place, const std::function<std::string()>& unpack) {
     for (auto chunk = chunks_.begin(); chunk != chunks_.end(); ++chunk) {
       if (chunk->place != place) continue;
@@ -29,14 +30,14 @@ class ChunkCache {
   }
 
  private:
-  // Bytes: half a second of two colour cameras, 640 x 480 at 30 Hz, which is how far a partner in
-  // time is looked for.
+  // 64 MB: half a second of two color cameras of 640 x 480 at 30 Hz, the window in which a
+  // message's partner in time is searched.
   static constexpr size_t kMostHeld = size_t{1} << 26;
   struct Chunk {
     uint64_t place;
     std::string bytes;
   };
-  std::list<Chunk> chunks_;  // newest first
+  std::list<Chunk> chunks_;  // most recently used first
   size_t held_ = 0;
 };
 

@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// Recordings have a few hundred. A file made to eat memory may name millions.
+// Recordings have a few hundred topics. The limit bounds the memory a crafted file can use.
 constexpr size_t kMostTopics = 100'000;
 constexpr size_t kMostWarnings = 5;
 
@@ -49,7 +49,7 @@ void IndexedBag::Forget() {
 
 std::string Ros1TypeOf(std::string_view type) {
   std::string plain(type);
-  // "sensor_msgs::msg::dds_::Image_" is how some bridges write it.
+  // some bridges write "sensor_msgs::msg::dds_::Image_"
   for (size_t at = plain.find("::"); at != std::string::npos; at = plain.find("::"))
     plain.replace(at, 2, "/");
   const size_t middle = plain.find("/msg/");

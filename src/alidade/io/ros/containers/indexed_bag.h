@@ -1,4 +1,5 @@
-// What the readers of all containers fill: topics, and where the messages of the wanted ones are.
+// Base of the readers of all container formats: the topics, and the locations of messages of wanted
+// types.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ class IndexedBag : public BagFile {
   const std::vector<std::string>& Warnings() const override { return warnings_; }
 
  protected:
-  // The topic of that name and type, a new one when there is none. ROS 1 allows several publishers,
-  // and so several connections, on one topic.
+  // Index of the topic with this name and type, added if new. ROS 1 may have several connections
+  // (publishers) per topic.
   size_t TopicOf(std::string_view name, std::string_view type, Serialization serialization);
   void Add(size_t topic, const BagMessage& message) {
     ++topics_[topic].messages;
@@ -32,9 +33,8 @@ class IndexedBag : public BagFile {
   bool IsWanted(size_t topic) const { return wanted_[topic]; }
   void Warn(const std::string& warning);
   void SortByTime();
-  // Fills all of the above by the file's own index, then sorts by time. Where the index cannot be
-  // used, `scan` reads the file from its start instead, after `forget` has dropped what the
-  // container itself had taken from it.
+  // Fills the topics and messages by `index`, then sorts them by time. If `index` throws, `forget`
+  // must reset the container's own state, and `scan` reads the file from its start.
   template <typename Index, typename Forgetting, typename Scan>
   void FillByIndexOr(Index index, Forgetting forget, Scan scan) {
     try {
@@ -59,10 +59,11 @@ class IndexedBag : public BagFile {
   std::vector<std::string> warnings_;
 };
 
-// "sensor_msgs/msg/Image", as ROS 2 and its IDL have it, as ROS 1 has it: "sensor_msgs/Image".
+// The ROS 1 spelling of a type: "sensor_msgs/Image" for ROS 2's "sensor_msgs/msg/Image".
 std::string Ros1TypeOf(std::string_view type);
 
-// As a message's offset: its record stands in the file itself at its place, not in a packed chunk.
+// Value of BagMessage::offset for a message whose record is stored in the file itself, not in a
+// packed chunk.
 inline constexpr uint32_t kUnpacked = std::numeric_limits<uint32_t>::max();
 
 inline constexpr int64_t kNanoseconds = 1'000'000'000;

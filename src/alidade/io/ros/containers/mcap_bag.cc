@@ -83,7 +83,8 @@ class McapFile : public IndexedBag {
     return found->second;
   }
 
-  // By what stands at the end of the file, and behind each chunk.
+  // Indexes the messages by the summary at the end of the file and the message indexes after each
+  // chunk.
   void ReadSummary() {
     constexpr uint64_t kFooter = 20;
     const uint64_t size = source_->Size(), end = kMcapRecordHead + kFooter + kMcapMagic.size();
@@ -97,12 +98,12 @@ class McapFile : public IndexedBag {
     const std::string footer_bytes = source_->Read(footer_at, kMcapRecordHead + kFooter);
     ByteCursor cursor(std::string_view(footer_bytes).substr(kMcapRecordHead));
     const auto start = cursor.Number<uint64_t>();
-    cursor.Number<uint64_t>();  // where the summary's own index is
+    cursor.Number<uint64_t>();  // offset of the summary offset section
     const auto crc = cursor.Number<uint32_t>();
     if (start == 0) ThrowInput("has no summary");
     if (start > footer_at) ThrowInput("is damaged: its footer is wrong");
     const std::string summary = source_->Read(start, footer_at - start);
-    // Of the summary and the footer up to the checksum itself.
+    // The checksum covers the summary and the footer up to the checksum itself.
     if (crc != 0 &&
         CrcOf(summary + footer_bytes.substr(0, footer_bytes.size() - sizeof(crc))) != crc)
       ThrowInput("is damaged: its summary's checksum does not fit");
@@ -123,7 +124,7 @@ class McapFile : public IndexedBag {
     std::sort(chunks.begin(), chunks.end(), [](const McapChunkIndex& a, const McapChunkIndex& b) {
       return a.chunk_at < b.chunk_at;
     });
-    uint64_t last_end = 0;  // chunks follow each other: none is counted twice
+    uint64_t last_end = 0;  // reject overlapping chunks, so that no message is counted twice
     for (const McapChunkIndex& chunk : chunks) {
       const uint64_t size = source_->Size();
       if (chunk.chunk_at < last_end || chunk.chunk_size > size || chunk.index_size > size)
@@ -153,8 +154,8 @@ class McapFile : public IndexedBag {
     }
   }
 
-  // Record by record. Chunks that are not packed are walked through where they stand, so that one
-  // that was cut short is read as far as it goes.
+  // Reads record by record. The records of uncompressed chunks are read directly from the file, so
+  // that a truncated chunk is read as far as possible.
   void Scan() {
     uint64_t at = kMcapMagic.size();
     uint64_t chunk_end = 0;
@@ -199,7 +200,7 @@ class McapFile : public IndexedBag {
     Warn("ends without a footer: it was never closed, or cut short");
   }
 
-  // A chunk that cannot be unpacked costs its own messages.
+  // When a chunk cannot be unpacked, its messages are skipped.
   void ScanChunk(const McapRecord& record, uint64_t place) try {
     const std::string chunk = UnpackedChunk(record);
     for (ByteCursor cursor(chunk); !cursor.AtEnd();) {
@@ -218,7 +219,7 @@ class McapFile : public IndexedBag {
 
   std::unique_ptr<ByteSource> source_;
   std::map<uint16_t, std::string> schemas_;
-  std::map<uint16_t, size_t> channels_;  // their topics
+  std::map<uint16_t, size_t> channels_;  // channel id -> index of the topic
   ChunkCache chunks_;
 };
 

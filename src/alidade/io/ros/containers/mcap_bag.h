@@ -1,6 +1,7 @@
-// MCAP: records of an opcode, a length and that many bytes; messages stand in the file or in chunks
-// (lz4, zstd, or not packed), chunks and their messages have indexes, which the summary at the end
-// of the file tells of. Read by its specification: Debian has no library for it.
+// The MCAP container: records of an opcode, a length and content. Messages are stored directly in
+// the file or in chunks (lz4, zstd or uncompressed). Chunks and their messages are indexed; the
+// summary at the end of the file locates the indexes. Implemented from the specification, because
+// Debian has no library for it.
 #pragma once
 
 #include <memory>
@@ -12,8 +13,8 @@ namespace alidade {
 
 bool LooksLikeMcap(std::string_view start);
 
-// A file without a footer or without indexes, or with damaged ones, is read from its start, as far
-// as it goes. Throws Error (input) when it is no MCAP file.
+// A file without a footer or indexes, or with damaged ones, is read from its start as far as
+// possible. Throws Error (input) when it is not an MCAP file.
 std::unique_ptr<BagFile> OpenMcapFile(std::unique_ptr<ByteSource> source);
 
 }  // namespace alidade

@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-// Nanoseconds without a sign, as MCAP has them; those past the year 2262 are no times.
+// MCAP's unsigned nanoseconds; values after the year 2262 are clamped to the largest int64_t.
 int64_t TakeTime(ByteCursor& cursor) {
   return static_cast<int64_t>(
       std::min<uint64_t>(cursor.Number<uint64_t>(), std::numeric_limits<int64_t>::max()));
@@ -53,15 +53,15 @@ McapMessage ParseMcapMessage(std::string_view content) {
   ByteCursor cursor(content);
   McapMessage message;
   message.channel = cursor.Number<uint16_t>();
-  cursor.Number<uint32_t>();  // sequence
+  cursor.Number<uint32_t>();  // sequence number
   message.log_time = TakeTime(cursor);
-  cursor.Number<uint64_t>();  // when it was published
+  cursor.Number<uint64_t>();  // publish time
   message.data = cursor.Take(cursor.Left());
   return message;
 }
 
 McapChunkHead ReadMcapChunkHead(const ByteSource& source, const McapRecord& chunk) {
-  // Two times, size, CRC, the name of the compression (a few letters), size of what is packed.
+  // Start and end time, unpacked size, CRC, name of the compression (a few letters), packed size.
   const std::string bytes = source.Read(chunk.content_at, std::min<uint64_t>(chunk.size, 100));
   ByteCursor cursor(bytes);
   cursor.Take(16);
@@ -78,11 +78,13 @@ McapChunkHead ReadMcapChunkHead(const ByteSource& source, const McapRecord& chun
 
 McapChunkIndex ParseMcapChunkIndex(std::string_view content) {
   ByteCursor cursor(content);
-  cursor.Take(16);  // first and last time
+  cursor.Take(16);  // time of the first and of the last message
   McapChunkIndex index;
   index.chunk_at = cursor.Number<uint64_t>();
   index.chunk_size = cursor.Number<uint64_t>();
-  cursor.Sized<uint32_t>();  // where each channel's index is: they are read one after another
+  // Offsets of each channel's message index; not needed, because the indexes are read one after
+  // another.
+  cursor.Sized<uint32_t>();
   index.index_size = cursor.Number<uint64_t>();
   return index;
 }

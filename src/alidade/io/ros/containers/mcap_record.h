@@ -1,4 +1,4 @@
-// MCAP's records, as far as messages need them.
+// Parsers of the MCAP records needed to read messages.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 inline constexpr uint64_t kMcapRecordHead = 9;    // bytes: opcode and length
 inline constexpr uint64_t kMcapMessageHead = 22;  // bytes: channel, sequence, two times
 
-// In a file; its content may lie past the end.
+// A record in a file. Its content may extend past the end of the file.
 struct McapRecord {
   McapOp op = McapOp::kHeader;
   uint64_t content_at = 0, size = 0;
@@ -36,7 +36,7 @@ struct McapRecord {
 };
 McapRecord ReadMcapRecord(const ByteSource& source, uint64_t at);
 
-// In a chunk or a summary.
+// A record in an unpacked chunk or in the summary.
 struct McapItem {
   McapOp op = McapOp::kHeader;
   std::string_view content;
@@ -62,24 +62,24 @@ struct McapMessage {
 };
 McapMessage ParseMcapMessage(std::string_view content);
 
-// What comes before a chunk's own records.
+// Header of a chunk record, before the chunk's own records.
 struct McapChunkHead {
   uint64_t unpacked_size = 0;
-  uint32_t crc = 0;  // CRC-32 of what is unpacked; 0: not told
+  uint32_t crc = 0;  // CRC-32 of the unpacked records; 0: not stated
   std::string compression;
-  uint64_t records_at = 0, records_size = 0;  // in the file, packed
+  uint64_t records_at = 0, records_size = 0;  // position in the file and packed size, bytes
 };
 McapChunkHead ReadMcapChunkHead(const ByteSource& source, const McapRecord& chunk);
 
 struct McapChunkIndex {
-  uint64_t chunk_at = 0, chunk_size = 0;  // of the record, its head included
-  uint64_t index_size = 0;                // of the message indexes behind it
+  uint64_t chunk_at = 0, chunk_size = 0;  // of the whole record, bytes
+  uint64_t index_size = 0;                // bytes of the message indexes after the chunk
 };
 McapChunkIndex ParseMcapChunkIndex(std::string_view content);
 
 struct McapIndexEntry {
   int64_t log_time = 0;
-  uint64_t offset = 0;  // in the unpacked chunk
+  uint64_t offset = 0;  // position in the unpacked chunk, bytes
 };
 struct McapMessageIndex {
   uint16_t channel = 0;

@@ -24,7 +24,7 @@ std::unique_ptr<BagFile> OpenByContent(const std::string& path) {
   ThrowInput("is no ROS bag, no MCAP file and no database of rosbag2");
 }
 
-// Recorders' `file` compression: the whole file is packed.
+// true when the whole file is compressed (rosbag2's compression mode `file`).
 bool IsPacked(const std::string& path) {
   const auto source = OpenFileSource(path);
   return LooksLikeZstd(source->Read(0, std::min<uint64_t>(source->Size(), 4)));
@@ -73,7 +73,8 @@ class SplitBag : public IndexedBag {
   }
 
   std::vector<std::string> paths_;
-  std::vector<std::unique_ptr<UnpackedFile>> unpacked_;  // before files_: those read from them
+  // Declared before files_, which read from them.
+  std::vector<std::unique_ptr<UnpackedFile>> unpacked_;
   std::vector<std::unique_ptr<BagFile>> files_;
 };
 

@@ -1,4 +1,5 @@
-// Any of the containers, by what a file begins with; several files as one recording.
+// Opens a recording in any supported container, detected by the first bytes; several files form one
+// recording.
 #pragma once
 
 #include <memory>
@@ -9,8 +10,8 @@
 
 namespace alidade {
 
-// Throws Error (input), naming the file, when there is nothing to be read in any of them. One of
-// several that cannot be read costs its own messages, and a warning.
+// Throws Error (input) naming the first bad file when no file has a topic. In a recording of
+// several files, a file that cannot be read is skipped with a warning.
 std::unique_ptr<BagFile> OpenBag(const std::vector<std::string>& paths);
 
 }  // namespace alidade

@@ -63,7 +63,7 @@ class Ros1Bag : public IndexedBag {
     return found->second;
   }
 
-  // By what stands at the end of the file, and behind each chunk.
+  // Indexes the messages by the records at the end of the file and the index after each chunk.
   void ReadIndex() {
     const Ros1Record head = ReadRos1Record(*source_, kMagic.size());
     if (head.fields.Op() != Ros1Op::kBagHeader) ThrowInput("is damaged: its header is missing");
@@ -81,7 +81,7 @@ class Ros1Bag : public IndexedBag {
     }
     if (at != source_->Size() || chunks.size() != head.fields.Number<uint32_t>("chunk_count"))
       ThrowInput("is cut short");
-    uint64_t last_end = 0;  // chunks follow each other: none is counted twice
+    uint64_t last_end = 0;  // reject overlapping chunks, so that no message is counted twice
     for (const Ros1Fields& chunk : chunks) {
       const auto place = chunk.Number<uint64_t>("chunk_pos");
       if (place < last_end) ThrowInput("is damaged: its chunks overlap");
@@ -111,8 +111,8 @@ class Ros1Bag : public IndexedBag {
     return at;
   }
 
-  // Record by record. Chunks that are not packed are walked through where they stand, so that one
-  // that was cut short, or never got its length, is read as far as it goes.
+  // Reads record by record. The records of uncompressed chunks are read directly from the file, so
+  // that a chunk that is truncated, or whose length was never written, is read as far as possible.
   void Scan() {
     uint64_t at = kMagic.size();
     uint64_t chunk_end = 0;
@@ -148,7 +148,7 @@ class Ros1Bag : public IndexedBag {
     }
   }
 
-  // A chunk that cannot be unpacked costs its own messages.
+  // When a chunk cannot be unpacked, its messages are skipped.
   void ScanChunk(const Ros1Record& record, uint64_t place) try {
     const std::string chunk = UnpackedChunk(record);
     for (uint64_t at = 0; at < chunk.size();) {
@@ -166,7 +166,7 @@ class Ros1Bag : public IndexedBag {
   }
 
   std::unique_ptr<ByteSource> source_;
-  std::map<uint32_t, size_t> connections_;  // their topics
+  std::map<uint32_t, size_t> connections_;  // connection id -> index of the topic
   ChunkCache chunks_;
 };
 

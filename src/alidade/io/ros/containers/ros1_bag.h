@@ -1,7 +1,7 @@
-// ROS bag 2.0: records of fields `name=value` and data; messages are in chunks, which may be packed
-// (bz2, lz4), each followed by an index of its messages; at the end of the file all connections and
-// chunks are told once more. librosbag_storage reads these too, but brings Boost, console_bridge,
-// pluginlib and GnuPG with it, and gives a file up whose index is missing or damaged.
+// ROS bag 2.0: records consist of `name=value` fields and data. Messages are stored in chunks,
+// which may be compressed (bz2, lz4); an index of its messages follows each chunk. All connections
+// and chunks are listed at the end of the file. librosbag_storage is not used: it depends on Boost,
+// console_bridge, pluginlib and GnuPG, and it fails on a file whose index is missing or damaged.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace alidade {
 
-bool LooksLikeRos1Bag(std::string_view start);  // of any version
+bool LooksLikeRos1Bag(std::string_view start);  // true for any version of the format
 
-// A bag without an index (cut short, never closed) or with a damaged one is read from its start, as
-// far as it goes. Throws Error (input) when it is no such bag, or of version 1.
+// A bag without an index (truncated, never closed) or with a damaged one is read from its start as
+// far as possible. Throws Error (input) when it is not a ROS bag or has version 1.
 std::unique_ptr<BagFile> OpenRos1Bag(std::unique_ptr<ByteSource> source);
 
 }  // namespace alidade

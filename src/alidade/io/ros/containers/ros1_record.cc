@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-constexpr uint32_t kMostHeader = 1 << 20;  // bytes; a topic's name is the longest field
+constexpr uint32_t kMostHeader = 1 << 20;  // bytes; the topic's name is the longest field
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// One record of a ROS bag 2.0: the length of its header, the header (fields `name=value`, each with
-// its length), the length of its data, the data.
+// A record of a ROS bag 2.0: header length, header (`name=value` fields, each with its length),
+// data length, data.
 #pragma once
 
 #include <cstdint>
@@ -20,42 +20,43 @@ enum class Ros1Op : uint8_t {
   kConnection = 7
 };
 
-// `name=value` fields.
+// Parsed `name=value` fields.
 class Ros1Fields {
  public:
   explicit Ros1Fields(std::string bytes);  // throws Error (input)
   bool Has(const std::string& name) const { return values_.count(name) != 0; }
-  std::string Text(const std::string& name) const;  // throws Error (input) when there is none
-  // Of sizeof(T) bytes, little endian.
+  // Throws Error (input) when the field is missing.
+  std::string Text(const std::string& name) const;
+  // The field as a little-endian integer of sizeof(T) bytes; throws Error (input) otherwise.
   template <typename T>
   T Number(const std::string& name) const {
     return static_cast<T>(Bits(name, sizeof(T)));
   }
   Ros1Op Op() const { return static_cast<Ros1Op>(Number<uint8_t>("op")); }
-  int64_t Time() const;  // field `time`: seconds and nanoseconds; in nanoseconds
+  int64_t Time() const;  // field `time`, converted to nanoseconds
 
  private:
   uint64_t Bits(const std::string& name, size_t bytes) const;
   std::map<std::string, std::string> values_;
 };
 
-// In a file.
+// A record in a file.
 struct Ros1Record {
   Ros1Fields fields;
   uint64_t data_at = 0;
   uint32_t data_size = 0;
   uint64_t End() const { return data_at + data_size; }
 };
-// Its data may lie past the end of the file.
+// The record's data may extend past the end of the file.
 Ros1Record ReadRos1Record(const ByteSource& source, uint64_t at);
 
-// In a chunk; `at` is moved behind it.
+// Reads a record of an unpacked chunk at position `at`, and moves `at` past it.
 struct Ros1Item {
   Ros1Fields fields;
   std::string_view data;
 };
 Ros1Item TakeRos1Item(std::string_view chunk, uint64_t& at);
 
-int64_t Ros1Time(uint64_t bits);  // low half: seconds, high half: nanoseconds
+int64_t Ros1Time(uint64_t bits);  // nanoseconds; low 32 bits: seconds, high 32 bits: nanoseconds
 
 }  // namespace alidade

@@ -18,7 +18,7 @@ namespace {
 using Database = std::unique_ptr<sqlite3, int (*)(sqlite3*)>;
 using Statement = std::unique_ptr<sqlite3_stmt, int (*)(sqlite3_stmt*)>;
 
-// The file's name as a URI: what is no letter, digit, slash or point is written as %XX.
+// The file's name as a URI; all bytes except letters, digits and `/._-` are percent-encoded.
 std::string UriOf(const std::string& path) {
   constexpr char kHex[] = "0123456789ABCDEF";
   std::string uri = "file:";
@@ -43,7 +43,8 @@ Database Open(const std::string& uri) {
   Database database(opened, sqlite3_close);
   if (!database) throw std::bad_alloc();
   if (result != SQLITE_OK) ThrowInput(std::string("cannot be read: ") + sqlite3_errmsg(opened));
-  // What a file of others may ask for: nothing but its own two tables, no larger than messages are.
+  // The file is untrusted: limit the size of values, and disable writing to the schema and
+  // functions with side effects.
   sqlite3_limit(opened, SQLITE_LIMIT_LENGTH, static_cast<int>(kMostUnpacked));
   sqlite3_db_config(opened, SQLITE_DBCONFIG_DEFENSIVE, 1, nullptr);
   sqlite3_db_config(opened, SQLITE_DBCONFIG_TRUSTED_SCHEMA, 0, nullptr);
@@ -75,7 +76,7 @@ class Rosbag2Database : public IndexedBag {
     };
     read(most);
     if (LooksLikeZstd(bytes) && bytes.size() < static_cast<size_t>(size)) read(kWholeMessage);
-    // CDR begins with a byte of 0.
+    // unambiguous, because a CDR message begins with a zero byte
     if (LooksLikeZstd(bytes)) bytes = Unpack("zstd", bytes, MostUnpackedFrom(bytes.size()));
     return {};
   } catch (const Error& error) {
@@ -100,7 +101,7 @@ class Rosbag2Database : public IndexedBag {
     return text == nullptr ? "" : reinterpret_cast<const char*>(text);
   }
 
-  // Views or virtual tables of these names could run for ever.
+  // Rejects views and virtual tables with these names, because their queries could run for ever.
   void CheckTables() const {
     const Statement tables = Prepare(
         "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', "
@@ -123,8 +124,8 @@ class Rosbag2Database : public IndexedBag {
     if (result != SQLITE_DONE) ThrowInput(Complaint());
   }
 
-  // In the order they were written. Where a page is damaged, on behind it: ever further from the
-  // message read last, until there are some again.
+  // Reads the messages in order of id. After a damaged page it continues at ids increasingly far
+  // (1, 2, 4, …) behind the last message read.
   void IndexMessages() {
     const Statement messages =
         Prepare("SELECT id, topic_id, timestamp FROM messages WHERE id > ?1 ORDER BY id");
@@ -137,7 +138,7 @@ class Rosbag2Database : public IndexedBag {
       int result = SQLITE_ROW;
       while ((result = sqlite3_step(messages.get())) == SQLITE_ROW) {
         const sqlite3_int64 id = sqlite3_column_int64(messages.get(), 0);
-        if (id <= last) break;  // a tree that is damaged may go in circles
+        if (id <= last) break;  // a damaged b-tree may contain cycles
         last = id;
         step = 1;
         const auto topic = topics_of_.find(sqlite3_column_int64(messages.get(), 1));
@@ -167,8 +168,8 @@ class Rosbag2Database : public IndexedBag {
 bool LooksLikeDatabase(std::string_view start) { return start.substr(0, 15) == "SQLite format 3"; }
 
 std::unique_ptr<BagFile> OpenRosbag2Database(const std::string& path) {
-  // Where a recorder left a journal it must be looked at; else the file is taken as it is, and
-  // SQLite puts none of its own files beside it.
+  // A write-ahead log left by a recorder must be read. Without one the file is opened as immutable,
+  // so that SQLite creates no files beside it.
   const bool journal = ::access((path + "-wal").c_str(), F_OK) == 0;
   return std::make_unique<Rosbag2Database>(Open(UriOf(path) + (journal ? "" : "?immutable=1")));
 }

@@ -1,4 +1,4 @@
-// rosbag2's SQLite files: a table of topics, and one of messages (topic, nanoseconds, bytes).
+// rosbag2's SQLite files: a table of topics, and a table of messages (topic, nanoseconds, bytes).
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@ namespace alidade {
 
 bool LooksLikeDatabase(std::string_view start);
 
-// Nothing is written beside the file. A damaged one is read as far as it goes. Messages packed one
-// by one (rosbag2's compression mode `message`) are unpacked. Throws Error (input) when it is none
-// of rosbag2's.
+// Writes nothing beside the file. Reads a damaged file as far as possible. Decompresses single
+// messages (rosbag2's compression mode `message`). Throws Error (input) when the file is not a
+// rosbag2 database.
 std::unique_ptr<BagFile> OpenRosbag2Database(const std::string& path);
 std::unique_ptr<BagFile> OpenRosbag2DatabaseOf(std::string bytes);  // for tests
 

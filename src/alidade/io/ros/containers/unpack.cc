@@ -14,14 +14,14 @@
 namespace alidade {
 namespace {
 
-// Room for what is unpacked, in steps: twice as much whenever it is full.
+// Output buffer that doubles when full, up to a limit.
 class Output {
  public:
   Output(size_t packed, uint64_t most) : most_(most) {
     bytes_.resize(std::min<uint64_t>(std::max<size_t>(4 * packed, 4096), most));
   }
   char* at() { return bytes_.data() + used_; }
-  // Free bytes, at least one.
+  // Number of free bytes, at least one. Throws Error (input) when the limit is reached.
   size_t room() {
     if (used_ == bytes_.size()) {
       if (used_ >= most_) ThrowInput("unpacks to more than " + std::to_string(most_ >> 20) + " MB");
@@ -88,11 +88,13 @@ std::string UnpackZstd(std::string_view packed, uint64_t most) {
   const std::unique_ptr<ZSTD_DStream, size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
                                                                         ZSTD_freeDStream);
   if (!stream) throw std::bad_alloc();
-  ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, 27);  // 128 MB: zstd's own default
+  // 128 MB window, zstd's default limit.
+  ZSTD_DCtx_setParameter(stream.get(), ZSTD_d_windowLogMax, 27);
   Output output(packed.size(), most);
   ZSTD_inBuffer in{packed.data(), packed.size(), 0};
   while (true) {
-    const size_t room = output.room();  // first: it may move what at() points to
+    // Must come before at(), because it may reallocate the buffer.
+    const size_t room = output.room();
     ZSTD_outBuffer out{output.at(), room, 0};
     const size_t before = in.pos;
     const size_t hint = ZSTD_decompressStream(stream.get(), &out, &in);

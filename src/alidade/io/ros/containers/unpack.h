@@ -1,4 +1,4 @@
-// Packed bytes to plain ones, by libbz2, liblz4 and libzstd.
+// Decompression by libbz2, liblz4 and libzstd.
 #pragma once
 
 #include <cstdint>
@@ -7,17 +7,17 @@
 
 namespace alidade {
 
-// What a chunk or a message may have at most once it is unpacked. A picture of kMostPixels with
-// three bytes each has 192 MB; recorders close chunks after some megabytes.
+// Size limit of an unpacked chunk or message, bytes. An image of kMostPixels with 3 bytes per pixel
+// has 192 MB; recorders close chunks after a few megabytes.
 inline constexpr uint64_t kMostUnpacked = uint64_t{1} << 29;
 
-// `format`: "" or "none", "bz2", "lz4" (frames), "zstd" (frames). Memory grows with what is
-// unpacked, not with what a header claims. Throws Error (input) when the bytes are damaged, the
-// format is unknown, or there are more than `most`.
+// `format`: "" or "none", "bz2", "lz4" (frame format), "zstd" (frame format). Memory use follows
+// the actual output, not the size stated in a header. Throws Error (input) when the data is
+// damaged, the format is unknown, or the output exceeds `most` bytes.
 std::string Unpack(std::string_view format, std::string_view packed, uint64_t most = kMostUnpacked);
 
-// How much so many packed bytes may become. Even black pictures pack to no less than a thousandth,
-// but for a chunk's worth of them.
+// Limit of the unpacked size of `packed` compressed bytes: 1024 times as many, but at least 64 MB
+// and at most kMostUnpacked. Even black images compress to no less than about a thousandth.
 uint64_t MostUnpackedFrom(uint64_t packed);
 
 bool LooksLikeZstd(std::string_view bytes);

@@ -17,7 +17,7 @@
 namespace alidade {
 namespace {
 
-// Made anew; `path` is its name.
+// Creates a temporary file and stores its name in `path`.
 int TemporaryFile(std::string& path) {
   std::error_code error;
   const std::string folder = std::filesystem::temp_directory_path(error).string();
@@ -59,12 +59,12 @@ void UnpackInto(int fd, const ByteSource& source) {
       WriteAllTo(fd, plain.data(), out.pos);
     } while (in.pos < in.size || out.pos == out.size);
   }
-  // What was unpacked of a file that was cut short is read as far as it goes, as any such file is.
+  // A truncated file is not an error here: its readers read the unpacked part as far as possible.
 }
 
 }  // namespace
 
-// SQLite opens no file that has no name any more, so it keeps it as long as it is read.
+// The file keeps its name until it is closed, because SQLite opens files by name.
 UnpackedFile::UnpackedFile(const std::string& packed) : fd_(TemporaryFile(path_)) {
   try {
     UnpackInto(fd_, *OpenFileSource(packed));

@@ -1,5 +1,5 @@
-// A packed file (zstd) as a plain one that is gone afterwards: databases cannot be read in pieces
-// out of a stream.
+// A zstd file unpacked into a temporary file, which is removed on destruction. Databases need
+// random access and so cannot be read from a compressed stream.
 #pragma once
 
 #include <string>
@@ -8,7 +8,8 @@ namespace alidade {
 
 class UnpackedFile {
  public:
-  // Into the folder for temporary files. Throws Error (input) when it is damaged, or the disk full.
+  // Unpacks into the folder for temporary files. Throws Error (input) when the file is damaged or
+  // the disk is full.
   explicit UnpackedFile(const std::string& packed);
   ~UnpackedFile();
   UnpackedFile(const UnpackedFile&) = delete;
@@ -17,7 +18,7 @@ class UnpackedFile {
   const std::string& path() const { return path_; }
 
  private:
-  std::string path_;  // set while fd_ is made
+  std::string path_;  // set while fd_ is initialized
   int fd_;
 };
 

@@ -11,8 +11,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kMostMisfit =
-    0.5;  // pixels, at the worst place: half of what a keypoint is known by
+// Pixels, the largest allowed error of the fit; about half the uncertainty of a keypoint.
+constexpr double kMostMisfit = 0.5;
 constexpr char kAdvice[] = " (give a camera file instead: --camera)";
 
 bool AllFinite(const RosCameraInfo& info) {
@@ -27,15 +27,16 @@ double Coefficient(const RosCameraInfo& info, size_t i) {
   return i < info.D.size() ? info.D[i] : 0;
 }
 
-// OpenCV's rational model has (1 + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶) where
-// Brown's has 1 + k1 r² + k2 r⁴ + k3 r⁶: of the latter, those that come nearest over the picture,
-// by least squares on pixels. Tangential terms are the same in both.
+// Least-squares fit of Brown's radial model 1 + k1 r² + k2 r⁴ + k3 r⁶ to OpenCV's rational model (1
+// + k1 r² + k2 r⁴ + k3 r⁶) / (1 + k4 r² + k5 r⁴ + k6 r⁶) over the image, in pixels. The tangential
+// terms are the same in both models. Throws Error (input) when the largest error exceeds
+// kMostMisfit.
 std::array<double, 5> BrownOfRational(const RosCameraInfo& info, const RawCamera& camera) {
   constexpr int kSteps = 64;
   const double u = std::max(camera.cx, camera.width - camera.cx) / camera.fx;
   const double v = std::max(camera.cy, camera.height - camera.cy) / camera.fy;
-  // The corner's direction lies farther out than its pixel when the picture is bent inwards; half
-  // as far again holds for what rational models are used for.
+  // With barrel distortion the undistorted corner lies outside the distorted one. 1.25 times the
+  // radius covers the lenses for which rational models are used.
   const double farthest = 1.25 * std::hypot(u, v);
   Eigen::Matrix<double, kSteps, 3> A;
   Eigen::Matrix<double, kSteps, 1> b;
@@ -48,7 +49,7 @@ std::array<double, 5> BrownOfRational(const RosCameraInfo& info, const RawCamera
     if (!(bent > last))
       ThrowInput("has a lens that folds over within the picture" + std::string(kAdvice));
     last = bent;
-    const bool inside = bent <= std::hypot(u, v);  // beyond nobody looks
+    const bool inside = bent <= std::hypot(u, v);  // points outside the image have no weight
     const double weight = inside ? 1 : 0;
     A.row(i) << weight * r * r2, weight * r * r2 * r2, weight * r * r2 * r2 * r2;
     b(i) = weight * (bent - r);
@@ -70,10 +71,10 @@ void SetLens(const RosCameraInfo& info, RawCamera& camera) {
   const std::string& model = info.distortion_model;
   const bool none = std::all_of(info.D.begin(), info.D.end(), [](double d) { return d == 0; });
   if (model == "equidistant" || model == "fisheye" || model == "kannala_brandt4") {
-    camera.lens = Lens::kFisheye;  // without coefficients as well
+    camera.lens = Lens::kFisheye;  // also without coefficients
     for (size_t i = 0; i < 4; ++i) camera.distortion[i] = Coefficient(info, i);
   } else if (none) {
-    return;  // whatever its name
+    return;  // no distortion, whatever the model
   } else if (model == "plumb_bob" || model == "radtan" || model == "radial-tangential" ||
              (model.empty() && info.D.size() <= 5)) {
     for (size_t i = 0; i < 5; ++i) camera.distortion[i] = Coefficient(info, i);
@@ -99,7 +100,7 @@ void SetLens(const RosCameraInfo& info, RawCamera& camera) {
   }
 }
 
-// K and P are of the sensor's full picture. Pixels have their centres at whole numbers.
+// K and P refer to the full sensor image. Pixel centers are at integer coordinates.
 void ApplyBinning(const RosCameraInfo& info, RawCamera& camera) {
   if (info.roi_width > 0 && info.roi_height > 0) {
     camera.cx -= info.roi_x;
@@ -116,7 +117,7 @@ void ApplyBinning(const RosCameraInfo& info, RawCamera& camera) {
   camera.height = static_cast<int>(camera.height / y);
 }
 
-// R of the message; all 0 (never filled in) is taken for no turn.
+// The message's R; all zeros (never set) counts as the identity.
 Eigen::Matrix3d RotationOf(const RosCameraInfo& info) {
   const Eigen::Matrix3d R =
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.R.data());
@@ -167,7 +168,7 @@ bool AddRightCamera(const RosCameraInfo& left, const RosCameraInfo& right, bool 
     calibration.baseline = baseline;
     return true;
   }
-  // Common frame c: p_c = R_left p_left = R_right p_right + (baseline, 0, 0).
+  // Common frame c of the pair: p_c = R_left p_left = R_right p_right + (baseline, 0, 0).
   calibration.right = *camera;
   calibration.T_left_right = {R_left.transpose() * R_right,
                               R_left.transpose() * Eigen::Vector3d(baseline, 0, 0)};

@@ -1,4 +1,4 @@
-// What sensor_msgs/CameraInfo says of cameras, as a calibration.
+// Converts sensor_msgs/CameraInfo to a calibration.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,16 +10,16 @@
 
 namespace alidade {
 
-// The picture's own camera: with `rectified` as P has it, without distortion; else as K and D have
-// it, binning and region of interest applied. Nothing when the camera was never calibrated (K is 0,
-// by REP 104). Throws Error (input), saying what to do, for lenses that cannot be worked with.
-// Models: plumb_bob; equidistant (fisheye); rational_polynomial where five coefficients come within
-// half a pixel of its eight.
+// The camera of one image topic: for rectified images from P, without distortion; otherwise from K
+// and D, with binning and region of interest applied. nullopt: the camera was never calibrated (K
+// is 0, REP 104). Throws Error (input), with advice, for unsupported lenses. Supported models:
+// plumb_bob; equidistant (fisheye); rational_polynomial if five Brown coefficients approximate it
+// within 0.5 pixels.
 std::optional<RawCamera> CameraOfInfo(const RosCameraInfo& info, bool rectified);
 
-// A second camera's: adds it, and where it is, to the left camera's calibration. By REP 104 the
-// baseline is -P[3] / P[0] of the right camera; R turns each camera into the pair's common frame.
-// False when there is no baseline to be had.
+// Adds the right camera and its pose to the left camera's calibration. By REP 104 the baseline is
+// -P[3] / P[0] of the right camera, and R rotates each camera into the common frame of the pair.
+// Returns false when no baseline is stated.
 bool AddRightCamera(const RosCameraInfo& left, const RosCameraInfo& right, bool rectified,
                     Calibration& calibration);
 

@@ -11,8 +11,8 @@ MessageCursor::MessageCursor(std::string_view bytes, Serialization serialization
   if (serialization != Serialization::kCdr) ThrowInput("is neither ROS 1's nor CDR");
   cdr_ = true;
   const std::string_view head = Take(4);
-  // 0, 1: plain CDR, big and little endian. 6, 7: the same of version 2, in which numbers of eight
-  // bytes stand at multiples of four.
+  // Representation identifiers: 0 and 1 are plain CDR, big and little endian; 6 and 7 are CDR
+  // version 2, which aligns 8-byte numbers to 4 bytes only.
   const auto kind =
       static_cast<unsigned>(static_cast<uint8_t>(head[0])) << 8 | static_cast<uint8_t>(head[1]);
   if (kind != 0 && kind != 1 && kind != 6 && kind != 7)
@@ -55,7 +55,7 @@ double MessageCursor::Double() {
 
 std::string_view MessageCursor::Text() {
   std::string_view text = Bytes();
-  if (cdr_ && !text.empty()) text.remove_suffix(1);  // a 0 at its end
+  if (cdr_ && !text.empty()) text.remove_suffix(1);  // CDR strings end with a zero byte
   return text;
 }
 

@@ -1,5 +1,5 @@
-// Reads the fields of a message, one after another: as ROS 1 lays them out (little endian, no
-// gaps), or ROS 2 (CDR: numbers stand at multiples of their size, after four bytes that say how).
+// Reads the fields of a message in order: ROS 1 (little endian, no padding) or ROS 2 (CDR: numbers
+// aligned to their size, after a 4-byte header that states the representation).
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace alidade {
 
 class MessageCursor {
  public:
-  // Throws Error (input) for kinds of CDR that are not known, and kOther.
+  // Throws Error (input) for an unknown CDR representation and for Serialization::kOther.
   MessageCursor(std::string_view bytes, Serialization serialization);
 
   bool cdr() const { return cdr_; }
 
-  // All throw Error (input) when the message ends before.
+  // All throw Error (input) when the message is too short.
   std::string_view Take(uint64_t count);
   uint8_t Byte() { return static_cast<uint8_t>(Take(1)[0]); }
   uint32_t Uint32() { return static_cast<uint32_t>(Unsigned(4)); }

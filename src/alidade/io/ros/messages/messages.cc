@@ -10,9 +10,9 @@ namespace {
 constexpr uint32_t kMostCoefficients = 64;  // of a lens; the longest model has 14
 
 MessageHeader TakeHeader(MessageCursor& cursor) {
-  if (!cursor.cdr()) cursor.Uint32();  // a number that ROS 2 has no more
+  if (!cursor.cdr()) cursor.Uint32();  // sequence number, ROS 1 only
   MessageHeader header;
-  // ROS 2's seconds have a sign; times before 1970 are no stamps.
+  // ROS 2's seconds are signed; times before 1970 are not supported.
   const uint32_t seconds = cursor.Uint32(), nanoseconds = cursor.Uint32();
   header.stamp = int64_t{seconds} * 1'000'000'000 + nanoseconds;
   header.frame_id = cursor.Text();

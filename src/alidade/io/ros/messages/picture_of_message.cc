@@ -13,16 +13,16 @@
 namespace alidade {
 namespace {
 
-// How an encoding of sensor_msgs/image_encodings becomes grey or coloured.
+// Conversion of an encoding of sensor_msgs/image_encodings to gray and to color.
 struct RawEncoding {
-  int type;      // of OpenCV, as the bytes lie
-  int to_gray;   // code of cvtColor; kAsIs: it is grey
-  int to_color;  // to blue green red; kAsIs: it is that; kNone: no colours
+  int type;      // OpenCV type of the message's pixels
+  int to_gray;   // cvtColor code; kAsIs: already gray
+  int to_color;  // cvtColor code to blue green red; kAsIs: already that; kNone: no color
 };
 constexpr int kAsIs = -1, kNone = -2;
 
-// ROS names a Bayer pattern by its first two rows from the left top, OpenCV by the second row from
-// the second column on: their names differ.
+// ROS names a Bayer pattern by the top-left 2 x 2 pixels, OpenCV by the second row starting at the
+// second column. So the same pattern has different names.
 const std::map<std::string, RawEncoding>& RawEncodings() {
   static const std::map<std::string, RawEncoding> encodings = {
       {"mono8", {CV_8UC1, kAsIs, kNone}},
@@ -44,7 +44,7 @@ const std::map<std::string, RawEncoding>& RawEncodings() {
       {"uyvy", {CV_8UC2, cv::COLOR_YUV2GRAY_UYVY, cv::COLOR_YUV2BGR_UYVY}},
       {"yuv422_yuy2", {CV_8UC2, cv::COLOR_YUV2GRAY_YUY2, cv::COLOR_YUV2BGR_YUY2}},
       {"yuyv", {CV_8UC2, cv::COLOR_YUV2GRAY_YUY2, cv::COLOR_YUV2BGR_YUY2}},
-      // Rows of brightness, then half as many of colour.
+      // All rows of luma, followed by half as many rows of chroma.
       {"nv12", {CV_8UC1, cv::COLOR_YUV2GRAY_NV12, cv::COLOR_YUV2BGR_NV12}},
       {"nv21", {CV_8UC1, cv::COLOR_YUV2GRAY_NV21, cv::COLOR_YUV2BGR_NV21}},
   };
@@ -53,7 +53,7 @@ const std::map<std::string, RawEncoding>& RawEncodings() {
 
 bool IsPlanar(const std::string& encoding) { return encoding == "nv12" || encoding == "nv21"; }
 
-// The message's bytes as they lie, rows and all; not a copy.
+// The message's pixels as an OpenCV image that refers to its bytes, padding included.
 cv::Mat RawPixels(const RosPicture& picture, int type) {
   if (!IsPictureSize(picture.width, picture.height))
     ThrowInput("cannot be used: " + TooLargeText(picture.width, picture.height));
@@ -69,14 +69,14 @@ cv::Mat RawPixels(const RosPicture& picture, int type) {
   const size_t step = picture.step == 0 ? row_bytes : picture.step;
   if (step % static_cast<size_t>(CV_ELEM_SIZE1(type)) != 0)
     ThrowInput("is damaged: its rows have an odd length");
-  // The last row may end with its pixels.
+  // The padding of the last row may be missing.
   if (step < row_bytes || picture.data.size() < row_bytes ||
       (picture.data.size() - row_bytes) / step + 1 < static_cast<size_t>(rows))
     ThrowInput("is cut short: it has fewer bytes than its width and height ask for");
   return cv::Mat(rows, columns, type, const_cast<char*>(picture.data.data()), step);
 }
 
-// Numbers of several bytes as this machine has them; always a copy.
+// A copy in the machine's byte order.
 cv::Mat InNativeOrder(const cv::Mat& raw, bool big_endian) {
   cv::Mat image = raw.clone();
   if (big_endian == (std::endian::native == std::endian::big)) return image;
@@ -94,7 +94,7 @@ cv::Mat Converted(const cv::Mat& raw, int code) try {
   cv::Mat image;
   cv::cvtColor(raw, image, code);
   return image;
-} catch (const cv::Exception&) {  // too small for a Bayer pattern, for one
+} catch (const cv::Exception&) {  // for example an image too small for a Bayer pattern
   ThrowInput("cannot be converted to grey");
 }
 
@@ -112,7 +112,7 @@ DecodedImage RawPictureOf(const RosPicture& picture, ImageUse use) {
     return decoded;
   }
   if (encoding.to_gray == kNone) ThrowInput("is depth, not a picture");
-  if (encoding.type == CV_16UC1) {  // as cv_bridge and libpng scale: 65535 becomes 255
+  if (encoding.type == CV_16UC1) {  // 65535 becomes 255, as in cv_bridge and libpng
     InNativeOrder(raw, picture.big_endian).convertTo(decoded.image, CV_8U, 1 / 257.0);
   } else {
     decoded.image = Converted(raw, encoding.to_gray);
@@ -132,8 +132,8 @@ float FloatAt(std::string_view bytes, size_t at) {
   return value;
 }
 
-// image_transport's compressedDepth: a number, two floats a and b, and a PNG of 16 bits. Depth in
-// metres is packed as v = a / z + b; in millimetres it stands there as it is.
+// image_transport's compressedDepth: an integer, two floats a and b, and a 16-bit PNG. Depth in
+// meters is stored as v = a / z + b; depth in millimeters is stored directly.
 constexpr size_t kCompressedDepthHead = 12;
 
 DecodedImage CompressedDepthOf(const RosPicture& picture) {

@@ -1,4 +1,4 @@
-// Pictures out of messages.
+// Decodes the images in messages.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -9,14 +9,14 @@
 
 namespace alidade {
 
-// `use`: as of a file (image_codec.h). Depth is CV_16UC1 in millimetres or CV_32FC1 in metres.
-// Throws Error (input) when the message is damaged or of an encoding that is not known.
+// `use` as in image_codec.h. Depth is CV_16UC1 in millimeters or CV_32FC1 in meters. Throws Error
+// (input) when the message is damaged or has an unknown encoding.
 DecodedImage PictureOf(const RosPicture& picture, ImageUse use);
 
-// Width and height without decoding, where the message or its JPEG or PNG header says so.
+// Width and height from the message or from its JPEG or PNG header, without decoding.
 cv::Size SizeOfPicture(const RosPicture& picture);
 
-// Whether it is depth: by its encoding, or as image_transport's compressedDepth.
+// true for a depth image, by its encoding or as image_transport's compressedDepth.
 bool IsDepth(const RosPicture& picture);
 
 }  // namespace alidade

@@ -36,7 +36,7 @@ bool BeginsAsBag(const std::string& path) {
          bytes.substr(0, 15) == "SQLite format 3";
 }
 
-// "walk" of walk_0.mcap and walk_12.mcap.zstd.
+// "walk" for walk_0.mcap and walk_12.mcap.zstd.
 std::string StemOf(const std::string& name) {
   const std::string stem = name.substr(0, name.find('.'));
   const size_t end = stem.find_last_not_of("0123456789");
@@ -44,7 +44,8 @@ std::string StemOf(const std::string& name) {
   return numbered ? stem.substr(0, end) : stem;
 }
 
-// Without rosbag2's metadata, only names tell whether these are parts of one recording.
+// Without rosbag2's metadata.yaml, files belong to one recording if their names differ only in the
+// number at the end.
 void CheckIsOne(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (StemOf(name) == StemOf(names.front())) continue;
@@ -87,7 +88,7 @@ BagQuery ParseBagQuery(const std::string& source) {
   query.path = PathOf(source);
   std::string_view rest = std::string_view(source).substr(query.path.size());
   while (!rest.empty()) {
-    rest.remove_prefix(1);  // ? or &
+    rest.remove_prefix(1);  // the separator ? or &
     const std::string_view option = rest.substr(0, rest.find('&'));
     rest.remove_prefix(option.size());
     const size_t equals = option.find('=');
@@ -126,7 +127,7 @@ std::vector<std::string> FilesOfBag(const std::string& path) {
   std::vector<std::string> files;
   std::sort(names.begin(), names.end(), NaturallyBefore);
   if (!IsThere(path + "/metadata.yaml")) CheckIsOne(path, names);
-  // A file and the same packed: one of them.
+  // When both a file and its compressed version exist, use the uncompressed one.
   for (const std::string& name : names) {
     const bool packed = EndsWith(name, ".zstd");
     const std::string plain = packed ? name.substr(0, name.size() - 5) : name;

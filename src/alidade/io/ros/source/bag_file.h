@@ -1,5 +1,4 @@
-// ROS recordings by the module that reads their containers (io/ros/containers), loaded when the
-// first is met.
+// Opens ROS recordings with the module of io/ros/containers, which is loaded on first use.
 #pragma once
 
 #include <memory>
@@ -11,25 +10,27 @@
 
 namespace alidade {
 
-// What the user typed, taken apart: "walk.bag?image=/cam0/image_raw&depth=".
+// Parsed form of a source such as "walk.bag?image=/cam0/image_raw&depth=".
 struct BagQuery {
   std::string path;
-  // Topics asked for; an empty one: none of that kind. Nothing: to be found.
+  // Requested topics. Empty: do not use any of that kind. nullopt: choose automatically.
   std::optional<std::string> image, right, depth, info, right_info;
-  std::optional<double> max_dt;  // seconds between what belongs together
+  std::optional<double> max_dt;  // largest time difference between associated messages, seconds
 };
 
-// Files of a ROS recording by their names' endings (.bag, .bag.active, .mcap, .db3, those of the
-// latter with .zstd) or by how they begin; folders with such files in them.
+// true for a ROS recording: a file with a known ending (.bag, .bag.active, .mcap, .db3, and
+// .mcap.zstd or .db3.zstd), a file with the first bytes of such a container, or a folder that
+// contains a file with a known ending.
 bool IsBagRecording(const std::string& path);
-// The same with `?name=value&…` behind it. A file whose own name has a `?` is taken as it is.
+// The same for a path followed by `?name=value&…`. A path that exists with the `?` in its name is
+// taken literally.
 bool IsBagSource(const std::string& source);
 BagQuery ParseBagQuery(const std::string& source);  // throws Error (usage)
 
 // The files of a recording in order: `path` itself, or those in the folder (name_2 before name_10).
 std::vector<std::string> FilesOfBag(const std::string& path);
 
-// Throws Error (input) when it cannot be read, or the module is missing.
+// Throws Error (input) when the recording cannot be read or the module is missing.
 std::unique_ptr<BagFile> OpenBagFile(const std::string& path);
 
 }  // namespace alidade

@@ -12,10 +12,10 @@
 namespace alidade {
 namespace {
 
-constexpr double kDepthWithin =
-    0.02;  // seconds: over half a frame at 30 Hz, as TUM's tools have it
-// Seconds: cameras that are triggered together, whose drivers stamp them apart. A turn of 60
-// degrees a second moves the picture by 2 pixels in it.
+// Seconds, more than half a frame interval at 30 Hz; the default of TUM's associate.py.
+constexpr double kDepthWithin = 0.02;
+// Seconds. The drivers of cameras that are triggered together may stamp them slightly apart.
+// Rotating at 60 degrees per second, the image moves by about 2 pixels in this time.
 constexpr double kPairWithin = 0.003;
 
 }  // namespace
@@ -81,7 +81,8 @@ std::optional<SourceFrame> BagPlayer::Next() {
   frame.number = next_++;
   const auto i = static_cast<size_t>(frame.number);
   frame.stamp = StampText(frames_.Stamp(i));
-  frame.time = ParseNumber(frame.stamp).value_or(0);  // the number a list of stamps would give
+  // The same value that a text list of these stamps would give.
+  frame.time = ParseNumber(frame.stamp).value_or(0);
   try {
     const DecodedImage read =
         Read(image_, frames_.message(i), color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
@@ -92,7 +93,7 @@ std::optional<SourceFrame> BagPlayer::Next() {
                     " " + error.what();
     return frame;
   }
-  // A frame whose second image is bad is still a picture.
+  // A frame whose right or depth image is bad is still used as a monocular frame.
   if (info_.sensor == Sensor::kStereo) {
     const cv::Mat right = Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray);
     if (!right.empty()) frame.right = preparation_->Right(right);

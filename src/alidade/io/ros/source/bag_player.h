@@ -1,4 +1,4 @@
-// Plays the chosen topics of a ROS recording: a frame for each message of the image topic.
+// Plays the chosen topics of a ROS recording: one frame per message of the image topic.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,13 @@ namespace alidade {
 
 class BagPlayer : public FrameSource {
  public:
-  // `max_dt`: seconds between what belongs together; nothing: 0.02 for depth, 0.003 for pairs.
+  // `max_dt`: largest time difference of a frame's images, seconds; nullopt: 0.02 for depth, 0.003
+  // for stereo.
   BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const ChosenTopics& chosen,
             std::optional<double> max_dt);
-  // Frames a second, see TopicStamps.
+  // Frames per second; see TopicStamps.
   std::optional<double> Rate() const { return frames_.Rate(); }
-  // To be called once, before the first frame. `info.frames` is filled in.
+  // Must be called once, before the first frame. Sets `info.frames`.
   void Begin(SourceInfo info, ImagePreparation preparation, bool color);
 
   const SourceInfo& Info() const override { return info_; }
@@ -29,7 +30,7 @@ class BagPlayer : public FrameSource {
 
  private:
   DecodedImage Read(const PictureTopic& topic, const BagMessage& message, ImageUse use);
-  // The partner's picture, empty when there is none; one that cannot be read is warned of.
+  // The associated right or depth image; empty when there is none. Warns when it cannot be read.
   cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
                   TopicStamps& stamps, size_t frame, ImageUse use);
 

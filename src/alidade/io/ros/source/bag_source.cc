@@ -18,11 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMillimetres = 1000;  // REP 118: depth of 16 bits
+constexpr double kMillimetres = 1000;  // units per meter; REP 118: 16-bit depth is in millimeters
 
 std::string NameOfRecording(const std::string& path) {
-  std::error_code error;
-  fs::path name = fs::weakly_canonical(path, error).filename();
+  fs::path name = NameAsTyped(path);
   if (IsFolder(path)) return name.string();
   while (name.has_extension() && (name.extension() == ".zstd" || name.extension() == ".active"))
     name = name.stem();
@@ -35,7 +34,8 @@ std::optional<Calibration> CalibrationBeside(const std::string& path) {
   return IsFile(file) ? std::optional(ReadCameraFile(file)) : std::nullopt;
 }
 
-// Of the chosen topics. `has_right` becomes whether the pair's baseline is told.
+// Calibration from the CameraInfo topics of the chosen images; nullopt: none. Sets `has_right` when
+// the baseline is known.
 std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& chosen,
                                            const std::string& path, bool& has_right) {
   has_right = false;
@@ -106,7 +106,7 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   const bool has_depth = chosen.depth && *calibration.depth_factor > 0;
 
   auto player = std::make_unique<BagPlayer>(std::move(bag), query.path, chosen, query.max_dt);
-  // A file's rate is the user's word.
+  // a frame rate in the user's camera file has priority
   if (!options.camera_file) calibration.fps = player->Rate().value_or(calibration.fps);
   const Sensor sensor = SensorFor(chosen, has_right, has_depth, options, query.path);
   if (sensor == Sensor::kMono && chosen.right)

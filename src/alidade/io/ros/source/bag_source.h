@@ -1,4 +1,4 @@
-// Recordings of ROS 1 and ROS 2 as sources of frames.
+// ROS 1 and ROS 2 recordings as frame sources.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace alidade {
 
-// `source`: what IsBagSource() knows. Frames are the messages of one image topic in the order they
-// were written down, with the times of their headers. The calibration is that of the options, else
-// of CameraInfo, else camera.yaml beside the file. `first` and `last` of the options are the
-// caller's to see to.
+// `source` must satisfy IsBagSource(). Frames are the messages of one image topic in the order of
+// recording, with the times of their headers. The calibration is that of the options, else
+// CameraInfo, else camera.yaml beside the file. Ignores `first` and `last` of the options: the
+// caller clips. Throws Error (input or usage).
 std::unique_ptr<FrameSource> OpenBagSource(const std::string& source, const SourceOptions& options);
 
 }  // namespace alidade

@@ -12,7 +12,7 @@ bool HasWord(const std::string& text, const std::string& word) {
   return text.find(word) != std::string::npos;
 }
 
-// For errors: what is in the recording.
+// Lists the recording's topics, for error messages.
 std::string AllTopics(const BagFile& bag) {
   constexpr size_t kMostListed = 20;
   std::string list;
@@ -75,8 +75,8 @@ class Chooser {
                "; there are " + ListOf(pictures_, false) + "; depth: " + ListOf(pictures_, true));
   }
 
-  // Depth of `image`'s own view: each of its pixels is one of the picture's. A driver says so by
-  // the frame, or by the topic's name.
+  // true when each depth pixel corresponds to the pixel of `image` with the same coordinates.
+  // Drivers state this by a common frame_id or by the topic's name.
   static bool IsRegistered(const PictureTopic& depth, const PictureTopic& image) {
     if (!depth.depth || !depth.problem.empty() || depth.size != image.size) return false;
     if (depth.frame_id == image.frame_id) return true;
@@ -132,7 +132,8 @@ class Chooser {
                AllTopics(bag_));
   }
 
-  // The reasons in order of weight; equal ones by number of messages, then by name.
+  // Larger scores are preferred; Best() breaks ties by the number of messages, then by name. The
+  // terms are ordered by weight.
   int Score(const PictureTopic& image, int64_t most_messages) const {
     constexpr std::array<const char*, 7> kMadeOfOthers = {
         "debug", "mask", "overlay", "detect", "feature", "disparity", "annotat"};
@@ -142,7 +143,7 @@ class Chooser {
     if (WantsDepth() && DepthFor(image)) score += 100;
     if (WantsRight() && RightFor(image)) score += 50;
     if (InfoTopicOf(bag_, image) >= 0) score += 20;
-    if (!RightNameOf(image.name).empty()) score += 10;  // cam0 rather than cam1
+    if (!RightNameOf(image.name).empty()) score += 10;  // prefer cam0 to cam1
     if (HasWord(image.base, "rgb") || HasWord(image.base, "color")) score += 5;
     if (!image.compressed) score += 1;
     return score;

@@ -1,4 +1,4 @@
-// Which topics of a recording are taken.
+// Chooses the topics of a recording to play.
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ namespace alidade {
 struct ChosenTopics {
   PictureTopic image;
   std::optional<PictureTopic> right, depth;
-  // Calibrations, as topics of the bag; -1: none.
+  // CameraInfo topics, as indices of the bag's topics; -1: none.
   int info = -1, right_info = -1;
-  std::string told;  // all of it in words, and what else there was to choose from
+  std::string told;  // the choice and the unused image topics, as a message for users
 };
 
-// What the query names; for the rest, the camera with depth of its own view, else the left one of a
-// pair, else the one that tells its calibration; pictures of few messages, or whose name says that
-// they are made of others, last. Throws Error: kUsage for topics that are not there, kInput when
-// there are no pictures.
+// Uses the topics named in the query. Otherwise prefers an image with registered depth, then the
+// left image of a pair, then an image with a CameraInfo. Topics with few messages, or whose names
+// indicate derived images (debug, mask, overlay, …), come last. Throws Error: kUsage for topics
+// that do not exist, kInput when there are no images.
 ChosenTopics ChooseTopics(BagFile& bag, const BagQuery& query, const SourceOptions& options);
 
 }  // namespace alidade

@@ -11,7 +11,7 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kTries = 5;  // messages: the first may be damaged
+constexpr size_t kTries = 5;  // messages read per topic, because the first may be damaged
 
 bool Holds(const std::string& text, const char* word) {
   return text.find(word) != std::string::npos;
@@ -78,8 +78,8 @@ std::vector<PictureTopic> PictureTopicsOf(BagFile& bag) {
   }
   std::sort(pictures.begin(), pictures.end(),
             [](const PictureTopic& a, const PictureTopic& b) { return a.name < b.name; });
-  // Infrared cameras give 16 bits too: where nothing else is there, and the name says no depth, it
-  // is a picture.
+  // Infrared cameras deliver 16UC1 as well. When the recording has no other image topic, a 16UC1
+  // topic without "depth" in its name counts as an image.
   const bool others = std::any_of(
       pictures.begin(), pictures.end(),
       [](const PictureTopic& picture) { return !picture.depth && picture.problem.empty(); });
@@ -134,7 +134,7 @@ int InfoTopicOf(BagFile& bag, const PictureTopic& picture) {
           static_cast<int>(info.width) == picture.size.width &&
           static_cast<int>(info.height) == picture.size.height)
         of_frame.push_back(static_cast<int>(i));
-    } catch (const Error&) {  // of no use here
+    } catch (const Error&) {  // a CameraInfo that cannot be read is skipped
     }
   }
   return of_frame.size() == 1 ? of_frame.front() : -1;

@@ -15,14 +15,14 @@ namespace alidade {
 namespace {
 
 constexpr int64_t kUnread = std::numeric_limits<int64_t>::min();
-constexpr uint64_t kHeaderBytes = 512;  // with the names of most frames
+constexpr uint64_t kHeaderBytes = 512;  // bytes; enough for a header with most frame_ids
 constexpr size_t kLagMessages = 9;
-// Half a second: how much later than usual a message may be written down. So many at most, of which
-// no camera gives more.
+// Nanoseconds: 0.5 s, the largest extra delay between header time and recording time. A window
+// holds at most kMostInWindow messages, more than a camera sends in that time.
 constexpr int64_t kWindow = 500'000'000;
 constexpr size_t kMostInWindow = 256;
 
-// Of times that may be anything.
+// Difference of untrusted times; 0 on overflow.
 int64_t Difference(int64_t a, int64_t b) {
   int64_t difference = 0;
   return __builtin_sub_overflow(a, b, &difference) ? 0 : difference;
@@ -52,7 +52,7 @@ int64_t TopicStamps::HeaderStamp(size_t i) {
     if (!bag_.Read(message(i), bytes, most).empty()) return 0;
     try {
       return ParseRosHeader(bytes, serialization_).stamp;
-    } catch (const Error&) {  // a longer header than that, or a damaged one
+    } catch (const Error&) {  // the header is longer than the bytes read, or damaged
       if (bytes.size() < most) return 0;
     }
   }
@@ -98,11 +98,12 @@ std::string StampText(int64_t nanoseconds) {
 
 namespace {
 
-// Those expected within the window around `time`, on the clock of the stamps: first, and behind the
-// last.
+// Range [first, last) of the messages whose expected header time lies within the window around
+// `time`.
 std::pair<size_t, size_t> Around(const TopicStamps& topic, int64_t time) {
   size_t low = 0, high = topic.size();
-  while (low < high) {  // the first not before `time`; log times are in order
+  // Binary search for the first message expected at or after `time`; log times are sorted.
+  while (low < high) {
     const size_t middle = (low + high) / 2;
     if (Difference(topic.Expected(middle), time) < 0) {
       low = middle + 1;
@@ -132,7 +133,7 @@ std::vector<double> SecondsAfter(TopicStamps& topic, std::pair<size_t, size_t> r
 
 std::optional<size_t> PartnerFinder::PartnerOf(size_t frame) {
   const int64_t stamp = frames_.Stamp(frame);
-  // The frame itself is among the first, however late it was written down.
+  // The range always includes the frame itself, even when it was recorded very late.
   std::pair<size_t, size_t> frames = Around(frames_, frames_.Expected(frame));
   frames.first = std::min(frames.first, frame);
   frames.second = std::max(frames.second, frame + 1);

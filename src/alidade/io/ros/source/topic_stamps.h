@@ -1,4 +1,4 @@
-// When the messages of a topic were taken: by their headers, read as they are asked for.
+// Header times of a topic's messages, read on demand.
 #pragma once
 
 #include <cstdint>
@@ -12,36 +12,37 @@ namespace alidade {
 
 class TopicStamps {
  public:
-  // `bag` must outlive it.
+  // `bag` must outlive this object.
   TopicStamps(BagFile& bag, size_t topic);
 
   size_t size() const { return messages_->size(); }
   const BagMessage& message(size_t i) const { return (*messages_)[i]; }
-  // Nanoseconds. Of a message without a stamp, or one that cannot be read: when it was written
-  // down, less what lies between the two in this topic.
+  // Header time of message i, nanoseconds. When the header cannot be read or has no stamp:
+  // Expected(i).
   int64_t Stamp(size_t i);
-  // When it was written down, on the clock of the stamps: nothing is read for it.
+  // Log time of message i minus the topic's typical delay, nanoseconds. Does not read the message.
   int64_t Expected(size_t i) const;
-  // Frames a second by when they were written down, a whole number where it is near one; nothing
-  // for less than two.
+  // Frames per second, from the log times, rounded to a whole number if it is close to one; nullopt
+  // for fewer than two messages.
   std::optional<double> Rate() const;
 
  private:
-  int64_t HeaderStamp(size_t i);  // 0: none
+  int64_t HeaderStamp(size_t i);  // 0: no stamp
 
   BagFile& bag_;
   Serialization serialization_;
   const std::vector<BagMessage>* messages_;
-  std::vector<int64_t> stamps_;  // kUnread where nobody asked yet
-  int64_t lag_ = 0;              // from stamps to log times, the middle one of the first few
+  std::vector<int64_t> stamps_;  // kUnread until read
+  // Nanoseconds from header times to log times, the median of the first few messages.
+  int64_t lag_ = 0;
 };
 
-// "1403715273.262142976"; six digits after the point where the other three are 0.
+// "1403715273.262142976"; 6 decimals when the last three digits are 0.
 std::string StampText(int64_t nanoseconds);
 
-// Pairs frames with what was taken at the same time. Of the frames around one and the messages
-// around it, each belongs to the nearest in time, one to one, as for recordings in folders
-// (io/association.h); only what lies near is read.
+// Pairs frames with messages of another topic taken at the same time. Associates the frames around
+// the given one with the messages around it, as for recordings in folders (io/association.h), and
+// reads only these messages' headers.
 class PartnerFinder {
  public:
   PartnerFinder(TopicStamps& frames, TopicStamps& partners, double max_dt)
@@ -51,7 +52,7 @@ class PartnerFinder {
  private:
   TopicStamps& frames_;
   TopicStamps& partners_;
-  double max_dt_;  // seconds
+  double max_dt_;  // largest time difference, seconds
 };
 
 }  // namespace alidade

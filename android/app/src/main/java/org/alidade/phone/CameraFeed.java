@@ -17,19 +17,20 @@ import android.util.Range;
 import android.util.Size;
 import java.util.Collections;
 
-/** The main camera's pictures, one after the other, in a thread of their own. */
+/** Delivers the main camera's images one after the other, in a separate thread. */
 final class CameraFeed {
   /** Called in the feed's thread. */
   interface Listener {
     void onPicture(Image image);
 
-    /** No more pictures come: another app has the camera, or it failed. */
+    /** The camera stopped delivering images: another app uses it, or it failed. */
     void onCameraGone(String why);
   }
 
   private static final int MOST_FPS = 30, LEAST_FPS = 15;
   private static final int BUFFERS = 3; // one being filled, one waiting, one being copied
-  private static final double FOCUS_DIOPTRES = 0.5; // 2 m: sharp from 1 m on with phones' lenses
+  // 2 m: with phones' lenses everything from 1 m on is in focus.
+  private static final double FOCUS_DIOPTRES = 0.5;
 
   private final CameraManager manager;
   private final String id;
@@ -38,12 +39,12 @@ final class CameraFeed {
   private final Listener listener;
   private final HandlerThread thread = new HandlerThread("camera");
   private Handler handler;
-  // The feed's thread alone.
+  // Used by the feed's thread only.
   private CameraDevice device;
   private ImageReader reader;
   private boolean stopped;
 
-  /** Throws when there is no camera that looks away from the user. */
+  /** Throws when there is no rear camera. */
   CameraFeed(Context context, int wantedWidth, Listener listener) throws CameraAccessException {
     manager = (CameraManager) context.getSystemService(Context.CAMERA_SERVICE);
     id = backCamera(manager);
@@ -60,7 +61,9 @@ final class CameraFeed {
     return size;
   }
 
-  /** Degrees clockwise that pictures are turned by to stand upright on a phone held as usual. */
+  /**
+   * Clockwise rotation in degrees that makes the images upright in the phone's natural orientation.
+   */
   int orientation() {
     Integer degrees = characteristics.get(CameraCharacteristics.SENSOR_ORIENTATION);
     return degrees == null ? 0 : degrees;
@@ -72,7 +75,7 @@ final class CameraFeed {
     handler.post(this::open);
   }
 
-  /** Returns when the camera is free again: the next activity may want it. */
+  /** Returns once the camera is released, because the next activity may open it. */
   void stop() {
     if (handler == null) return;
     handler.post(
@@ -169,8 +172,8 @@ final class CameraFeed {
     }
   }
 
-  // Focus changes the focal length, stabilisation the centre: both stay as they are where the device
-  // lets them.
+  // Focusing changes the focal length, and stabilization moves the principal point. Disables both
+  // where the device permits.
   private void holdLens(CaptureRequest.Builder request) {
     request.set(
         CaptureRequest.CONTROL_VIDEO_STABILIZATION_MODE,
@@ -182,7 +185,7 @@ final class CameraFeed {
           CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE,
           CaptureRequest.LENS_OPTICAL_STABILIZATION_MODE_OFF);
     }
-    // What LENS_DISTORTION tells is of pictures that nobody has straightened.
+    // LENS_DISTORTION refers to images without distortion correction.
     if (has(
         CameraCharacteristics.DISTORTION_CORRECTION_AVAILABLE_MODES,
         CaptureRequest.DISTORTION_CORRECTION_MODE_OFF)) {
@@ -207,8 +210,8 @@ final class CameraFeed {
     return false;
   }
 
-  // The range that ends nearest to 30 from below, and of these the one that begins at 15 or next
-  // above.
+  // Of the ranges with the highest upper limit up to 30, the one whose lower limit is 15 or the
+  // next value above.
   private Range<Integer> frameRates() {
     Range<Integer>[] ranges =
         characteristics.get(CameraCharacteristics.CONTROL_AE_AVAILABLE_TARGET_FPS_RANGES);
@@ -222,7 +225,8 @@ final class CameraFeed {
   }
 
   private static int worth(Range<Integer> range) {
-    // From 15 on lower is better (in the dark pictures may take longer); below, higher is.
+    // At 15 or more a lower limit is better, because it permits longer exposures in the dark; below
+    // 15 a higher one is.
     int lower = range.getLower();
     return 100 * range.getUpper() + (lower >= LEAST_FPS ? MOST_FPS - lower : lower - MOST_FPS);
   }
@@ -237,7 +241,8 @@ final class CameraFeed {
         CameraAccessException.CAMERA_ERROR, "no camera looks away from the user");
   }
 
-  // 4:3 shows all of the sensor; of these the width nearest to the one wanted.
+  // Prefers 4:3, which uses the full sensor, and among these the width nearest to the requested
+  // one.
   private static Size nearestSize(CameraCharacteristics camera, int wantedWidth)
       throws CameraAccessException {
     StreamConfigurationMap map = camera.get(CameraCharacteristics.SCALER_STREAM_CONFIGURATION_MAP);

@@ -7,7 +7,7 @@ import android.view.MotionEvent;
 import android.view.ScaleGestureDetector;
 import android.view.View;
 
-/** One finger turns the map, two bring it nearer. */
+/** Touch gestures: a drag rotates the map, a pinch zooms. */
 final class Fingers implements View.OnTouchListener {
   private final GestureDetector drags;
   private final ScaleGestureDetector pinches;
@@ -43,7 +43,7 @@ final class Fingers implements View.OnTouchListener {
   }
 
   @Override
-  @SuppressLint("ClickableViewAccessibility") // there is nothing to click
+  @SuppressLint("ClickableViewAccessibility") // not clickable
   public boolean onTouch(View view, MotionEvent event) {
     pinches.onTouchEvent(event);
     if (!pinches.isInProgress()) drags.onTouchEvent(event);

@@ -5,8 +5,9 @@ import android.hardware.camera2.CameraCharacteristics;
 import android.util.SizeF;
 
 /**
- * What a camera tells of its lens, as {@link SlamConnector} wants it: calibrated, else the field of
- * view f = W / (2 tan(θ/2)), else nothing, and the core finds it on the way.
+ * Lens parameters that the camera reports, in the format of {@link SlamConnector}: a calibration,
+ * else the horizontal field of view θ from f = W / (2 tan(θ/2)), else empty, in which case the core
+ * calibrates the camera itself.
  */
 final class Lens {
   private Lens() {}
@@ -25,12 +26,12 @@ final class Lens {
     if (focal == null || focal.length == 0 || sensor == null || pixels == null) {
       return new double[0];
     }
-    // The physical size is that of the whole pixel array; the pictures are cut from its active part.
+    // The physical size is that of the full pixel array; images are cropped from its active part.
     double across = sensor.getWidth() * array.width() / (double) pixels.getWidth();
     return fieldOfView(focal[0], across, array.width(), array.height(), width, height);
   }
 
-  /** fx fy cx cy [s] of the array of pixels, brought to pictures cut and scaled from it. */
+  /** Converts fx fy cx cy [s] of the pixel array to images cropped and scaled from it. */
   static double[] calibrated(
       float[] of, float[] distortion, int arrayWidth, int arrayHeight, int width, int height) {
     double scale = 1 / pixelsPerPixel(arrayWidth, arrayHeight, width, height);
@@ -38,11 +39,11 @@ final class Lens {
     double[] lens = new double[9];
     lens[0] = of[0] * scale;
     lens[1] = of[1] * scale;
-    // Android counts from the edge of the first pixel, the core from its centre.
+    // Android's origin is the corner of the first pixel, the core's is its center.
     lens[2] = (of[2] - left) * scale - 0.5;
     lens[3] = (of[3] - top) * scale - 0.5;
-    // Android: k1 k2 k3, then the tangential terms, in the order (2xy, r² + 2x²) that Brown's p1 and
-    // p2 have for x.
+    // Android's order is k1 k2 k3 and then the tangential coefficients, which multiply (2xy, r² +
+    // 2x²) in x, as Brown's p1 and p2 do.
     if (distortion != null && distortion.length >= 5) {
       lens[4] = distortion[0];
       lens[5] = distortion[1];
@@ -53,7 +54,7 @@ final class Lens {
     return lens;
   }
 
-  /** The horizontal field of view in degrees; lengths in millimetres. */
+  /** The horizontal field of view in degrees; lengths in millimeters. */
   static double[] fieldOfView(
       double focal, double across, int arrayWidth, int arrayHeight, int width, int height) {
     if (!(focal > 0) || !(across > 0)) return new double[0];
@@ -62,7 +63,7 @@ final class Lens {
     return new double[] {Math.toDegrees(2 * Math.atan(used / (2 * focal)))};
   }
 
-  // A picture of another shape than the array is cut from its middle, as large as it fits.
+  // Sensor pixels per image pixel. An image with another aspect ratio is the largest central crop.
   private static double pixelsPerPixel(int arrayWidth, int arrayHeight, int width, int height) {
     return Math.min(arrayWidth / (double) width, arrayHeight / (double) height);
   }

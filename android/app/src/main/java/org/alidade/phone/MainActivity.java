@@ -17,9 +17,9 @@ import android.view.WindowManager;
 import android.widget.TextView;
 
 /**
- * Camera, core and screen put together. The session lives as long as the activity, through pauses
- * and turns of the screen (the manifest keeps turns from making it anew); the camera is held only
- * while the activity is in front.
+ * Connects camera, core and screen. The session lives as long as the activity, including pauses and
+ * screen rotations (the manifest prevents a restart on rotation). The camera is open only while the
+ * activity is in the foreground.
  */
 public final class MainActivity extends Activity implements CameraFeed.Listener {
   private static final int ASK_CAMERA = 1;
@@ -31,10 +31,10 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
   private GLSurfaceView surface;
   private TextView numbers, words;
   private Settings settings;
-  private CameraFeed feed; // while in front
+  private CameraFeed feed; // only in the foreground
   private SlamConnector connector;
-  private String madeWith = ""; // the settings and size that the session was begun with
-  private String trouble = ""; // of the camera
+  private String madeWith = ""; // settings and image size of the session
+  private String trouble = ""; // camera error
 
   @Override
   protected void onCreate(Bundle saved) {
@@ -75,7 +75,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
 
   @Override
   protected void onDestroy() {
-    // The surface is gone with the window, and the GL thread with it.
+    // The surface and its GL thread are already gone.
     if (connector != null) connector.close();
     connector = null;
     super.onDestroy();
@@ -85,7 +85,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
   public void onRequestPermissionsResult(int code, String[] asked, int[] answers) {
     super.onRequestPermissionsResult(code, asked, answers);
     boolean granted = answers.length > 0 && answers[0] == PackageManager.PERMISSION_GRANTED;
-    // What is granted is seen by onResume, which follows.
+    // onResume, which follows, checks the permission.
     trouble = granted ? "" : getString(R.string.no_permission);
   }
 
@@ -125,7 +125,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
     if (connector != null) connector.cameraGone();
   }
 
-  // The old session ends when the GL thread has let go of it.
+  // Closes the old session after the GL thread has released it.
   private void show(SlamConnector next) {
     SlamConnector old = connector;
     connector = next;
@@ -146,7 +146,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
     startActivity(new Intent(this, SettingsActivity.class));
   }
 
-  // The sensor is mounted turned; the screen may be turned the other way.
+  // Image rotation from the sensor's orientation and the screen's rotation.
   private void turn() {
     if (feed == null) return;
     int screen;

@@ -4,7 +4,7 @@ import android.opengl.GLSurfaceView;
 import javax.microedition.khronos.egl.EGLConfig;
 import javax.microedition.khronos.opengles.GL10;
 
-/** Has the core draw what it knows. All calls come in the GL thread. */
+/** Draws the core's state. All methods run in the GL thread unless noted. */
 final class MapRenderer implements GLSurfaceView.Renderer {
   private SlamConnector connector;
   private boolean created;
@@ -12,7 +12,7 @@ final class MapRenderer implements GLSurfaceView.Renderer {
   private volatile int rotation; // degrees clockwise
   private volatile String problem = "";
 
-  /** How the picture is turned to stand upright; any thread. */
+  /** Sets the rotation that makes the image upright; any thread. */
   void turn(int degrees) {
     rotation = degrees;
   }
@@ -22,7 +22,7 @@ final class MapRenderer implements GLSurfaceView.Renderer {
     return problem;
   }
 
-  /** Draws another session from now on (null: none); the surface may be there already. */
+  /** Switches to another session (null: none); the surface may already exist. */
   void show(SlamConnector next) {
     if (connector != null && created) connector.surfaceGone();
     connector = next;
@@ -59,7 +59,7 @@ final class MapRenderer implements GLSurfaceView.Renderer {
       connector.draw(rotation);
       problem = "";
     } catch (IllegalArgumentException | IllegalStateException e) {
-      problem = e.getMessage(); // the map goes on without being drawn
+      problem = e.getMessage(); // SLAM continues without drawing
     }
   }
 }

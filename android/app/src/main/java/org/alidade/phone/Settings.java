@@ -8,8 +8,8 @@ import java.util.Properties;
 import java.util.TreeMap;
 
 /**
- * What the user may choose: kept in SharedPreferences, where nothing was chosen as
- * assets/defaults.properties says. Names with a dot are the core's, as after --set.
+ * User settings, stored in SharedPreferences with defaults from assets/defaults.properties. Names
+ * with a dot are settings of the core, as after --set.
  */
 final class Settings {
   private static final String FILE = "settings";
@@ -37,7 +37,7 @@ final class Settings {
     return kept.getString(name, defaults.get(name));
   }
 
-  /** An empty value: the default again. */
+  /** An empty value restores the default. */
   void set(String name, String value) {
     String text = value.trim();
     if (text.isEmpty() || text.equals(defaults.get(name))) {
@@ -51,18 +51,18 @@ final class Settings {
     return (int) number("camera_width", 640);
   }
 
-  /** Degrees; 0: what the phone tells. */
+  /** Degrees; 0: use the phone's calibration. */
   double fov() {
     return number("field_of_view", 0);
   }
 
-  /** The user's network, or null. */
+  /** Path of the user's detector network, or null. */
   String detector() {
     String path = get("detector");
     return path == null || path.isEmpty() ? null : path;
   }
 
-  /** Lines of name=value for the core. */
+  /** Settings of the core as lines of name=value. */
   String forCore() {
     StringBuilder lines = new StringBuilder();
     for (String name : defaults.keySet()) {

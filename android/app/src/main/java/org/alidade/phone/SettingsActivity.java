@@ -10,7 +10,7 @@ import android.widget.TextView;
 import java.util.LinkedHashMap;
 import java.util.Map;
 
-/** One line for each setting; they are kept when the page is left. */
+/** One line per setting; saved when the activity is left. */
 public final class SettingsActivity extends Activity {
   private final Map<String, EditText> fields = new LinkedHashMap<>();
   private Settings settings;
@@ -26,7 +26,7 @@ public final class SettingsActivity extends Activity {
     TextView advice = new TextView(this);
     advice.setText(R.string.settings_advice);
     list.addView(advice);
-    int id = 1; // what the fields hold outlives a turn of the screen by their ids
+    int id = 1; // with stable ids the fields' contents survive a screen rotation
     for (String name : settings.names()) {
       TextView label = new TextView(this);
       label.setText(name);

@@ -4,10 +4,10 @@ import java.nio.ByteBuffer;
 import java.util.concurrent.locks.ReentrantReadWriteLock;
 
 /**
- * The core: pictures in, numbers and drawing out (android/jni). Any thread may call anything at any
- * time, but for the drawing calls, which belong to the thread whose GL context is current. Bad
- * arguments throw IllegalArgumentException, a call after {@link #close} or a picture between {@link
- * #cameraGone} and {@link #cameraBack} IllegalStateException.
+ * Java interface of the core: images in, numbers and drawing out (android/jni). All methods may be
+ * called from any thread at any time, except the drawing methods, which require the thread whose GL
+ * context is current. Invalid arguments throw IllegalArgumentException; calls after {@link #close},
+ * and images between {@link #cameraGone} and {@link #cameraBack}, throw IllegalStateException.
  */
 public final class SlamConnector implements AutoCloseable {
   static {
@@ -16,19 +16,19 @@ public final class SlamConnector implements AutoCloseable {
 
   public static final int INITIALISING = 0, TRACKING = 1, LOST = 2;
 
-  /** What is known after the last picture that was worked on. */
+  /** Status after the last processed image. */
   public static final class Numbers {
     static final int COUNT = 14;
     public final int state; // INITIALISING, TRACKING, LOST
-    public final boolean predicted; // lost for so short that the motion is taken to go on
+    public final boolean predicted; // lost recently; the pose is extrapolated from the motion
     public final int keyframes, landmarks, matches, features, maps;
-    public final double milliseconds; // the last picture took
+    public final double milliseconds; // processing time of the last image
     public final double fov; // horizontal field of view, degrees
-    public final double fovSigma; // its standard deviation, degrees; 0: it was given
-    public final int cameraChanges; // how often the map was changed to a lens that was found from it
-    public final int frames; // worked on
-    public final int skipped; // pictures that a newer one replaced before their turn came
-    public final int failed; // pictures that the core refused: words() says why
+    public final double fovSigma; // its standard deviation, degrees; 0: the field of view was given
+    public final int cameraChanges; // number of times the map was rebuilt with a new lens estimate
+    public final int frames; // processed images
+    public final int skipped; // images replaced by a newer one before they were processed
+    public final int failed; // images rejected by the core; words() returns the reason
 
     Numbers(double[] list) {
       state = (int) list[0];
@@ -48,15 +48,16 @@ public final class SlamConnector implements AutoCloseable {
     }
   }
 
-  // Calls read the handle, close() writes it: nobody is inside the session when it goes.
+  // Calls hold the read lock and close() the write lock, so that no call is inside the session when
+  // it is deleted.
   private final ReentrantReadWriteLock lock = new ReentrantReadWriteLock();
   private long handle;
 
   /**
-   * @param lens nothing (null or empty), the horizontal field of view in degrees, or fx fy cx cy k1
-   *     k2 p1 p2 k3 in pixels of pictures of this size
+   * @param lens null or empty (unknown); the horizontal field of view in degrees; or fx fy cx cy k1
+   * k2 p1 p2 k3 in pixels of images of this size
    * @param settings lines of name=value, as after --set
-   * @param detector an ONNX file that finds people, or null
+   * @param detector ONNX file of a network that detects people, or null
    */
   public SlamConnector(int width, int height, double[] lens, String settings, String detector) {
     handle = nativeOpen(width, height, lens, settings, detector);
@@ -84,7 +85,7 @@ public final class SlamConnector implements AutoCloseable {
         });
   }
 
-  /** Ends the session; once is enough. */
+  /** Ends the session; may be called repeatedly. */
   @Override
   public void close() {
     lock.writeLock().lock();
@@ -97,8 +98,8 @@ public final class SlamConnector implements AutoCloseable {
   }
 
   /**
-   * One picture's luma plane, in a direct buffer; it is copied before this returns. Where another
-   * one still waits for its turn, this one takes its place.
+   * Passes the luma plane of one image in a direct buffer, which is copied. Replaces an image that
+   * is still waiting.
    */
   public void offer(ByteBuffer plane, int rowStride, double seconds) {
     run(session -> nativeOffer(session, plane, rowStride, seconds));
@@ -116,7 +117,7 @@ public final class SlamConnector implements AutoCloseable {
     run(SlamConnector::nativeSurfaceCreated);
   }
 
-  /** Frees what was made in the GL context, which lives on. */
+  /** Deletes the objects in the GL context, which continues to exist. */
   public void surfaceGone() {
     run(SlamConnector::nativeSurfaceGone);
   }
@@ -125,19 +126,19 @@ public final class SlamConnector implements AutoCloseable {
     run(session -> nativeSurfaceChanged(session, width, height));
   }
 
-  /** A finger moved so many pixels over the map. */
+  /** A drag by this many pixels over the map. */
   public void turn(double right, double down) {
     run(session -> nativeTurn(session, right, down));
   }
 
-  /** Two fingers went apart (above 1) or together. */
+  /** A pinch: above 1 when the fingers moved apart. */
   public void zoom(double factor) {
     run(session -> nativeZoom(session, factor));
   }
 
   /**
-   * @param rotation degrees clockwise by which the picture is turned to stand upright
-   * @return whether there was a picture
+   * @param rotation clockwise degrees that make the image upright
+   * @return whether there was an image
    */
   public boolean draw(int rotation) {
     return call(session -> nativeDraw(session, rotation));
@@ -149,17 +150,17 @@ public final class SlamConnector implements AutoCloseable {
     return new Numbers(list);
   }
 
-  /** Why there is no pose; "" while there is one. */
+  /** Why there is no pose; "" if there is one. */
   public String reason() {
     return call(SlamConnector::nativeReason);
   }
 
-  /** What went wrong last; "" when all is well. */
+  /** The last problem; "" if none. */
   public String words() {
     return call(SlamConnector::nativeWords);
   }
 
-  /** map.alidade, as the program loads it. */
+  /** The bytes of map.alidade. */
   public byte[] map() {
     return call(SlamConnector::nativeMap);
   }
@@ -169,7 +170,7 @@ public final class SlamConnector implements AutoCloseable {
     return call(SlamConnector::nativeTrajectory);
   }
 
-  /** Until no picture waits or is in work. */
+  /** Waits until no image is waiting or being processed. */
   public void waitUntilIdle() {
     run(SlamConnector::nativeWaitUntilIdle);
   }

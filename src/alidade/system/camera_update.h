@@ -1,0 +1,57 @@
+// Replaces the camera in the middle of a run, when the map supports another one than was given.
+// Used by the driving thread.
+#pragma once
+
+#include <functional>
+
+#include "alidade/system/early_frames.h"
+#include "alidade/system/kept_frames.h"
+#include "alidade/system/mover_watch.h"
+#include "alidade/system/present_frame.h"
+#include "alidade/system/published.h"
+#include "alidade/system/session.h"
+#include "alidade/system/settings.h"
+#include "alidade/system/types.h"
+#include "alidade/system/workers.h"
+#include "alidade/system/young_map.h"
+#include "alidade/tracking/tracker.h"
+
+namespace alidade {
+
+// The parts that depend on the camera.
+struct CameraUpdateParts {
+  const SlamSettings& settings;
+  Camera& camera;            // the one in use
+  Published<Camera>& shown;  // the same, for other threads
+  Workers& workers;
+  Session& session;
+  YoungMap& young;
+  EarlyFrames& early;
+  KeptFrames& kept;
+  Tracker& tracker;
+  MoverWatch& movers;
+};
+
+class CameraUpdate {
+ public:
+  // Processes a kept frame as if it were the present one.
+  using Replay = std::function<TrackResult(PresentFrame&)>;
+  CameraUpdate(const CameraUpdateParts& parts, Replay replay)
+      : parts_(parts), replay_(std::move(replay)) {}
+
+  // Uses `camera` everywhere from now on. The newest map is rebuilt from its frames' features if it
+  // was started with a camera too far from this one and all its frames are kept; otherwise all maps
+  // are bent to the new camera by adjustment.
+  void Apply(const Camera& camera);
+
+ private:
+  void ChangeEverywhere(const Camera& camera);
+  void Rebuild(const Camera& camera);
+  void ReplayFrame(const KeptFrames::Kept& kept);
+
+  CameraUpdateParts parts_;
+  Replay replay_;
+  int rebuilt_ = 0;
+};
+
+}  // namespace alidade

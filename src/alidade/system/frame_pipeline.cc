@@ -1,0 +1,424 @@
+#include "alidade/system/frame_pipeline.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/features/glance.h"
+#include "alidade/features/subset.h"
+#include "alidade/map/map_file.h"
+#include "alidade/system/movers.h"
+#include "alidade/system/prepare.h"
+#include "alidade/system/unknown_scale.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kLastCameraQueries = 3;  // in Finish(): each change makes the next one smaller
+constexpr int kReanchorFrames = 300;   // period of Reanchor(): 10 s at 30 frames per second
+constexpr int kInformative = 100;      // keypoints of an image that shows something, of 1000
+
+TrackState PublicState(SessionState state) {
+  switch (state) {
+    case SessionState::kSeeking:
+      return TrackState::kInitializing;
+    case SessionState::kConfirming:
+    case SessionState::kTracking:
+      return TrackState::kTracking;
+    case SessionState::kLost:
+      break;
+  }
+  return TrackState::kLost;
+}
+
+PoseQuality QualityOf(const TrackEstimate& estimate) {
+  PoseQuality quality;
+  quality.covariance = estimate.placed.covariance;
+  quality.expected = static_cast<int>(estimate.sightings.size());
+  quality.inliers = estimate.placed.inliers;
+  if (quality.expected > 0)
+    quality.found_share = static_cast<double>(quality.inliers) / quality.expected;
+  return quality;
+}
+
+}  // namespace
+
+FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
+                             const std::shared_ptr<Detector>& detector)
+    : settings_(settings),
+      camera_(camera),
+      dense_(settings.semidense.enabled && !settings.localise),
+      workers_(camera, settings),
+      tracker_(camera, settings.tracker),
+      movers_(camera, settings, detector),
+      young_(camera, settings, workers_),
+      early_(settings.early),
+      kept_(settings.refine.keep_frames),
+      log_(settings.trajectory),
+      session_({young_, early_, kept_, tracker_, movers_}),
+      placer_(workers_, tracker_, movers_, log_),
+      relocalizer_(settings, workers_, tracker_, log_),
+      start_({settings, workers_, session_, young_, early_, kept_, tracker_, placer_}),
+      camera_update_({settings, camera_, camera_shown_, workers_, session_, young_, early_, kept_,
+                      tracker_, movers_},
+                     [this](PresentFrame& now) { return Localize(now); }) {
+  camera_shown_.Set(camera);
+}
+
+TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
+  session_.BeginFrame();
+  steady_ = prepared.time;
+  PresentFrame now;
+  now.index = log_.size() - 1;
+  UseNews(now);
+  ExtractFeatures(prepared, time, now);
+  TrackResult result = Localize(now);
+  if (now.map_left && result.state != TrackState::kTracking)
+    result.failure = TrackFailure::kUnknownScale;
+  KeepForLater(now, result);
+  movers_.End(*now.placed.frame, result);
+  Publish(now);
+  log_.End();
+  if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitializing)
+    LocalizeEarlierFrames(1, now.frame->number);
+  if (log_.size() % kReanchorFrames == 0) Reanchor();
+  return result;
+}
+
+// The pose of the frame: by motion after a tracked frame, by descriptors otherwise.
+TrackResult FramePipeline::Localize(PresentFrame& now) {
+  const MapSnapshot map = workers_.map().Snapshot();
+  TrackFailure failure = TrackFailure::kNotRecognized;
+  if (session_.has_pose()) {
+    TrackEstimate estimate = FollowMotion(now, map);
+    failure = JudgeTracked(estimate, now, map);
+    if (failure == TrackFailure::kNone) return Place(std::move(estimate), now, map);
+  } else {
+    TrackEstimate estimate = FindPlace(now, map);
+    if (estimate.tracked) return Place(std::move(estimate), now, map);
+    if (MayStartMap(now)) return StartMap(now);
+  }
+  return WithoutPose(failure, now.frame->time, map);
+}
+
+// What the workers found since the last frame: another camera, maps without a known scale.
+void FramePipeline::UseNews(PresentFrame& now) {
+  TakeNews();
+  // An unconfirmed map is too small to be changed to another camera.
+  if (news_.camera && session_.state() != SessionState::kConfirming) UseCamera();
+  DropUnknownScale(now);
+}
+
+void FramePipeline::TakeNews() {
+  WorkerNews news = workers_.TakeNews();
+  if (news.camera) news_.camera = std::move(news.camera);
+  for (MapId map : news.unknown_scale) news_.unknown_scale.push_back(map);
+}
+
+void FramePipeline::UseCamera() {
+  camera_update_.Apply(*std::exchange(news_.camera, std::nullopt));
+  ++counts_.camera_changes;
+  TakeNews();  // of keyframes that were mapped again
+}
+
+// Drops maps that one camera made while their scale was unknown, and the poses in them
+// (MapperSettings::min_known_scale). The next map must prove its parallax, as every map.
+void FramePipeline::DropUnknownScale(PresentFrame& now) {
+  for (MapId unknown : std::exchange(news_.unknown_scale, {})) {
+    if (workers_.map().Snapshot().MapOf(tracker_.reference()) == unknown) {
+      session_.Apply(SessionEvent::kMapLeft);
+      now.map_left = true;
+    }
+    if (auto newest = ReattachFrames(unknown, workers_.map(), log_)) now.reattachment = newest;
+    workers_.Drop(unknown);
+  }
+}
+
+void FramePipeline::ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now) {
+  const int number = NumberOf(now.index);
+  const bool tracked = session_.has_pose();
+  movers_.Begin(prepared, number, tracked && TrustsFocalLength(), young_.WantsGlance(number));
+  tracker_.SetReadout(workers_.readout());
+  const Stopwatch watch;
+  now.frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
+                               movers_.Expected());
+  extract_ms_.Add(watch.Milliseconds());
+  if (dense_) now.frame->picture = PictureOf(prepared);
+  if (settings_.sensor == Sensor::kMono &&
+      (!tracked || young_.WantsGlance(number) || CollectsForRebuild()))
+    now.frame->glance = Glance(prepared.image);
+  now.placed.frame = now.frame;
+}
+
+// Optical flow is compared with poses only when the focal length is trusted: with a wrong one the
+// whole scene seems to move. During online self-calibration that is once the estimate is known and
+// the map is no longer rebuilt because of it.
+bool FramePipeline::TrustsFocalLength() const {
+  if (settings_.refine.enabled) {
+    if (CollectsForRebuild()) return false;
+    const std::optional<CameraEstimate> found = workers_.lens_watch().found();
+    return found && found->known;
+  }
+  return settings_.start.two_view.lens_uncertainty <= settings_.dynamics.watch_lens;
+}
+
+// Whether frames are kept to rebuild the map with another camera. Dynamics need images, which are
+// not kept; a loaded map is not rebuilt.
+bool FramePipeline::CollectsForRebuild() const {
+  return settings_.refine.enabled && settings_.sensor == Sensor::kMono && kept_.keeps() &&
+         !movers_.on() && first_number_ == 0;
+}
+
+// Pose from an even motion and the local map (ORB-SLAM §V-B to D).
+TrackEstimate FramePipeline::FollowMotion(PresentFrame& now, const MapSnapshot& map) {
+  const Stopwatch watch;
+  tracker_.UndoShutter(*now.frame, map);
+  PlacedFrame guess = tracker_.Predict(now.frame, map);
+  const double predicting = watch.Milliseconds();
+  const PoseGuess where = GuessOf(guess, tracker_.reference(), map);
+  movers_.Judge(*now.frame, &where);
+  const Stopwatch estimating;
+  TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
+  if (estimate.tracked) {
+    tracker_.UndoShutter(*now.frame, estimate, map);
+    if (settings_.readout.enabled && !camera_.readout_known)
+      workers_.readout_watch().Placed(now.frame->motion,
+                                      tracker_.ReadoutMatches(estimate.placed, map));
+  }
+  track_ms_.Add(predicting + estimating.Milliseconds());
+  return estimate;
+}
+
+TrackEstimate FramePipeline::FindPlace(PresentFrame& now, const MapSnapshot& map) {
+  movers_.Judge(*now.frame, nullptr);
+  if (map.keyframe_count() == 0) return {};
+  const Stopwatch watch;
+  Relocalizer::Found found =
+      relocalizer_.Find(now.frame, map, session_.state() == SessionState::kLost);
+  track_ms_.Add(watch.Milliseconds());
+  if (!found.estimate.tracked) return {};
+  ++counts_.relocalizations;
+  if (now.reattachment && now.reattachment->index + 1 == now.index &&
+      now.reattachment->map == map.MapOf(found.estimate.reference))
+    log_.PlaceLate(now.reattachment->index, now.reattachment->anchor);
+  session_.Apply(found.by_motion ? SessionEvent::kPoseResumed : SessionEvent::kRelocalized);
+  tracker_.KeyFrameInserted(now.frame->number);
+  found.estimate.wants_keyframe = false;  // the frames after it confirm the place first
+  return std::move(found.estimate);
+}
+
+// Whether the pose of a frame that follows a tracked one is believed. kNone: it is.
+TrackFailure FramePipeline::JudgeTracked(const TrackEstimate& estimate, const PresentFrame& now,
+                                         const MapSnapshot& map) {
+  const auto refuse = [&](TrackFailure failure) {
+    session_.Apply(SessionEvent::kMapRefused);
+    return failure;
+  };
+  if (session_.state() == SessionState::kConfirming) {
+    if (!young_.Confirm(estimate)) return refuse(TrackFailure::kNotConfirmed);
+    if (young_.confirmed()) session_.Apply(SessionEvent::kMapConfirmed);
+  }
+  const bool young = young_.IsYoung(*now.frame, tracker_.reference(), map);
+  if (FollowsMovingObject(young) && young) return refuse(TrackFailure::kMovingStart);
+  if (!estimate.tracked) {
+    session_.Apply(SessionEvent::kPoseLost, steady_);
+    return TrackFailure::kFewLandmarks;
+  }
+  if (settings_.sensor == Sensor::kMono && young && young_.StandsStill(estimate.placed))
+    return refuse(TrackFailure::kStillCamera);
+  return TrackFailure::kNone;
+}
+
+// Whether the last poses follow a moving object. With dynamics.mode auto moving objects may be left
+// out from this frame on.
+bool FramePipeline::FollowsMovingObject(bool young) {
+  const bool left_out = movers_.on();
+  const bool follows = movers_.FollowsMover(young);
+  if (follows && !young) movers_.Forget();  // it was learned with wrong poses
+  if (movers_.on() && !left_out && settings_.dynamics.weigh)
+    workers_.mapper().SetYoungStatic(kYoungStatic);
+  return follows;
+}
+
+TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
+                                 const MapSnapshot& map) {
+  TrackResult result;
+  result.state = TrackState::kTracking;
+  // Keyframes the mapper has not processed yet, at most. With depth, tracking relies on the newest
+  // keyframes, so more may queue.
+  const int max_backlog = settings_.sensor == Sensor::kMono ? 1 : 2;
+  result.keyframe = estimate.wants_keyframe && session_.state() != SessionState::kConfirming &&
+                    workers_.backlog() <= max_backlog && !settings_.localise &&
+                    !workers_.mapping_stopped() && HoldsWithoutMovers(estimate.placed);
+  if (!settings_.localise) {
+    const LandmarkNews news = movers_.NewsOf(estimate, map);
+    workers_.mapper().Doubt(news.evidence);
+    workers_.mapper().Count(news.sightings);
+  }
+  now.placed = estimate.placed;
+  result.quality = QualityOf(estimate);
+  if (result.keyframe) {
+    const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
+    placer_.InsertKeyFrame(now, estimate.placed, anchor, camera_);
+  } else {
+    placer_.Place(now, estimate.placed, estimate.reference, map);
+  }
+  result.matches = estimate.placed.inliers;
+  result.T_world_camera = estimate.placed.T_camera_world.Inverse();
+  return result;
+}
+
+// A new map starts only when no known place is recognized: at once while seeking, after
+// settings.new_map_seconds and new_map_frames informative frames when lost.
+bool FramePipeline::MayStartMap(const PresentFrame& now) {
+  if (session_.state() == SessionState::kSeeking) return true;
+  const double informative = kInformative * settings_.tracker.match_scale;
+  if (static_cast<double>(now.frame->keypoints.size()) >= informative)
+    session_.CountInformativeFrame();
+  const bool long_lost = steady_ - session_.lost_since() >= settings_.new_map_seconds &&
+                         session_.informative_frames() >= settings_.new_map_frames;
+  const bool may_start = !settings_.localise && !workers_.mapping_stopped();
+  if (long_lost && may_start) {
+    LeaveMap();
+    return true;
+  }
+  // If another map starts later, it may show this place, too.
+  if (settings_.sensor == Sensor::kMono && may_start) early_.Wait(*now.frame, now.index);
+  return false;
+}
+
+// A map of few keyframes is dropped: it would be mistaken for other places. A loaded one is kept.
+void FramePipeline::LeaveMap() {
+  session_.Apply(SessionEvent::kLostForLong);
+  const MapSnapshot map = workers_.map().Snapshot();
+  const MapId left = map.MapOf(tracker_.reference());
+  if (!left.valid()) return;
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
+  const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
+  if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
+    workers_.Drop(left);
+}
+
+TrackResult FramePipeline::StartMap(PresentFrame& now) {
+  if (movers_.on()) {
+    now.placed.frame = std::make_shared<Frame>(*now.frame);
+    const cv::Mat glance = now.frame->glance;
+    *now.frame = KeypointSubset(*now.frame, MappableKeypoints(*now.frame), camera_);
+    now.frame->glance = glance;
+  }
+  return start_.Start(now, camera_);
+}
+
+TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const MapSnapshot& map) {
+  TrackResult result;
+  result.state = PublicState(session_.state());
+  result.failure = failure;
+  if (const auto T_camera_world = tracker_.PredictedPose(time, map)) {
+    result.predicted = T_camera_world->Inverse();
+    ++counts_.predicted;
+  }
+  return result;
+}
+
+// What later steps may need of the frame; its images are released otherwise.
+void FramePipeline::KeepForLater(PresentFrame& now, const TrackResult& result) {
+  const bool seeking = session_.state() == SessionState::kSeeking;
+  if (CollectsForRebuild()) kept_.Add(*now.frame, now.index, seeking);
+  if (!seeking) now.frame->glance.release();
+  // While seeking, the frame may become the first keyframe of a map, which needs its images.
+  now.frame->picture = dense_ && seeking ? Copied(*now.frame->picture) : nullptr;
+  if (settings_.sensor == Sensor::kMono && result.state == TrackState::kTracking)
+    early_.Tracked(*now.frame, now.index);
+}
+
+void FramePipeline::Publish(const PresentFrame& now) {
+  last_frame_.Set(std::make_shared<const LastFrame>(LastFrame{now.placed.frame,
+                                                              now.placed.matches,
+                                                              movers_.BeliefOfCells(),
+                                                              {camera_.width, camera_.height},
+                                                              now.keyframe,
+                                                              movers_.detections(),
+                                                              movers_.detections_age()}));
+}
+
+// One camera: frames from before the map could localize them. If memory runs out, they are tried
+// again later.
+void FramePipeline::LocalizeEarlierFrames(int count, int number) {
+  if (session_.state() == SessionState::kConfirming) return;
+  try {
+    early_.Place(count, number, tracker_, workers_.map().Snapshot(), log_);
+  } catch (const std::bad_alloc&) {
+  }
+}
+
+// Stores everything relative to living keyframes, so that the map can forget culled ones.
+void FramePipeline::Reanchor() {
+  const MapSnapshot map = workers_.map().Snapshot();
+  log_.Reanchor(map);
+  tracker_.Reanchor(map);
+  early_.Reanchor(map);
+  workers_.map().ReleaseCulledKeyFrames(map.version());
+}
+
+void FramePipeline::Abandon() noexcept {
+  try {
+    session_.Apply(SessionEvent::kFrameFailed);
+  } catch (...) {  // no memory to drop an unconfirmed map: it stays, without frames
+  }
+  EndFrame();
+}
+
+void FramePipeline::EndFrame() noexcept {
+  try {
+    log_.End();
+  } catch (...) {  // no memory: tried again with the next frame, and by Finish()
+  }
+}
+
+void FramePipeline::BeginRecording() {
+  log_.BeginRecording();
+  workers_.BeginRecording();
+}
+
+void FramePipeline::Load(const SavedMap& saved) {
+  if (!log_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
+  CheckSameCamera(saved.camera, camera_);
+  if (saved.sensor != NameOf(settings_.sensor)) {
+    ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
+               NameOf(settings_.sensor));
+  }
+  workers_.Restore(saved);
+  const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
+  int number = first_number_;
+  for (KeyFrameId id : keyframes) number = std::max(number, saved.map.Find(id)->frame->number + 1);
+  first_number_ = number;
+  if (!keyframes.empty()) session_.Apply(SessionEvent::kMapLoaded);
+}
+
+void FramePipeline::Finish(double limit) {
+  EndFrame();
+  workers_.Drain(limit);
+  PresentFrame last;
+  TakeNews();
+  DropUnknownScale(last);
+  if (last.map_left) workers_.Drain(limit);
+  if (session_.has_pose() && young_.WantsGlance(NumberOf(log_.size() - 1)) && young_.StoodStill()) {
+    session_.Apply(SessionEvent::kMapRefused);
+    workers_.Drain(limit);
+  }
+  // The camera that all frames together support. Not where time is limited.
+  const bool use_camera = settings_.refine.enabled && !std::isfinite(limit);
+  for (int i = 0; i < kLastCameraQueries && use_camera; ++i) {
+    workers_.AskForCamera();
+    TakeNews();
+    if (!news_.camera || session_.state() == SessionState::kConfirming) break;
+    UseCamera();
+  }
+  DropUnknownScale(last);
+  LocalizeEarlierFrames(settings_.early.most, std::numeric_limits<int>::max());
+}
+
+}  // namespace alidade

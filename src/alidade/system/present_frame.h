@@ -1,0 +1,30 @@
+// What belongs to the frame that is being processed; handed from step to step of the pipeline.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "alidade/map/anchor.h"
+#include "alidade/tracking/placed_frame.h"
+
+namespace alidade {
+
+// The previous frame, which lost its pose with a dropped map, placed relative to a keyframe of the
+// map its own predecessor is in. It gets this pose if the present frame is found in that map.
+struct Reattachment {
+  int index = 0;  // in the trajectory
+  Anchor anchor;
+  MapId map;
+};
+
+struct PresentFrame {
+  std::shared_ptr<Frame> frame;
+  int index = 0;          // in the trajectory
+  bool replayed = false;  // a kept frame that is processed again with another camera
+  PlacedFrame placed;     // as tracked; `placed.frame` is set without a pose, too
+  KeyFrameId keyframe;    // the keyframe it became
+  bool map_left = false;  // the map it was expected in was dropped: its scale is unknown
+  std::optional<Reattachment> reattachment;
+};
+
+}  // namespace alidade

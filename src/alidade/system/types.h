@@ -1,0 +1,129 @@
+// The values that go into and come out of Slam.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alidade/base/api.h"
+#include "alidade/base/ids.h"
+#include "alidade/base/timing.h"
+#include "alidade/detect/detector.h"
+#include "alidade/geometry/se3.h"
+#include "alidade/tracking/track_failure.h"
+
+namespace ALIDADE_API alidade {
+
+enum class TrackState {
+  kInitializing,  // no map yet, or lost for so long that another map may start
+  kTracking,
+  kLost,
+  kInitialising [[deprecated("use kInitializing")]] = kInitializing
+};
+
+struct FrameInput {
+  double time = 0;  // seconds
+  cv::Mat image;    // 8-bit gray or BGR, of the camera's size
+  cv::Mat right;    // stereo: the rectified right image
+  // RGB-D: registered depth, CV_16U in units of 1 / camera.depth_factor metres or CV_32F in metres.
+  // Empty: none.
+  cv::Mat depth;
+  cv::Mat color = {};  // `image` in color (BGR) when it is gray, for point clouds; empty: none
+};
+
+// How reliable a pose is.
+struct PoseQuality {
+  // Covariance of the pose error in the camera frame: T_world_camera * Exp(xi) is the true pose
+  // with xi = (translation; rotation) ~ N(0, covariance); m², m rad, rad² (one camera: map units).
+  // From the normal equations of the pose, scaled by the residuals, so it includes the noise of
+  // keypoints and landmarks. It does not include the error of the map itself (drift): in the first
+  // two seconds of a map of one camera the true error is about four times larger.
+  // Zero: unknown, or the first frame of a map, whose pose is the identity by definition.
+  Matrix6d covariance = Matrix6d::Zero();
+  int expected = 0;        // landmarks that should be visible
+  int inliers = 0;         // of these, matched in agreement with the pose
+  double found_share = 0;  // inliers / expected, in [0, 1]; about a third is usual (occlusions)
+};
+
+struct TrackResult {
+  TrackState state = TrackState::kInitializing;
+  Se3 T_world_camera;  // valid when tracking
+  // Lost for less than tracker.predict_seconds: T_world_camera extrapolated from the last motion at
+  // constant velocity. A guess: it is in no trajectory.
+  std::optional<Se3> predicted;
+  int matches = 0;                             // landmarks that agree with the pose
+  bool keyframe = false;                       // this frame became a keyframe
+  TrackFailure failure = TrackFailure::kNone;  // why there is no pose
+  const char* cut = "";  // why the frame does not continue the previous one; "": it does
+  PoseQuality quality;   // valid when tracking
+  // Parts that failed and stopped (SlamHealth::Stopped()); repeated with every later frame.
+  std::string warning;
+
+  const char* reason() const { return ReasonText(failure); }  // `failure` in words; "" for none
+};
+
+// One frame of the finished trajectory.
+struct FramePose {
+  int index = 0;    // count of Track() calls before this frame's
+  double time = 0;  // seconds
+  int recording =
+      0;  // increases with Reset() and when the clock is set back; times grow within one
+  bool tracked = false;
+  MapId map;           // the map whose world frame the pose is in; invalid when not tracked
+  Se3 T_world_camera;  // after all corrections of the map so far
+  // The frame had no pose when it was processed and got one later: for one camera, frames before
+  // the start of the map.
+  bool late = false;
+  Se3 T_world_camera_live;  // the pose as Track() returned it; undefined when `late`
+  // The pose relative to a keyframe (a living one: see MapState::culled), with lengths divided by
+  // the keyframe's scale. Corrections of the map leave it unchanged.
+  KeyFrameId reference;
+  Se3 T_reference_camera;
+};
+
+// One feature of a frame and how it was used.
+struct FeatureUse {
+  float x = 0, y = 0;            // raw (distorted) pixels
+  float static_probability = 1;  // in [0, 1]: that it is on something that does not move
+  bool matched = false;          // its landmark agrees with the pose
+  // Its landmark was created with the newest keyframe or the one before it.
+  bool fresh = false;
+};
+
+// The detector's newest answer.
+struct ShownDetections {
+  int frames_ago = 0;      // frames between the detector's image and the last processed one
+  double seconds_ago = 0;  // the same by the images' time stamps
+  std::vector<Detection> detections;  // pixels of the detector's image, which has the camera's size
+  std::vector<std::string> names;     // class name of each detection
+};
+
+// Milliseconds, one sample per frame (map, loop, semidense: per keyframe). From 262,144 samples on
+// (2.4 hours at 30 frames per second) an evenly drawn subset: see SampleLog.
+struct StageTimes {
+  std::vector<double> frame, extract, track, map, loop, semidense;
+  std::vector<double> detect;    // per frame given to the detector
+  std::vector<double> dynamics;  // optical flow, geometry and belief, without the detector
+};
+
+// The newest sample of each stage and the count of samples. A stage whose count has not grown has
+// not run since the last query.
+struct LatestTimes {
+  SampleLog::Reading frame, extract, track, map, loop, semidense, detect, dynamics;
+};
+
+// Frames that Trajectory() no longer holds (settings.trajectory.keep_seconds).
+struct LetGoFrames {
+  int frames = 0;
+  int tracked = 0;  // of those, the ones that had a pose
+};
+
+struct SlamCounts {
+  int relocalisations = 0, loops = 0, merges = 0;
+  int cuts = 0;       // gaps and backward jumps of the time stamps, and calls of Reset()
+  int predicted = 0;  // frames with TrackResult::predicted
+  LetGoFrames let_go;
+};
+
+}  // namespace alidade
