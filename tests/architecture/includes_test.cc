@@ -25,7 +25,7 @@ const std::map<std::string, int> kFloors = {
     {"python", 9},   {"bench", 9}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
-const std::array<std::string, 5> kOuterFolders = {"base/module", "io/files", "io/media", "io/bags",
+const std::array<std::string, 5> kOuterFolders = {"base/module", "io/files", "io/media", "io/ros",
                                                   "detect/onnx"};
 
 // Not to be had in WebAssembly, or not in clang 14's libc++.
@@ -48,6 +48,10 @@ const std::array<std::string, 18> kNotPortable = {"opencv2/imgcodecs",
                                                   "boost/",
                                                   "CLI/"};
 
+// Folders within a floor that may include those before them, and the file that opens them all.
+const std::array<std::string, 5> kIoRooms = {"io/ros/containers", "io/files", "io/ros/messages",
+                                             "io/ros/source", "io/files/open_source.cc"};
+
 bool StartsWith(const std::string& text, const std::string& start) {
   return text.compare(0, start.size(), start) == 0;
 }
@@ -57,6 +61,16 @@ bool StartsWith(const std::string& text, const std::string& start) {
 std::string FolderOf(const std::string& path) {
   const size_t slash = path.find('/');
   return slash == std::string::npos ? "system" : path.substr(0, slash);
+}
+
+// Position in kIoRooms, -1 for what is in none of them.
+int IoRoomOf(const std::string& path) {
+  int room = -1;
+  for (size_t i = 0; i < kIoRooms.size(); ++i) {
+    const std::string& start = kIoRooms[i];
+    if (path == start || StartsWith(path, start + "/")) room = static_cast<int>(i);
+  }
+  return room;
 }
 
 bool IsPortable(const std::string& path) {
@@ -85,6 +99,8 @@ std::optional<std::string> Violation(const std::string& path, const std::string&
   const std::string other = FolderOf(included);
   if (kFloors.count(other) == 0) return "folder '" + other + "' has no floor";
   if (IsPortable(path) && !IsPortable(included)) return header + " is not portable";
+  if (folder == other && IoRoomOf(path) >= 0 && IoRoomOf(included) > IoRoomOf(path))
+    return header + " is a later room of " + folder;
   if (folder == other) return std::nullopt;
   const int from = kFloors.at(folder), to = kFloors.at(other);
   if (to > from)
@@ -207,6 +223,10 @@ TEST(ArchitectureRules, SeeIncludesThatGoUpOrSideways) {
   EXPECT_TRUE(Violation("optimize/pose.h", "alidade/features/frame.h"));   // sideways
   EXPECT_TRUE(Violation("tracking/track.h", "alidade/slam.h"));            // up
   EXPECT_TRUE(Violation("cellar/wine.h", "alidade/base/error.h"));         // nowhere
+  EXPECT_FALSE(Violation("io/ros/source/bag_source.cc", "alidade/io/ros/messages/messages.h"));
+  EXPECT_TRUE(Violation("io/ros/messages/messages.h", "alidade/io/ros/source/bag_player.h"));
+  EXPECT_TRUE(Violation("io/files/file.cc", "alidade/io/ros/source/bag_source.h"));
+  EXPECT_FALSE(Violation("io/files/open_source.cc", "alidade/io/ros/source/bag_source.h"));
 }
 
 TEST(ArchitectureRules, SeeWhatIsNotPortable) {

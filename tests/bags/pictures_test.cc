@@ -5,7 +5,7 @@
 #include <limits>
 #include <opencv2/imgproc.hpp>
 
-#include "alidade/io/files/ros/picture_of_message.h"
+#include "alidade/io/ros/messages/picture_of_message.h"
 #include "bags/message_bytes.h"
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"

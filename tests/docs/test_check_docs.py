@@ -1,4 +1,4 @@
-"""scripts/check-docs finds each kind of mistake, and none where there is none."""
+"""scripts/check/docs finds each kind of mistake, and none where there is none."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -17,7 +17,7 @@ def load(name, path):
     return module
 
 
-check_docs = load("check_docs", ROOT / "scripts" / "check-docs")
+check_docs = load("check_docs", ROOT / "scripts" / "check" / "docs")
 
 SOUND = {
     "README.md": "# A\n\n[index](docs/index.md)\n",

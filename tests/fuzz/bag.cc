@@ -1,6 +1,6 @@
-#include "alidade/io/bags/mcap_file.h"
-#include "alidade/io/bags/ros1_bag.h"
-#include "alidade/io/bags/rosbag2_database.h"
+#include "alidade/io/ros/containers/mcap_bag.h"
+#include "alidade/io/ros/containers/ros1_bag.h"
+#include "alidade/io/ros/containers/rosbag2_database.h"
 #include "fuzz/targets.h"
 #include "fuzz/use_bag.h"
 

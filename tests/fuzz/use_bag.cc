@@ -5,10 +5,10 @@
 #include <string>
 
 #include "alidade/base/error.h"
-#include "alidade/io/files/ros/camera_of_info.h"
-#include "alidade/io/files/ros/choose_topics.h"
-#include "alidade/io/files/ros/picture_of_message.h"
-#include "alidade/io/files/ros/topic_stamps.h"
+#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/messages/picture_of_message.h"
+#include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/topic_stamps.h"
 #include "fuzz/targets.h"
 
 namespace alidade::fuzz {

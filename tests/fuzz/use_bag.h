@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-#include "alidade/io/bags/bags_module.h"
+#include "alidade/io/ros/containers/bags_module.h"
 
 namespace alidade::fuzz {
 

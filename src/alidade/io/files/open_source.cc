@@ -12,10 +12,10 @@
 #include "alidade/io/files/kitti_recording.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/files/recording.h"
-#include "alidade/io/files/ros/bag_file.h"
-#include "alidade/io/files/ros/bag_source.h"
 #include "alidade/io/files/tum_recording.h"
 #include "alidade/io/files/video_source.h"
+#include "alidade/io/ros/source/bag_file.h"
+#include "alidade/io/ros/source/bag_source.h"
 #include "alidade/io/text.h"
 #include "alidade/io/wrappers.h"
 

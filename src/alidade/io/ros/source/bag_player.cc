@@ -1,0 +1,108 @@
+#include "alidade/io/ros/source/bag_player.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/ros/messages/picture_of_message.h"
+#include "alidade/io/text.h"
+
+namespace alidade {
+namespace {
+
+// Seconds, more than half a frame interval at 30 Hz; the default of TUM's associate.py.
+constexpr double kDepthWithin = 0.02;
+// Seconds. The drivers of cameras that are triggered together may stamp them slightly apart.
+// Rotating at 60 degrees per second, the image moves by about 2 pixels in this time.
+constexpr double kPairWithin = 0.003;
+
+}  // namespace
+
+BagPlayer::BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const ChosenTopics& chosen,
+                     std::optional<double> max_dt)
+    : bag_(std::move(bag)),
+      path_(std::move(path)),
+      image_(chosen.image),
+      right_(chosen.right),
+      depth_(chosen.depth),
+      frames_(*bag_, chosen.image.topic) {
+  if (right_) {
+    right_stamps_.emplace(*bag_, right_->topic);
+    right_finder_.emplace(frames_, *right_stamps_, max_dt.value_or(kPairWithin));
+  }
+  if (depth_) {
+    depth_stamps_.emplace(*bag_, depth_->topic);
+    depth_finder_.emplace(frames_, *depth_stamps_, max_dt.value_or(kDepthWithin));
+  }
+}
+
+void BagPlayer::Begin(SourceInfo info, ImagePreparation preparation, bool color) {
+  info_ = std::move(info);
+  info_.frames =
+      static_cast<int>(std::min<size_t>(frames_.size(), std::numeric_limits<int>::max()));
+  preparation_.emplace(std::move(preparation));
+  color_ = color;
+}
+
+bool BagPlayer::Seek(int frames) {
+  next_ = std::clamp(frames, 0, info_.frames);
+  return true;
+}
+
+DecodedImage BagPlayer::Read(const PictureTopic& topic, const BagMessage& message, ImageUse use) {
+  std::string bytes;
+  const std::string problem = bag_->Read(message, bytes);
+  if (!problem.empty()) ThrowInput(problem);
+  DecodedImage decoded = PictureOf(
+      ParseRosPicture(bytes, bag_->Topics()[topic.topic].serialization, topic.compressed), use);
+  if (decoded.image.size() != image_.size)
+    ThrowInput("is of another size than " + image_.name + "'s first");
+  return decoded;
+}
+
+cv::Mat BagPlayer::Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
+                           TopicStamps& stamps, size_t frame, ImageUse use) {
+  const std::optional<size_t> partner = finder->PartnerOf(frame);
+  if (!partner) return {};
+  try {
+    return Read(topic, stamps.message(*partner), use).image;
+  } catch (const Error& error) {
+    LogWarning(path_ + ": message " + std::to_string(*partner) + " of " + topic.name + " " +
+               error.what());
+    return {};
+  }
+}
+
+std::optional<SourceFrame> BagPlayer::Next() {
+  if (next_ >= info_.frames) return std::nullopt;
+  SourceFrame frame;
+  frame.number = next_++;
+  const auto i = static_cast<size_t>(frame.number);
+  frame.stamp = StampText(frames_.Stamp(i));
+  // The same value that a text list of these stamps would give.
+  frame.time = ParseNumber(frame.stamp).value_or(0);
+  try {
+    const DecodedImage read =
+        Read(image_, frames_.message(i), color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
+    frame.image = preparation_->Left(read.image);
+    if (!read.color.empty()) frame.color = preparation_->Left(read.color);
+  } catch (const Error& error) {
+    frame.problem = path_ + ": message " + std::to_string(frame.number) + " of " + image_.name +
+                    " " + error.what();
+    return frame;
+  }
+  // A frame whose right or depth image is bad is still used as a monocular frame.
+  if (info_.sensor == Sensor::kStereo) {
+    const cv::Mat right = Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray);
+    if (!right.empty()) frame.right = preparation_->Right(right);
+  }
+  if (info_.sensor == Sensor::kRgbd) {
+    const cv::Mat depth = Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth);
+    if (!depth.empty()) frame.depth = preparation_->Depth(depth);
+  }
+  return frame;
+}
+
+}  // namespace alidade

@@ -1,0 +1,50 @@
+// Plays the chosen topics of a ROS recording: one frame per message of the image topic.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "alidade/io/calibration.h"
+#include "alidade/io/files/image_codec.h"
+#include "alidade/io/frame_source.h"
+#include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/topic_stamps.h"
+
+namespace alidade {
+
+class BagPlayer : public FrameSource {
+ public:
+  // `max_dt`: largest time difference of a frame's images, seconds; nullopt: 0.02 for depth, 0.003
+  // for stereo.
+  BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const ChosenTopics& chosen,
+            std::optional<double> max_dt);
+  // Frames per second; see TopicStamps.
+  std::optional<double> Rate() const { return frames_.Rate(); }
+  // Must be called once, before the first frame. Sets `info.frames`.
+  void Begin(SourceInfo info, ImagePreparation preparation, bool color);
+
+  const SourceInfo& Info() const override { return info_; }
+  std::optional<SourceFrame> Next() override;
+  bool Seek(int frames) override;
+
+ private:
+  DecodedImage Read(const PictureTopic& topic, const BagMessage& message, ImageUse use);
+  // The associated right or depth image; empty when there is none. Warns when it cannot be read.
+  cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
+                  TopicStamps& stamps, size_t frame, ImageUse use);
+
+  std::unique_ptr<BagFile> bag_;
+  std::string path_;
+  PictureTopic image_;
+  std::optional<PictureTopic> right_, depth_;
+  TopicStamps frames_;
+  std::optional<TopicStamps> right_stamps_, depth_stamps_;
+  std::optional<PartnerFinder> right_finder_, depth_finder_;
+  std::optional<ImagePreparation> preparation_;
+  SourceInfo info_;
+  bool color_ = false;
+  int next_ = 0;
+};
+
+}  // namespace alidade

@@ -1,0 +1,128 @@
+#include "alidade/io/ros/source/bag_source.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
+#include "alidade/io/files/file.h"
+#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/source/bag_file.h"
+#include "alidade/io/ros/source/bag_player.h"
+#include "alidade/io/ros/source/choose_topics.h"
+
+namespace alidade {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMillimetres = 1000;  // units per meter; REP 118: 16-bit depth is in millimeters
+
+std::string NameOfRecording(const std::string& path) {
+  fs::path name = NameAsTyped(path);
+  if (IsFolder(path)) return name.string();
+  while (name.has_extension() && (name.extension() == ".zstd" || name.extension() == ".active"))
+    name = name.stem();
+  return name.stem().string();
+}
+
+std::optional<Calibration> CalibrationBeside(const std::string& path) {
+  const std::string file = IsFolder(path) ? path + "/camera.yaml"
+                                          : (fs::path(path).parent_path() / "camera.yaml").string();
+  return IsFile(file) ? std::optional(ReadCameraFile(file)) : std::nullopt;
+}
+
+// Calibration from the CameraInfo topics of the chosen images; nullopt: none. Sets `has_right` when
+// the baseline is known.
+std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& chosen,
+                                           const std::string& path, bool& has_right) {
+  has_right = false;
+  if (chosen.info < 0) return std::nullopt;
+  std::string topic;
+  const auto read = [&](int number) {
+    topic = bag.Topics()[static_cast<size_t>(number)].name;
+    return FirstInfo(bag, static_cast<size_t>(number));
+  };
+  try {
+    const RosCameraInfo left = read(chosen.info);
+    Calibration calibration;
+    calibration.origin = path + ", " + topic;
+    const std::optional<RawCamera> camera = CameraOfInfo(left, chosen.image.rectified);
+    if (!camera) {
+      LogWarning(calibration.origin + " is of a camera that was never calibrated (K is 0)");
+      return std::nullopt;
+    }
+    calibration.left = *camera;
+    if (chosen.right_info >= 0)
+      has_right =
+          AddRightCamera(left, read(chosen.right_info), chosen.image.rectified, calibration);
+    return calibration;
+  } catch (const Error& error) {
+    throw Error(error.kind(), path + ": " + topic + " " + error.what());
+  }
+}
+
+Sensor SensorFor(const ChosenTopics& chosen, bool has_right, bool has_depth,
+                 const SourceOptions& options, const std::string& path) {
+  const Sensor best = has_depth ? Sensor::kRgbd : has_right ? Sensor::kStereo : Sensor::kMono;
+  const Sensor sensor = options.sensor.value_or(best);
+  if (sensor == Sensor::kRgbd && !has_depth) {
+    ThrowUsage("--sensor rgbd: " + path + " has no depth that lies on " + chosen.image.name +
+               " pixel by pixel (or a `depth_factor` of 0); ?depth=TOPIC names one");
+  }
+  if (sensor == Sensor::kStereo && !chosen.right) {
+    ThrowUsage("--sensor stereo: " + path + " has no camera to the right of " + chosen.image.name +
+               "; ?right=TOPIC names one");
+  }
+  if (sensor == Sensor::kStereo && !has_right) {
+    ThrowInput(path +
+               ": stereo needs the baseline: CameraInfo of both cameras, with P[3] of the "
+               "right one, or a camera file with `baseline` or `right` (--camera); or ask for "
+               "--sensor mono");
+  }
+  return sensor;
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
+                                           const SourceOptions& options) {
+  const BagQuery query = ParseBagQuery(source);
+  std::unique_ptr<BagFile> bag = OpenBagFile(query.path);
+  for (const std::string& warning : bag->Warnings()) LogWarning(warning);
+  ChosenTopics chosen = ChooseTopics(*bag, query, options);
+
+  bool has_right = false;
+  std::optional<Calibration> beside;
+  if (!options.camera_file) {
+    beside = CalibrationTold(*bag, chosen, query.path, has_right);
+    if (!beside) beside = CalibrationBeside(query.path);
+  }
+  auto [calibration, guessed, lens_told] = ChooseCalibration(beside, chosen.image.size, options);
+  has_right = chosen.right && (has_right || calibration.right || calibration.baseline > 0);
+  if (!calibration.depth_factor) calibration.depth_factor = kMillimetres;
+  const bool has_depth = chosen.depth && *calibration.depth_factor > 0;
+
+  auto player = std::make_unique<BagPlayer>(std::move(bag), query.path, chosen, query.max_dt);
+  // a frame rate in the user's camera file has priority
+  if (!options.camera_file) calibration.fps = player->Rate().value_or(calibration.fps);
+  const Sensor sensor = SensorFor(chosen, has_right, has_depth, options, query.path);
+  if (sensor == Sensor::kMono && chosen.right)
+    chosen.told += "; with one camera, as nothing tells the baseline of the two";
+  ImagePreparation preparation(calibration, sensor);
+  SourceInfo info;
+  info.name = NameOfRecording(query.path);
+  info.kind = "ros";
+  info.sensor = sensor;
+  info.camera = preparation.camera();
+  info.camera_guessed = guessed;
+  info.lens_told = lens_told;
+  info.R_camera_rectified = preparation.R_camera_rectified();
+  info.told = chosen.told;
+  player->Begin(std::move(info), std::move(preparation), options.color);
+  return player;
+}
+
+}  // namespace alidade
