@@ -30,7 +30,7 @@ function(alidade_artefact NAME KIND)
   install(EXPORT Alidade_${NAME} NAMESPACE Alidade:: FILE Alidade_${NAME}.cmake DESTINATION ${ALIDADE_CMAKE_DIR})
 endfunction()
 
-set(NEEDS Threads::Threads opencv_imgproc opencv_features2d opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
+set(NEEDS Threads::Threads opencv_imgproc opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
     ${CMAKE_DL_LIBS})
 find_package(JPEG REQUIRED)
 find_package(PNG REQUIRED)
@@ -56,17 +56,17 @@ install(SCRIPT ${CMAKE_CURRENT_LIST_DIR}/InstallHeaders.cmake)
 
 if(TARGET alidade)
   install(TARGETS alidade RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-  # Build everything that is installed.
-  add_dependencies(alidade alidade_static alidade_shared alidade_media alidade_bags alidade_dnn)
-  if(TARGET alidade_serve)
-    add_dependencies(alidade alidade_serve)
-  endif()
+  add_dependencies(alidade alidade_static alidade_shared)  # build everything that is installed
 endif()
 # The program and the library load the modules from this folder (base/module), which is specific to the version.
-install(TARGETS alidade_media alidade_bags alidade_dnn LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
-if(TARGET alidade_serve)
-  install(TARGETS alidade_serve LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
-endif()
+foreach(MODULE alidade_media alidade_bags alidade_dnn alidade_serve)
+  if(TARGET ${MODULE})
+    install(TARGETS ${MODULE} LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
+    if(TARGET alidade)
+      add_dependencies(alidade ${MODULE})
+    endif()
+  endif()
+endforeach()
 
 # The WebAssembly core, if scripts/wasm/build has built it, for `alidade phone`.
 foreach(VARIANT single threads)
