@@ -30,7 +30,7 @@ function(alidade_artefact NAME KIND)
   install(EXPORT Alidade_${NAME} NAMESPACE Alidade:: FILE Alidade_${NAME}.cmake DESTINATION ${ALIDADE_CMAKE_DIR})
 endfunction()
 
-set(NEEDS Threads::Threads opencv_imgproc opencv_features2d opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
+set(NEEDS Threads::Threads opencv_imgproc opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
     ${CMAKE_DL_LIBS})
 find_package(JPEG REQUIRED)
 find_package(PNG REQUIRED)

@@ -1,6 +1,6 @@
-# OpenCV: found by its own configuration (Debian: libopencv-dev); without, as scripts/setup --demo leaves it: libraries of
-# libopencv-video-dev, and headers unpacked beside the build. Sets OpenCV_INCLUDE_DIRS; targets opencv_core, …
-find_package(OpenCV 4.5 QUIET COMPONENTS core imgproc video calib3d OPTIONAL_COMPONENTS features2d)
+# Finds OpenCV: by its own configuration (Debian: libopencv-dev), else as scripts/setup --demo installs it: the libraries
+# of libopencv-video-dev, and headers unpacked beside the build. Sets OpenCV_INCLUDE_DIRS; targets opencv_core, …
+find_package(OpenCV 4.5 QUIET COMPONENTS core imgproc video calib3d)
 if(OpenCV_FOUND)
   return()
 endif()
