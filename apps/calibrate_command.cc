@@ -130,10 +130,10 @@ int CalibrateCommand(const CalibrateOptions& options) {
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
-  AtomicWriteFile(options.out,
-                  FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " +
-                                                   CameraInWords(all) +
-                                                   (all.known ? "" : "\nnot known for certain")));
+  AtomicWriteFile(
+      options.out,
+      FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " + CameraInWords(all) +
+                                       (all.known ? "" : "\nnot known for certain")));
   if (!options.run.quiet)
     std::printf("Written to %s: alidade run RECORDING --camera %s\n", options.out.c_str(),
                 options.out.c_str());

@@ -196,9 +196,10 @@ void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
       ->required()
       ->type_name("PATH");
   command
-      .add_option("--align", options.align,
-                  "se3: rotate and shift; sim3: scale as well; none; auto: sim3 where the estimate's "
-                  "stats.json says one camera, else se3")
+      .add_option(
+          "--align", options.align,
+          "se3: rotate and shift; sim3: scale as well; none; auto: sim3 where the estimate's "
+          "stats.json says one camera, else se3")
       ->type_name("auto|se3|sim3|none")
       ->capture_default_str();
   command.add_option("--max-dt", options.max_dt, "Largest difference of matched time stamps")

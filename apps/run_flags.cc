@@ -92,12 +92,13 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
                   "Address the viewer listens on (127.0.0.1: this machine only)")
       ->type_name("ADDRESS");
   command
-      .add_option("--out", options.out,
-                  options.localise
-                      ? "Folder for the results (alidade-out/NAME-localized, or -2, -3, … where that "
-                        "is another source's)"
-                      : "Folder for the results (alidade-out/NAME, or NAME-2, NAME-3, … where that "
-                        "is another source's)")
+      .add_option(
+          "--out", options.out,
+          options.localise
+              ? "Folder for the results (alidade-out/NAME-localized, or -2, -3, … where that "
+                "is another source's)"
+              : "Folder for the results (alidade-out/NAME, or NAME-2, NAME-3, … where that "
+                "is another source's)")
       ->type_name("FOLDER");
   command.add_flag("--overwrite", options.overwrite,
                    "Replace the results in the folder, even those of another source, of a longer "

@@ -17,6 +17,7 @@
 #include "alidade/synth/statistics.h"
 #include "arguments.h"
 #include "commands.h"
+#include "synth_folder.h"
 #include "synth_writer.h"
 
 namespace alidade {

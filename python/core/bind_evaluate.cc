@@ -83,8 +83,8 @@ py::tuple Rpe(const py::object& truth, const py::object& estimate, double delta,
     result = EvaluateRpe(true_poses, poses, settings);
   }
   return py::make_tuple(ToDict(result.trans, result.scale, result.coverage),
-                        ToDict(result.rot, result.scale, result.coverage),
-                        NameOf(chosen.align), chosen.why);
+                        ToDict(result.rot, result.scale, result.coverage), NameOf(chosen.align),
+                        chosen.why);
 }
 
 py::dict ToDict(const DepthScore& s) {
@@ -131,8 +131,8 @@ class DepthErrors {
 }  // namespace
 
 void BindEvaluate(py::module_& core) {
-  core.def("ate", &Ate, "truth"_a, "estimate"_a, "align"_a, "sensor"_a, "association"_a,
-           "max_dt"_a, "span"_a);
+  core.def("ate", &Ate, "truth"_a, "estimate"_a, "align"_a, "sensor"_a, "association"_a, "max_dt"_a,
+           "span"_a);
   core.def("rpe", &Rpe, "truth"_a, "estimate"_a, "delta"_a, "unit"_a, "pairs"_a, "align"_a,
            "sensor"_a, "max_dt"_a, "span"_a);
   py::class_<DepthErrors>(core, "DepthErrors")

@@ -200,8 +200,8 @@ TEST_F(EvaluateDepth, TableIsForPeople) {
   WriteResult(folder_, "mono", {{TinyStamp(1), Plain(0.5)}});
   const ProgramResult result = RunAlidade({"evaluate", "depth", folder_.path(), result_});
   EXPECT_EQ(result.status, 0);
-  for (const char* words : {"1 keyframes, scaled (one camera) by 2.0", "all pixels", "depth-continuous",
-                            "median", "of edges", "101.500000"})
+  for (const char* words : {"1 keyframes, scaled (one camera) by 2.0", "all pixels",
+                            "depth-continuous", "median", "of edges", "101.500000"})
     EXPECT_THAT(result.out, HasSubstr(words));
   EXPECT_THAT(RunAlidade({"evaluate", "depth", "--help"}).out, HasSubstr("Examples"));
 }

@@ -99,8 +99,8 @@ TEST_F(FilesKept, AMergedMapGivesWayToOneOfTheSameMaps) {
 }
 
 TEST_F(FilesKept, ARenderedRecordingStaysUntilTheNextIsWhole) {
-  const std::vector<std::string> synth = {"synth", "desk", "out", "--width", "160",
-                                          "--height", "120", "--frames"};
+  const std::vector<std::string> synth = {"synth", "desk",     "out", "--width",
+                                          "160",   "--height", "120", "--frames"};
   const auto render = [&](const std::string& frames, const std::function<void(pid_t)>& meanwhile) {
     std::vector<std::string> words = synth;
     words.push_back(frames);

@@ -96,8 +96,8 @@ TEST_F(MaskOutputs, OfAnEarlierRunGoAndNobodyElses) {
     folder.Place(true);
   };
   run(true);
-  EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png",
-                                            "stats.json"));
+  EXPECT_THAT(FilesUnder(out_),
+              ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png", "stats.json"));
   temp_.Write("out/mask/mine.png", "a picture of my own");
   run(true);  // beside it
   EXPECT_THAT(FilesUnder(out_), ElementsAre("mask", "mask.txt", "mask/1.50.png", "mask/2.50.png",

@@ -123,8 +123,8 @@ class AnyOrder : public testing::Test {
       const bool own_file = fs::path(name).filename() != "notes.txt";
       const auto result = results_before.find(fs::path(name).parent_path());
       if (own_file && result != results_before.end())
-        may_change |= !result->second.good || (result->second.command == step.words[0] &&
-                                               result->second.source == source);
+        may_change |= !result->second.good ||
+                      (result->second.command == step.words[0] && result->second.source == source);
       for (const std::string& output : step.outputs) may_change |= name.rfind(output, 0) == 0;
       EXPECT_TRUE(may_change) << name << (now == after.end() ? " is gone" : " is another");
     }
@@ -250,8 +250,8 @@ TEST_F(AnyOrder, FilesOnTheirWayArriveWithTheNextRun) {
   const auto alidade = [&](const std::vector<std::string>& words) {
     return RunAlidade(words, nullptr, at_.path()).status;
   };
-  const std::vector<std::string> old_run = {"run", "a/walk", "--seed", "1", "--record", "--out",
-                                            "old"};
+  const std::vector<std::string> old_run = {"run",      "a/walk", "--seed", "1",
+                                            "--record", "--out",  "old"};
   ASSERT_EQ(alidade(old_run), 0);
   ASSERT_EQ(alidade({"run", "a/walk", "--seed", "2", "--out", "new"}), 0);
   Files expected;
@@ -274,8 +274,7 @@ TEST_F(AnyOrder, FilesOnTheirWayArriveWithTheNextRun) {
       fs::remove(out + "/run.done/replaced.json");
     }
     const char* names[] = {"map.alidade", "trajectory.txt", "report.html"};
-    for (int i = 0; i < moved; ++i)
-      fs::rename(out + "/run.done/" + names[i], out + "/" + names[i]);
+    for (int i = 0; i < moved; ++i) fs::rename(out + "/run.done/" + names[i], out + "/" + names[i]);
     EXPECT_EQ(alidade({"run", "b/walk", "--out", "out"}), 3);  // refused, after that
     Files found;
     for (const auto& entry : fs::directory_iterator(out))

@@ -64,8 +64,8 @@ class ResultsKept : public testing::Test {
   }
   // A run that takes two minutes, and is killed once its stream is being written.
   void RunAndKill(const std::string& out) {
-    const ProgramResult result = Alidade(
-        {"run", "long", "--rate", "0.1", "--record", "--out", out}, [&](pid_t program) {
+    const ProgramResult result =
+        Alidade({"run", "long", "--rate", "0.1", "--record", "--out", out}, [&](pid_t program) {
           EXPECT_TRUE(WaitFor([&] { return !NamesWith(out, "run.stream.tmp").empty(); }));
           kill(program, SIGKILL);
         });
@@ -110,9 +110,9 @@ TEST_F(ResultsKept, LocalizeHasAFolderOfItsOwn) {
   EXPECT_TRUE(fs::exists(at_ / "alidade-out/tuesday-localized/trajectory.txt"));
   EXPECT_FALSE(fs::exists(at_ / "alidade-out/tuesday-localized/map.alidade"));
   // Not even when it is sent there.
-  const ProgramResult there = Alidade({"localize", "tuesday", "--map",
-                                       "alidade-out/monday/map.alidade", "--out",
-                                       "alidade-out/tuesday"});
+  const ProgramResult there =
+      Alidade({"localize", "tuesday", "--map", "alidade-out/monday/map.alidade", "--out",
+               "alidade-out/tuesday"});
   EXPECT_EQ(there.status, 3);
   EXPECT_THAT(there.err, HasSubstr("alidade run tuesday"));
   EXPECT_THAT(there.err, HasSubstr("--overwrite"));

@@ -85,10 +85,10 @@ class SemiDenseOutputs : public testing::Test {
 TEST_F(SemiDenseOutputs, EachMapHasItsListAndCloudAndOneFolderHasThePictures) {
   const std::string out = temp_ / "out";
   const Cloud cloud = Write(out);
-  EXPECT_THAT(FilesUnder(out), ElementsAre("depth.1.txt", "depth.txt", "depth/100.50.png",
-                                           "depth/101.50.png", "depth/103.000000000.png",
-                                           "depth/104.50.png", "semidense.1.ply", "semidense.ply",
-                                           "stats.json"));
+  EXPECT_THAT(FilesUnder(out),
+              ElementsAre("depth.1.txt", "depth.txt", "depth/100.50.png", "depth/101.50.png",
+                          "depth/103.000000000.png", "depth/104.50.png", "semidense.1.ply",
+                          "semidense.ply", "stats.json"));
   EXPECT_EQ(ReadText(out + "/depth.txt"), std::string(kDepthListHeader) +
                                               "100.50 depth/100.50.png\n"
                                               "101.50 depth/101.50.png\n"

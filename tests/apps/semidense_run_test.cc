@@ -99,7 +99,7 @@ TEST_F(SemiDenseRun, OneWithoutRemovesWhatItLeft) {
   const std::vector<std::string> left = {"depth", "depth.txt", "semidense.ply", "semidense.png"};
   ASSERT_EQ(Run("out").status, 0);
   for (const std::string& name : left) EXPECT_TRUE(is_there(name)) << name;
-  ASSERT_EQ(Run("out", {"--last", "5"}).status, 0);
+  ASSERT_EQ(Run("out", {"--last", "5", "--overwrite"}).status, 0);
   for (const std::string& name : left) EXPECT_FALSE(is_there(name)) << name;
   EXPECT_THAT(Text("out/report.html"), Not(HasSubstr("<h2>Shape</h2>")));
 }

@@ -21,7 +21,8 @@ struct ScriptResult {
   std::string said;
 };
 
-// Scripts are copied into a folder of their own, and find no programs but those that can do no harm.
+// Scripts are copied into a folder of their own, and find no programs but those that can do no
+// harm.
 class Scripts : public testing::Test {
  protected:
   void SetUp() override {
@@ -50,9 +51,9 @@ class Scripts : public testing::Test {
     return names;
   }
   ScriptResult Run(const std::string& name, const std::string& argument) {
-    const std::string command = "cd " + (folder_ / "tree").string() + " && PATH=" +
-                                (folder_ / "bin").string() + " PYTHONDONTWRITEBYTECODE=1 scripts/" +
-                                name + " " + argument + " </dev/null >../said 2>&1";
+    const std::string command =
+        "cd " + (folder_ / "tree").string() + " && PATH=" + (folder_ / "bin").string() +
+        " PYTHONDONTWRITEBYTECODE=1 scripts/" + name + " " + argument + " </dev/null >../said 2>&1";
     const int state = std::system(command.c_str());
     std::ifstream file(folder_ / "said");
     return {WIFEXITED(state) ? WEXITSTATUS(state) : -1, {std::istreambuf_iterator<char>(file), {}}};

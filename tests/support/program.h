@@ -27,7 +27,8 @@ inline std::string ReadText(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// `while_running` is given the process id, to send it signals. `in`: the folder the program starts in.
+// `while_running` is given the process id, to send it signals. `in`: the folder the program starts
+// in.
 inline ProgramResult RunAlidade(const std::vector<std::string>& arguments,
                                 const std::function<void(pid_t)>& while_running = nullptr,
                                 const std::string& in = ".") {

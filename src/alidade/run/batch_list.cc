@@ -54,9 +54,9 @@ std::string FolderNameOf(const std::string& source) {
 
 // What the batch has in its folder besides those of the recordings.
 bool IsBatchsOwn(const std::string& name) {
-  static const std::set<std::string> kOwn = {"log",    "done",      "batch.json", "batch.md",
-                                             "merged", "batch.log", "batch.lock", "slurm",
-                                             "compare.html"};
+  static const std::set<std::string> kOwn = {"log",        "done",   "batch.json",
+                                             "batch.md",   "merged", "batch.log",
+                                             "batch.lock", "slurm",  "compare.html"};
   return kOwn.count(name) > 0;
 }
 

@@ -21,7 +21,7 @@ ResultOwner OwnerOf(const std::string& source, bool localize);
 
 struct EarlierResult {
   ResultOwner owner;
-  double frames = 0;     // that the source gave, late ones included
+  double frames = 0;  // that the source gave, late ones included
   double tracked = 0;
   bool complete = true;  // the run ended well
   // Names of the run's own files, as it noted them; older versions did not.

@@ -31,9 +31,10 @@ std::string LineIn(int fd) {
 
 // Still the one of that name: who held it may have removed it before its lock ended.
 bool IsAt(int fd, const std::string& path) {
-  struct stat own {}, there {};
-  return ::fstat(fd, &own) == 0 && ::stat(path.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
-         own.st_ino == there.st_ino;
+  struct stat own {
+  }, there{};
+  return ::fstat(fd, &own) == 0 && ::stat(path.c_str(), &there) == 0 &&
+         own.st_dev == there.st_dev && own.st_ino == there.st_ino;
 }
 
 }  // namespace

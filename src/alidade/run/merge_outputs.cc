@@ -57,8 +57,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
     earlier.inputs.insert(place.empty() ? PlaceOfMap(word_in(recording, "path")) : place);
     for (const ordered_json& trajectory : list_in(recording, "trajectories")) {
       const std::string name = word_in(trajectory, "file");
-      if (name.ends_with(".txt") && name.find('/') == std::string::npos)
-        earlier.files.insert(name);
+      if (name.ends_with(".txt") && name.find('/') == std::string::npos) earlier.files.insert(name);
     }
   }
   return earlier;
@@ -112,8 +111,8 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
   const EarlierMerge earlier = ReadEarlierMerge(places.folder);
   std::set<std::string> now;
   for (const MergeInput& input : inputs) now.insert(PlaceOfMap(input.path));
-  const bool of_these = std::includes(now.begin(), now.end(), earlier.inputs.begin(),
-                                      earlier.inputs.end());
+  const bool of_these =
+      std::includes(now.begin(), now.end(), earlier.inputs.begin(), earlier.inputs.end());
   if (IsThere(places.map) && (earlier.inputs.empty() || !of_these)) {
     ThrowUsage("--out would replace " + places.map +
                ", which was not made of these maps: name another, or give --overwrite");
@@ -156,11 +155,10 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
                        {"poses", paths[k].frames.size()},
                        {"of", paths[k].keyframes_only ? "keyframes" : "frames"}});
     }
-    recordings.push_back(
-        {{"name", inputs[i].name},
-         {"path", inputs[i].path},
-         {"place", PlaceOfMap(inputs[i].path)},
-         {"trajectories", files}});
+    recordings.push_back({{"name", inputs[i].name},
+                          {"path", inputs[i].path},
+                          {"place", PlaceOfMap(inputs[i].path)},
+                          {"trajectories", files}});
   }
   ordered_json joins = ordered_json::array();
   for (const MapJoin& join : merged.joins) {
@@ -173,12 +171,9 @@ void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs
                      {"found", join.found},
                      {"visible", join.visible}});
   }
-  const ordered_json all = {{"version", kMergeVersion},
-                            {"sensor", merged.saved.sensor},
-                            {"worlds", world_list},
-                            {"recordings", recordings},
-                            {"joins", joins},
-                            {"ties", merged.ties}};
+  const ordered_json all = {{"version", kMergeVersion}, {"sensor", merged.saved.sensor},
+                            {"worlds", world_list},     {"recordings", recordings},
+                            {"joins", joins},           {"ties", merged.ties}};
   AtomicWriteFile(places.folder + "/merge.json",
                   all.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   std::error_code ignored;

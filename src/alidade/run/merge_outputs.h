@@ -29,7 +29,8 @@ MergePlaces MergePlacesOf(const std::string& out);
 void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                       bool overwrite);
 
-// Writes all of it (docs/merge.md), and removes trajectories of an earlier merge. Throws Error (input) when a file cannot be written.
+// Writes all of it (docs/merge.md), and removes trajectories of an earlier merge. Throws Error
+// (input) when a file cannot be written.
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                 const MergedMaps& merged);
 

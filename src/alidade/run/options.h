@@ -29,7 +29,7 @@ struct RunOptions {
   std::optional<std::string> dynamics, detector;
   std::shared_ptr<Detector> own_detector;  // instead of a file's: the caller's own
   bool write_masks = false;
-  bool overwrite = false;  // replace whatever results are in the folder
+  bool overwrite = false;             // replace whatever results are in the folder
   std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
   std::optional<std::string> viewer;  // show it in a browser: the port; empty: one that is free
   std::optional<std::string> host;    // address the viewer listens on; 127.0.0.1

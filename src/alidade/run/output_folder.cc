@@ -61,8 +61,7 @@ void NoteFolder(const fs::path& draft, const ResultOwner& owner, bool complete) 
                      {"source", owner.place},
                      {"complete", complete},
                      {"files", names}};
-  AtomicWriteFile(file,
-                  stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+  AtomicWriteFile(file, stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace

@@ -18,12 +18,12 @@ struct OutputClaim {
   std::string path;
   ResultOwner owner = {};
   std::vector<std::string> inputs = {};  // files the run was given: never removed
-  bool overwrite = false;           // whatever is there, it is replaced
+  bool overwrite = false;                // whatever is there, it is replaced
 };
 
 // Where a run's files are in the end.
 struct PlacedResult {
-  std::string folder;  // empty: the run left nothing
+  std::string folder;   // empty: the run left nothing
   std::string problem;  // why it is not the folder that was asked for; empty: it is
 };
 

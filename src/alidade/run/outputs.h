@@ -20,8 +20,8 @@ struct RunSummary {
   double path_length = 0;  // through the largest map, metres (mono: map units)
 };
 
-// Writes everything. Throws Error (input) when a file cannot be written; what was written by then is
-// whole.
+// Writes everything. Throws Error (input) when a file cannot be written; what was written by then
+// is whole.
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map = true, MaskWriter* masks = nullptr);
 

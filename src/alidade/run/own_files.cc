@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 12> kFiles = {
-    "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt",
-    "map.alidade",    "landmarks.ply",       "semidense.ply", "semidense.png",
-    "report.html",    kStatsFile,            "run.stream",    "camera.yaml"};
+    "trajectory.txt", "trajectory_live.txt", "keyframes.txt", "groundtruth.txt", "map.alidade",
+    "landmarks.ply",  "semidense.ply",       "semidense.png", "report.html",     kStatsFile,
+    "run.stream",     "camera.yaml"};
 
 // Pictures with a list: NAME/STAMP.png and NAME.txt, where maps have their own NAME.1.txt, …
 struct PictureKind {

@@ -13,9 +13,9 @@ namespace alidade {
 inline constexpr char kStatsFile[] = "stats.json";
 
 // What is in the folder only while a run is at work there.
-inline constexpr char kRunPlace[] = "run";       // its files are gathered in a temporary beside that
-inline constexpr char kRunLock[] = "run.lock";   // folder_lock.h
-inline constexpr char kRunDone[] = "run.done";   // all files, on their way to their place
+inline constexpr char kRunPlace[] = "run";      // its files are gathered in a temporary beside that
+inline constexpr char kRunLock[] = "run.lock";  // folder_lock.h
+inline constexpr char kRunDone[] = "run.done";  // all files, on their way to their place
 
 // Of the map with the most frames "trajectory.txt", of the next "trajectory.1.txt", and so on.
 std::string NumberedFile(const std::string& name, size_t number,

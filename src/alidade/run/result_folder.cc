@@ -21,7 +21,9 @@ std::optional<double> NumberIn(const json& object, const char* name) {
 }
 
 std::string WordIn(const json& object, const char* name) {
-  return object.is_object() && object.contains(name) && object[name].is_string() ? object[name].get<std::string>() : "";
+  return object.is_object() && object.contains(name) && object[name].is_string()
+             ? object[name].get<std::string>()
+             : "";
 }
 
 std::optional<std::array<double, 2>> PairIn(const json& list) {

@@ -73,8 +73,9 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   claim.owner = OwnerOf(options.source, options.localise);
   claim.overwrite = options.overwrite;
   const std::string usual = "alidade-out/" + source.name + (options.localise ? "-localized" : "");
-  claim.path =
-      options.out ? *options.out : options.overwrite ? usual : FreeFolder(usual, claim.owner);
+  claim.path = options.out         ? *options.out
+               : options.overwrite ? usual
+                                   : FreeFolder(usual, claim.owner);
   for (const auto& file : {options.camera_file, options.config, options.detector}) {
     if (file) claim.inputs.push_back(*file);
   }
@@ -97,16 +98,15 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
   const RunRecord& record = outcome.record;
   std::exception_ptr failure;
   try {
-    outcome.summary =
-        WriteOutputs(folder, slam, record, !record.settings.localise, masks);
+    outcome.summary = WriteOutputs(folder, slam, record, !record.settings.localise, masks);
     for (RunWatcher* watcher : watchers) watcher->Written(folder.draft());
   } catch (...) {
     failure = std::current_exception();
   }
   const std::string bugs = BugOf(record);
   const bool mapped = outcome.summary.tracked > 0;
-  const PlacedResult placed = folder.Place(!failure && !record.failure && bugs.empty() &&
-                                           !record.interrupted && mapped);
+  const PlacedResult placed =
+      folder.Place(!failure && !record.failure && bugs.empty() && !record.interrupted && mapped);
   outcome.folder = placed.folder;
   if (!placed.folder.empty()) {
     for (RunWatcher* watcher : watchers) watcher->Placed(placed.folder);

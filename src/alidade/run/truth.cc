@@ -96,8 +96,7 @@ std::optional<TruthErrors> ErrorsAgainst(const Trajectory& truth, const Trajecto
   TruthErrors errors;
   AteSettings ate;
   RpeSettings rpe;
-  ate.align = rpe.align =
-      AlignmentFor(NameOf(mono ? Sensor::kMono : Sensor::kRgbd)).align;
+  ate.align = rpe.align = AlignmentFor(NameOf(mono ? Sensor::kMono : Sensor::kRgbd)).align;
   ate.source_span = rpe.source_span = span;
   try {
     errors.ate = EvaluateAte(truth, estimate, ate);

@@ -42,7 +42,8 @@ struct TruthErrors {
   std::optional<RpeResult> rpe;  // over one second; none: the run is too short
 };
 
-// As `alidade evaluate` with its defaults. Nothing, and `problem` says why, when they have too little in common.
+// As `alidade evaluate` with its defaults. Nothing, and `problem` says why, when they have too
+// little in common.
 std::optional<TruthErrors> ErrorsAgainst(const Trajectory& truth, const Trajectory& estimate,
                                          bool mono, const std::optional<TimeSpan>& span,
                                          std::string* problem);
