@@ -17,6 +17,7 @@
 #include "alidade/synth/statistics.h"
 #include "commands.h"
 #include "program/arguments.h"
+#include "synth_folder.h"
 #include "synth_writer.h"
 
 namespace alidade {

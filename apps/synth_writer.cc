@@ -1,6 +1,5 @@
 #include "synth_writer.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -210,59 +209,6 @@ class KittiWriter : public FolderWriter {
   std::string times_, poses_;
 };
 
-constexpr char kSynthDraft[] = "synth", kSynthLock[] = "synth.lock";
-
-// But for what is there while a recording is rendered.
-bool HoldsNothing(const fs::path& folder) {
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (name != kSynthLock && name.rfind(std::string(kSynthDraft) + ".tmp", 0) != 0) return false;
-  }
-  if (error) ThrowInput("cannot read the folder " + folder.string() + ": " + error.message());
-  return true;
-}
-
-void RemoveFile(const fs::path& path) {
-  std::error_code error;
-  if (!fs::remove(path, error) && error)
-    ThrowInput("cannot remove " + path.string() + ": " + error.message());
-}
-
-// Pictures called by a time or a number, and EuRoC's files beside them; then the folder, if nothing
-// else is in it.
-void RemovePictures(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_directory(fs::symlink_status(folder, error))) return;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const fs::path& path = entry.path();
-    const std::string name = path.filename().string(), stem = path.stem().string();
-    const bool picture = path.extension() == ".png" && !stem.empty() &&
-                         stem.find_first_not_of("0123456789.") == std::string::npos;
-    if (entry.is_directory(error)) {
-      RemovePictures(path);
-    } else if (picture || name == "data.csv" || name == "sensor.yaml") {
-      RemoveFile(path);
-    }
-  }
-  fs::remove(folder, error);
-}
-
-// Into a folder that is there, or in its place; of files, lists come last.
-void MoveTree(const fs::path& from, const fs::path& to) {
-  std::error_code error;
-  if (!fs::is_directory(from) || !fs::exists(fs::symlink_status(to, error))) {
-    fs::rename(from, to, error);
-    if (error) ThrowInput("cannot write " + to.string() + ": " + error.message());
-    return;
-  }
-  std::vector<fs::path> parts;
-  for (const auto& entry : fs::directory_iterator(from)) parts.push_back(entry.path());
-  std::stable_partition(parts.begin(), parts.end(),
-                        [](const fs::path& path) { return fs::is_directory(path); });
-  for (const fs::path& part : parts) MoveTree(part, to / part.filename());
-}
-
 }  // namespace
 
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
@@ -276,36 +222,6 @@ std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::stri
       return std::make_unique<KittiWriter>(folder, camera);
   }
   ThrowUsage("unknown format");
-}
-
-SynthFolder::SynthFolder(const std::string& path) : path_(path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (fs::exists(status) && !fs::is_directory(status))
-    ThrowInput(path + " is a file, not a folder");
-  if (fs::exists(status) && !fs::exists(path + "/" + kSynthMarker) && !HoldsNothing(path)) {
-    ThrowInput(path +
-               " is not empty and holds no earlier recording of `alidade synth`: give another "
-               "folder, or empty this one");
-  }
-  fs::create_directories(path, error);
-  if (error) ThrowInput("cannot make the folder " + path + ": " + error.message());
-  lock_.emplace(path + "/" + kSynthLock, path + ": ");
-  for (const std::string& left : StaleTemporaries(path + "/" + kSynthDraft))
-    fs::remove_all(left, error);
-  draft_.emplace(path + "/" + kSynthDraft);
-}
-
-void SynthFolder::Place() {
-  // Lists go first: without them no reader takes the folder for a recording. The marker stays until
-  // it is replaced, so that what an interruption leaves is still known to be ours.
-  for (const char* name : {"rgb.txt", "depth.txt", "mask.txt", "groundtruth.txt", "camera.yaml",
-                           "times.txt", "poses.txt", "calib.txt"})
-    RemoveFile(path_ + "/" + name);
-  for (const char* name : {"rgb", "depth", "mask", "mav0", "image_0", "image_1"})
-    RemovePictures(path_ + "/" + name);
-  MoveTree(draft(), path_);
-  draft_.reset();
 }
 
 }  // namespace alidade

@@ -3,11 +3,8 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 
-#include "alidade/run/draft_folder.h"
-#include "alidade/run/folder_lock.h"
 #include "alidade/synth/recording.h"
 
 namespace alidade {
@@ -27,24 +24,6 @@ class SynthWriter {
 // Error (input) when a file cannot be written.
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
                                              const Camera& camera, bool fisheye);
-
-// The folder of a recording, locked. The new one is gathered beside an earlier one of ours and
-// takes its place when it is whole; files that are not ours stay.
-class SynthFolder {
- public:
-  // Makes the folder. Throws Error (input) when it holds anything else than a recording of ours.
-  explicit SynthFolder(const std::string& path);
-  const std::string& draft() const { return draft_->path(); }
-  void Place();  // throws Error (input)
-
- private:
-  const std::string path_;
-  std::optional<FolderLock> lock_;
-  std::optional<DraftFolder> draft_;
-};
-
-// The file that says a folder is ours.
-inline constexpr char kSynthMarker[] = "synth.json";
 
 // EuRoC recordings count from 1970: when ours begin, seconds.
 inline constexpr int kSynthEurocStart = 1'000'000'000;

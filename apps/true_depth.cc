@@ -8,6 +8,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/run/any_source.h"
 #include "alidade/run/synth_source.h"
+#include "synth_folder.h"
 #include "synth_writer.h"
 
 namespace alidade {

@@ -119,18 +119,31 @@ TEST(BatchCommand, ARecordingOrCalibrationThatWasReplacedIsRunAgain) {
   std::ofstream(bags + "/camera.yaml", std::ios::app) << "# measured once more\n";
   expect_begun(1);
   expect_begun(0);
-  // Someone else's results are in its place.
+}
+
+TEST(BatchCommand, ResultsOfAnotherSourceStay) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out", bags = folder / "bags";
+  WriteBag(bags, {});
+  const std::string bag = bags + "/w.mcap?image=/cam/compressed&depth=/depth/compressedDepth";
+  WriteLines(list, {bag});
+  ASSERT_EQ(Batch({list, "--out", out}).status, 0);
   ASSERT_EQ(
       RunAlidade({"run", kRoom + "15", "--sensor", "rgbd", "--out", out + "/w", "--overwrite"})
           .status,
       0);
+  const std::string room = ReadText(out + "/w/map.alidade");
+  // A name that the batch chose gives way, one that was given is refused.
+  EXPECT_EQ(Batch({list, "--out", out}).status, 0);
+  EXPECT_TRUE(std::filesystem::exists(out + "/w-2/map.alidade"));
+  WriteLines(list, {bag + " --out w"});
   const ProgramResult taken = Batch({list, "--out", out});
   EXPECT_EQ(taken.status, 1);
   EXPECT_THAT(taken.out, HasSubstr("--overwrite"));
-  ++begun;
+  EXPECT_EQ(ReadText(out + "/w/map.alidade"), room);
   EXPECT_EQ(Batch({list, "--out", out, "--", "--overwrite"}).status, 0);
-  begun += 1;
-  expect_begun(0);
+  EXPECT_NE(ReadText(out + "/w/map.alidade"), room);
+  EXPECT_THAT(Batch({list, "--out", out}).out, HasSubstr("1 of 1 recordings are done already"));
 }
 
 TEST(BatchCommand, SameBytesAsRun) {

@@ -27,6 +27,7 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
   std::error_code error;
   if (std::filesystem::equivalent(stream.empty() ? path : stream, out, error))
     ThrowUsage("OUT is what is exported; name another");
+  CheckIsNoResult(out);
   const bool map = stream.empty() && !std::filesystem::is_directory(path, error);
   if (!map && (settings.part != 0 || settings.min_observations != 1)) {
     ThrowUsage("--part and --min-observations choose from a map: name the file map.alidade");
@@ -45,12 +46,12 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
                        const std::string& out) {
   settings.Check();
-  CheckIsNoResult(out);
   if (settings.to == "mcap") return ExportToMcap(path, settings, out);
   std::error_code error;
   if (std::filesystem::equivalent(SavedMapPath(path), out, error)) {
     ThrowUsage("OUT is the map itself; name another");
   }
+  CheckIsNoResult(out);
   return ExportMap(ReadSavedMap(path), settings, out);
 }
 
