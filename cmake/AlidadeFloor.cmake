@@ -23,15 +23,24 @@ endfunction()
 # alidade::FILE. Problem generators shared with the benchmarks are in tests/problems.
 # With FOLDERS, the tests of several small folders are one program.
 # With END_TO_END the tests get this label instead, and are not part of the target unit_tests.
+# Builds with the address sanitizer leave out the files NOT_SANITIZED (names without _test.cc); builds with the thread
+# sanitizer compile only the files THREADED, where given. docs/development/ci.md has the reasons.
 # All test programs share the precompiled header of the target tests_precompiled (tests/CMakeLists.txt): headers of
 # GoogleTest, Eigen and OpenCV took a third of the time to compile a test.
 function(alidade_test FOLDER)
-  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS" ${ARGN})
+  cmake_parse_arguments(ARG "END_TO_END" "" "LINKS;FOLDERS;NOT_SANITIZED;THREADED" ${ARGN})
   if(NOT ARG_FOLDERS)
     set(ARG_FOLDERS ${FOLDER})
   endif()
   list(TRANSFORM ARG_FOLDERS REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/\\1/*.cc")
   file(GLOB SOURCES CONFIGURE_DEPENDS ${ARG_FOLDERS})
+  if(ALIDADE_SANITIZE MATCHES "thread" AND ARG_THREADED)
+    list(JOIN ARG_THREADED "|" FILES)
+    list(FILTER SOURCES INCLUDE REGEX "/(${FILES})_test\\.cc$")
+  elseif(ALIDADE_SANITIZE MATCHES "address" AND ARG_NOT_SANITIZED)
+    list(JOIN ARG_NOT_SANITIZED "|" FILES)
+    list(FILTER SOURCES EXCLUDE REGEX "/(${FILES})_test\\.cc$")
+  endif()
   if(NOT SOURCES)
     return()
   endif()

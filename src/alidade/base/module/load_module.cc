@@ -37,9 +37,13 @@ std::vector<std::string> PlacesToLook(const std::string& file) {
 
 LoadedModule LoadModule(const std::string& file, const std::vector<std::string>& names) {
   std::string problem;
+  bool exists = false;
   for (const std::string& place : PlacesToLook(file)) {
     std::error_code error;
-    if (place.find('/') != std::string::npos && !fs::exists(place, error)) continue;
+    if (place.find('/') != std::string::npos) {
+      if (!fs::exists(place, error)) continue;
+      exists = true;
+    }
     void* handle = dlopen(place.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (handle == nullptr) {
       // Keep the first error: the last place is the system path, where "file not found" says
@@ -55,6 +59,8 @@ LoadedModule LoadModule(const std::string& file, const std::vector<std::string>&
     dlclose(handle);
     problem = place + " is not of this version";
   }
+  if (!exists)
+    problem = "it was not built (scripts/setup installs what it needs for scripts/build)";
   return {{}, problem};
 }
 
