@@ -21,7 +21,7 @@ PACKAGE = pathlib.Path(alidade.__file__).parent
 
 def test_help_teaches():
     text = pydoc.render_doc(alidade, renderer=pydoc.plaintext)
-    for words in ("T_world_camera", "alidade.run", "metres", "slam.track(time, image, depth=depth)"):
+    for words in ("T_world_camera", "alidade.run", "meters", "slam.track(time, image, depth=depth)"):
         assert words in text
     for name in alidade.__all__:
         thing = getattr(alidade, name)
