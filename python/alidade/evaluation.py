@@ -38,7 +38,7 @@ class TrajectoryError(ErrorStatistics):
     """Absolute trajectory error, metres."""
 
     align: str
-    """how the estimate was aligned: "se3", "sim3" or "none""""
+    """how the estimate was aligned: se3, sim3 or none"""
     align_why: str
     """one camera, depth or stereo, the sensor is not known, or it was asked for"""
     transform: numpy.ndarray
@@ -58,7 +58,7 @@ class RelativePoseError:
     rot: ErrorStatistics
     """degrees"""
     align: str
-    """how the estimate was aligned: "se3", "sim3" or "none""""
+    """how the estimate was aligned: se3, sim3 or none"""
     align_why: str
     """one camera, depth or stereo, the sensor is not known, or it was asked for"""
 
