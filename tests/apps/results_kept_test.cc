@@ -219,6 +219,11 @@ TEST_F(ResultsKept, WhatARunDidNotWriteStays) {
   const std::string map = ReadText(at_ / "out/map.alidade");
   ExpectDone({"localize", "walk", "--map", "out", "--out", "out", "--overwrite"});
   EXPECT_EQ(ReadText(at_ / "out/map.alidade"), map);
+  // Nor does a folder go because it is called as one of ours.
+  at_.Write("out/run.done/notes.txt", "mine");
+  EXPECT_EQ(Alidade({"run", "walk", "--out", "out", "--overwrite"}).status, 3);
+  EXPECT_EQ(ReadText(at_ / "out/run.done/notes.txt"), "mine");
+  fs::remove_all(at_ / "out/run.done");
   // Folders of older versions say nothing of their files.
   nlohmann::json stats = Stats("out");
   stats.erase("folder");

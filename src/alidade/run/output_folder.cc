@@ -93,6 +93,9 @@ OutputFolder::OutputFolder(OutputClaim claim)
       made_(claim_),
       lock_((fs::path(claim_.path) / kRunLock).string(), Opening(claim_)) {
   FinishPlacing(claim_.path, claim_.inputs);
+  const fs::path done = fs::path(claim_.path) / kRunDone;
+  if (IsThere(done.string()))
+    ThrowInput(Opening(claim_) + "there is " + done.string() + ", which is not ours: name another");
   CheckOwner(claim_);
   std::error_code error;
   for (const fs::path& left : LeftoversIn(claim_.path)) fs::remove_all(left, error);

@@ -45,6 +45,7 @@ void MoveInto(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::is_directory(from, error) || !Exists(to)) return Move(from, to);
   for (const fs::path& picture : EntriesOf(from)) Move(picture, to / picture.filename());
+  fs::remove(from, error);
 }
 
 void RemoveOwnFiles(const fs::path& folder, const EarlierResult& result,
@@ -127,7 +128,7 @@ void FinishPlacing(const fs::path& folder, const std::vector<std::string>& input
     }
     Move(done / kStatsFile, stats);
   }
-  fs::remove_all(done, error);
+  fs::remove(done, error);  // empty, unless it is someone else's
 }
 
 }  // namespace alidade
