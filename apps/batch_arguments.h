@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "alidade/run/batch_state.h"
-#include "alidade/run/batch_table.h"
+#include "alidade/run/batch/batch_state.h"
+#include "alidade/run/batch/batch_table.h"
 
 namespace alidade {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 #include "batch_arguments.h"
 #include "commands.h"
 

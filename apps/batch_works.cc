@@ -6,8 +6,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/earlier_result.h"
-#include "alidade/run/loop.h"
+#include "alidade/run/folder/earlier_result.h"
+#include "alidade/run/play/loop.h"
 #include "batch_arguments.h"
 #include "program/arguments.h"
 #include "run_flags.h"

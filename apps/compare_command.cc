@@ -7,8 +7,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/comparison.h"
-#include "alidade/run/own_files.h"
+#include "alidade/run/folder/own_files.h"
+#include "alidade/run/report/comparison.h"
 #include "commands.h"
 
 namespace alidade {

@@ -11,7 +11,7 @@
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/files/stamped_list.h"
 #include "alidade/io/text.h"
-#include "alidade/run/output_folder.h"
+#include "alidade/run/folder/output_folder.h"
 
 namespace alidade {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <memory>
 
+#include "alidade/base/choice.h"
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/choice.h"
 #include "alidade/version.h"
 #include "commands.h"
 #include "describe/completion.h"

@@ -13,7 +13,7 @@
 #include "alidade/evaluation/rpe.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
-#include "alidade/run/truth.h"
+#include "alidade/run/sources/truth.h"
 #include "commands.h"
 #include "evaluate_depth.h"
 #include "program/arguments.h"

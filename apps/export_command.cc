@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "alidade/run/export_path.h"
+#include "alidade/run/export/export_path.h"
 #include "commands.h"
 
 namespace alidade {

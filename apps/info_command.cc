@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "alidade/run/map_export.h"
-#include "alidade/run/saved_map.h"
+#include "alidade/run/export/map_models.h"
+#include "alidade/run/sources/saved_map.h"
 #include "commands.h"
 
 namespace alidade {

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "alidade/base/error.h"
-#include "alidade/run/loop.h"
+#include "alidade/run/play/loop.h"
 #include "alidade/serve/viewer_server.h"
 #include "commands.h"
 #include "phone_host.h"

@@ -9,9 +9,9 @@
 #include <thread>
 #include <vector>
 
-#include "alidade/run/loop.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/recorder/stream_feed.h"
 #include "alidade/run/run.h"
-#include "alidade/run/stream_feed.h"
 #include "alidade/serve/viewer_server.h"
 #include "alidade/version.h"
 #include "commands.h"

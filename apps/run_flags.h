@@ -1,7 +1,7 @@
 // The flags of `alidade run` and `alidade localize`.
 #pragma once
 
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 
 namespace CLI {
 class App;

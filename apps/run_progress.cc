@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <string>
 
-#include "alidade/run/find_camera.h"
-#include "alidade/run/results.h"
+#include "alidade/run/calibration/find_camera.h"
+#include "alidade/run/results/run_results.h"
 
 namespace alidade {
 namespace {

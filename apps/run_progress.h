@@ -3,7 +3,7 @@
 #pragma once
 
 #include "alidade/base/timing.h"
-#include "alidade/run/watcher.h"
+#include "alidade/run/play/watcher.h"
 #include "program/terminal.h"
 
 namespace alidade {

@@ -12,7 +12,7 @@
 #include "alidade/base/nearest_name.h"
 #include "alidade/base/parallel.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 #include "alidade/synth/recording.h"
 #include "alidade/synth/statistics.h"
 #include "commands.h"

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "alidade/run/draft_folder.h"
-#include "alidade/run/folder_lock.h"
+#include "alidade/run/folder/draft_folder.h"
+#include "alidade/run/folder/folder_lock.h"
 
 namespace alidade {
 

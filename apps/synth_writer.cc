@@ -12,7 +12,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/trajectory.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/synth_source.h"
 
 namespace alidade {
 namespace {

@@ -6,8 +6,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/any_source.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/synth_source.h"
 #include "synth_folder.h"
 #include "synth_writer.h"
 

@@ -7,11 +7,11 @@
 #include <thread>
 
 #include "alidade/base/error.h"
-#include "alidade/run/loop.h"
-#include "alidade/run/mcap_export.h"
-#include "alidade/run/record_file.h"
-#include "alidade/run/saved_map.h"
-#include "alidade/run/stream_file.h"
+#include "alidade/run/export/mcap_export.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/recorder/record_file.h"
+#include "alidade/run/recorder/stream_file.h"
+#include "alidade/run/sources/saved_map.h"
 #include "alidade/serve/viewer_server.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/stream/stream_hub.h"

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "alidade/run/run_settings.h"
+#include "alidade/run/setup/run_settings.h"
 
 namespace alidade {
 namespace {

@@ -4,7 +4,7 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "alidade/run/stream_file.h"
+#include "alidade/run/recorder/stream_file.h"
 #include "alidade/stream/stream_scene.h"
 
 namespace alidade::gl_app {

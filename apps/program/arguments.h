@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "alidade/run/choice.h"
+#include "alidade/base/choice.h"
 
 namespace CLI {
 class App;

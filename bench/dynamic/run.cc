@@ -1,8 +1,8 @@
 #include "bench/dynamic/run.h"
 
 #include "alidade/base/error.h"
-#include "alidade/run/loop.h"
-#include "alidade/run/results.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/results/run_results.h"
 
 namespace alidade::bench {
 DynamicErrors EvaluateErrors(const DynamicScene& scene, Sensor sensor, const Trajectory& estimate) {

@@ -12,8 +12,8 @@
 #include "alidade/io/files/stamped_list.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/text.h"
-#include "alidade/run/any_source.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/synth_source.h"
 #include "bench/measure/recording.h"
 
 namespace alidade::bench {

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "alidade/base/error.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/synth_source.h"
 
 namespace alidade::bench {
 

@@ -9,7 +9,7 @@
 #include "alidade/features/extractor.h"
 #include "alidade/io/association.h"
 #include "alidade/io/files/trajectory_file.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/synth_source.h"
 #include "alidade/slam.h"
 
 namespace alidade::bench {

@@ -5,7 +5,7 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
-#include "alidade/run/truth.h"
+#include "alidade/run/sources/truth.h"
 #include "bench/measure/reference.h"
 #include "bench/parts/parts.h"
 #include "program/terminal.h"

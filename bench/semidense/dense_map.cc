@@ -4,7 +4,7 @@
 #include <iterator>
 
 #include "alidade/map/depth_cloud.h"
-#include "alidade/run/any_source.h"
+#include "alidade/run/sources/any_source.h"
 #include "alidade/slam.h"
 #include "alidade/system/prepare.h"
 

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "alidade/base/timing.h"
-#include "alidade/run/any_source.h"
+#include "alidade/run/sources/any_source.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/slam.h"
 #include "bench/measure/reference.h"

@@ -6,7 +6,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/synth_source.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "bench/measure/reference.h"
 #include "bench/semidense/dense_map.h"

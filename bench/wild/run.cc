@@ -9,10 +9,10 @@
 #include "alidade/base/timing.h"
 #include "alidade/evaluation/false_poses.h"
 #include "alidade/io/read_ahead.h"
-#include "alidade/run/any_source.h"
-#include "alidade/run/loop.h"
-#include "alidade/run/results.h"
-#include "alidade/run/unknown_camera.h"
+#include "alidade/run/calibration/unknown_camera.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/results/run_results.h"
+#include "alidade/run/sources/any_source.h"
 #include "alidade/slam.h"
 
 namespace alidade::bench {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <utility>
 
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 #include "bench/measure/result_file.h"
 #include "bench/wild/run.h"
 #include "program/terminal.h"

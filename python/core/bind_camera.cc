@@ -4,7 +4,7 @@
 #include "alidade/base/error.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 #include "arrays.h"
 #include "values.h"
 

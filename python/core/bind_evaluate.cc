@@ -3,12 +3,12 @@
 #include <utility>
 #include <vector>
 
+#include "alidade/base/choice.h"
 #include "alidade/base/error.h"
 #include "alidade/evaluation/ate.h"
 #include "alidade/evaluation/depth_error.h"
 #include "alidade/evaluation/rpe.h"
-#include "alidade/run/choice.h"
-#include "alidade/run/truth.h"
+#include "alidade/run/sources/truth.h"
 #include "arrays.h"
 
 namespace alidade::python {

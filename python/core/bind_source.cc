@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "alidade/io/read_ahead.h"
-#include "alidade/run/any_source.h"
+#include "alidade/run/sources/any_source.h"
 #include "arrays.h"
 #include "values.h"
 

@@ -5,7 +5,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/detect/onnx/open_detector.h"
-#include "alidade/run/run_settings.h"
+#include "alidade/run/setup/run_settings.h"
 #include "interruptible.h"
 #include "values.h"
 

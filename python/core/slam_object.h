@@ -5,8 +5,8 @@
 #include <mutex>
 #include <string>
 
-#include "alidade/run/record.h"
-#include "alidade/run/results.h"
+#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_results.h"
 #include "alidade/system/slam.h"
 #include "arrays.h"
 #include "map_value.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "alidade/geometry/camera.h"
-#include "alidade/run/options.h"
+#include "alidade/run/setup/options.h"
 #include "python.h"
 
 namespace alidade::python {

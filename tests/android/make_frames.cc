@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "alidade/base/error.h"
-#include "alidade/run/any_source.h"
+#include "alidade/run/sources/any_source.h"
 
 int main(int argc, char** argv) {
   if (argc != 5) {

@@ -10,7 +10,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/image_file.h"
-#include "alidade/run/mask_writer.h"
+#include "alidade/run/results/mask_writer.h"
 #include "support/program.h"
 #include "support/rendered.h"
 #include "support/small_disk.h"

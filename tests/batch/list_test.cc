@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "alidade/run/batch_list.h"
+#include "alidade/run/batch/batch_list.h"
 #include "support/expect_error.h"
 
 namespace alidade::batch_list_test {

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "alidade/run/batch_process.h"
-#include "alidade/run/loop.h"
+#include "alidade/run/batch/batch_process.h"
+#include "alidade/run/play/loop.h"
 #include "support/temp_folder.h"
 
 namespace alidade::batch_process_test {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "alidade/run/batch_table.h"
+#include "alidade/run/batch/batch_table.h"
 #include "support/expect_error.h"
 
 namespace alidade::batch_table_test {

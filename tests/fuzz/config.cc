@@ -1,5 +1,5 @@
-#include "alidade/run/run_settings.h"
-#include "alidade/run/settings_file.h"
+#include "alidade/run/setup/run_settings.h"
+#include "alidade/run/setup/settings_file.h"
 #include "fuzz/targets.h"
 
 namespace alidade::fuzz {

@@ -1,12 +1,12 @@
 // Who looks on costs the run nothing, not even when he fails.
-#include "alidade/run/stream_feed.h"
+#include "alidade/run/recorder/stream_feed.h"
 
 #include <gtest/gtest.h>
 
 #include <new>
 
+#include "alidade/run/recorder/stream_file.h"
 #include "alidade/run/run.h"
-#include "alidade/run/stream_file.h"
 #include "alidade/stream/stream_scene.h"
 #include "alidade/synth/recording.h"
 #include "support/read_text.h"

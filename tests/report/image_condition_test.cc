@@ -1,11 +1,12 @@
 // What the image of a frame without a pose looks like, and what a report says of it.
+#include "alidade/run/results/image_condition.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
 
-#include "alidade/run/look.h"
-#include "alidade/run/untracked.h"
+#include "alidade/run/results/untracked.h"
 #include "support/bare_wall.h"
 #include "support/texture.h"
 

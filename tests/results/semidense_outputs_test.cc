@@ -1,5 +1,5 @@
 // Depth pictures and clouds of a run, and what becomes of those of an earlier one.
-#include "alidade/run/semidense_outputs.h"
+#include "alidade/run/results/semidense_outputs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

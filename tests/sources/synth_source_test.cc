@@ -1,5 +1,5 @@
 // What a rendered source can be asked for, and what it tells of its camera.
-#include "alidade/run/synth_source.h"
+#include "alidade/run/sources/synth_source.h"
 
 #include <gtest/gtest.h>
 

@@ -5,12 +5,12 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/cloud.h"
-#include "alidade/run/keyframe_pictures.h"
-#include "alidade/run/results.h"
-#include "alidade/run/semidense_outputs.h"
-#include "alidade/run/shape_views.h"
-#include "alidade/run/stats.h"
-#include "alidade/run/unknown_camera.h"
+#include "alidade/run/calibration/unknown_camera.h"
+#include "alidade/run/report/keyframe_pictures.h"
+#include "alidade/run/report/shape_views.h"
+#include "alidade/run/report/stats.h"
+#include "alidade/run/results/run_results.h"
+#include "alidade/run/results/semidense_outputs.h"
 
 namespace alidade {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "alidade/run/mask_writer.h"
-#include "alidade/run/output_folder.h"
-#include "alidade/run/record.h"
+#include "alidade/run/folder/output_folder.h"
+#include "alidade/run/results/mask_writer.h"
+#include "alidade/run/results/record.h"
 
 namespace alidade {
 

@@ -12,11 +12,11 @@
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
-#include "alidade/run/any_source.h"
-#include "alidade/run/loop.h"
-#include "alidade/run/mask_writer.h"
-#include "alidade/run/saved_map.h"
-#include "alidade/run/unknown_camera.h"
+#include "alidade/run/calibration/unknown_camera.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/results/mask_writer.h"
+#include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "alidade/run/options.h"
 #include "alidade/run/outputs.h"
-#include "alidade/run/watcher.h"
+#include "alidade/run/play/watcher.h"
+#include "alidade/run/setup/options.h"
 
 namespace alidade {
 

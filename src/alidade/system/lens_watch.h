@@ -13,7 +13,7 @@
 namespace ALIDADE_API alidade {
 
 // For one camera with unknown calibration whose images come only once: live cameras, phones, images
-// from a program. Recordings are better calibrated offline, before the run (run/find_camera.h).
+// from a program. Recordings are better calibrated offline, before the run (run/calibration/find_camera.h).
 struct LensWatchSettings {
   bool enabled = false;      // false: the camera is taken as it is given
   int first_keyframes = 10;  // of a map, when it is asked first …

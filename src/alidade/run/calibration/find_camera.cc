@@ -1,0 +1,291 @@
+#include "alidade/run/calibration/find_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+
+#include "alidade/base/error.h"
+#include "alidade/io/read_ahead.h"
+#include "alidade/map/view.h"
+#include "alidade/run/play/loop.h"
+#include "alidade/run/setup/setting_group.h"
+#include "alidade/system/slam.h"
+
+namespace alidade {
+namespace {
+
+// `s` is a CalibrateSettings, const or not.
+constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
+  visit("calibrate.enabled", s.enabled);
+  visit("calibrate.max_off", s.max_off);
+  visit("calibrate.max_restart_sigma", s.max_restart_sigma);
+  visit("calibrate.max_retry_sigma", s.max_retry_sigma);
+  visit("calibrate.retry_bend", s.retry_bend);
+  visit("calibrate.enough_sigma", s.enough_sigma);
+  visit("calibrate.max_passes", s.max_passes);
+  visit("calibrate.first_keyframes", s.first_keyframes);
+  visit("calibrate.growth", s.growth);
+  visit("calibrate.told_sigma", s.told_sigma);
+  visit("calibrate.max_seconds", s.max_seconds);
+  visit("calibrate.window", s.window);
+  visit("calibrate.max_windows", s.max_windows);
+  visit("calibrate.min_keyframes", s.min_keyframes);
+  visit("calibrate.min_seen", s.min_seen);
+  visit("calibrate.max_focal_sigma", s.max_focal_sigma);
+  visit("calibrate.focal_sigma", s.adjust.focal_sigma);
+  visit("calibrate.k1_corner_sigma", s.k1_corner_sigma);
+  visit("calibrate.k2_corner_sigma", s.k2_corner_sigma);
+  visit("calibrate.centre_sigma", s.centre_sigma);
+  visit("calibrate.readout_sigma", s.readout_sigma);
+  visit("calibrate.inflation", s.adjust.inflation);
+  visit("calibrate.bound", s.adjust.bound);
+};
+
+// One run over the recording with one camera.
+class Pass {
+ public:
+  Pass(std::unique_ptr<FrameSource> source, const Camera& camera, const SlamSettings& settings,
+       const CalibrateSettings& calibrate)
+      : frames_(std::move(source)),
+        slam_(camera, settings),
+        given_(camera),
+        noise_(settings.mapper.noise),
+        calibrate_(calibrate),
+        ask_at_(calibrate.first_keyframes) {}
+
+  // The next frame; false at the end.
+  bool Step() {
+    const std::optional<SourceFrame> frame = frames_.Next();
+    if (!frame) return false;
+    if (std::isfinite(frame->time)) {  // of bad frames it may not be
+      if (!first_time_) first_time_ = frame->time;
+      if (frame->time - *first_time_ > calibrate_.max_seconds) return false;
+    }
+    ++count_;
+    if (!frame->problem.empty()) return true;
+    try {
+      slam_.Track(InputOf(*frame));
+    } catch (const Error&) {  // a bad frame: the run itself will tell of it
+    }
+    return true;
+  }
+  int count() const { return count_; }
+  int keyframes() const {
+    const MapSnapshot map = slam_.Snapshot();
+    const MapId largest = LargestMap(map);
+    return largest.valid() ? static_cast<int>(map.KeyFramesOf(largest).size()) : 0;
+  }
+  // What the map says by now, when it has grown since it was asked last.
+  std::optional<CameraEstimate> Ask() {
+    const int now = keyframes();
+    if (now < ask_at_) return {};
+    ask_at_ = static_cast<int>(std::ceil(now * calibrate_.growth));
+    return Estimate();
+  }
+  CameraEstimate Estimate() {
+    const MapSnapshot map = slam_.Snapshot();
+    const MapId largest = LargestMap(map);
+    windows_.clear();
+    if (largest.valid()) windows_ = LensWindowsOf(map, largest, slam_.camera(), noise_, calibrate_);
+    CameraEstimate estimate = EstimateCamera(windows_, slam_.camera(), noise_, calibrate_);
+    estimate.camera = CameraOfSize(estimate.camera, given_);
+    return estimate;
+  }
+  void Finish() { slam_.Finish(); }
+  const std::vector<LensWindow>& windows() const { return windows_; }
+  Camera used() const { return slam_.camera(); }
+
+ private:
+  ReadAhead frames_;
+  Slam slam_;
+  Camera given_;
+  MeasurementNoise noise_;
+  const CalibrateSettings& calibrate_;
+  std::vector<LensWindow> windows_;
+  std::optional<double> first_time_;
+  int count_ = 0, ask_at_;
+};
+
+}  // namespace
+
+void CalibrateSettings::Check() const {
+  const auto require = [](bool holds, const char* what) {
+    if (!holds) ThrowUsage(std::string("calibrate.") + what);
+  };
+  CameraEstimateSettings::Check();
+  require(max_off > 0, "max_off must be positive");
+  require(max_restart_sigma > 0, "max_restart_sigma must be positive");
+  require(max_retry_sigma >= max_restart_sigma,
+          "max_retry_sigma must not be below max_restart_sigma");
+  require(std::abs(retry_bend) < 0.3, "retry_bend must lie between -0.3 and 0.3");
+  require(enough_sigma > 0, "enough_sigma must be positive");
+  require(max_passes >= 1, "max_passes must be at least 1");
+  require(first_keyframes >= min_keyframes, "first_keyframes must be at least min_keyframes");
+  require(growth > 1, "growth must be above 1");
+  require(told_sigma > 0, "told_sigma must be positive");
+  require(max_seconds > 0, "max_seconds must be positive");
+}
+
+void CalibrateSettings::Set(const std::string& name, const std::string& value) {
+  SetByName(*this, kCalibrateFields, name, value);
+}
+
+std::vector<std::pair<std::string, std::string>> CalibrateSettings::All() const {
+  return AllByName(*this, kCalibrateFields);
+}
+
+Camera CameraOfSize(const Camera& camera, const Camera& of) {
+  Camera result = of;
+  result.fx = result.fy = camera.fx * of.width / camera.width;
+  result.distortion = camera.distortion;
+  result.readout = camera.readout;
+  // Pixel centres are at whole numbers, image borders at ±0.5.
+  result.cx = (camera.cx + 0.5) * of.width / camera.width - 0.5;
+  result.cy = (camera.cy + 0.5) * of.height / camera.height - 0.5;
+  return result;
+}
+
+namespace {
+
+using Opener = std::function<std::unique_ptr<FrameSource>()>;
+using Watcher = std::function<bool(const CalibrateProgress&)>;
+
+// Passes that begin with `camera`, the first of them over `first` where that is open already.
+// `found`: counts on; `stopped`: go_on said so, and nothing is known.
+void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camera,
+            const SlamSettings& settings, const CalibrateSettings& calibrate, const Watcher& go_on,
+            CameraFound& found, bool& stopped) {
+  bool settled = false;  // the last pass began with what it found
+  const int most = found.passes + calibrate.max_passes;
+  while (found.passes < most) {
+    ++found.passes;
+    Pass pass(first ? std::move(first) : open(), camera, settings, calibrate);
+    CalibrateProgress progress{found.passes, 0, 0, {}};
+    std::optional<CameraEstimate> before;
+    bool anew = false, enough = false;
+    while (!anew && !enough && pass.Step()) {
+      ++found.frames;
+      progress.frames = pass.count();
+      if (const auto now = pass.Ask()) {
+        progress.keyframes = pass.keyframes();
+        progress.estimate = found.estimate = *now;
+        const double off = Apart(now->camera, camera);
+        // Of two estimates on end that agree: the first of a young map may be of a false start.
+        anew = before && now->focal_sigma <= calibrate.max_restart_sigma &&
+               off > calibrate.max_off && off > 2 * now->focal_sigma &&
+               std::abs(std::log(now->camera.fx / before->camera.fx)) <=
+                   2 * std::hypot(now->focal_sigma, before->focal_sigma) &&
+               found.passes < most;
+        enough = now->focal_sigma <= calibrate.enough_sigma && off <= calibrate.max_off && before &&
+                 Apart(now->camera, before->camera) <= 2 * calibrate.enough_sigma;
+        before = now;
+      }
+      if (!go_on(progress)) {
+        stopped = true;
+        found.estimate.known = false;
+        found.why_not = "the search was stopped";
+        return;
+      }
+    }
+    if (!anew) {
+      if (!enough) {
+        pass.Finish();
+        found.estimate = pass.Estimate();
+      }
+      const CameraEstimate& last = found.estimate;
+      const double off = Apart(last.camera, camera);
+      anew = last.keyframes >= calibrate.first_keyframes &&
+             last.focal_sigma <= calibrate.max_retry_sigma && off > calibrate.max_off &&
+             off > 2 * last.focal_sigma;
+    }
+    settled = Apart(found.estimate.camera, camera) <= calibrate.max_off;
+    found.windows = pass.windows();
+    found.windows_camera = pass.used();
+    if (!anew) break;
+    camera = found.estimate.camera;
+  }
+  const CameraEstimate& last = found.estimate;
+  found.usable = last.keyframes >= calibrate.first_keyframes &&
+                 last.focal_sigma <= calibrate.max_restart_sigma;
+  found.estimate.known = last.known && found.usable && settled;
+  if (found.estimate.known) {
+    found.why_not.clear();
+    return;
+  }
+  found.why_not = last.keyframes == 0 ? "nothing was mapped"
+                  : last.keyframes < calibrate.first_keyframes
+                      ? "only " + std::to_string(last.keyframes) + " keyframes were mapped"
+                  : found.usable
+                      ? "estimates differ from pass to pass"
+                      : "the camera turns and moves too little for its focal length to tell";
+}
+
+}  // namespace
+
+CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
+                       const CalibrateSettings& calibrate, const Watcher& go_on) {
+  calibrate.Check();
+  SlamSettings plain = settings;
+  plain.sensor = Sensor::kMono;
+  plain.threaded = false;
+  plain.semidense.enabled = false;
+  plain.readout.enabled = false;  // looked for with the lens, not on its own
+  std::unique_ptr<FrameSource> first = open();
+  Camera camera = first->Info().camera;
+  CameraFound found;
+  bool stopped = false;
+  Search(std::move(first), open, camera, plain, calibrate, go_on, found, stopped);
+  if (stopped || found.usable || found.estimate.keyframes < calibrate.first_keyframes ||
+      calibrate.retry_bend == 0)
+    return found;
+  // A map made as if a bent lens were straight may itself be too bent to tell.
+  camera.distortion[0] =
+      calibrate.retry_bend * 4 /
+      (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2));
+  CameraFound bent;
+  bent.passes = found.passes;
+  bent.frames = found.frames;
+  Search(nullptr, open, camera, plain, calibrate, go_on, bent, stopped);
+  if (bent.estimate.known) return bent;
+  found.passes = bent.passes;
+  found.frames = bent.frames;
+  return found;
+}
+
+double FovDegrees(const Camera& camera) {
+  return 360 / std::numbers::pi * std::atan(camera.width / (2 * camera.fx));
+}
+
+std::string FovInWords(const CameraEstimate& estimate) {
+  const double fov = FovDegrees(estimate.camera);
+  // d fov / d log f = -sin fov.
+  const double sigma =
+      180 / std::numbers::pi * estimate.focal_sigma * std::sin(fov * std::numbers::pi / 180);
+  char text[60];
+  std::snprintf(text, sizeof(text), "%.1f ± %.1f degrees", fov, sigma);
+  return text;
+}
+
+std::string CameraInWords(const CameraEstimate& estimate) {
+  const Camera& camera = estimate.camera;
+  char text[160];
+  std::snprintf(text, sizeof(text),
+                " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
+                "centre %.1f, %.1f ± %.1f",
+                camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0],
+                estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
+                estimate.centre_sigma.maxCoeff());
+  std::string words = FovInWords(estimate) + text;
+  // By rows, or by columns where the picture was taken upright; negative: from the far side.
+  const double readout = camera.readout[0] + camera.readout[1];
+  if (readout != 0) {
+    std::snprintf(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
+                  1e3 * estimate.readout_sigma.maxCoeff());
+    words += text;
+  }
+  return words + ")";
+}
+
+}  // namespace alidade

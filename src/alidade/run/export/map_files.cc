@@ -1,0 +1,114 @@
+#include "alidade/run/export/map_files.h"
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/choice.h"
+#include "alidade/base/error.h"
+#include "alidade/io/files/file.h"
+#include "alidade/run/export/export_folder.h"
+#include "alidade/run/export/map_models.h"
+#include "alidade/run/export/mcap_export.h"
+#include "alidade/version.h"
+
+namespace alidade {
+namespace {
+
+enum class Target { kPly, kPcd, kTum, kColmap, kMcap };
+enum class Form { kDefault, kText, kBinary, kBoth };
+
+struct Plan {
+  Target target;
+  Form form;
+};
+
+// What the words ask for, with `default` made definite.
+Plan PlanOf(const ExportSettings& settings) {
+  const auto target = Choice<Target>("--to", settings.to,
+                                     {{"ply", Target::kPly},
+                                      {"pcd", Target::kPcd},
+                                      {"tum", Target::kTum},
+                                      {"colmap", Target::kColmap},
+                                      {"mcap", Target::kMcap}});
+  auto form = Choice<Form>("--format", settings.format,
+                           {{"text", Form::kText},
+                            {"binary", Form::kBinary},
+                            {"both", Form::kBoth},
+                            {"default", Form::kDefault}});
+  if (target == Target::kTum && form != Form::kDefault && form != Form::kText) {
+    ThrowUsage("--format cannot be '" + settings.format + "': TUM trajectories are text");
+  }
+  if (target != Target::kColmap && form == Form::kBoth) {
+    ThrowUsage("--format both is for --to colmap, whose model is a folder");
+  }
+  if (target == Target::kMcap && form != Form::kDefault && form != Form::kBinary) {
+    ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
+  }
+  if (form == Form::kDefault) form = target == Target::kColmap ? Form::kBoth : Form::kBinary;
+  return {target, form};
+}
+
+MapPart PartOf(const SavedMap& saved, int number) {
+  const std::vector<MapPart> parts = PartsOf(saved.map);
+  if (parts.empty() && number == 0) return {};
+  if (number < 0 || static_cast<size_t>(number) >= parts.size()) {
+    ThrowUsage("--part " + std::to_string(number) + ": maps are numbered from 0, and here are " +
+               std::to_string(parts.size()));
+  }
+  return parts[static_cast<size_t>(number)];
+}
+
+void WriteExportFile(const std::string& path, const std::string& bytes) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    ThrowInput(path + " is a folder; name the file to write");
+  }
+  AtomicWriteFile(path, bytes);
+}
+
+}  // namespace
+
+void ExportSettings::Check() const { PlanOf(*this); }
+
+MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
+  return SeenOften(saved, PartOf(saved, settings.part), settings.min_observations);
+}
+
+std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
+                      const std::string& out) {
+  const Plan plan = PlanOf(settings);
+  const MapPart part = PartFor(saved, settings);
+  const auto cloud_format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
+  std::string what = std::to_string(part.landmarks.size()) + " points";
+  switch (plan.target) {
+    case Target::kPly:
+      WriteExportFile(out, EncodePly(CloudOf(saved, part), cloud_format));
+      break;
+    case Target::kPcd:
+      WriteExportFile(out, EncodePcd(CloudOf(saved, part), cloud_format));
+      break;
+    case Target::kTum:
+      WriteExportFile(out, FormatTumTrajectory(TrajectoryOf(saved, part)));
+      what = std::to_string(part.keyframes.size()) + " poses";
+      break;
+    case Target::kColmap: {
+      const ColmapModel model = ColmapModelOf(saved, part);
+      std::vector<ColmapFile> files;
+      if (plan.form != Form::kBinary) files = EncodeColmapText(model);
+      if (plan.form != Form::kText) {
+        for (ColmapFile& file : EncodeColmapBinary(model)) files.push_back(std::move(file));
+      }
+      WriteExportFolder(out, files);
+      what = std::to_string(part.keyframes.size()) + " images, " + what;
+      break;
+    }
+    case Target::kMcap:
+      ExportMapToMcap(saved, part, out, "alidade " ALIDADE_VERSION);
+      what = std::to_string(part.keyframes.size()) + " keyframes, " + what;
+      break;
+  }
+  return what;
+}
+
+}  // namespace alidade

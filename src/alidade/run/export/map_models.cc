@@ -1,0 +1,111 @@
+#include "alidade/run/export/map_models.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <set>
+
+namespace alidade {
+namespace {
+
+// From a keypoint to where its camera would see the landmark, pixels of the image as taken.
+std::optional<double> ErrorInImage(const Camera& camera, const KeyFrame& keyframe,
+                                   const Keypoint& keypoint, const Eigen::Vector3d& p_world) {
+  const Eigen::Vector3d p_camera = keyframe.T_camera_world * p_world;
+  if (p_camera.z() <= 0) return std::nullopt;
+  const Eigen::Vector2d seen = camera.Distort(camera.Project(p_camera));
+  return (seen - Eigen::Vector2d(keypoint.raw_x, keypoint.raw_y)).norm();
+}
+
+// Times repeat when a recording was added to the map of another: then -2, -3, … tells them apart.
+std::string FreshName(double time, std::set<std::string>& taken) {
+  const std::string stem = ShortTime(time);
+  std::string name = stem + ".png";
+  for (int i = 2; !taken.insert(name).second; ++i) name = stem + "-" + std::to_string(i) + ".png";
+  return name;
+}
+
+}  // namespace
+
+std::string ShortTime(double seconds) {
+  std::string text;
+  for (int digits = 6; digits <= 9; ++digits) {
+    char buffer[400];  // holds any double
+    std::snprintf(buffer, sizeof(buffer), "%.*f", digits, seconds);
+    text = buffer;
+    if (std::strtod(buffer, nullptr) == seconds) break;
+  }
+  return text;
+}
+
+Trajectory TrajectoryOf(const SavedMap& saved, const MapPart& part) {
+  Trajectory trajectory;
+  for (KeyFrameId id : part.keyframes) {
+    const KeyFrame& keyframe = *saved.map.Find(id);
+    trajectory.push_back(
+        {keyframe.frame->time, keyframe.T_camera_world.Inverse(), ShortTime(keyframe.frame->time)});
+  }
+  std::stable_sort(trajectory.begin(), trajectory.end(),
+                   [](const StampedPose& a, const StampedPose& b) { return a.time < b.time; });
+  return trajectory;
+}
+
+MapPart SeenOften(const SavedMap& saved, MapPart part, int min_observations) {
+  std::erase_if(part.landmarks, [&](LandmarkId id) {
+    return static_cast<int>(saved.map.Find(id)->observations.size()) < min_observations;
+  });
+  return part;
+}
+
+Cloud CloudOf(const SavedMap& saved, const MapPart& part) {
+  Cloud cloud;
+  for (LandmarkId id : part.landmarks) {
+    cloud.points.push_back(saved.map.Find(id)->p_world.cast<float>());
+  }
+  return cloud;
+}
+
+ColmapModel ColmapModelOf(const SavedMap& saved, const MapPart& part) {
+  ColmapModel model;
+  model.camera = saved.camera;
+  std::map<KeyFrameId, int> images;
+  std::set<std::string> names;
+  for (KeyFrameId id : part.keyframes) {
+    const KeyFrame& keyframe = *saved.map.Find(id);
+    images[id] = static_cast<int>(model.images.size());
+    ColmapModel::Image image{FreshName(keyframe.frame->time, names), keyframe.T_camera_world, {}};
+    for (const Keypoint& keypoint : keyframe.frame->keypoints) {
+      image.keypoints.push_back({{keypoint.raw_x, keypoint.raw_y}});
+    }
+    model.images.push_back(std::move(image));
+  }
+  for (LandmarkId id : part.landmarks) {
+    const Landmark& landmark = *saved.map.Find(id);
+    ColmapModel::Point point;
+    point.p_world = landmark.p_world;
+    double sum = 0;
+    int seen_by = 0;
+    for (const Observation& seen : landmark.observations) {
+      const auto image = images.find(seen.keyframe);
+      if (image == images.end()) continue;
+      const KeyFrame& keyframe = *saved.map.Find(seen.keyframe);
+      point.track.push_back({image->second, seen.keypoint});
+      model.images[static_cast<size_t>(image->second)]
+          .keypoints[static_cast<size_t>(seen.keypoint)]
+          .point = static_cast<int>(model.points.size());
+      const auto error = ErrorInImage(saved.camera, keyframe,
+                                      keyframe.frame->keypoints[static_cast<size_t>(seen.keypoint)],
+                                      landmark.p_world);
+      if (!error) continue;
+      sum += *error;
+      ++seen_by;
+    }
+    if (seen_by > 0) point.error = sum / seen_by;
+    model.points.push_back(std::move(point));
+  }
+  return model;
+}
+
+}  // namespace alidade

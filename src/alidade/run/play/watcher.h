@@ -1,0 +1,48 @@
+// Those who look on while a recording is played: progress on a terminal, the viewer, the recorder.
+// They change no result.
+#pragma once
+
+#include <string>
+
+#include "alidade/io/frame_source.h"
+#include "alidade/run/calibration/find_camera.h"
+#include "alidade/run/outputs.h"
+#include "alidade/run/results/record.h"
+#include "alidade/system/slam.h"
+
+namespace alidade {
+
+// Calls come from the thread that plays the frames, but for Warn().
+class RunWatcher {
+ public:
+  virtual ~RunWatcher() = default;
+  // Before all else, while the camera is looked for: after each frame of a pass.
+  virtual void Calibrating(const CalibrateProgress& progress) { (void)progress; }
+  // Before the first frame. What `slam` and `record` are references to lives until End() has
+  // returned, or Run() throws. Files are gathered in `folder`, which is there; a watcher may write
+  // its own into it until Written() has returned.
+  virtual void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
+    (void)slam, (void)record, (void)folder;
+  }
+  // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
+  // it must not any more.
+  virtual void Wait(bool (*interrupted)()) { (void)interrupted; }
+  // After each frame that Track() took.
+  virtual void Frame(const SourceFrame& frame, const TrackResult& result) {
+    (void)frame, (void)result;
+  }
+  virtual void Finishing() {}  // the workers are waited for
+  virtual void Finished() {}   // the map stays as it is now
+  // All files but the watchers' own are in `folder` (that of Begin()), from where they go to their
+  // place.
+  virtual void Written(const std::string& folder) { (void)folder; }
+  // What could be written, which may not be all, is now in `folder`.
+  virtual void Placed(const std::string& folder) { (void)folder; }
+  // The results are written, in `folder`.
+  virtual void End(const RunSummary& summary, const std::string& folder) {
+    (void)summary, (void)folder;
+  }
+  virtual void Warn(const std::string& message) { (void)message; }  // from any thread
+};
+
+}  // namespace alidade

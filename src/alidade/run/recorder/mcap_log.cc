@@ -1,0 +1,42 @@
+#include "alidade/run/recorder/mcap_log.h"
+
+#include <stdexcept>
+#include <string_view>
+
+#ifdef ALIDADE_ZSTD
+#include <zstd.h>
+#endif
+
+namespace alidade {
+namespace {
+
+McapCompression ChunkCompression() {
+#ifdef ALIDADE_ZSTD
+  return {"zstd", [](std::string_view plain) {
+            constexpr int kLevel = 3;  // zstd's own default: 300 MB/s
+            std::string packed(ZSTD_compressBound(plain.size()), '\0');
+            const size_t size =
+                ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kLevel);
+            if (ZSTD_isError(size) != 0)  // it has room for everything: no memory
+              throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
+            packed.resize(size);
+            return packed;
+          }};
+#else
+  return {};
+#endif
+}
+
+}  // namespace
+
+McapLog::McapLog(const std::string& path, const std::string& program)
+    : file_(path),
+      log_([this](std::string_view bytes) { good_ = file_.Write(bytes); }, ChunkCompression(),
+           program) {}
+
+void McapLog::Close() {
+  log_.Close();
+  file_.Close();
+}
+
+}  // namespace alidade

@@ -1,0 +1,90 @@
+// A run as a stream: shown each frame, it encodes what happened in a thread of its own, adds the
+// picture, and gives the messages to those who joined, and to a file. Where that fails (no memory),
+// a warning says so, the stream ends there, and the run goes on.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "alidade/run/play/watcher.h"
+#include "alidade/run/recorder/record_file.h"
+#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/stream/stream_encoder.h"
+#include "alidade/stream/stream_hub.h"
+
+namespace alidade {
+
+class StreamFeed : public RunWatcher, public StreamHub {
+ public:
+  // `file`: where the stream is kept, as MCAP when it ends in .mcap; nothing: nowhere. Empty:
+  // run.stream among the results.
+  StreamFeed(std::string program, std::optional<std::string> file,
+             const StreamFeedSettings& settings = {});
+  ~StreamFeed() override;
+
+  // The run's.
+  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
+  void Wait(bool (*interrupted)()) override;
+  void Frame(const SourceFrame& frame, const TrackResult& result) override;
+  void Finished() override;
+  void Written(const std::string& folder) override;
+
+  // The carriers'.
+  int Join(Take take) override;
+  void Leave(int id) override;
+  void Control(StreamControl control) override;
+
+  // Of the file, or of all messages where there is none.
+  size_t bytes() const { return bytes_; }
+  int frames() const { return frames_; }
+
+ private:
+  void Fail() noexcept;  // by the exception that is being handled
+  struct Shown {
+    StreamFrame frame;
+    cv::Mat image;  // to be coded; empty: no picture
+  };
+  void Show(const SourceFrame& frame, const TrackResult& result);
+  void TellEnd();
+  void Run();
+  void Encode(Shown& shown);
+  void Tell(std::vector<std::string> messages);  // with encoder_mutex_ held
+  void Drain();
+
+  const std::string program_;
+  const std::optional<std::string> file_path_;
+  const StreamFeedSettings settings_;
+  const Slam* slam_ = nullptr;
+  const RunRecord* record_ = nullptr;
+  std::string folder_;
+  LatestTimes latest_;                                  // as of the frame before
+  double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording
+
+  std::mutex encoder_mutex_;  // of all down to the next mutex
+  std::unique_ptr<StreamEncoder> encoder_;
+  std::unique_ptr<RecordFile> file_;
+  std::map<int, Take> takers_;
+  int next_taker_ = 0;
+  StreamPlayback playback_;
+
+  mutable std::mutex queue_mutex_;
+  std::condition_variable changed_;
+  std::deque<Shown> queue_;
+  bool working_ = false, stop_ = false, failed_ = false;
+  bool paused_ = false;
+  int steps_ = 0;  // frames that may pass while paused
+
+  std::atomic<size_t> bytes_{0};
+  std::atomic<int> frames_{0};
+  std::thread thread_;
+};
+
+}  // namespace alidade

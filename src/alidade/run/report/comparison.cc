@@ -1,0 +1,193 @@
+#include "alidade/run/report/comparison.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include "alidade/base/error.h"
+#include "alidade/run/folder/result_folder.h"
+#include "alidade/run/results/run_results.h"
+#include "alidade/run/sources/truth.h"
+#include "alidade/view/comparison.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kNone[] = "–";
+
+std::string Figure(const char* format, const std::optional<double>& value) {
+  if (!value) return kNone;
+  char text[64];
+  std::snprintf(text, sizeof(text), format, *value);
+  return text;
+}
+
+// The folders' own names, or whole paths where two have the same.
+std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
+  std::vector<std::string> names;
+  for (const ComparedFolder& folder : folders) {
+    const std::filesystem::path path = std::filesystem::path(folder.path + "/").lexically_normal();
+    names.push_back(path.parent_path().filename().string());
+  }
+  const std::vector<std::string> own = names;
+  for (size_t i = 0; i < own.size(); ++i) {
+    if (own[i].empty() || own[i] == ".." || std::count(own.begin(), own.end(), own[i]) > 1)
+      names[i] = folders[i].path;
+    if (!folders[i].name.empty()) names[i] = folders[i].name;
+  }
+  return names;
+}
+
+// Where time is 0 on the page: one moment for recordings of the same time, else each one's start.
+std::vector<double> StartsOf(const std::vector<ResultFolder>& results) {
+  double last_start = results.front().span.first, first_end = results.front().span.last;
+  double start = last_start;
+  std::vector<double> starts;
+  for (const ResultFolder& result : results) {
+    starts.push_back(result.span.first);
+    start = std::min(start, result.span.first);
+    last_start = std::max(last_start, result.span.first);
+    first_end = std::min(first_end, result.span.last);
+  }
+  if (last_start <= first_end) std::fill(starts.begin(), starts.end(), start);
+  return starts;
+}
+
+std::vector<FateSpan> FatesOf(const ResultFolder& result, double start) {
+  const double begin = result.span.first - start, end = result.span.last - start;
+  if (!result.first_pose) return {{begin, end, FrameFate::kStarting}};
+  std::vector<FateSpan> fates = {{begin, *result.first_pose - start, FrameFate::kStarting},
+                                 {*result.first_pose - start, end, FrameFate::kTracked}};
+  for (const auto& [from, to] : result.lost_spans)  // drawn over it
+    fates.push_back({from - start, to - start, FrameFate::kLost});
+  return fates;
+}
+
+// How the first result's world is laid on the page, and then the others'.
+class Layout {
+ public:
+  Layout(const ResultFolder& first, const std::optional<TruthErrors>& errors)
+      : first_(first), errors_(errors) {}
+
+  std::string unit() const { return first_.mono() && !errors_ ? "map units" : "m"; }
+
+  // T_page_world; nothing, and a note, when it has too little in common with the first.
+  std::optional<Sim3> Of(const ResultFolder& run, const std::optional<TruthErrors>& errors,
+                         std::string* problem) const {
+    if (run.trajectory.empty()) {
+      *problem = "nothing was mapped";
+      return std::nullopt;
+    }
+    const Sim3 first = errors_ ? errors_->ate.T_truth_estimate : Sim3{};
+    if (&run == &first_) return first;
+    if (errors_ && errors) return errors->ate.T_truth_estimate;
+    if (first_.trajectory.empty()) {
+      *problem = "its path cannot be laid on the first one's, which has none";
+      return std::nullopt;
+    }
+    AteSettings settings;
+    settings.align = run.mono() || first_.mono() ? Alignment::kSim3 : Alignment::kSe3;
+    try {
+      return first * EvaluateAte(first_.trajectory, run.trajectory, settings).T_truth_estimate;
+    } catch (const Error& error) {
+      *problem = std::string("its path cannot be laid on the first one's: ") + error.what();
+      return std::nullopt;
+    }
+  }
+
+ private:
+  const ResultFolder& first_;
+  const std::optional<TruthErrors>& errors_;
+};
+
+std::vector<std::pair<std::string, std::string>> MeasuresOf(
+    const ResultFolder& result, const std::optional<TruthErrors>& errors) {
+  const std::optional<double> coverage =
+      result.coverage ? std::optional(100 * *result.coverage) : std::nullopt;
+  const std::optional<double> start =
+      result.first_pose ? std::optional(*result.first_pose - result.span.first) : std::nullopt;
+  const double metres = errors && result.mono() ? errors->ate.T_truth_estimate.s : 1;
+  const std::string length = Figure("%.2f", metres * PathLength(result.trajectory)) +
+                             (result.mono() && !errors ? " map units" : " m");
+  const MedianBar& frame = result.milliseconds.front();
+  const bool timed = frame.median >= 0;
+  const RpeResult* rpe = errors && errors->rpe ? &*errors->rpe : nullptr;
+  return {{"source", result.source},
+          {"sensor", result.sensor},
+          {"frames", Figure("%.0f", result.frames)},
+          {"tracked", Figure("%.0f", result.tracked) + Figure(" (%.1f %%)", coverage)},
+          {"starts at frame", Figure("%.0f", result.initialised_at) + Figure(" (%.2f s)", start)},
+          {"times lost", std::to_string(result.lost_spans.size())},
+          {"keyframes", Figure("%.0f", result.keyframes)},
+          {"landmarks", Figure("%.0f", result.landmarks)},
+          {"loops", Figure("%.0f", result.loops)},
+          {"relocalisations", Figure("%.0f", result.relocalisations)},
+          {"maps", Figure("%.0f", result.maps)},
+          {"path", result.trajectory.empty() ? kNone : length},
+          {"ATE RMSE", errors ? Figure("%.6f m", errors->ate.error.rmse) : kNone},
+          {"aligned by", !errors ? kNone
+                         : result.mono()
+                             ? "Sim(3), scale " + Figure("%.4f", errors->ate.T_truth_estimate.s)
+                             : "SE(3)"},
+          {"RPE RMSE in 1 s", rpe ? Figure("%.6f m", rpe->trans.rmse) : kNone},
+          {"the same, turning", rpe ? Figure("%.4f°", rpe->rot.rmse) : kNone},
+          {"ms per frame, median", timed ? Figure("%.2f", frame.median) : kNone},
+          {"ms per frame, p95", timed ? Figure("%.2f", frame.p95) : kNone},
+          {"CPU time", result.cpu_s ? Figure("%.2f s", result.cpu_s) : kNone},
+          {"peak memory", result.peak_mb ? Figure("%.0f MB", result.peak_mb) : kNone}};
+}
+
+}  // namespace
+
+std::string CompareResults(const std::vector<ComparedFolder>& folders) {
+  if (folders.size() < 2) ThrowUsage("there is nothing to compare: give two results or more");
+  std::vector<ResultFolder> results;
+  results.reserve(folders.size());
+  for (const ComparedFolder& folder : folders) results.push_back(ReadResultFolder(folder.path));
+  const std::vector<std::string> names = NamesOf(folders);
+  const std::vector<double> starts = StartsOf(results);
+
+  RunComparison page;
+  page.stages.assign(kResultStages.begin(), kResultStages.end());
+  std::vector<std::optional<TruthErrors>> errors(results.size());
+  for (size_t i = 0; i < results.size(); ++i) {
+    const ResultFolder& result = results[i];
+    std::string problem;
+    if (!result.truth.empty() && !result.trajectory.empty())
+      errors[i] =
+          ErrorsAgainst(result.truth, result.trajectory, result.mono(), result.span, &problem);
+    if (!problem.empty()) page.notes.push_back(names[i] + ": no errors to the truth: " + problem);
+  }
+  const Layout layout(results.front(), errors.front());
+  page.unit = layout.unit();
+  if (errors.front()) {
+    const TimeSpan& span = results.front().span;
+    page.truth = PathOf(Between(results.front().truth, span.first, span.last));
+  }
+  for (size_t i = 0; i < results.size(); ++i) {
+    const ResultFolder& result = results[i];
+    ComparedRun run;
+    run.name = names[i];
+    const auto measures = MeasuresOf(result, errors[i]);
+    page.measures.clear();
+    for (const auto& [measure, value] : measures) {
+      page.measures.push_back(measure);
+      run.values.push_back(value);
+    }
+    std::string problem;
+    if (const auto T = layout.Of(result, errors[i], &problem))
+      run.path = PathOf(result.trajectory, *T);
+    if (!problem.empty()) page.notes.push_back(names[i] + ": " + problem);
+    if (result.maps.value_or(0) > 1)
+      page.notes.push_back(names[i] +
+                           ": of its maps the one with the most frames is drawn and judged");
+    run.fates = FatesOf(result, starts[i]);
+    if (errors[i]) run.error = ErrorCurve(*errors[i], result.trajectory, starts[i]);
+    run.milliseconds = result.milliseconds;
+    page.seconds = std::max(page.seconds, result.span.last - starts[i]);
+    page.runs.push_back(std::move(run));
+  }
+  return RenderComparison(page);
+}
+
+}  // namespace alidade

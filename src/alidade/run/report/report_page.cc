@@ -1,0 +1,205 @@
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "alidade/base/timing.h"
+#include "alidade/run/report/stats.h"
+#include "alidade/run/setup/run_settings.h"
+#include "alidade/run/sources/truth.h"
+
+namespace alidade {
+namespace {
+
+std::string Format(const char* format, double value) {
+  char text[64];
+  std::snprintf(text, sizeof(text), format, value);
+  return text;
+}
+
+// Landmarks of all maps that are drawn: more do not show, but make the page large.
+constexpr size_t kMostLandmarks = 8000;
+
+PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
+  PlaceDrawing place;
+  place.unit = unit;
+  place.path = PathOf(results, number);
+  const MapResults& map = results.maps[number];
+  for (const StampedPose& pose : map.keyframes) {
+    place.keyframes.push_back(pose.T_world_camera.t);
+  }
+  const size_t step = 1 + static_cast<size_t>(results.map.landmark_count()) / kMostLandmarks;
+  size_t counted = 0;
+  for (LandmarkId id : results.map.Landmarks()) {  // of other maps they lie in other worlds
+    if (results.map.MapOf(results.map.Find(id)->reference) != map.id) continue;
+    if (counted++ % step != 0) continue;
+    place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
+  }
+  return place;
+}
+
+std::vector<FrameFate> FatesOf(const std::vector<FramePose>& frames) {
+  std::vector<FrameFate> fates;
+  bool started = false;
+  for (const FramePose& frame : frames) {
+    started = started || frame.tracked;
+    fates.push_back(frame.tracked ? FrameFate::kTracked
+                    : started     ? FrameFate::kLost
+                                  : FrameFate::kStarting);
+  }
+  return fates;
+}
+
+int CountWithDepth(const MapSnapshot& map) {
+  int count = 0;
+  for (KeyFrameId id : map.KeyFrames()) {
+    const KeyFrame& keyframe = *map.Find(id);
+    count += keyframe.depth != nullptr && !keyframe.depth->pixels.empty();
+  }
+  return count;
+}
+
+// "12 (0.40 s after the start: too little parallax)".
+std::string FirstTracked(const RunRecord& record, const RunResults& results) {
+  if (!results.initialised_at) return "none";
+  std::string words = std::to_string(*results.initialised_at);
+  const auto first = std::find_if(results.frames.begin(), results.frames.end(),
+                                  [](const FramePose& frame) { return frame.tracked; });
+  if (first == results.frames.end() || first == results.frames.begin()) return words;
+  const double start = results.frames.front().time, waited = first->time - start;
+  const std::string why = StartInWords(record.untracked.all(), start, waited);
+  return words + Format(", %.2f s after the start", waited) + (why.empty() ? "" : ": " + why);
+}
+
+std::string CameraFact(const RunRecord& record) {
+  const CameraRecord& camera = record.camera;
+  if (camera.found && camera.found->usable) {
+    return CameraInWords(camera.found->estimate) + ", found from the recording" +
+           (camera.found->estimate.known ? "" : ", not for certain");
+  }
+  const std::string fov = Format("%.1f degrees", FovDegrees(record.source.camera));
+  if (camera.known == "given") return fov + ", as given";
+  return fov + (camera.known == "file" ? ", by its calibration" : ", assumed");
+}
+
+std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
+                                                         const RunResults& results,
+                                                         const std::string& unit) {
+  const int tracked = results.tracked;
+  const double share = record.frames > 0 ? 100.0 * tracked / record.frames : 0;
+  std::vector<std::pair<std::string, std::string>> facts = {
+      {"source", record.source_path},
+      {"sensor", NameOf(record.settings.sensor)},
+      {"camera", CameraFact(record)},
+      {"frames tracked", std::to_string(tracked) + " of " + std::to_string(record.frames) +
+                             Format(" (%.1f %%)", share)},
+      {"first tracked frame", FirstTracked(record, results)},
+      {"lost", tracked == 0                 ? "never had a pose"
+               : results.lost_spans.empty() ? "never"
+                                            : LostInAll(results.lost_spans)},
+      {"keyframes", std::to_string(results.map.keyframe_count())},
+      {"landmarks", std::to_string(results.map.landmark_count())}};
+  if (record.settings.semidense.enabled && !record.settings.localise)
+    facts.push_back({"keyframes with depth", std::to_string(CountWithDepth(results.map))});
+  facts.insert(facts.end(),
+               {{"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
+                {"wall time", Format("%.2f s", record.wall_s)},
+                {"CPU time", Format("%.2f s", record.cpu_s)},
+                {"peak memory", Format("%.0f MB", PeakMegabytes())}});
+  const SlamCounts& counts = results.counts;
+  facts.push_back({"loops closed", std::to_string(counts.loops)});
+  if (counts.relocalisations > 0)
+    facts.push_back({"relocalisations", std::to_string(counts.relocalisations)});
+  if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
+  if (results.maps.size() > 1) {
+    facts.push_back({"separate maps", std::to_string(results.maps.size()) +
+                                          ", which have no place in common; the first has most "
+                                          "frames, and the path's length is its"});
+  }
+  if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(record)});
+  if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
+  if (record.interrupted) facts.push_back({"interrupted", "results as far as it got"});
+  return facts;
+}
+
+// How far the paths are from the truth, where it is known; each map is laid on it by itself.
+void AddErrors(const RunRecord& record, const RunResults& results, RunReport& report) {
+  if (!record.first_time) return;
+  const Trajectory truth = record.truth.empty() ? TruthBeside(record.source_path) : record.truth;
+  if (truth.empty()) return;
+  const bool mono = record.settings.sensor == Sensor::kMono;
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const Trajectory& estimate = results.maps[i].trajectory;
+    if (estimate.empty()) continue;
+    std::string problem;
+    const auto errors = ErrorsAgainst(truth, estimate, mono,
+                                      TimeSpan{*record.first_time, *record.last_time}, &problem);
+    if (!errors) continue;
+    const std::string of = i == 0 ? "" : " of map " + std::to_string(i + 1);
+    report.facts.push_back(
+        {"ATE RMSE" + of, Format("%.6f m", errors->ate.error.rmse) +
+                              (mono ? ", aligned by Sim(3)" : ", aligned by SE(3)")});
+    if (errors->rpe) {
+      report.facts.push_back({"RPE RMSE in 1 s" + of, Format("%.6f m, ", errors->rpe->trans.rmse) +
+                                                          Format("%.4f°", errors->rpe->rot.rmse)});
+    }
+    report.maps[i].place.truth = PathOf(Between(truth, estimate.front().time, estimate.back().time),
+                                        errors->ate.T_truth_estimate.Inverse());
+    const Curve curve = ErrorCurve(*errors, estimate, *record.first_time);
+    report.error.insert(report.error.end(), curve.begin(), curve.end());
+  }
+  report.seconds = *record.last_time - *record.first_time;
+}
+
+std::vector<ReportMap> MapsOf(const RunRecord& record, const RunResults& results,
+                              const std::string& unit) {
+  std::vector<ReportMap> maps;
+  const double start = record.first_time.value_or(0);
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const MapResults& map = results.maps[i];
+    std::string caption = std::to_string(map.trajectory.size()) + " frames";
+    if (!map.trajectory.empty()) {
+      caption += Format(" from %.2f s", map.trajectory.front().time - start) +
+                 Format(" to %.2f s", map.trajectory.back().time - start);
+    }
+    caption += ", " + std::to_string(map.keyframes.size()) + " keyframes" +
+               Format(", path %.2f ", PathLength(map.trajectory)) + unit;
+    maps.push_back({caption, PlaceOf(results, i, unit)});
+  }
+  return maps;
+}
+
+}  // namespace
+
+std::string ReportHtml(const RunRecord& record, const RunResults& results,
+                       ReportPictures pictures) {
+  const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
+  RunReport report;
+  report.title = record.source.name;
+  report.facts = FactsOf(record, results, unit);
+  report.maps = MapsOf(record, results, unit);
+  report.cloud = std::move(pictures.shape.scene);
+  report.shape = std::move(pictures.shape.pictures);
+  if (!report.shape.empty()) {
+    report.cloud_picture = std::move(report.shape.front());
+    report.shape.erase(report.shape.begin());
+  }
+  report.keyframes = std::move(pictures.keyframes);
+  report.frames = FatesOf(results.frames);
+  report.milliseconds = {{"frame", results.times.frame}, {"extract", results.times.extract},
+                         {"track", results.times.track}, {"map", results.times.map},
+                         {"loop", results.times.loop},   {"semidense", results.times.semidense}};
+  report.lost_spans =
+      LostInWords(results.lost_spans, record.untracked.all(), record.first_time.value_or(0));
+  AddErrors(record, results, report);
+  report.warnings = record.warnings;
+  report.settings = {{"profile", record.profile},
+                     {"schedule", record.settings.threaded ? "threaded" : "inline"},
+                     {"threads", std::to_string(record.threads)}};
+  for (const auto& setting :
+       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
+           .All())
+    report.settings.push_back(setting);
+  return RenderReport(report);
+}
+
+}  // namespace alidade

@@ -1,0 +1,71 @@
+#include "alidade/run/report/shape_views.h"
+
+#include <algorithm>
+#include <opencv2/core.hpp>
+#include <string>
+#include <utility>
+
+#include "alidade/base/parallel.h"
+#include "alidade/io/files/image_codec.h"
+#include "alidade/run/results/semidense_outputs.h"
+#include "alidade/view/cloud_picture.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kJpegQuality = 88;  // a third of the bytes of a PNG, and the dots stay dots
+
+constexpr std::pair<CloudView, const char*> kViews[] = {
+    {CloudView::kBehind, "from behind the first camera"},
+    {CloudView::kFront, "as the first camera looked"},
+    {CloudView::kSide, "from its right"},
+    {CloudView::kAbove, "from above"}};
+
+// About a pixel of a picture of most of the cloud.
+double PixelOf(const Cloud& cloud) {
+  constexpr double kPixels = 800, kLeftOut = 0.03;
+  Eigen::Vector3d size;
+  std::vector<float> along(cloud.points.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (size_t i = 0; i < along.size(); ++i) along[i] = cloud.points[i][axis];
+    const auto rank = [&](double share) {
+      const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(along.size() - 1));
+      std::nth_element(along.begin(), along.begin() + at, along.end());
+      return along[static_cast<size_t>(at)];
+    };
+    size[axis] = rank(1 - kLeftOut) - rank(kLeftOut);
+  }
+  return size.norm() / kPixels;
+}
+
+}  // namespace
+
+ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, const Camera& camera,
+                           const Cloud& cloud, double voxel) {
+  // Whoever wants few points, or whose map has large units, wants to see the place all the same;
+  // and no picture needs every pixel of every keyframe.
+  const double pixel = PixelOf(cloud);
+  CloudScene scene = {voxel > 0 && voxel <= pixel
+                          ? cloud
+                          : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
+                      PathOf(results)};
+  constexpr int kCount = static_cast<int>(std::size(kViews));
+  std::vector<cv::Mat> drawn(kCount);
+  ParallelFor(kCount,
+              [&](int i) { drawn[static_cast<size_t>(i)] = DrawCloud(scene, kViews[i].first); });
+  folder.Write("semidense.png", EncodePng(drawn[0]));
+  std::vector<ReportPicture> pictures;
+  for (size_t i = 0; i < drawn.size(); ++i)
+    pictures.push_back({kViews[i].second, "image/jpeg", EncodeJpeg(drawn[i], kJpegQuality)});
+  return {std::move(scene), std::move(pictures)};
+}
+
+ShapeViews LandmarkViews(const RunResults& results, Cloud landmarks) {
+  ShapeViews views{{std::move(landmarks), PathOf(results)}, {}};
+  const cv::Mat drawn = DrawCloud(views.scene, kViews[0].first);
+  views.pictures = {{std::string("landmarks ") + kViews[0].second, "image/jpeg",
+                     EncodeJpeg(drawn, kJpegQuality)}};
+  return views;
+}
+
+}  // namespace alidade

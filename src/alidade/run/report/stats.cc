@@ -1,0 +1,171 @@
+#include "alidade/run/report/stats.h"
+
+#include <nlohmann/json.hpp>
+
+#include "alidade/base/timing.h"
+#include "alidade/run/folder/output_folder.h"
+#include "alidade/run/setup/run_settings.h"
+
+namespace alidade {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kStatsVersion = 1;
+
+ordered_json ToJson(const std::vector<double>& samples) {
+  if (samples.empty()) return nullptr;
+  const Summary s = Summarise(samples);
+  return {
+      {"median", s.median}, {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}, {"count", s.count}};
+}
+
+ordered_json SettingsJson(const RunRecord& record) {
+  ordered_json settings = {{"profile", record.profile},
+                           {"schedule", record.settings.threaded ? "threaded" : "inline"},
+                           {"threads", record.threads}};
+  for (const auto& [name, value] :
+       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
+           .All()) {
+    const ordered_json parsed = ordered_json::parse(value, nullptr, false);
+    settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
+  }
+  return settings;
+}
+
+// What semi-dense mapping did; null when it was not asked for.
+ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& report) {
+  if (!record.settings.semidense.enabled || record.settings.localise) return nullptr;
+  const auto mean = [](int64_t sum, int64_t count) {
+    return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
+  };
+  return {{"keyframes", report.keyframes},
+          {"pixels", mean(report.pixels, report.keyframes)},
+          {"searches", mean(report.search.searches, report.keyframes)},
+          {"mean_search", mean(report.search.samples, report.search.searches)},
+          {"most_behind", report.most_behind}};
+}
+
+// What the map says of the lens; null: too little was seen.
+ordered_json LensJson(const LensCheck& lens) {
+  if (lens.windows == 0) return nullptr;
+  return {{"k1", lens.k1},
+          {"sigma", lens.sigma},
+          {"bend", lens.bend},
+          {"windows", lens.windows},
+          {"strong", lens.strong}};
+}
+
+// The camera of the recording's images (stereo, fisheye: as rectified).
+ordered_json CameraJson(const RunRecord& record) {
+  const Camera& camera = record.source.camera;
+  const double sigma = record.camera.focal_sigma;
+  return {
+      {"width", camera.width},
+      {"height", camera.height},
+      {"fx", camera.fx},
+      {"fy", camera.fy},
+      {"cx", camera.cx},
+      {"cy", camera.cy},
+      {"distortion", camera.distortion},
+      {"readout", record.camera.readout},
+      {"readout_sigma", record.camera.readout_sigma > 0 ? ordered_json(record.camera.readout_sigma)
+                                                        : ordered_json(nullptr)},
+      {"fov", FovDegrees(camera)},
+      {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
+      {"known", record.camera.known}};
+}
+
+// How it was found; null: it was not looked for.
+ordered_json CalibrationJson(const RunRecord& record) {
+  if (!record.camera.found) return nullptr;
+  const CameraFound& found = *record.camera.found;
+  return {{"passes", found.passes},
+          {"frames", found.frames},
+          {"keyframes", found.estimate.keyframes},
+          {"observations", found.estimate.observations},
+          {"k1_sigma", found.estimate.k1_sigma},
+          {"k2_sigma", found.estimate.k2_sigma},
+          {"noise", found.estimate.noise},
+          {"why_not", found.why_not},
+          {"cpu_s", record.camera.cpu_s},
+          {"wall_s", record.camera.wall_s}};
+}
+
+// Parts that failed and did nothing from then on.
+ordered_json StoppedJson(const SlamHealth& health) {
+  ordered_json stopped = ordered_json::array();
+  for (const StageHealth& stage : health.stages) {
+    if (!stage.running) stopped.push_back({{"part", stage.name}, {"failure", stage.failure}});
+  }
+  return stopped;
+}
+
+// Which frames are in which map, and where its poses are.
+ordered_json MapFiles(const RunResults& results) {
+  ordered_json files = ordered_json::array();
+  for (size_t i = 0; i < results.maps.size(); ++i) {
+    const MapResults& map = results.maps[i];
+    if (map.trajectory.empty()) continue;
+    files.push_back({{"trajectory", NumberedFile("trajectory", i)},
+                     {"keyframes", NumberedFile("keyframes", i)},
+                     {"frames", map.trajectory.size()},
+                     {"keyframe_count", map.keyframes.size()},
+                     {"span", {map.trajectory.front().time, map.trajectory.back().time}}});
+  }
+  return files;
+}
+
+}  // namespace
+
+std::string StatsJson(const RunRecord& record, const RunResults& results) {
+  const int tracked = results.tracked;
+  const auto optional = [](const std::optional<int>& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  const ordered_json stats = {
+      {"version", kStatsVersion},
+      {"source", record.source_path},
+      {"sensor", NameOf(record.settings.sensor)},
+      {"settings", SettingsJson(record)},
+      {"camera", CameraJson(record)},
+      {"calibration", CalibrationJson(record)},
+      {"frames", record.frames},
+      {"tracked", tracked},
+      {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
+      {"initialised_at", optional(results.initialised_at)},
+      {"lost_spans", results.lost_spans},
+      {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
+                                 : ordered_json(nullptr)},
+      {"relocalisations", results.counts.relocalisations},
+      {"predicted", results.counts.predicted},
+      {"loops", results.counts.loops},
+      {"merges", results.counts.merges},
+      {"cuts", results.counts.cuts},
+      {"maps", results.map.Maps().size()},
+      {"map_files", MapFiles(results)},
+      {"keyframes", results.map.keyframe_count()},
+      {"landmarks", results.map.landmark_count()},
+      {"ms",
+       {{"frame", ToJson(results.times.frame)},
+        {"extract", ToJson(results.times.extract)},
+        {"track", ToJson(results.times.track)},
+        {"map", ToJson(results.times.map)},
+        {"loop", ToJson(results.times.loop)},
+        {"detect", ToJson(results.times.detect)},
+        {"dynamics", ToJson(results.times.dynamics)},
+        {"semidense", ToJson(results.times.semidense)}}},
+      {"semidense", SemiDenseJson(record, results.semidense)},
+      {"lens", LensJson(record.lens)},
+      {"cpu_s", record.cpu_s},
+      {"wall_s", record.wall_s},
+      {"peak_mb", PeakMegabytes()},
+      {"dropped_frames", record.dropped},
+      {"late_frames", record.late},
+      {"warnings", record.warnings},
+      {"stopped", StoppedJson(record.health)}};
+  // A path may be in any encoding.
+  return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace alidade

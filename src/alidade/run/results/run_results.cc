@@ -1,0 +1,110 @@
+#include "alidade/run/results/run_results.h"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace alidade {
+namespace {
+
+// From the rectified camera's world to the mounted camera's.
+Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified) {
+  const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
+  return turn * T_world_camera * turn.Inverse();
+}
+
+std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frames) {
+  std::vector<std::array<double, 2>> spans;
+  bool started = false;
+  const FramePose* lost = nullptr;  // first frame of the span that is open
+  for (const FramePose& frame : frames) {
+    if (frame.tracked) {
+      if (lost) spans.push_back({lost->time, frame.time});
+      lost = nullptr;
+      started = true;
+    } else if (started && !lost) {
+      lost = &frame;
+    }
+  }
+  if (lost) spans.push_back({lost->time, frames.back().time});
+  return spans;
+}
+
+}  // namespace
+
+RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
+  RunResults results;
+  results.frames = slam.Trajectory();
+  results.map = slam.Snapshot();
+  results.times = slam.Times();
+  results.counts = slam.Counts();
+  results.semidense = slam.SemiDense();
+  results.tracked = results.counts.let_go.tracked;
+  results.lost_spans = LostSpans(results.frames);
+  const Eigen::Matrix3d& turn = results.R_camera_rectified = record.source.R_camera_rectified;
+  for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}, {}});
+  if (results.maps.empty()) results.maps.push_back({});
+  const auto in = [&](MapId id) -> MapResults& {
+    return *std::find_if(results.maps.begin(), results.maps.end(),
+                         [&](const MapResults& map) { return map.id == id; });
+  };
+  for (const FramePose& frame : results.frames) {
+    if (!frame.tracked) continue;
+    ++results.tracked;
+    const auto index = static_cast<size_t>(frame.index);
+    if (!results.initialised_at) results.initialised_at = record.numbers[index];
+    const std::string& stamp = record.stamps[index];
+    MapResults& map = in(frame.map);
+    map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
+    if (!frame.late)
+      map.live.push_back({frame.time, Mounted(frame.T_world_camera_live, turn), stamp});
+  }
+  for (KeyFrameId id : results.map.KeyFrames()) {
+    const KeyFrame* keyframe = results.map.Find(id);
+    const int index = keyframe->frame->number - slam.first_number();
+    MapResults& map = in(keyframe->map);
+    map.keyframe_ids.push_back(id);
+    map.keyframes.push_back(
+        {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
+         index < 0 ? std::string() : record.stamps[static_cast<size_t>(index)]});
+  }
+  std::stable_sort(results.maps.begin(), results.maps.end(),
+                   [](const MapResults& a, const MapResults& b) {
+                     return a.trajectory.size() > b.trajectory.size();
+                   });
+  return results;
+}
+
+std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number) {
+  std::vector<std::vector<Se3>> path;
+  const MapResults& map = results.maps[number];
+  bool going_on = false;
+  size_t next = 0;  // of the trajectory
+  for (const FramePose& frame : results.frames) {
+    const bool here = frame.tracked && frame.map == map.id;
+    if (here) {
+      if (!going_on) path.emplace_back();
+      path.back().push_back(map.trajectory[next++].T_world_camera);
+    }
+    going_on = here;
+  }
+  return path;
+}
+
+std::string LostInAll(const std::vector<std::array<double, 2>>& spans) {
+  double seconds = 0;
+  for (const auto& [from, to] : spans) seconds += to - from;
+  const size_t times = spans.size();
+  char text[64];
+  std::snprintf(text, sizeof(text), ", %.2f s in all", seconds);
+  return (times == 1 ? "once" : times == 2 ? "twice" : std::to_string(times) + " times") + text;
+}
+
+double PathLength(const Trajectory& trajectory) {
+  double length = 0;
+  for (size_t i = 1; i < trajectory.size(); ++i) {
+    length += (trajectory[i].T_world_camera.t - trajectory[i - 1].T_world_camera.t).norm();
+  }
+  return length;
+}
+
+}  // namespace alidade

@@ -1,0 +1,48 @@
+// A finished run as plain values, for the files made of it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "alidade/map/map_store.h"
+#include "alidade/run/results/record.h"
+#include "alidade/semidense/semidense_mapper.h"
+
+namespace alidade {
+
+// One map and the frames placed in it. Poses are T_world_camera of the (left) camera as mounted,
+// `world` the map's first keyframe's.
+struct MapResults {
+  MapId id;
+  Trajectory trajectory, live, keyframes;
+  std::vector<KeyFrameId> keyframe_ids;  // one for each of `keyframes`
+};
+
+struct RunResults {
+  std::vector<FramePose> frames;  // every one that Track() took
+  MapSnapshot map;
+  StageTimes times;
+  SlamCounts counts;
+  SemiDenseReport semidense;
+  int tracked = 0;  // frames, in all maps
+
+  std::optional<int> initialised_at;              // number of the first tracked frame
+  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
+  std::vector<MapResults> maps;                   // most frames first; at least one, perhaps empty
+  Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world
+};
+
+RunResults ResultsOf(const Slam& slam, const RunRecord& record);
+
+// The way of the camera through one of the maps: T_world_camera, one list for each stretch without
+// a gap.
+std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number = 0);
+
+// "twice, 1.30 s in all".
+std::string LostInAll(const std::vector<std::array<double, 2>>& spans);
+
+double PathLength(const Trajectory& trajectory);  // in the trajectory's unit
+
+}  // namespace alidade

@@ -1,0 +1,140 @@
+#include "alidade/run/results/untracked.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "alidade/tracking/track_failure.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kBeginning = 1;    // seconds of a stretch that are asked why it was lost
+constexpr double kShare = 1.0 / 3;  // of their frames must look alike to be the cause
+constexpr double kLong = 2;         // seconds after which coming back needs advice of its own
+
+const char* WordsFor(Look look) {
+  switch (look) {
+    case Look::kDark:
+      return "the picture was dark. More light helps";
+    case Look::kBlurred:
+      return "the picture was blurred. More light, or moving more slowly, helps";
+    case Look::kBare:
+      return "there was nothing to hold on to, as in front of a bare wall. Keeping something with "
+             "structure in view helps";
+    case Look::kOrdinary:
+      break;
+  }
+  return "";
+}
+
+std::string Seconds(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f s", value);
+  return text;
+}
+
+// Frames on end that lie within a stretch of time, cut to it.
+std::vector<UntrackedFrames> Within(const std::vector<UntrackedFrames>& all, double from,
+                                    double to) {
+  std::vector<UntrackedFrames> within;
+  for (UntrackedFrames some : all) {
+    if (some.to < from || some.from > to) continue;
+    const double length = some.to - some.from;
+    some.from = std::max(some.from, from);
+    some.to = std::min(some.to, to);
+    if (length > 0)
+      some.frames = std::max(1, static_cast<int>(some.frames * (some.to - some.from) / length));
+    within.push_back(std::move(some));
+  }
+  return within;
+}
+
+// How most of the frames look that do not look ordinary, when they are enough.
+Look LookOf(const std::vector<UntrackedFrames>& frames) {
+  std::map<Look, int> counts;
+  int all = 0;
+  for (const UntrackedFrames& some : frames) {
+    counts[some.look] += some.frames;
+    all += some.frames;
+  }
+  counts.erase(Look::kOrdinary);
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most != counts.end() && most->second >= kShare * all ? most->first : Look::kOrdinary;
+}
+
+std::string MostFrequentReason(const std::vector<UntrackedFrames>& frames) {
+  std::map<std::string, int> counts;
+  for (const UntrackedFrames& some : frames) counts[some.reason] += some.frames;
+  const auto most =
+      std::max_element(counts.begin(), counts.end(),
+                       [](const auto& a, const auto& b) { return a.second < b.second; });
+  return most == counts.end() ? "" : most->first;
+}
+
+}  // namespace
+
+std::string AdviceOn(const std::string& reason) {
+  return AdviceText(FailureWithReason(reason.c_str()));
+}
+
+void UntrackedLog::AddKeyFrame(const cv::Mat& gray) {
+  Tracked();
+  if (gray.empty() || gray.type() != CV_8UC1) return;
+  blur_ += BlurOf(gray);
+  ++sharp_;
+}
+
+void UntrackedLog::Add(double time, const std::string& reason, const cv::Mat& gray,
+                       double corners) {
+  const Look look = alidade::LookOf(gray, corners, sharp_ > 0 ? blur_ / sharp_ : kUsualBlur, look_);
+  if (!going_on_ || all_.back().reason != reason || all_.back().look != look)
+    all_.push_back({time, time, reason, look, 0});
+  going_on_ = true;
+  all_.back().to = time;
+  ++all_.back().frames;
+}
+
+std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& spans,
+                                     const std::vector<UntrackedFrames>& untracked, double start) {
+  std::vector<std::string> lines;
+  for (const auto& [from, to] : spans) {
+    const std::vector<UntrackedFrames> frames = Within(untracked, from, to);
+    const Look look = LookOf(Within(frames, from, from + kBeginning));
+    std::string line = Seconds(from - start) + " to " + Seconds(to - start) + ": ";
+    if (frames.empty()) {
+      line += "what was mapped meanwhile did not hold, and was given up";
+    } else if (look != Look::kOrdinary) {
+      line += WordsFor(look);
+    } else if (frames.front().reason == "too few landmarks found") {
+      line +=
+          "too little of what was mapped was seen again: a quick turn, or something in the way. "
+          "Moving more slowly helps";
+    } else {
+      line += frames.front().reason;
+      if (const std::string advice = AdviceOn(frames.front().reason); !advice.empty())
+        line += ". " + advice;
+    }
+    if (to - from > kLong && frames.size() > 1 &&
+        MostFrequentReason(frames) == "the place was not recognised") {
+      line +=
+          ". It stayed lost as the place was not recognised: going back to where the camera has "
+          "been, and looking the way it did, helps";
+    }
+    lines.push_back(line + ".");
+  }
+  return lines;
+}
+
+std::string StartInWords(const std::vector<UntrackedFrames>& untracked, double start,
+                         double until) {
+  const std::vector<UntrackedFrames> frames = Within(untracked, start, start + until);
+  if (frames.empty()) return "";
+  if (const Look look = LookOf(frames); look != Look::kOrdinary) return WordsFor(look);
+  const std::string reason = MostFrequentReason(frames), advice = AdviceOn(reason);
+  return advice.empty() ? reason : reason + ". " + advice;
+}
+
+}  // namespace alidade

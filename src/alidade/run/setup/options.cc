@@ -1,0 +1,104 @@
+#include "alidade/run/setup/options.h"
+
+#include "alidade/base/choice.h"
+#include "alidade/base/error.h"
+#include "alidade/io/text.h"
+#include "alidade/run/setup/settings_file.h"
+
+namespace alidade {
+
+void CheckThreads(int threads) {
+  if (threads >= 0 && threads <= kMostThreads) return;
+  ThrowUsage("--threads must be from 0 (one for each core) to " + std::to_string(kMostThreads) +
+             ", not " + std::to_string(threads));
+}
+
+void CheckRunOptions(const RunOptions& options) {
+  if (options.semidense && options.localise) {
+    ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
+  }
+  if (options.host && !options.viewer)
+    ThrowUsage("--host is where the viewer listens: it needs --viewer");
+  if (options.detector && options.own_detector)
+    ThrowUsage("a run has one detector: a file's, or the caller's own");
+  CheckThreads(options.threads);
+  if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
+  if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
+}
+
+Sensor SensorNamed(const std::string& option, const std::string& word) {
+  std::vector<std::pair<std::string, Sensor>> sensors;
+  for (Sensor sensor : {Sensor::kMono, Sensor::kStereo, Sensor::kRgbd})
+    sensors.push_back({NameOf(sensor), sensor});
+  return Choice<Sensor>(option, word, sensors);
+}
+
+SourceOptions SourceOptionsFrom(const RunOptions& options) {
+  SourceOptions source;
+  if (options.sensor) {
+    source.sensor = SensorNamed("--sensor", *options.sensor);
+  }
+  source.camera_file = options.camera_file;
+  if (options.fov) {
+    source.fov_rough = options.fov->rfind('~', 0) == 0;
+    source.fov_degrees = ParseNumber(options.fov->substr(source.fov_rough ? 1 : 0));
+    if (!source.fov_degrees || !(*source.fov_degrees > 0 && *source.fov_degrees < 180)) {
+      ThrowUsage(
+          "--fov is a number of degrees between 0 and 180, with a ~ before it where it is "
+          "only a guess (70 or ~70), not '" +
+          *options.fov + "'");
+    }
+  }
+  source.first = options.first;
+  source.last = options.last;
+  return source;
+}
+
+RunSettings SettingsFrom(const RunOptions& options) {
+  RunSettings all;
+  SlamSettings& settings = all.slam;
+  settings.ApplyProfile(options.profile);
+  if (options.config) ApplySettingsFile(*options.config, all);
+  for (const std::string& assignment : options.settings) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos) ThrowUsage("--set " + assignment + ": expected name=value");
+    all.Set(assignment.substr(0, equals), assignment.substr(equals + 1));
+  }
+  if (options.seed) settings.seed = *options.seed;
+  if (options.semidense) settings.semidense.enabled = true;
+  if (options.dynamics) {
+    settings.dynamics.mode = DynamicsModeNamed("--dynamics", *options.dynamics);
+  } else if (HasDetector(options)) {
+    settings.dynamics.mode = DynamicsMode::kFull;
+  }
+  const DynamicsMode mode = settings.dynamics.mode;
+  if (mode == DynamicsMode::kFull && !HasDetector(options))
+    ThrowUsage("--dynamics full needs --detector MODEL.onnx");
+  if (mode != DynamicsMode::kFull && HasDetector(options))
+    ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
+  if (!LeavesOutFromStart(mode) && options.write_masks)
+    ThrowUsage(
+        "--write-masks needs --dynamics geometry or full: else nothing is left out from the start");
+  all.Check();
+  return all;
+}
+
+bool ThreadedFrom(const RunOptions& options, bool live) {
+  if (!options.schedule) return live;
+  return Choice<bool>("--schedule", *options.schedule, {{"inline", false}, {"threaded", true}});
+}
+
+Rate RateFrom(const RunOptions& options, bool threaded) {
+  if (!options.rate) return {threaded ? Rate::Kind::kRealtime : Rate::Kind::kMax, 0};
+  if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
+  if (*options.rate == "max") return {};
+  const std::optional<double> fps = ParseNumber(*options.rate);
+  constexpr double kSlowest = 1e-3;  // a frame in 17 minutes; a slip of the keys, below
+  if (!fps || !(*fps >= kSlowest && *fps <= 1e6)) {
+    ThrowUsage("--rate is realtime, max or frames per second (0.001 to 1000000), not '" +
+               *options.rate + "'");
+  }
+  return {Rate::Kind::kFixed, *fps};
+}
+
+}  // namespace alidade

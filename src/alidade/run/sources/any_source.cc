@@ -1,0 +1,19 @@
+#include "alidade/run/sources/any_source.h"
+
+#include "alidade/io/files/file.h"
+#include "alidade/run/sources/synth_source.h"
+
+namespace alidade {
+
+std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
+                                           const SourceOptions& options) {
+  if (IsSynthSource(source)) return OpenSynthSource(source, options);
+  return OpenSource(source, options);
+}
+
+std::string PathOfSource(const std::string& source) {
+  if (IsSynthSource(source) || source.rfind("camera:", 0) == 0) return {};
+  return IsThere(source) ? source : source.substr(0, source.find('?'));
+}
+
+}  // namespace alidade

@@ -1,0 +1,258 @@
+#include "alidade/run/sources/synth_source.h"
+
+#include <cstdint>
+#include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "alidade/base/error.h"
+#include "alidade/base/nearest_name.h"
+#include "alidade/io/calibration.h"
+#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/choose_calibration.h"
+#include "alidade/io/text.h"
+#include "alidade/io/wrappers.h"
+#include "alidade/synth/recording.h"
+
+namespace alidade {
+namespace {
+
+constexpr char kPrefix[] = "synth:";
+
+double Number(const std::string& name, const std::string& value, bool whole) {
+  const std::optional<double> number = ParseNumber(value);
+  if (!number || !(*number >= -1e9 && *number <= 9e15) ||
+      (whole && *number != static_cast<double>(static_cast<int64_t>(*number)))) {
+    ThrowUsage("synth: " + name + " cannot be \"" + value + "\": it must be a " +
+               (whole ? "whole " : "") + "number");
+  }
+  return *number;
+}
+
+int Whole(const std::string& name, const std::string& value) {
+  const double number = Number(name, value, true);
+  if (number < -1e9 || number > 1e9) ThrowUsage("synth: " + name + " is out of range: " + value);
+  return static_cast<int>(number);
+}
+
+bool Switch(const std::string& name, const std::string& value) {
+  if (value.empty() || value == "1" || value == "true") return true;
+  if (value == "0" || value == "false") return false;
+  ThrowUsage("synth: " + name + " cannot be \"" + value + "\": it is 0 or 1");
+}
+
+using Setter = std::function<void(SynthSettings&, const std::string&, const std::string&)>;
+
+Setter Into(int SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Whole(name, value);
+  };
+}
+
+Setter Into(double SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Number(name, value, false);
+  };
+}
+
+Setter Into(bool SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string& name, const std::string& value) {
+    settings.*field = Switch(name, value);
+  };
+}
+
+// A switch, which stands for `usual`, or a number above 1.
+Setter Into(double SynthSettings::*field, double usual) {
+  return
+      [field, usual](SynthSettings& settings, const std::string& name, const std::string& value) {
+        const bool number = !value.empty() && value != "1" && value != "true" && value != "false";
+        settings.*field = number ? Number(name, value, false) : (Switch(name, value) ? usual : 0);
+      };
+}
+
+void SetSeed(SynthSettings& settings, const std::string& name, const std::string& value) {
+  const double seed = Number(name, value, true);
+  if (seed < 0) ThrowUsage("synth: seed cannot be negative");
+  settings.seed = static_cast<uint64_t>(seed);
+}
+
+void SetPath(SynthSettings& settings, const std::string&, const std::string& value) {
+  settings.path = value;
+}
+
+void Set(SynthSettings& settings, const std::string& name, const std::string& value) {
+  using S = SynthSettings;
+  static const std::vector<std::pair<std::string, Setter>> kOptions = {
+      {"frames", Into(&S::frames)},
+      {"path", SetPath},
+      {"speed", Into(&S::speed)},
+      {"arm", Into(&S::arm)},
+      {"actors", Into(&S::actors)},
+      {"things", Into(&S::things)},
+      {"noise", Into(&S::noise)},
+      {"light", Into(&S::light)},
+      {"blur", Into(&S::blur, S::kUsualBlur)},
+      {"exposure", Into(&S::exposure)},
+      {"distortion", Into(&S::distortion)},
+      {"k1", Into(&S::k1)},
+      {"fisheye", Into(&S::fisheye)},
+      {"rolling", Into(&S::rolling_shutter, S::kUsualRolling)},
+      {"rolling_shutter", Into(&S::rolling_shutter)},
+      {"stereo", Into(&S::stereo)},
+      {"seed", SetSeed},
+      {"width", Into(&S::width)},
+      {"height", Into(&S::height)},
+      {"fov", Into(&S::fov)},
+      {"fps", Into(&S::fps)},
+      {"held", Into(&S::held)},
+      {"calibrated", Into(&S::calibrated)}};
+  std::vector<std::string> names;
+  for (const auto& [known, set] : kOptions) {
+    if (known == name) {
+      set(settings, name, value);
+      return;
+    }
+    names.push_back(known);
+  }
+  ThrowUsage("synth: unknown option \"" + name + "\"" + DidYouMean(name, names));
+}
+
+Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
+  Calibration calibration;
+  calibration.left = lens;
+  calibration.baseline = camera.baseline;
+  calibration.fps = camera.fps;
+  calibration.depth_factor = camera.depth_factor;
+  return calibration;
+}
+
+// What the user says the camera is, where he says so.
+Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions& options) {
+  const Camera& camera = recording.camera();
+  const Calibration own = CalibrationOf(camera, recording.lens());
+  if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
+  Calibration chosen = own;
+  if (options.fov_degrees || !recording.settings().calibrated) {
+    const double assumed = AssumedFov({camera.width, camera.height});
+    chosen = GuessedCalibration(camera.width, camera.height, options.fov_degrees.value_or(assumed));
+  }
+  if (options.camera_file) chosen = ReadCameraFile(*options.camera_file);
+  if (chosen.left.width != camera.width || chosen.left.height != camera.height) {
+    ThrowInput(chosen.origin + " is for images of another size than the rendered " +
+               std::to_string(camera.width) + "x" + std::to_string(camera.height));
+  }
+  if (!options.camera_file) {
+    chosen.baseline = own.baseline;
+    chosen.fps = own.fps;
+  }
+  if (!chosen.depth_factor) chosen.depth_factor = own.depth_factor;
+  return chosen;
+}
+
+Sensor ChooseSensor(const SynthSettings& settings, const SourceOptions& options) {
+  const Sensor sensor = options.sensor.value_or(settings.stereo ? Sensor::kStereo : Sensor::kRgbd);
+  if (sensor == Sensor::kStereo && !settings.stereo) {
+    ThrowUsage(
+        "--sensor stereo: the rendered recording has no second camera (add ?stereo to the source)");
+  }
+  return sensor;
+}
+
+class SynthSource : public ActorSource {
+ public:
+  SynthSource(SynthSettings settings, const SourceOptions& options)
+      : recording_(settings),
+        preparation_(ToldCalibration(recording_, options), ChooseSensor(settings, options)) {
+    info_.name = "synth-" + settings.scene;
+    info_.kind = "synth";
+    info_.sensor = ChooseSensor(settings, options);
+    info_.camera = preparation_.camera();
+    info_.camera_guessed =
+        !options.camera_file && (options.fov_degrees ? options.fov_rough : !settings.calibrated);
+    info_.R_camera_rectified = preparation_.R_camera_rectified();
+    info_.frames = settings.frames;
+  }
+
+  const SourceInfo& Info() const override { return info_; }
+
+  std::optional<SourceFrame> Next() override {
+    if (next_ >= info_.frames) return std::nullopt;
+    const RenderedFrame rendered = recording_.Render(next_);
+    SourceFrame frame;
+    frame.time = rendered.time;
+    frame.stamp = SynthStamp(rendered.time);
+    frame.T_world_camera = recording_.Pose(next_);
+    frame.number = next_++;
+    frame.image = preparation_.Left(rendered.image);
+    frame.true_depth = preparation_.Depth(rendered.depth_exact);
+    if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);
+    if (info_.sensor == Sensor::kRgbd) frame.depth = preparation_.Depth(rendered.depth);
+    mask_ = preparation_.Depth(rendered.mask);
+    return frame;
+  }
+
+  cv::Mat ActorMask() const override { return mask_; }
+
+  bool Seek(int frames) override {
+    next_ = frames;
+    return true;
+  }
+
+ private:
+  SynthRecording recording_;
+  ImagePreparation preparation_;
+  SourceInfo info_;
+  cv::Mat mask_;
+  int next_ = 0;
+};
+
+}  // namespace
+
+std::string SynthStamp(double seconds) {
+  char text[40];
+  std::snprintf(text, sizeof(text), "%.6f", seconds);
+  return text;
+}
+
+bool IsSynthSource(const std::string& source) { return source.rfind(kPrefix, 0) == 0; }
+
+SynthSettings ParseSynthSource(const std::string& source) {
+  if (!IsSynthSource(source)) ThrowUsage("not a rendered source: " + source);
+  std::string rest = source.substr(sizeof(kPrefix) - 1);
+  const size_t question = rest.find('?');
+  SynthSettings settings;
+  settings.scene = rest.substr(0, question);
+  settings.frames = SceneFrames(settings.scene);
+  rest = question == std::string::npos ? "" : rest.substr(question + 1);
+  while (!rest.empty()) {
+    const size_t end = rest.find('&');
+    const std::string item = rest.substr(0, end);
+    rest = end == std::string::npos ? "" : rest.substr(end + 1);
+    if (item.empty()) continue;
+    const size_t equals = item.find('=');
+    const std::string name = item.substr(0, equals);
+    const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
+    Set(settings, name, value);
+  }
+  settings.Check();
+  return settings;
+}
+
+std::unique_ptr<ActorSource> OpenActorSource(const std::string& source,
+                                             const SourceOptions& options) {
+  const SynthSettings settings = ParseSynthSource(source);
+  ChooseSensor(settings, options);
+  return std::make_unique<SynthSource>(settings, options);
+}
+
+std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,
+                                             const SourceOptions& options) {
+  const SynthSettings settings = ParseSynthSource(source);
+  ChooseSensor(settings, options);  // before anything is painted
+  return Clip(std::make_unique<SynthSource>(settings, options), options.first, options.last);
+}
+
+}  // namespace alidade
