@@ -1,5 +1,5 @@
-// Tables of settings. A row gives the field's name, range, unit and meaning; parsing by name, range checks,
-// `alidade settings` and docs/reference/settings.md all come from the rows.
+// Tables of settings. A row gives the field's name, range, unit and meaning; parsing by name, range
+// checks, `alidade settings` and docs/reference/settings.md all come from the rows.
 #pragma once
 
 #include <cstdint>
@@ -27,8 +27,8 @@ constexpr SettingRange ZeroOr(SettingRange range) {
   range.or_zero = true;
   return range;
 }
-inline constexpr SettingRange kAnyText{};                // of words and texts
-inline constexpr SettingRange kOnOff{};                  // of bool
+inline constexpr SettingRange kAnyText{};  // of words and texts
+inline constexpr SettingRange kOnOff{};    // of bool
 inline constexpr SettingRange kPositive = MoreThan(0);
 inline constexpr SettingRange kNotNegative = AtLeast(0);
 inline constexpr SettingRange kZeroToOne = FromTo(0, 1);
@@ -40,7 +40,7 @@ enum class SettingType : uint8_t { kBool, kInt, kUint64, kFloat, kDouble, kText,
 // One row. Units and meanings are for people and are not compiled into alidade.wasm, whose size is
 // limited.
 struct Setting {
-  const char* name;               // without the "expert." of expert settings
+  const char* name;                // without the "expert." of expert settings
   void* (*field)(void* settings);  // `settings`: the struct that the table belongs to
   SettingRange range;
   const char* const* words;  // kWord: the word of each value, then null

@@ -11,9 +11,9 @@ std::span<const Setting> DetectorSettings::Table() {
       PublicSetting<&T::min_score>("dynamics.detector.min_score",
                                    {.min = 0, .max = 1, .open_min = true, .open_max = true}, "",
                                    "Detections with a lower score are ignored."),
-      PublicSetting<&T::max_overlap>(
-          "dynamics.detector.max_overlap", kPositiveShare, "",
-          "Of two detections of a class with a higher intersection over union, the better one stays."),
+      PublicSetting<&T::max_overlap>("dynamics.detector.max_overlap", kPositiveShare, "",
+                                     "Of two detections of a class with a higher intersection over "
+                                     "union, the better one stays."),
   };
   return kRows;
 }

@@ -44,9 +44,9 @@ std::span<const Setting> DynamicsSettings::Table() {
   using F = FeatureBeliefSettings;
   static constexpr const char* kModes[] = {"off", "auto", "geometry", "full", nullptr};
   static constexpr Setting kRows[] = {
-      PublicChoice<&T::mode>(
-          "dynamics.mode", kModes,
-          "Moving objects: keep, exclude once they disturb, exclude by geometry, and by a detector."),
+      PublicChoice<&T::mode>("dynamics.mode", kModes,
+                             "Moving objects: keep, exclude once they disturb, exclude by "
+                             "geometry, and by a detector."),
       PublicSetting<&T::moving_classes>("dynamics.moving_classes", kAnyText, "",
                                         "Classes of a detector that move by themselves."),
       PublicSetting<&T::carried_classes>("dynamics.carried_classes", kAnyText, "",
@@ -60,9 +60,8 @@ std::span<const Setting> DynamicsSettings::Table() {
       PublicSetting<&T::detector_rest>(
           "dynamics.detector_rest", FromTo(0, 100), "",
           "Threaded schedule: the detector pauses for this times its last running time."),
-      PublicSetting<&T::bridge_seconds>(
-          "dynamics.bridge_seconds", kNotNegative, "s",
-          "How long an object is kept that is no longer detected."),
+      PublicSetting<&T::bridge_seconds>("dynamics.bridge_seconds", kNotNegative, "s",
+                                        "How long an object is kept that is no longer detected."),
       ExpertSetting<&T::drop_detections>("dynamics.drop_detections", kZeroToOne, "",
                                          "Share of the detector's answers that are discarded."),
       ExpertSetting<&T::foreground>(
@@ -147,8 +146,7 @@ void DynamicsSettings::Check() const {
   require(watch_frames > votes.agreement_ago,
           "watch_frames must exceed FlowVoteSettings::agreement_ago");
   require(watch_mean <= watch_frames, "watch_mean must be at most expert.dynamics.watch_frames");
-  require(watch_every >= watch_frames,
-          "watch_every must be at least expert.dynamics.watch_frames");
+  require(watch_every >= watch_frames, "watch_every must be at least expert.dynamics.watch_frames");
 }
 
 }  // namespace alidade

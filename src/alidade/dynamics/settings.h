@@ -33,14 +33,15 @@ struct DynamicsSettings {
   // With auto, optical flow is compared with the poses in all frames of an unconfirmed map of one
   // camera, and then in watch_frames consecutive frames of each watch_every. Moving objects are
   // excluded from then on
-  //   - when, averaged over watch_mean frames, more than a share of the classified tracks moved: with
-  //     one camera watch_moved, while the map is unconfirmed (static scenes 0.02 to 0.42, people who
-  //     fill the image 0.8 to 0.96); with stereo watch_moved at any time; with RGB-D, whose depth
-  //     tells more, watch_moved_depth at any time (0.02 to 0.13, and 0.83);
+  //   - when, averaged over watch_mean frames, more than a share of the classified tracks moved:
+  //   with
+  //     one camera watch_moved, while the map is unconfirmed (static scenes 0.02 to 0.42, people
+  //     who fill the image 0.8 to 0.96); with stereo watch_moved at any time; with RGB-D, whose
+  //     depth tells more, watch_moved_depth at any time (0.02 to 0.13, and 0.83);
   //   - when another motion than that of the poses covers more of the image than votes.rival_share
   //     (ShareOfRivalMotion) in watch_rival_frames frames more than not (static scenes 5 at most,
-  //     people 17 and more); in votes.rival_frames in an unconfirmed map of one camera, which is then
-  //     started again.
+  //     people 17 and more); in votes.rival_frames in an unconfirmed map of one camera, which is
+  //     then started again.
   int watch_frames = 16;
   // Costs a quarter of what geometry costs.
   int watch_every = 64;

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "alidade/base/error.h"
-#include "alidade/base/settings_table.h"
 #include "alidade/base/parallel.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/features/pyramid.h"
 #include "alidade/features/smooth.h"
 #include "alidade/features/spread.h"

@@ -30,7 +30,8 @@ struct TwoViewSettings {
   // Pixels, standard deviation of a keypoint in the test for pure rotation (the observed one where
   // that is larger). Corners are placed to 0.3 to 0.5 pixels.
   double turn_sigma = 0.5;
-  // In simulated scenes, noise leaves up to 0.08 in pure rotation; moving cameras have at least 0.4.
+  // In simulated scenes, noise leaves up to 0.08 in pure rotation; moving cameras have at least
+  // 0.4.
   double min_beyond_turn = 0.2;
   // 0 when the camera is calibrated. Otherwise no map starts from matches that a rotation with
   // another focal length explains (ExplainedByTurnedLens).

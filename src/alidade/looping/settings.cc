@@ -36,10 +36,10 @@ std::span<const Setting> LoopSettings::Table() {
       ExpertSetting<&T::score_share>(
           "loop.score_share", kZeroToOne, "",
           "A candidate must be at least this similar, relative to the best covisible keyframe."),
-      ExpertSetting<&T::tied_share>(
-          "loop.tied_share", kZeroToOne, "",
-          "One camera: neighbors that share this share of a keyframe's landmarks, and theirs, are no "
-          "candidates."),
+      ExpertSetting<&T::tied_share>("loop.tied_share", kZeroToOne, "",
+                                    "One camera: neighbors that share this share of a keyframe's "
+                                    "landmarks, and theirs, are no "
+                                    "candidates."),
       ExpertSetting<&T::max_view_turn>(
           "loop.max_view_turn", kPositive, "rad",
           "Largest angle between the optical axes of a keyframe and a candidate of the same map."),

@@ -28,13 +28,13 @@ struct ReachSettings {
   double floor = 0.3;
   double drift = 0.05;
   // For a place at the limit or beyond (a recording may be cut): share of the landmarks expected in
-  // view that must be found, and of the keypoints there whose descriptors must match. Other parts of
-  // a corridor have 0.2 to 0.51 and 0.4 to 0.79; the same place a moment later 0.6 to 0.7 and 0.8 to
-  // 0.9.
+  // view that must be found, and of the keypoints there whose descriptors must match. Other parts
+  // of a corridor have 0.2 to 0.51 and 0.4 to 0.79; the same place a moment later 0.6 to 0.7 and
+  // 0.8 to 0.9.
   double plain_share = 0.6;
   double plain_alike = 0.85;
-  // The share asked while lost where the camera was last in another map, so that no path supports or
-  // contradicts a place. Wrong ones have at most 0.35, correct ones 0.29 to 0.47.
+  // The share asked while lost where the camera was last in another map, so that no path supports
+  // or contradicts a place. Wrong ones have at most 0.35, correct ones 0.29 to 0.47.
   double elsewhere_share = 0.4;
   static std::span<const Setting> Table();
   void Check() const;  // throws Error (usage) naming the invalid setting

@@ -15,23 +15,24 @@ std::span<const Setting> MapperSettings::Table() {
           "Standard deviation of a keypoint on level 0 in bundle adjustment and loop closure."),
       ExpertSetting<&T::noise, &N::sigma_right_px>("noise.disparity_sigma", kPositive, "px",
                                                    "Standard deviation of a disparity on level 0."),
-      ExpertSetting<&T::noise, &N::sensor_noise>(
-          "noise.depth_camera", kPositive, "1/m",
-          "Depth cameras: the standard deviation of a depth z is this times z²; 0.003 is a Kinect."),
-      ExpertSetting<&T::min_known_scale>(
-          "min_known_scale", kNotNegative, "landmarks",
-          "One camera: landmarks of known scale that fix the scale of a keyframe, or of two maps that "
-          "are merged."),
+      ExpertSetting<&T::noise, &N::sensor_noise>("noise.depth_camera", kPositive, "1/m",
+                                                 "Depth cameras: the standard deviation of a depth "
+                                                 "z is this times z²; 0.003 is a Kinect."),
+      ExpertSetting<&T::min_known_scale>("min_known_scale", kNotNegative, "landmarks",
+                                         "One camera: landmarks of known scale that fix the scale "
+                                         "of a keyframe, or of two maps that "
+                                         "are merged."),
       PublicSetting<&T::max_depth_error>(
           "mapper.max_depth_error", kPositive, "",
           "Stereo and RGB-D: relative standard deviation of a depth up to which one view makes a "
           "landmark."),
-      PublicSetting<&T::redundant_share>(
-          "mapper.redundant_share", kPositive, "",
-          "A keyframe is removed when more than this share of its landmarks is seen in three others; "
-          "above 1: none is."),
-      PublicSetting<&T::max_keyframes>("mapper.max_keyframes", ZeroOr(AtLeast(10)), "keyframes",
-                                       "Most keyframes in memory, in all maps together; 0: no limit."),
+      PublicSetting<&T::redundant_share>("mapper.redundant_share", kPositive, "",
+                                         "A keyframe is removed when more than this share of its "
+                                         "landmarks is seen in three others; "
+                                         "above 1: none is."),
+      PublicSetting<&T::max_keyframes>(
+          "mapper.max_keyframes", ZeroOr(AtLeast(10)), "keyframes",
+          "Most keyframes in memory, in all maps together; 0: no limit."),
       PublicSetting<&T::window_keyframes>(
           "mapper.window_keyframes", kPositive, "keyframes",
           "Keyframes adjusted after each new one: the newest and its best covisible ones."),
@@ -49,10 +50,10 @@ std::span<const Setting> MapperSettings::Table() {
       ExpertSetting<&T::bundle, &BundleSettings::min_relative_decrease>(
           "mapper.bundle.min_relative_decrease", kShareBelowOne, "",
           "It stops when a step lowers the cost by a smaller share."),
-      ExpertSetting<&T::min_noise_ratio>(
-          "mapper.min_noise_ratio", kPositiveShare, "",
-          "One camera: smallest ratio of observed to assumed noise for the bound of the robust loss; "
-          "1: Huber's loss as assumed."),
+      ExpertSetting<&T::min_noise_ratio>("mapper.min_noise_ratio", kPositiveShare, "",
+                                         "One camera: smallest ratio of observed to assumed noise "
+                                         "for the bound of the robust loss; "
+                                         "1: Huber's loss as assumed."),
       ExpertSetting<&T::triangulate_keyframes_mono>(
           "mapper.triangulate_keyframes_mono", kPositive, "keyframes",
           "One camera: covisible keyframes searched for matches to triangulate."),
@@ -70,10 +71,10 @@ std::span<const Setting> MapperSettings::Table() {
       ExpertSetting<&T::min_baseline_ratio>(
           "mapper.min_baseline_ratio", kNotNegative, "",
           "One camera: smallest ratio of baseline to median depth to triangulate."),
-      ExpertSetting<&T::max_baseline_error>(
-          "mapper.max_baseline_error", kPositive, "",
-          "One camera: relative standard deviation of the distance of two keyframes above which the "
-          "scale of what they triangulate is unknown."),
+      ExpertSetting<&T::max_baseline_error>("mapper.max_baseline_error", kPositive, "",
+                                            "One camera: relative standard deviation of the "
+                                            "distance of two keyframes above which the "
+                                            "scale of what they triangulate is unknown."),
       ExpertSetting<&T::max_unknown_scale_seconds>(
           "mapper.max_unknown_scale_seconds", kNotNegative, "s",
           "One camera: a part mapped without known scale for longer is split off and dropped."),
@@ -83,9 +84,8 @@ std::span<const Setting> MapperSettings::Table() {
       ExpertSetting<&T::rotation_landmarks>(
           "mapper.rotation_landmarks", kNotNegative, "landmarks",
           "One camera: a keyframe with fewer landmarks gets landmarks of assumed depth; 0: never."),
-      ExpertSetting<&T::assumed_depth_error>(
-          "mapper.assumed_depth_error", kNotNegative, "",
-          "Relative standard deviation of an assumed depth."),
+      ExpertSetting<&T::assumed_depth_error>("mapper.assumed_depth_error", kNotNegative, "",
+                                             "Relative standard deviation of an assumed depth."),
       ExpertSetting<&T::assumed_depth_degrees>(
           "mapper.assumed_depth_degrees", {.min = 0, .max = 90, .open_max = true}, "degrees",
           "A landmark with less parallax keeps its depth within that standard deviation."),

@@ -30,8 +30,8 @@ struct MapperSettings {
   double triangulate_ratio = 0.85;
   // Far points constrain the rotation; their depth improves later.
   double min_parallax_degrees = 0.4;
-  // One camera needs new points sooner: in a rotation past a blank wall its scale depends on what is
-  // mapped at once.
+  // One camera needs new points sooner: in a rotation past a blank wall its scale depends on what
+  // is mapped at once.
   double min_parallax_degrees_mono = 0.2;
   double min_baseline_ratio = 0.01;
   // From 0.06 on, scale breaks (decision 0010-scale-in-rotation).

@@ -30,18 +30,18 @@ std::span<const Setting> SemiDenseSettings::Table() {
       ExpertSetting<&T::max_edge_angle>(
           "semidense.max_edge_angle", {.min = 0, .max = 90, .open_min = true}, "degrees",
           "Largest angle between a pixel's gradient and the epipolar line."),
-      ExpertSetting<&T::max_turn>("semidense.max_turn",
-                                  {.min = 0, .max = 180, .open_min = true}, "degrees",
+      ExpertSetting<&T::max_turn>("semidense.max_turn", {.min = 0, .max = 180, .open_min = true},
+                                  "degrees",
                                   "Largest difference between the gradient directions of a match."),
       ExpertSetting<&T::intensity_sigma>("semidense.intensity_sigma", kPositive, "grey levels",
                                          "Standard deviation of the intensities of a match."),
       ExpertSetting<&T::max_residual>(
           "semidense.max_residual", kPositive, "grey levels",
           "Largest root mean square difference between the surroundings of a match."),
-      ExpertSetting<&T::max_landmark_difference>(
-          "semidense.max_landmark_difference", kPositive, "",
-          "A keyframe's depth is kept when three quarters of it lie this near to landmarks beside it, "
-          "in relative inverse depth."),
+      ExpertSetting<&T::max_landmark_difference>("semidense.max_landmark_difference", kPositive, "",
+                                                 "A keyframe's depth is kept when three quarters "
+                                                 "of it lie this near to landmarks beside it, "
+                                                 "in relative inverse depth."),
       ExpertSetting<&T::fuse>("semidense.fuse", kOnOff, "",
                               "Fuse hypotheses; 0: the one with the smallest variance."),
       ExpertSetting<&T::smooth>("semidense.smooth", kOnOff, "",
@@ -60,12 +60,14 @@ std::span<const Setting> SemiDenseSettings::Table() {
 void SemiDenseSettings::Check() const {
   CheckRanges(*this);
   if (keyframes < min_compatible) {
-    ThrowUsage("setting semidense.keyframes must be at least semidense.min_compatible: otherwise no "
-               "depth could ever be confirmed");
+    ThrowUsage(
+        "setting semidense.keyframes must be at least semidense.min_compatible: otherwise no "
+        "depth could ever be confirmed");
   }
   if (max_waiting <= delay) {
-    ThrowUsage("setting semidense.max_waiting must exceed expert.semidense.delay: otherwise no "
-               "keyframe would ever get its depth");
+    ThrowUsage(
+        "setting semidense.max_waiting must exceed expert.semidense.delay: otherwise no "
+        "keyframe would ever get its depth");
   }
 }
 

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "alidade/base/error.h"
-#include "alidade/base/settings_table.h"
 #include "alidade/base/median.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 namespace {

@@ -17,8 +17,9 @@ std::span<const Setting> LensWatchSettings::Table() {
       ExpertSetting<&T::first_keyframes>(
           "camera.first_keyframes", AtLeast(6), "keyframes",
           "Keyframes of a map when camera and readout time are first estimated."),
-      ExpertSetting<&T::growth>("camera.growth", MoreThan(1), "",
-                                "They are estimated again when it has this times as many keyframes."),
+      ExpertSetting<&T::growth>(
+          "camera.growth", MoreThan(1), "",
+          "They are estimated again when it has this times as many keyframes."),
       ExpertSetting<&T::focal_sigma>(
           "camera.focal_sigma", kPositive, "",
           "Prior standard deviation of the focal length's logarithm; 0.35: 66 degrees may be 49 to "
@@ -26,9 +27,10 @@ std::span<const Setting> LensWatchSettings::Table() {
       ExpertSetting<&T::readout_sigma>(
           "camera.readout_sigma", kNotNegative, "s",
           "Prior standard deviation of the rolling-shutter readout time about none."),
-      PublicSetting<&T::enabled>("refine.enabled", kOnOff, "",
-                                 "One camera: estimate its focal length and distortion while the map "
-                                 "grows."),
+      PublicSetting<&T::enabled>(
+          "refine.enabled", kOnOff, "",
+          "One camera: estimate its focal length and distortion while the map "
+          "grows."),
       ExpertSetting<&T::max_windows>("refine.max_windows", kPositive, "windows",
                                      "Windows of 12 keyframes used, spread over the map."),
       ExpertSetting<&T::bend_windows>("refine.bend_windows", kPositive, "windows",
@@ -36,12 +38,14 @@ std::span<const Setting> LensWatchSettings::Table() {
       ExpertSetting<&T::max_sigma>("refine.max_sigma", kPositive, "",
                                    "Largest relative standard deviation of a focal length that is "
                                    "used."),
-      ExpertSetting<&T::far_off>("refine.far_off", MoreThan(1), "",
-                                 "It is also used when it differs from the current one by more than "
-                                 "this many standard deviations."),
-      ExpertSetting<&T::min_change>("refine.min_change", kPositive, "",
-                                    "A smaller relative change of a pixel's distance from the center "
-                                    "is not applied."),
+      ExpertSetting<&T::far_off>(
+          "refine.far_off", MoreThan(1), "",
+          "It is also used when it differs from the current one by more than "
+          "this many standard deviations."),
+      ExpertSetting<&T::min_change>(
+          "refine.min_change", kPositive, "",
+          "A smaller relative change of a pixel's distance from the center "
+          "is not applied."),
       ExpertSetting<&T::again>("refine.again", AtLeast(1), "keyframes",
                                "New keyframes after which a change by more than twice that is "
                                "estimated again."),
@@ -54,8 +58,9 @@ std::span<const Setting> LensWatchSettings::Table() {
                               "The map is moved to another camera in steps of this share."),
       ExpertSetting<&T::rework>("refine.rework", kPositive, "",
                                 "After a larger change all keyframes are matched again."),
-      ExpertSetting<&T::begin_anew>("refine.begin_anew", kPositive, "",
-                                    "After a larger change the map is built again from its frames."),
+      ExpertSetting<&T::begin_anew>(
+          "refine.begin_anew", kPositive, "",
+          "After a larger change the map is built again from its frames."),
       ExpertSetting<&T::keep_frames>("refine.keep_frames", kNotNegative, "frames",
                                      "Frames kept for that; 0: a map is never built again."),
   };

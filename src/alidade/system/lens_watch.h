@@ -21,8 +21,8 @@ struct LensWatchSettings {
   int first_keyframes = 10;
   double growth = 1.3;
   int max_windows = 12;
-  // With fewer, distortion is not separable from focal length. One less when the map was built again
-  // with a better camera.
+  // With fewer, distortion is not separable from focal length. One less when the map was built
+  // again with a better camera.
   int bend_windows = 3;
   double focal_sigma = 0.35;
   double readout_sigma = 0.02;
@@ -41,8 +41,8 @@ struct LensWatchSettings {
   // 3 % are 10 pixels at the image border.
   double step = 0.03;
   double rework = 0.03;
-  // Such a camera has distorted the first seconds of a map: matches are missing. keep_frames are six
-  // seconds at 30 Hz, some 200 kB each at 400 × 300.
+  // Such a camera has distorted the first seconds of a map: matches are missing. keep_frames are
+  // six seconds at 30 Hz, some 200 kB each at 400 × 300.
   double begin_anew = 0.05;
   int keep_frames = 180;
   static std::span<const Setting> Table();

@@ -16,8 +16,9 @@ std::span<const Setting> ReadoutSettings::Table() {
       SameSetting<&T::prior_sigma>("camera.readout_sigma", kPositive),
       PublicSetting<&T::enabled>("readout.enabled", kOnOff, "",
                                  "Estimate and correct the rolling-shutter readout time."),
-      ExpertSetting<&T::growth>("readout.growth", MoreThan(1), "",
-                                "It is estimated again when the map has this times as many keyframes."),
+      ExpertSetting<&T::growth>(
+          "readout.growth", MoreThan(1), "",
+          "It is estimated again when the map has this times as many keyframes."),
       ExpertSetting<&T::max_windows>("readout.max_windows", kPositive, "windows",
                                      "Windows of 12 keyframes used, spread over the map."),
       ExpertSetting<&T::max_iterations>("readout.max_iterations", kPositive, "",

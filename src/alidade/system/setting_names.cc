@@ -19,7 +19,8 @@ double ParseWhole(const std::string& name, const std::string& text, double min, 
   const double number = ParseNumber(text).value_or(std::nan(""));
   if (!std::isfinite(number) || number != std::floor(number))
     ThrowUsage("setting " + name + ": '" + text + "' is not a whole number");
-  if (number < min || number > max) ThrowUsage("setting " + name + ": " + text + " is out of range");
+  if (number < min || number > max)
+    ThrowUsage("setting " + name + ": " + text + " is out of range");
   return number;
 }
 

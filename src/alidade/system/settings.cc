@@ -87,10 +87,10 @@ std::span<const Setting> EarlyFrameSettings::Table() {
       ExpertSetting<&T::max_missed_frames>("early.max_missed_frames", kPositive, "frames",
                                            "After as many consecutive failures the earlier frames "
                                            "are given up."),
-      ExpertSetting<&T::max_leap>(
-          "early.max_leap", kPositive, "",
-          "A frame farther from the extrapolated path than this times the expected motion is dropped, "
-          "with those before it."),
+      ExpertSetting<&T::max_leap>("early.max_leap", kPositive, "",
+                                  "A frame farther from the extrapolated path than this times the "
+                                  "expected motion is dropped, "
+                                  "with those before it."),
       ExpertSetting<&T::min_leap>("early.min_leap", kNotNegative, "",
                                   "A distance below this share of the median depth is no jump."),
   };
@@ -110,9 +110,8 @@ std::span<const Setting> SlamSettings::Table() {
       PublicSetting<&T::max_image_side>("max_image_side", ZeroOr(AtLeast(100)), "px",
                                         "Larger images are downscaled to this side; 0: never."),
       PublicSetting<&T::seed>("seed", kNotNegative, "", "Seed of every random choice."),
-      PublicSetting<&T::new_map_seconds>(
-          "new_map_seconds", kNotNegative, "s",
-          "A lost camera starts a new map only after this time."),
+      PublicSetting<&T::new_map_seconds>("new_map_seconds", kNotNegative, "s",
+                                         "A lost camera starts a new map only after this time."),
       PublicSetting<&T::new_map_frames>("new_map_frames", kPositive, "frames",
                                         "And after as many frames with enough keypoints."),
       PublicSetting<&T::min_map_keyframes>("min_map_keyframes", kNotNegative, "keyframes",

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "alidade/base/error.h"
-#include "alidade/base/settings_table.h"
 #include "alidade/base/median.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/features/glance.h"
 
 namespace alidade {
@@ -36,9 +36,9 @@ std::span<const Setting> MonoStartSettings::Table() {
   using T = MonoStartSettings;
   static constexpr Setting kRows[] = {
       SameSetting<&T::match_scale>("match_scale", {.min = 0, .max = 4, .open_min = true}),
-      PublicSetting<&T::min_depth_landmarks>(
-          "start.min_depth_landmarks", AtLeast(20), "landmarks",
-          "Stereo and RGB-D: landmarks with depth that the first frame must have, per 1000 features."),
+      PublicSetting<&T::min_depth_landmarks>("start.min_depth_landmarks", AtLeast(20), "landmarks",
+                                             "Stereo and RGB-D: landmarks with depth that the "
+                                             "first frame must have, per 1000 features."),
       PublicSetting<&T::min_matches>(
           "start.min_matches", AtLeast(20), "matches",
           "One camera: with fewer matches a reference frame is given up, per 1000 features."),
@@ -59,10 +59,10 @@ std::span<const Setting> MonoStartSettings::Table() {
       ExpertSetting<&T::max_still_picture>(
           "start.max_still_picture", kPositive, "",
           "No start when more than this share of the image edges does not move."),
-      ExpertSetting<&T::min_still_motion>(
-          "start.min_still_motion", kPositive, "",
-          "Motion of the landmarks, as a share of the image width, after which an unconfirmed map is "
-          "tested for a stationary camera."),
+      ExpertSetting<&T::min_still_motion>("start.min_still_motion", kPositive, "",
+                                          "Motion of the landmarks, as a share of the image width, "
+                                          "after which an unconfirmed map is "
+                                          "tested for a stationary camera."),
       ExpertSetting<&T::min_still_frames>(
           "start.min_still_frames", kPositive, "frames",
           "Frames that must show a stationary camera for such a map to be dropped."),

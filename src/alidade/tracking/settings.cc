@@ -26,10 +26,10 @@ std::span<const Setting> TrackerSettings::Table() {
           "Landmarks that must fit before a lost camera counts as relocalized."),
       PublicSetting<&T::depth_range>("tracker.depth_range", kPositive, "m",
                                      "Readings of a depth camera beyond this are ignored."),
-      PublicSetting<&T::keyframe_share_mono>(
-          "tracker.keyframe_share_mono", kPositive, "",
-          "One camera: a new keyframe when inliers fall below this share of their maximum since the "
-          "last one."),
+      PublicSetting<&T::keyframe_share_mono>("tracker.keyframe_share_mono", kPositive, "",
+                                             "One camera: a new keyframe when inliers fall below "
+                                             "this share of their maximum since the "
+                                             "last one."),
       PublicSetting<&T::keyframe_share_depth>(
           "tracker.keyframe_share_depth", kPositive, "",
           "Stereo and RGB-D: a new keyframe when inliers fall below this share of their maximum "
@@ -66,9 +66,9 @@ std::span<const Setting> TrackerSettings::Table() {
       ExpertSetting<&T::max_distance>(
           "tracker.max_distance", FromTo(1, 256), "bits",
           "Largest descriptor distance of a match when a pose guides the search."),
-      ExpertSetting<&T::last_frame_radius>(
-          "tracker.last_frame_radius", kPositive, "px",
-          "One camera: search radius on level 0 around the position predicted from the last frame."),
+      ExpertSetting<&T::last_frame_radius>("tracker.last_frame_radius", kPositive, "px",
+                                           "One camera: search radius on level 0 around the "
+                                           "position predicted from the last frame."),
       ExpertSetting<&T::last_frame_radius_depth>("tracker.last_frame_radius_depth", kPositive, "px",
                                                  "The same for stereo and RGB-D."),
       ExpertSetting<&T::local_radius>(
