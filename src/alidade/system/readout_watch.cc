@@ -13,7 +13,8 @@ std::span<const Setting> ReadoutSettings::Table() {
   using T = ReadoutSettings;
   static constexpr Setting kRows[] = {
       SameSetting<&T::first_keyframes>("camera.first_keyframes", AtLeast(6)),
-      SameSetting<&T::prior_sigma>("camera.readout_sigma", kPositive),
+      ExpertSetting<&T::prior_sigma>("readout.prior_sigma", kPositive, "s",
+                                     "Prior standard deviation of the readout time about none."),
       PublicSetting<&T::enabled>("readout.enabled", kOnOff, "",
                                  "Estimate and correct the rolling-shutter readout time."),
       ExpertSetting<&T::growth>(

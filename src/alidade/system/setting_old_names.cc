@@ -30,7 +30,6 @@ constexpr struct {
     {"mapper.sigma_right_px", "noise.disparity_sigma"},
     {"mapper.turn_landmarks", "mapper.rotation_landmarks"},
     {"readout.first_keyframes", "camera.first_keyframes"},
-    {"readout.prior_sigma", "camera.readout_sigma"},
     {"refine.first_keyframes", "camera.first_keyframes"},
     {"refine.focal_sigma", "camera.focal_sigma"},
     {"refine.growth", "camera.growth"},
