@@ -23,7 +23,7 @@ std::span<const Setting> LoopSettings::Table() {
           "loop.min_found", AtLeast(10), "landmarks",
           "Landmarks of the old place that must be found after alignment to close a loop."),
       PublicSetting<&T::min_merge_found>("loop.min_merge_found", AtLeast(10), "landmarks",
-                                         "The same to merge two maps."),
+                                         "As loop.min_found, to merge two maps."),
       PublicSetting<&T::min_merge_alike>(
           "loop.min_merge_alike", kZeroToOne, "",
           "Share of them whose descriptors must match to merge two maps; more keeps similar rooms "

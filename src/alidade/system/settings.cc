@@ -112,8 +112,9 @@ std::span<const Setting> SlamSettings::Table() {
       PublicSetting<&T::seed>("seed", kNotNegative, "", "Seed of every random choice."),
       PublicSetting<&T::new_map_seconds>("new_map_seconds", kNotNegative, "s",
                                          "A lost camera starts a new map only after this time."),
-      PublicSetting<&T::new_map_frames>("new_map_frames", kPositive, "frames",
-                                        "And after as many frames with enough keypoints."),
+      PublicSetting<&T::new_map_frames>(
+          "new_map_frames", kPositive, "frames",
+          "A lost camera starts a new map only after as many frames with enough keypoints."),
       PublicSetting<&T::min_map_keyframes>("min_map_keyframes", kNotNegative, "keyframes",
                                            "A map left with fewer is dropped."),
   };
