@@ -84,7 +84,10 @@ int Phone(const PhoneArguments& arguments) {
   if (!local && !arguments.tls)
     std::printf("warning: browsers give no camera to a page that is not secure: add --tls\n");
   std::fflush(stdout);
-  while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  while (!Interrupted()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (host) host->EndAbandoned();
+  }
   return 0;
 }
 
@@ -114,8 +117,9 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
       ->type_name("FOLDER");
   command
       ->add_option("--out", arguments->out,
-                   "With --connected: folder for each page's map, trajectory and points, "
-                   "written when it has gone for five minutes, or at the end")
+                   "With --connected: folder for results. Each session's map, trajectory and points "
+                   "get a new folder in it (session-1, session-2, …), when the page has been away "
+                   "for five minutes or the program ends")
       ->type_name("FOLDER");
   command->add_option("--set", arguments->set, "With --connected: a setting, as for run")
       ->type_name("NAME=VALUE");

@@ -38,6 +38,17 @@ FrameMessage Skipped(uint32_t number, const std::string& problem = "") {
   return Text(told);
 }
 
+// Makes session-1, session-2, … in `out`: the first that does not exist. So no result replaces
+// another one, of this or of an earlier run of the program.
+std::filesystem::path MakeSessionFolder(const std::filesystem::path& out) {
+  std::filesystem::create_directories(out);
+  for (int number = 1;; ++number) {
+    const std::filesystem::path folder = out / ("session-" + std::to_string(number));
+    if (std::filesystem::exists(std::filesystem::symlink_status(folder))) continue;
+    if (std::filesystem::create_directory(folder)) return folder;  // false: somebody else did
+  }
+}
+
 std::vector<FrameMessage> Binary(std::vector<std::string> messages) {
   std::vector<FrameMessage> all;
   for (std::string& message : messages) all.push_back({std::move(message), false});
@@ -100,7 +111,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     if (seat != seat_ || !tell_) return;
     SentFrame frame;
     if (bytes.size() <= kFrameHead) {
-      tell_({Text({{"error", "a picture is 16 bytes and a JPEG"}})}, true);
+      tell_({Text({{"error", "an image is 16 bytes and a JPEG"}})}, true);
       return;
     }
     std::memcpy(&frame.number, bytes.data(), sizeof(frame.number));  // little endian, as here
@@ -192,9 +203,8 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     if (out_.empty()) return;
     try {
       slam_.Finish();
-      const std::filesystem::path folder =
-          std::filesystem::path(out_) / ("session-" + name_.substr(0, 8));
-      std::filesystem::create_directories(folder);
+      if (slam_.slam().Snapshot().keyframe_count() == 0) return;
+      const std::filesystem::path folder = MakeSessionFolder(out_);
       AtomicWriteFile((folder / "map.alidade").string(), slam_.slam().SaveMap());
       AtomicWriteFile((folder / "trajectory.txt").string(), slam_.Trajectory());
       AtomicWriteFile((folder / "landmarks.ply").string(), slam_.Cloud());
@@ -241,9 +251,59 @@ bool IsName(const std::string& text) {
 
 }  // namespace
 
-PhoneHost::PhoneHost(PhoneHostSettings settings) : settings_(std::move(settings)) {}
+PhoneHost::PhoneHost(PhoneHostSettings settings) : settings_(std::move(settings)) {
+  if (settings_.out.empty()) return;
+  std::error_code error;
+  std::filesystem::create_directories(settings_.out, error);
+  if (error) ThrowInput(settings_.out + " cannot be made: " + error.message());
+}
 
 PhoneHost::~PhoneHost() = default;
+
+PhoneHost::Sessions PhoneHost::TakeAbandoned() {
+  Sessions taken;
+  for (auto it = sessions_.begin(); it != sessions_.end();) {
+    if (it->second->Alone() <= settings_.keep_seconds) {
+      ++it;
+      continue;
+    }
+    taken.push_back(std::move(it->second));
+    it = sessions_.erase(it);
+  }
+  return taken;
+}
+
+void PhoneHost::EndAbandoned() {
+  Sessions ended;  // written when destroyed, after the lock is released: other pages need not wait
+  const std::lock_guard lock(mutex_);
+  ended = TakeAbandoned();
+}
+
+std::pair<std::shared_ptr<PhoneSession>, bool> PhoneHost::Find(const std::string& name, int width,
+                                                               int height, double fov,
+                                                               Sessions& ended) {
+  if (const auto found = sessions_.find(name); found != sessions_.end()) {
+    if (!found->second->SameSize(width, height))
+      ThrowInput("this session has images of another size");
+    return {found->second, true};
+  }
+  if (static_cast<int>(sessions_.size()) >= settings_.max_sessions) {
+    // The one without a page for longest makes room.
+    auto oldest = sessions_.end();
+    for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
+      if (it->second->Alone() >= 0 &&
+          (oldest == sessions_.end() || it->second->Alone() > oldest->second->Alone()))
+        oldest = it;
+    }
+    if (oldest == sessions_.end())
+      ThrowInput(std::to_string(settings_.max_sessions) + " pages are served already");
+    ended.push_back(std::move(oldest->second));
+    sessions_.erase(oldest);
+  }
+  auto made = std::make_shared<PhoneSession>(name, width, height, fov, settings_);
+  sessions_.emplace(name, made);
+  return {std::move(made), false};
+}
 
 std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell tell,
                                            std::string* problem) {
@@ -256,35 +316,14 @@ std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell t
         given.contains("fov") && given["fov"].is_number() ? given["fov"].get<double>() : 0;
     if (!IsName(name)) ThrowInput("a session is 32 hexadecimal digits");
     if (width < 1 || height < 1 || width > settings_.max_pixels / height)
-      ThrowInput("pictures of " + std::to_string(width) + "x" + std::to_string(height) +
+      ThrowInput("images of " + std::to_string(width) + "x" + std::to_string(height) +
                  " pixels are not taken");
+    Sessions ended, replaced;  // as in EndAbandoned()
     const std::lock_guard lock(mutex_);
-    for (auto it = sessions_.begin(); it != sessions_.end();)
-      it = it->second->Alone() > settings_.keep_seconds ? sessions_.erase(it) : std::next(it);
-    auto found = sessions_.find(name);
-    const bool resumed = found != sessions_.end();
-    if (resumed && !found->second->SameSize(width, height))
-      ThrowInput("this session has pictures of another size");
-    if (!resumed) {
-      if (static_cast<int>(sessions_.size()) >= settings_.max_sessions) {
-        // The one without a page for longest makes room.
-        auto oldest = sessions_.end();
-        for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
-          if (it->second->Alone() >= 0 &&
-              (oldest == sessions_.end() || it->second->Alone() > oldest->second->Alone()))
-            oldest = it;
-        }
-        if (oldest == sessions_.end())
-          ThrowInput(std::to_string(settings_.max_sessions) + " pages are served already");
-        sessions_.erase(oldest);
-      }
-      found =
-          sessions_
-              .emplace(name, std::make_shared<PhoneSession>(name, width, height, fov, settings_))
-              .first;
-    }
-    const int seat = found->second->Sit(std::move(tell), resumed);
-    return std::make_unique<Seat>(found->second, seat);
+    ended = TakeAbandoned();
+    const auto [session, resumed] = Find(name, width, height, fov, replaced);
+    const int seat = session->Sit(std::move(tell), resumed);
+    return std::make_unique<Seat>(session, seat);
   } catch (const Error& error) {
     *problem = error.what();
   } catch (const nlohmann::json::exception&) {
