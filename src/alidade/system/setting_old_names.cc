@@ -51,7 +51,9 @@ constexpr struct {
     {"tracker.unproven_seconds", "tracker.max_motion_age"},
 };
 
-// They are constants now; separated and surrounded by spaces.
+// They are constants now; separated and surrounded by spaces. Not in alidade.wasm, whose size is
+// limited: no page has ever set them.
+#ifndef __EMSCRIPTEN__
 constexpr std::string_view kDropped =
     " "
     "dynamics.box.island_before dynamics.box.island_behind dynamics.box.known_static "
@@ -100,14 +102,19 @@ constexpr std::string_view kDropped =
     "start.references start.still_memory start.still_pixels start.turn_sigma "
     "time.agree_frames tracker.bad_frame_sigma tracker.good_agreement "
     "tracker.local_ratio tracker.relocalise_radius tracker.time_jitter ";
+#endif
 
 }  // namespace
 
 OldName FindOldName(const std::string& name) {
   for (const auto& renamed : kRenamed)
     if (renamed.before == name) return {std::string(renamed.now)};
-  return {"", name.find(' ') == std::string::npos && !name.empty() &&
-                  kDropped.find(" " + name + " ") != std::string_view::npos};
+#ifndef __EMSCRIPTEN__
+  if (!name.empty() && name.find(' ') == std::string::npos &&
+      kDropped.find(" " + name + " ") != std::string_view::npos)
+    return {"", true};
+#endif
+  return {};
 }
 
 }  // namespace alidade
