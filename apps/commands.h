@@ -18,6 +18,7 @@ void AddMergeCommand(CLI::App& app, Action& action);
 void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
+void AddSettingsCommand(CLI::App& app, Action& action);
 void AddBenchCommand(CLI::App& app, Action& action);      // says what it is called now
 void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
 

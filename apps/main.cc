@@ -19,6 +19,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddBatchCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddCalibrateCommand(app, action);
+  alidade::AddSettingsCommand(app, action);
   alidade::AddBenchCommand(app, action);
   alidade::AddDescribeCommands(app, action);
 }

@@ -59,10 +59,21 @@ def settings() -> "dict[str, str]":
     return _core.setting_names()
 
 
+def describe_setting(name: str) -> "dict[str, object]":
+    """What a setting does: a dict of name, default, unit, range, meaning and public (stable, or expert).
+
+    Raises UsageError for an unknown name. ``alidade settings`` prints the same for all of them.
+    """
+    for setting in _core.setting_list():
+        if name in (setting["name"], setting["name"].removeprefix("expert.")):
+            return setting
+    raise UsageError(f"unknown setting '{name}'; alidade.settings() has all names")
+
+
 __all__ = [
     "Camera", "Cloud", "DepthErrors", "DepthScore", "Error", "ErrorStatistics", "Features", "Frame", "FramePose",
     "InputError", "KeyFrames", "Map", "MapPart", "NothingMapped", "Observations", "Points", "Progress", "Recording",
     "Rectifier", "RelativePoseError", "Result", "RunStopped", "Slam", "TrackResult", "TrajectoryError", "UsageError",
-    "ate", "depth_errors", "localize", "open", "read_trajectory", "rpe", "run", "set_threads", "settings",
-    "write_trajectory",
+    "ate", "depth_errors", "describe_setting", "localize", "open", "read_trajectory", "rpe", "run", "set_threads",
+    "settings", "write_trajectory",
 ]

@@ -13,6 +13,7 @@
 #include "alidade/run/play/loop.h"
 #include "alidade/run/recorder/stream_feed.h"
 #include "alidade/run/run.h"
+#include "alidade/run/setup/setting_list.h"
 #include "alidade/serve/viewer_server.h"
 #include "alidade/version.h"
 #include "arrays.h"
@@ -182,6 +183,15 @@ void BindRun(py::module_& core) {
   core.def("setting_names", [] {
     py::dict all;
     for (const auto& [name, value] : RunSettings{}.All()) all[py::str(name)] = value;
+    return all;
+  });
+  core.def("setting_list", [] {
+    py::list all;
+    for (const SettingInfo& info : ListSettings()) {
+      all.append(py::dict(py::arg("name") = info.name, py::arg("default") = info.fallback,
+                          py::arg("unit") = info.unit, py::arg("range") = info.range,
+                          py::arg("meaning") = info.meaning, py::arg("public") = info.is_public));
+    }
     return all;
   });
 }

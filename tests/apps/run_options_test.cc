@@ -47,14 +47,14 @@ TEST_F(RunOptions, UnknownSettingNamesTheNearest) {
 TEST_F(RunOptions, SettingsOfTheStreamAreGivenAndListedAsAllOthers) {
   const std::string file =
       results_.Write("settings.yaml", "stream:\n  picture_width: 200\n  waiting: 4\nseed: 5\n");
-  ASSERT_EQ(Run({"--last", "3", "--config", file, "--set", "stream.waiting=5", "--set",
-                 "look.dark=30", "--record"})
+  ASSERT_EQ(Run({"--last", "3", "--config", file, "--set", "expert.stream.max_waiting=5", "--set",
+                 "look.min_brightness=30", "--record"})
                 .status,
             0);
   const nlohmann::json settings = Settings();
   EXPECT_EQ(settings["stream.picture_width"], 200);
-  EXPECT_EQ(settings["stream.waiting"], 5);
-  EXPECT_EQ(settings["look.dark"], 30);
+  EXPECT_EQ(settings["expert.stream.max_waiting"], 5);
+  EXPECT_EQ(settings["look.min_brightness"], 30);
   EXPECT_EQ(settings["stream.pictures_hz"], 10);  // as it is by itself
   EXPECT_EQ(settings["seed"], 5);
   EXPECT_THAT(ReadText(results_ / "out/report.html"), HasSubstr("stream.picture_width"));
@@ -65,11 +65,27 @@ TEST_F(RunOptions, SettingsOfTheStreamAreGivenAndListedAsAllOthers) {
 
 TEST_F(RunOptions, SettingsOfTheStreamThatCannotBeAreRefused) {
   ExpectError(2, {"--set", "stream.picture_widht=200"}, "did you mean 'stream.picture_width'");
-  ExpectError(2, {"--set", "stream.waiting=few"}, "'few' is not a whole number");
-  ExpectError(2, {"--set", "stream.picture_quality=0"}, "stream.picture_quality must be within");
+  ExpectError(2, {"--set", "expert.stream.max_waiting=few"}, "'few' is not a whole number");
+  ExpectError(2, {"--set", "stream.picture_quality=0"},
+              "stream.picture_quality must be from 1 to 100");
   ExpectError(2, {"--set", "stream.edge_shared=0", "--record"}, "stream.edge_shared must be");
   ExpectError(2, {"--set", "look.blurr=0.3"}, "did you mean 'look.blur'");
-  ExpectError(2, {"--set", "look.dark=256"}, "look.dark must be within");
+  ExpectError(2, {"--set", "look.min_brightness=256"},
+              "look.min_brightness must be from 0 to 255, not 256");
+}
+
+TEST_F(RunOptions, NamesOfTheLastVersionAreAcceptedWithAWarning) {
+  const std::string file = results_.Write(
+      "old.yaml", "tracker:\n  torn_share: 0.3\n  keyframe_max_gap: 25\nloop.group: 8\n");
+  const ProgramResult result = Run({"--last", "3", "--config", file, "--set", "early.most=9"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const nlohmann::json settings = Settings();
+  EXPECT_EQ(settings["expert.tracker.cut_inlier_share"], 0.3);
+  EXPECT_EQ(settings["tracker.max_keyframe_gap"], 25);
+  EXPECT_EQ(settings["early.max_frames"], 9);
+  for (const char* part : {"tracker.torn_share is now called expert.tracker.cut_inlier_share",
+                           "loop.group no longer exists", "early.most is now called"})
+    EXPECT_THAT(result.err, HasSubstr(part));
 }
 
 TEST_F(RunOptions, AMapThatCannotBeReadIsSaid) {
@@ -112,11 +128,11 @@ TEST_F(RunOptions, LocalizeMapsNoShape) {
 
 TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
   const std::string file =
-      results_.Write("settings.yaml", "tracker:\n  min_tracked: 20\n  min_predictd: 3\n");
+      results_.Write("settings.yaml", "tracker:\n  min_tracked: 20\n  min_relocalizd: 30\n");
   ExpectError(2, {"--config", file},
               file +
-                  ":3: unknown setting 'tracker.min_predictd'; did you mean "
-                  "'tracker.min_predicted'");
+                  ":3: unknown setting 'tracker.min_relocalizd'; did you mean "
+                  "'tracker.min_relocalized'");
   ExpectError(2, {"--config", results_.Write("b.yaml", "seed: 1\ntracker.min_tracked: [1, 2]\n")},
               "b.yaml:2: setting tracker.min_tracked needs one value");
   ExpectError(2, {"--config", results_.Write("c.yaml", "\nimage_width: wide\n")}, "c.yaml:2: ");
@@ -127,14 +143,14 @@ TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
 TEST_F(RunOptions, LaterOnesHold) {
   const std::string file = results_.Write(
       "settings.yaml", "seed: 5\ntracker:\n  extractor:\n    features: 700\nstart.window: 0.4\n");
-  const ProgramResult result =
-      Run({"--profile", "phone", "--config", file, "--set", "start.window=0.25", "--seed", "9"});
+  const ProgramResult result = Run(
+      {"--profile", "phone", "--config", file, "--set", "expert.start.window=0.25", "--seed", "9"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json settings = Settings();
   EXPECT_EQ(settings["profile"], "phone");
   EXPECT_EQ(settings["image_width"], 400);                 // the profile's
   EXPECT_EQ(settings["tracker.extractor.features"], 700);  // the file's, over the profile's 500
-  EXPECT_EQ(settings["start.window"], 0.25);               // --set over the file's
+  EXPECT_EQ(settings["expert.start.window"], 0.25);        // --set over the file's
   EXPECT_EQ(settings["seed"], 9);                          // the flag over the file's
 }
 

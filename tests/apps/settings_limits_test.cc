@@ -11,8 +11,9 @@ using testing::HasSubstr;
 
 TEST(SettingsLimits, NumbersBeyondUseAreUsageErrorsThatNameTheSetting) {
   for (const std::string name : {"features", "cell", "iterations"}) {
-    const std::string setting =
-        name == "iterations" ? "start.iterations" : "tracker.extractor." + name;
+    const std::string setting = name == "iterations" ? "expert.start.iterations"
+                                : name == "cell"     ? "expert.tracker.extractor.cell"
+                                                     : "tracker.extractor." + name;
     const ProgramResult result =
         RunAlidade({"run", "synth:room?frames=2", "--set", setting + "=2147483647"});
     EXPECT_EQ(result.status, 2) << result.err;

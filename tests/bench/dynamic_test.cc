@@ -51,7 +51,7 @@ class BenchDynamic : public testing::Test {
 
 TEST_F(BenchDynamic, GivesTheErrorsThatEvaluateGives) {
   const json bench =
-      Bench({Recording(), "--sensor", "rgbd", "--no-live", "--set", "dynamics.drop_detections=0"});
+      Bench({Recording(), "--sensor", "rgbd", "--no-live", "--set", "expert.dynamics.drop_detections=0"});
   const std::string name = fs::path(Recording()).filename().string() + ", ";
   for (const std::string mode : {"off", "geometry"}) {
     const json ate = Evaluate("ate", mode);

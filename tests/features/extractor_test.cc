@@ -120,7 +120,7 @@ TEST(Extractor, FindsCornersInAWeaklyTexturedRegionBesideAStrongOne) {
   for (const Keypoint& k : frame.keypoints) weak += k.x > 345;
   EXPECT_GT(weak, 150);
   ExtractorSettings strong_only;
-  strong_only.fast_minimum = strong_only.fast_threshold;
+  strong_only.min_fast_threshold = strong_only.fast_threshold;
   int without = 0;
   for (const Keypoint& k : Extract(image, strong_only).keypoints) without += k.x > 345;
   EXPECT_LT(without, weak / 2);
@@ -232,8 +232,8 @@ TEST(Extractor, RefusesWhatItCannotTake) {
   EXPECT_THROW(extractor.Extract(cv::Mat(64, 48, CV_8UC1), camera, 0, 0), Error);
   for (auto change : std::vector<void (*)(ExtractorSettings&)>{
            [](ExtractorSettings& s) { s.features = 0; }, [](ExtractorSettings& s) { s.cell = 1; },
-           [](ExtractorSettings& s) { s.fast_minimum = 0; },
-           [](ExtractorSettings& s) { s.fast_minimum = 21; },
+           [](ExtractorSettings& s) { s.min_fast_threshold = 0; },
+           [](ExtractorSettings& s) { s.min_fast_threshold = 21; },
            [](ExtractorSettings& s) { s.fast_threshold = 256; },
            [](ExtractorSettings& s) { s.border = 18; },
            [](ExtractorSettings& s) { s.evenness = 1.1; },

@@ -246,11 +246,11 @@ TEST(AdjustWindow, LetsGoOfWhatTheNoiseDoesNotExplain) {
     }
     view.frame = frame;
   }
-  const auto error = [&](double least_noise) {
+  const auto error = [&](double min_noise_ratio) {
     MapStore store;
     const SyntheticMap made = FillMap(world, {}, store);
     MapperSettings settings = Patient();
-    settings.least_noise = least_noise;
+    settings.min_noise_ratio = min_noise_ratio;
     const Adjustment result =
         AdjustWindow(store.Snapshot(), made.keyframes.back(), world.camera, settings, nullptr);
     double sum = 0;

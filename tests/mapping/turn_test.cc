@@ -61,7 +61,7 @@ TEST(MapTurn, LeavesAloneWhatIsWellKnownAndWhatCanBeTriangulated) {
     const SyntheticMap made = FillMap(world, {.known = 0.8}, store);
     EXPECT_TRUE(
         MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
-    settings.turn_landmarks = 1000;
+    settings.rotation_landmarks = 1000;
     EXPECT_FALSE(
         MapTurn(store.Snapshot(), made.keyframes.back(), {}, world.camera, settings).empty());
   }

@@ -18,8 +18,8 @@ RenderedFrames& TheRoom() { return SmallRoom(320, 240); }
 
 SlamSettings Settings(int most) {
   SlamSettings settings;
-  settings.early.most = most;
-  settings.early.settle = 20;
+  settings.early.max_frames = most;
+  settings.early.settle_frames = 20;
   return settings;
 }
 

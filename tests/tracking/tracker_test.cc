@@ -156,10 +156,10 @@ TEST_P(TrackerTest, DoesNotRelocaliseByOnePosterAlone) {
     }
   });
   TrackerSettings settings;
-  settings.min_relocalised = 20;  // so that the number of matches suffices
+  settings.min_relocalized = 20;  // so that the number of matches suffices
   EXPECT_FALSE(
       Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
-  settings.min_relocalised_spread = 0;
+  settings.min_relocalized_spread = 0;
   EXPECT_TRUE(
       Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
 }

@@ -1,13 +1,23 @@
 #include "alidade/detect/settings.h"
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 
-void DetectorSettings::Check() const {
-  if (!(min_score > 0 && min_score < 1)) ThrowUsage("detector.min_score must be between 0 and 1");
-  if (!(max_overlap > 0 && max_overlap <= 1))
-    ThrowUsage("detector.max_overlap must be above 0 and at most 1");
+std::span<const Setting> DetectorSettings::Table() {
+  using T = DetectorSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::min_score>("dynamics.detector.min_score",
+                                   {.min = 0, .max = 1, .open_min = true, .open_max = true}, "",
+                                   "Detections with a lower score are ignored."),
+      PublicSetting<&T::max_overlap>("dynamics.detector.max_overlap", kPositiveShare, "",
+                                     "Of two detections of a class with a higher intersection over "
+                                     "union, the better one stays."),
+  };
+  return kRows;
 }
+
+void DetectorSettings::Check() const { CheckRanges(*this); }
 
 }  // namespace alidade

@@ -34,10 +34,8 @@ constexpr int kTrackFrames = FlowTracks::kHistory - 1;  // frames back that trac
 void CellDepthSettings::Check() const {
   const FieldCheck check("depth");
   check.Range("min_readings", min_readings, 1, 9);
-  check.Share("surface_step", surface_step);
   check.Range("spread_step", spread_step, 0.001, 1);
   check.Share("spread_unmeasured", spread_unmeasured);
-  check.Range("tolerance", tolerance, 0, 10);
   check.Range("tolerance_linear", tolerance_linear, 0, 10);
   check.Range("tolerance_square", tolerance_square, 0, 10);
   check.Range("free_tolerances", free_tolerances, 1, 100);
@@ -60,29 +58,22 @@ void FlowVoteSettings::Check() const {
   const FieldCheck check("votes");
   check.Range("most_ago", most_ago, 1, kTrackFrames);
   check.Range("least_ago", least_ago, 1, most_ago);
-  check.Range("moved_px", moved_px, 0, 100);
-  check.Range("moved_share", moved_share, 0, 10);
   check.Range("measured_px", measured_px, 0, 100);
   check.Range("measured_share", measured_share, 0, 10);
   check.Range("depth_noise", depth_noise, 0, 0.9);
   check.Range("consensus_reach", consensus_reach, 0, 20);
   check.Range("consensus_tracks", consensus_tracks, 1, 1000);
-  check.Share("consensus", consensus);
   check.Range("agreement_ago", agreement_ago, 1, kTrackFrames);
   check.Range("agreement_iterations", agreement_iterations, 1, 10000);
   check.Range("agreement_tracks", agreement_tracks, 8, 1000);
   check.Share("agreement_share", agreement_share);
-  check.Range("agreement_sigma", agreement_sigma, 0.01, 100);
   check.Range("homography_share", homography_share, 0, 2);
   check.Range("rival_block", rival_block, 1, 80);
   check.Range("rival_blocks", rival_blocks, 1, 10000);
-  check.Share("rival_share", rival_share);
-  check.Range("rival_frames", rival_frames, 1, 1000);
 }
 
 void SurfaceBeliefSettings::Check() const {
   const FieldCheck check("surfaces");
-  check.Share("forget", forget);
   check.Share("remember", remember);
   check.Share("learn", learn);
   check.Range("gap", gap, 1, 300);
@@ -151,9 +142,7 @@ void FeatureBeliefSettings::Check() const {
   check.Share("surface", surface);
   check.Range("far_cells", far_cells, 0, 80);
   check.Range("reading_reach", reading_reach, 0, 20);
-  check.Share("enough_share", enough_share);
   check.Range("enough_count", enough_count, 0, 100000);
-  check.Share("uncertain_weight", uncertain_weight);
 }
 
 void LandmarkEvidenceSettings::Check() const {

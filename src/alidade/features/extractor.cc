@@ -7,6 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/features/pyramid.h"
 #include "alidade/features/smooth.h"
 #include "alidade/features/spread.h"
@@ -83,18 +84,34 @@ std::vector<Extractor::Band> CutIntoBands(const std::vector<cv::Size>& sizes,
 
 }  // namespace
 
+std::span<const Setting> ExtractorSettings::Table() {
+  using T = ExtractorSettings;
+  static constexpr Setting kRows[] = {
+      // At most 100 times the usual number: beyond, nearly every pixel would be a keypoint.
+      PublicSetting<&T::features>("tracker.extractor.features", FromTo(1, 100000), "",
+                                  "Keypoints wanted per image."),
+      PublicSetting<&T::fast_threshold>(
+          "tracker.extractor.fast_threshold", FromTo(1, 255), "grey levels",
+          "Contrast of a FAST corner; less finds corners in dim or blurred images."),
+      ExpertSetting<&T::min_fast_threshold>(
+          "tracker.extractor.min_fast_threshold", FromTo(1, 255), "grey levels",
+          "The same in the second attempt, in cells where the first found none."),
+      ExpertSetting<&T::cell>("tracker.extractor.cell", FromTo(8, 10000), "px",
+                              "Side of a detection cell on every level."),
+  };
+  return kRows;
+}
+
 void ExtractorSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("extractor: ") + what);
+    if (!holds) ThrowUsage(what);
   };
-  // 100 times the usual number; beyond that nearly every pixel would be a keypoint.
-  require(features >= 1 && features <= 100000, "features must be from 1 to 100000");
-  require(fast_minimum >= 1 && fast_minimum <= 255, "fast_minimum must be from 1 to 255");
-  require(fast_threshold >= fast_minimum && fast_threshold <= 255,
-          "fast_threshold must be from fast_minimum to 255");
-  require(cell >= 8 && cell <= 10000, "cell must be from 8 to 10000 pixels");
-  require(border >= kPatternReach + 1, "border must be at least 19 pixels");
-  require(evenness >= 0 && evenness <= 1, "evenness must be from 0 to 1");
+  CheckRanges(*this);
+  require(fast_threshold >= min_fast_threshold,
+          "setting tracker.extractor.fast_threshold must be at least "
+          "expert.tracker.extractor.min_fast_threshold");
+  require(border >= kPatternReach + 1, "ExtractorSettings::border must be at least 19 pixels");
+  require(evenness >= 0 && evenness <= 1, "ExtractorSettings::evenness must be from 0 to 1");
 }
 
 Extractor::Extractor(ExtractorSettings settings) : settings_(settings) { settings_.Check(); }
@@ -132,7 +149,7 @@ std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& ban
   const int first = std::max(band.first_row, settings_.border);
   const int end = std::min(band.end_row, level.rows - settings_.border);
   std::vector<Corner> corners =
-      FastCorners(fine, settings_.fast_minimum, settings_.border, first - top, end - top);
+      FastCorners(fine, settings_.min_fast_threshold, settings_.border, first - top, end - top);
   for (Corner& c : corners) c.y += top;
   return StrongPerCell(corners, level.size(), settings_.border, settings_.cell,
                        settings_.fast_threshold);

@@ -5,6 +5,7 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <span>
 
 #include "alidade/base/api.h"
 #include "alidade/features/describe.h"
@@ -13,16 +14,21 @@
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in extractor.cc.
 struct ExtractorSettings {
-  int features = 1000;      // wanted per image, over all levels
-  int fast_threshold = 14;  // grey levels of the lightly smoothed level; first try in each cell
-  int fast_minimum = 6;  // grey levels; second try in cells the first left empty. Pixel noise of 4
-                         // grey levels stays below
-  int cell = 32;         // pixels, side of a detection cell on every level
-  int border = 19;       // pixels kept free on every level: the descriptor's patch must fit
-  double evenness =
-      0.45;  // 0: the strongest corners; 1: as evenly spread as can be, at the price of weak ones
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  int features = 1000;
+  int fast_threshold = 14;
+  // Pixel noise of 4 grey levels stays below.
+  int min_fast_threshold = 6;
+  int cell = 32;
+  // Pixels kept free on every level: the descriptor's patch must fit.
+  int border = 19;
+  // 0: the strongest corners; 1: spread as evenly as possible, with weak ones among them.
+  double evenness = 0.45;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 // Keeps buffers between frames: one instance per image stream, used by one thread at a time.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/geometry/fundamental.h"
 #include "alidade/geometry/homography.h"
 #include "alidade/geometry/motion_ranking.h"
@@ -135,26 +136,39 @@ TwoViewResult Refuse(TwoViewResult result, TwoViewFailure why) {
 
 }  // namespace
 
-void TwoViewSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("two-view settings: ") + what);
+std::span<const Setting> TwoViewSettings::Table() {
+  using T = TwoViewSettings;
+  constexpr SettingRange kBetweenZeroAndOne{.min = 0, .max = 1, .open_min = true, .open_max = true};
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::min_parallax_degrees>(
+          "start.min_parallax_degrees", kNotNegative, "degrees",
+          "One camera: parallax that a map needs to start; less starts sooner, with a poorer map."),
+      ExpertSetting<&T::iterations>("start.iterations", FromTo(1, 100000), "",
+                                    "RANSAC samples of 8 matches for each two-view model."),
+      ExpertSetting<&T::sigma>("start.sigma", kPositive, "px",
+                               "Standard deviation of a keypoint in two views."),
+      ExpertSetting<&T::homography_share>(
+          "start.homography_share", kBetweenZeroAndOne, "",
+          "Score share S_H / (S_H + S_F) above which the scene counts as planar."),
+      ExpertSetting<&T::max_direction_sigma_degrees>(
+          "start.max_direction_sigma_degrees", kPositive, "degrees",
+          "Largest standard deviation of the direction of motion."),
+      ExpertSetting<&T::min_beyond_turn>(
+          "start.min_beyond_turn", kZeroToOne, "",
+          "Share of the explained matches that pure rotation must not explain."),
+      ExpertSetting<&T::lens_uncertainty>(
+          "start.lens_uncertainty", FromTo(0, 2), "",
+          "Relative uncertainty of the focal length; 0: the camera is calibrated."),
+      ExpertSetting<&T::min_triangulated>("start.min_triangulated", kPositive, "landmarks",
+                                          "Landmarks that two views must give."),
+      ExpertSetting<&T::min_placed_share>(
+          "start.min_placed_share", kZeroToOne, "",
+          "Share of the explained matches whose parallax exceeds the noise."),
   };
-  require(iterations > 0 && iterations <= 100000, "iterations must be from 1 to 100000");
-  require(sigma > 0 && std::isfinite(sigma), "sigma must be positive");
-  require(homography_share > 0 && homography_share < 1,
-          "homography_share must lie between 0 and 1");
-  require(min_parallax_degrees >= 0, "min_parallax_degrees must not be negative");
-  require(max_direction_sigma_degrees > 0, "max_direction_sigma_degrees must be positive");
-  require(turn_sigma > 0 && std::isfinite(turn_sigma), "turn_sigma must be positive");
-  require(min_beyond_turn >= 0 && min_beyond_turn <= 1, "min_beyond_turn must lie in 0 to 1");
-  require(min_beyond_lens >= 0 && min_beyond_lens <= 1, "min_beyond_lens must lie in 0 to 1");
-  require(lens_uncertainty >= 0 && lens_uncertainty <= 2, "lens_uncertainty must lie in 0 to 2");
-  require(min_triangulated > 0, "min_triangulated must be positive");
-  require(min_good_share >= 0 && min_good_share <= 1, "min_good_share must lie in 0 to 1");
-  require(min_placed_share >= 0 && min_placed_share <= 1, "min_placed_share must lie in 0 to 1");
-  require(min_inlier_share >= 0 && min_inlier_share <= 1, "min_inlier_share must lie in 0 to 1");
-  require(max_rival_share >= 0 && max_rival_share <= 1, "max_rival_share must lie in 0 to 1");
+  return kRows;
 }
+
+void TwoViewSettings::Check() const { CheckRanges(*this); }
 
 TwoViewResult ReconstructTwoViews(const Camera& camera, std::span<const Eigen::Vector2d> a,
                                   std::span<const Eigen::Vector2d> b,

@@ -15,41 +15,43 @@
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in two_view.cc.
 struct TwoViewSettings {
-  int iterations = 200;            // RANSAC samples of 8 matches, for each model
-  double sigma = 1.0;              // standard deviation of a keypoint, pixels
-  double homography_share = 0.45;  // S_H / (S_H + S_F) above which the scene counts as planar
-  // Of the triangulated points (the 50th largest, or the last). 1 instead of 1.5: half of the
-  // starts of hand-held and driven cameras come 5 to 15 frames sooner, with errors as small.
+  int iterations = 200;
+  double sigma = 1.0;
+  double homography_share = 0.45;
+  // With 1.0 instead of 1.5, half of the starts come 5 to 15 frames sooner with errors as small.
   double min_parallax_degrees = 1.0;
-  // Of the direction of motion, as left by the noise. In pictures 400 pixels wide it is 4 to 6 when
-  // a map can well be made; bundle adjustment soon makes it better.
+  // In images 400 pixels wide it is 4 to 6 when a map can well be made; bundle adjustment soon
+  // improves it.
   double max_direction_sigma_degrees = 8;
-  // Standard deviation of a keypoint, pixels, when it is asked whether a camera that only turned
-  // explains the matches (what is found in them counts where it is more). Corners are placed to 0.3
-  // to 0.5 pixels.
+  // Pixels, standard deviation of a keypoint in the test for pure rotation (the observed one where
+  // that is larger). Corners are placed to 0.3 to 0.5 pixels.
   double turn_sigma = 0.5;
-  // Of the matches a motion explains, so many must be beyond what a camera that only turned
-  // explains. On made-up scenes a turning one leaves up to 0.08 for noise, moving ones 0.4 and
-  // more.
+  // In simulated scenes, noise leaves up to 0.08 in pure rotation; moving cameras have at least
+  // 0.4.
   double min_beyond_turn = 0.2;
-  // Relative uncertainty of the focal length: 0 when the camera is calibrated. Else no map is begun
-  // from matches that a turn with another lens explains (ExplainedByTurnedLens).
+  // 0 when the camera is calibrated. Otherwise no map starts from matches that a rotation with
+  // another focal length explains (ExplainedByTurnedLens).
   double lens_uncertainty = 0;
-  double min_beyond_lens = 0.3;  // as min_beyond_turn, of a turn with another lens
-  int min_triangulated = 50;     // points
-  double min_good_share =
-      0.9;  // of the inliers that must triangulate in front of both, with small error
-  // Of what the motion explains, so much must be placed: have parallax beyond the noise. Motions
-  // made up from the noise (mostly straight ahead) place a few matches and leave the rest far away.
+  // As min_beyond_turn, for a rotation with another focal length.
+  double min_beyond_lens = 0.3;
+  int min_triangulated = 50;
+  // Share of the inliers that must triangulate in front of both cameras with a small error.
+  double min_good_share = 0.9;
+  // Motions fitted to noise (mostly straight ahead) place few matches and leave the rest far away.
   double min_placed_share = 0.35;
-  double max_rival_share =
-      0.75;  // second-best motion hypothesis may explain at most this share of the best's points
-  double min_inlier_share =
-      0.45;  // of the matches that the motion must explain: among more outliers
-             // chance makes up motions that explain as many as the true one
+  // The second-best motion may explain at most this share of the best one's points.
+  double max_rival_share = 0.75;
+  // Share of the matches that the motion must explain. Among more outliers, chance finds motions
+  // that explain as many as the true one.
+  double min_inlier_share = 0.45;
   uint64_t seed = 1;
-  bool parallel = true;  // samples over the threads; the result is the same without
+  // Samples on all threads; the result is the same without.
+  bool parallel = true;
+  static std::span<const Setting> Table();
   void Check() const;
 };
 

@@ -1,35 +1,89 @@
 #include "alidade/looping/settings.h"
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 
+std::span<const Setting> LoopSettings::Table() {
+  using T = LoopSettings;
+  using N = MeasurementNoise;
+  static constexpr Setting kRows[] = {
+      SameSetting<&T::match_scale>("match_scale", {.min = 0, .max = 4, .open_min = true}),
+      SameSetting<&T::noise, &N::sigma_px>("noise.mapping_sigma", kPositive),
+      SameSetting<&T::noise, &N::sigma_right_px>("noise.disparity_sigma", kPositive),
+      SameSetting<&T::min_known_scale>("min_known_scale", kNotNegative),
+      PublicSetting<&T::enabled>("loop.enabled", kOnOff, "",
+                                 "Close loops and merge maps; 0: places are only recognized to "
+                                 "relocalize."),
+      PublicSetting<&T::min_matches>(
+          "loop.min_matches", kPositive, "matches",
+          "Matches by descriptors alone that a candidate place must have."),
+      PublicSetting<&T::min_found>(
+          "loop.min_found", AtLeast(10), "landmarks",
+          "Landmarks of the old place that must be found after alignment to close a loop."),
+      PublicSetting<&T::min_merge_found>("loop.min_merge_found", AtLeast(10), "landmarks",
+                                         "As loop.min_found, to merge two maps."),
+      PublicSetting<&T::min_merge_alike>(
+          "loop.min_merge_alike", kZeroToOne, "",
+          "Share of them whose descriptors must match to merge two maps; more keeps similar rooms "
+          "apart."),
+      PublicSetting<&T::max_drift>(
+          "loop.max_drift", kPositive, "",
+          "Largest correction by a loop, as a share of the path since the place was last seen."),
+      ExpertSetting<&T::candidates>("loop.candidates", FromTo(1, 10), "places",
+                                    "Most places verified for each keyframe in each map."),
+      ExpertSetting<&T::score_share>(
+          "loop.score_share", kZeroToOne, "",
+          "A candidate must be at least this similar, relative to the best covisible keyframe."),
+      ExpertSetting<&T::tied_share>("loop.tied_share", kZeroToOne, "",
+                                    "One camera: neighbors that share this share of a keyframe's "
+                                    "landmarks, and theirs, are no "
+                                    "candidates."),
+      ExpertSetting<&T::max_view_turn>(
+          "loop.max_view_turn", kPositive, "rad",
+          "Largest angle between the optical axes of a keyframe and a candidate of the same map."),
+      ExpertSetting<&T::min_aligned>("loop.min_aligned", AtLeast(3), "matches",
+                                     "Matches that must agree on one alignment."),
+      ExpertSetting<&T::min_visible_share>(
+          "loop.min_visible_share", kZeroToOne, "",
+          "Share of the landmarks expected in view that must be found to close a loop."),
+      ExpertSetting<&T::search_radius>(
+          "loop.search_radius", kPositive, "px",
+          "Search radius on level 0 around a landmark after alignment; the second pass uses half."),
+      ExpertSetting<&T::max_distance>("loop.max_distance", FromTo(1, 256), "bits",
+                                      "Largest descriptor distance of a match."),
+      ExpertSetting<&T::confirm_keyframes>(
+          "loop.confirm_keyframes", kNotNegative, "keyframes",
+          "Covisible keyframes in which a loop is verified as well."),
+      ExpertSetting<&T::confirm_needed>("loop.confirm_needed", kNotNegative, "keyframes",
+                                        "How many of them must confirm it."),
+      ExpertSetting<&T::max_turn>("loop.max_turn", kPositive, "rad",
+                                  "Largest rotation by which a loop may correct."),
+      ExpertSetting<&T::max_scale>(
+          "loop.max_scale", AtLeast(1), "",
+          "One camera: largest ratio of scales between the old and the new place."),
+      ExpertSetting<&T::graph_shared>(
+          "loop.graph_shared", kPositive, "landmarks",
+          "Landmarks two keyframes must share to be connected in the pose graph."),
+      ExpertSetting<&T::graph, &PoseGraphSettings::max_iterations>(
+          "loop.graph.max_iterations", kNotNegative, "", "Most iterations of the pose graph."),
+      ExpertSetting<&T::bundle, &BundleSettings::max_iterations>(
+          "loop.bundle.max_iterations", kNotNegative, "",
+          "Most iterations of the adjustment of the whole map after a loop."),
+  };
+  return kRows;
+}
+
 void LoopSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("setting loop.") + what);
+    if (!holds) ThrowUsage(std::string("setting ") + what);
   };
-  require(match_scale > 0, "match_scale must be positive");
-  require(candidates >= 1, "candidates must be at least 1");
-  require(group >= candidates, "group must be at least loop.candidates");
-  require(score_share >= 0 && score_share <= 1, "score_share must be between 0 and 1");
-  require(min_aligned >= 3, "min_aligned must be at least 3");
-  require(min_matches >= min_aligned, "min_matches must be at least loop.min_aligned");
-  require(min_found >= 10, "min_found must be at least 10");
-  require(min_merge_found >= min_found, "min_merge_found must be at least loop.min_found");
-  require(min_found_share >= 0 && min_found_share <= 1, "min_found_share must be between 0 and 1");
-  require(min_merge_alike >= 0 && min_merge_alike <= 1, "min_merge_alike must be between 0 and 1");
-  require(min_known_scale >= 0, "min_known_scale must not be negative");
-  require(alike_radius > 0, "alike_radius must be positive");
-  require(search_radius > 0, "search_radius must be positive");
-  require(max_distance > 0 && max_distance <= 256, "max_distance must be between 1 and 256");
-  require(confirm_keyframes >= confirm_needed && confirm_needed >= 0,
-          "confirm_keyframes must be at least loop.confirm_needed");
-  require(max_drift > 0 && max_drift_floor >= 0, "max_drift must be positive");
-  require(max_turn > 0, "max_turn must be positive");
-  require(tied_share >= 0 && tied_share <= 1, "tied_share must be between 0 and 1");
-  require(max_view_turn > 0, "max_view_turn must be positive");
-  require(max_scale >= 1, "max_scale must be at least 1");
-  require(max_plain_scale >= max_scale, "max_plain_scale must be at least loop.max_scale");
+  CheckRanges(*this);
+  require(min_matches >= min_aligned, "loop.min_matches must be at least expert.loop.min_aligned");
+  require(min_merge_found >= min_found, "loop.min_merge_found must be at least loop.min_found");
+  require(confirm_keyframes >= confirm_needed,
+          "expert.loop.confirm_keyframes must be at least expert.loop.confirm_needed");
   reach.Check();
   graph.Check();
   bundle.Check();

@@ -97,7 +97,7 @@ class Verifier {
     const int found = DifferentKeypoints(match_.found);
     const bool merges = a_.map != b_.map;
     if (found < Scaled(merges ? settings_.min_merge_found : settings_.min_found) ||
-        found < settings_.min_found_share * match_.visible)
+        found < settings_.min_visible_share * match_.visible)
       return {};
     if (merges ? !CanMerge() : !CanHaveDrifted()) return {};
     if (!Confirmed()) return {};
@@ -317,7 +317,7 @@ class Verifier {
       const int keypoints = DifferentKeypoints(found);
       ++asked;
       agreed += keypoints >= Scaled(settings_.confirm_found) &&
-                keypoints >= settings_.min_found_share * visible;
+                keypoints >= settings_.min_visible_share * visible;
     }
     return agreed >= std::min(settings_.confirm_needed, asked);
   }

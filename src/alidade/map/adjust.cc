@@ -127,7 +127,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   BundleSettings bundle = settings.bundle;
   if (one_camera) {
     const double share =
-        NoiseShare(problem, static_cast<int>(cameras.size()), settings.least_noise);
+        NoiseShare(problem, static_cast<int>(cameras.size()), settings.min_noise_ratio);
     bundle.huber_mono *= share;
     bundle.redescending = bundle.redescending || share < 1;
   }

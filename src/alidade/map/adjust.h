@@ -22,7 +22,7 @@ struct AdjustSettings {
   // chi² over that of noise as assumed, 2 ln 2), no smaller than this; and where that is below 1,
   // the loss is Geman & McClure's (BundleSettings::redescending). 1: Huber's loss, as assumed; so
   // after a loop, where the whole map is to move: from afar the other one lets the loop itself go.
-  double least_noise = 1;
+  double min_noise_ratio = 1;
   // Landmarks of assumed depth (Landmark::depth_assumed) are held where they are to start with, by
   // a standard deviation of this share of their depth, as long as the rays from all keyframes that
   // see them are within so many degrees of the one from their reference. It is subject to the loss

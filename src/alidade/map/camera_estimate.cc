@@ -7,6 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/map/camera_correction.h"
 
 namespace alidade {
@@ -59,19 +60,50 @@ LensWindow WindowOf(const MapSnapshot& map, std::span<const KeyFrameId> keyframe
 
 }  // namespace
 
+std::span<const Setting> CameraEstimateSettings::Table() {
+  using T = CameraEstimateSettings;
+  using A = LensAdjustmentSettings;
+  static constexpr Setting kRows[] = {
+      SameSetting<&T::adjust, &A::focal_sigma>("camera.focal_sigma", kPositive),
+      SameSetting<&T::readout_sigma>("camera.readout_sigma", kNotNegative),
+      ExpertSetting<&T::window>("calibrate.window", FromTo(3, 500), "keyframes",
+                                "Consecutive keyframes adjusted together."),
+      ExpertSetting<&T::max_windows>("calibrate.max_windows", kPositive, "windows",
+                                     "Most windows, spread over the map."),
+      ExpertSetting<&T::min_keyframes>("calibrate.min_keyframes", AtLeast(3), "keyframes",
+                                       "A window with fewer keyframes is not used."),
+      ExpertSetting<&T::min_seen>("calibrate.min_seen", AtLeast(2), "keyframes",
+                                  "Keyframes of a window that must see a landmark."),
+      ExpertSetting<&T::max_focal_sigma>(
+          "calibrate.max_focal_sigma", kPositive, "",
+          "The focal length counts as known below this relative standard deviation."),
+      ExpertSetting<&T::k1_corner_sigma>(
+          "calibrate.k1_corner_sigma", kNotNegative, "",
+          "Prior standard deviation of the shift by k1 at the image corners, relative to their "
+          "distance from the center."),
+      ExpertSetting<&T::k2_corner_sigma>("calibrate.k2_corner_sigma", kNotNegative, "",
+                                         "The same for k2."),
+      ExpertSetting<&T::centre_sigma>(
+          "calibrate.centre_sigma", kNotNegative, "",
+          "Prior standard deviation of the principal point, as a share of the longer image side."),
+      ExpertSetting<&T::adjust, &A::inflation>(
+          "calibrate.inflation", AtLeast(1), "",
+          "Factor on standard deviations, since errors of keypoints are correlated."),
+      ExpertSetting<&T::adjust, &A::bound>(
+          "calibrate.bound", AtLeast(1), "",
+          "Bound of the robust loss, in standard deviations of the observed noise."),
+  };
+  return kRows;
+}
+
 void CameraEstimateSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("calibrate.") + what);
+    if (!holds) ThrowUsage(std::string("setting expert.calibrate.") + what);
   };
   adjust.Check();
-  require(min_keyframes >= 3, "min_keyframes must be at least 3");
-  require(window >= min_keyframes && window <= 500, "window must lie in min_keyframes..500");
-  require(max_windows >= 1, "max_windows must be positive");
-  require(min_seen >= 2 && min_seen <= min_keyframes, "min_seen must lie in 2..min_keyframes");
-  require(k1_corner_sigma >= 0 && k2_corner_sigma >= 0, "*_corner_sigma cannot be negative");
-  require(readout_sigma >= 0, "readout_sigma cannot be negative");
-  require(centre_sigma >= 0, "centre_sigma cannot be negative");
-  require(max_focal_sigma > 0, "max_focal_sigma must be positive");
+  CheckRanges(*this);
+  require(window >= min_keyframes, "window must be at least expert.calibrate.min_keyframes");
+  require(min_seen <= min_keyframes, "min_seen must be at most expert.calibrate.min_keyframes");
 }
 
 std::vector<LensWindow> LensWindowsOf(const MapSnapshot& map, MapId id, const Camera& camera,

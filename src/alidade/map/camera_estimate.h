@@ -2,6 +2,7 @@
 // map.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "alidade/base/api.h"
@@ -11,26 +12,25 @@
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in camera_estimate.cc.
 struct CameraEstimateSettings {
-  int window = 12;        // keyframes in a row that are adjusted together
-  int max_windows = 40;   // at most, spread over the map
-  int min_keyframes = 6;  // of a window; with fewer nothing is said
-  int min_seen = 3;       // keyframes of a window that must see a landmark for it to count
-  // What is believed of distortion beforehand: standard deviations of the shift at the picture's
-  // corners by k1, and by k2, as a share of their distance from the middle.
+  int window = 12;
+  int max_windows = 40;
+  int min_keyframes = 6;
+  int min_seen = 3;
   double k1_corner_sigma = 0.08;
   double k2_corner_sigma = 0.02;
-  // Known: 0.01 is the standard deviation of the focal length, relative, below which it is.
   double max_focal_sigma = 0.01;
-  // And of where the optical axis meets the picture: standard deviation about its middle, as a
-  // share of its longer side. Pictures are cut out of what a sensor sees.
+  // Images are cut out of what a sensor sees.
   double centre_sigma = 0.01;
-  // Rolling shutter, where the camera's readout is not known: what is believed of it beforehand,
-  // seconds about none. 0: it is not looked for.
+  // 0: the readout time is not estimated.
   double readout_sigma = 0;
-  bool hold_lens = false;         // the lens is known: only the readout is looked for
-  LensAdjustmentSettings adjust;  // but for what follows from the above
-  void Check() const;             // throws Error (usage) naming the field that cannot be
+  bool hold_lens = false;         // the lens is known: only the readout time is estimated
+  LensAdjustmentSettings adjust;  // except what follows from the above
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct CameraEstimate {

@@ -9,6 +9,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/optimize/lens_bend.h"
 
 namespace alidade {
@@ -51,17 +52,38 @@ BundleProblem ProblemOf(const MapSnapshot& map, std::span<const KeyFrameId> keyf
 
 }  // namespace
 
+std::span<const Setting> LensCheckSettings::Table() {
+  using T = LensCheckSettings;
+  static constexpr Setting kRows[] = {
+      ExpertSetting<&T::window>(
+          "lens.window", FromTo(3, 100), "keyframes",
+          "Consecutive keyframes examined together for undeclared distortion."),
+      ExpertSetting<&T::least_window>(
+          "lens.least_window", FromTo(3, 100), "keyframes",
+          "The same where there are too few for min_windows windows."),
+      ExpertSetting<&T::min_windows>("lens.min_windows", AtLeast(2), "windows",
+                                     "With fewer windows nothing is reported."),
+      ExpertSetting<&T::max_windows>("lens.max_windows", AtLeast(2), "windows",
+                                     "Most windows, spread over the map."),
+      ExpertSetting<&T::min_seen>("lens.min_seen", AtLeast(2), "keyframes",
+                                  "Keyframes of a window that must see a landmark."),
+      ExpertSetting<&T::min_bend>("lens.min_bend", kPositive, "",
+                                  "Shift at the image corners, relative to their distance from the "
+                                  "center, that is reported."),
+      ExpertSetting<&T::min_sigmas>("lens.min_sigmas", kPositive, "",
+                                    "Standard deviations by which it must differ from 0."),
+  };
+  return kRows;
+}
+
 void LensCheckSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("lens.") + what);
+    if (!holds) ThrowUsage(std::string("setting expert.lens.") + what);
   };
-  require(least_window >= 3 && least_window <= 100, "least_window must lie in 3..100");
-  require(window >= least_window && window <= 100, "window must lie in least_window..100");
-  require(min_windows >= 2, "min_windows must be at least 2");
-  require(max_windows >= min_windows, "max_windows must be at least min_windows");
-  require(min_seen >= 2 && min_seen <= least_window, "min_seen must lie in 2..least_window");
-  require(min_bend > 0, "min_bend must be positive");
-  require(min_sigmas > 0, "min_sigmas must be positive");
+  CheckRanges(*this);
+  require(window >= least_window, "window must be at least expert.lens.least_window");
+  require(max_windows >= min_windows, "max_windows must be at least expert.lens.min_windows");
+  require(min_seen <= least_window, "min_seen must be at most expert.lens.least_window");
 }
 
 LensCheck CheckLens(const MapSnapshot& map, MapId id, const Camera& camera,

@@ -1,24 +1,30 @@
 // Tests whether the images have radial distortion that the camera model does not include.
 #pragma once
 
+#include <span>
+
 #include "alidade/base/api.h"
 #include "alidade/map/map_store.h"
 #include "alidade/map/measurement.h"
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning: Table() in lens_check.cc.
 struct LensCheckSettings {
-  int window = 10;       // keyframes in a row that are looked at together, …
-  int least_window = 6;  // … so few where there are not enough for min_windows of these
-  int min_windows = 3;   // that say something; with fewer nothing is said
-  int max_windows = 40;  // at most, spread over the map: one takes some 5 ms
-  int min_seen = 3;      // keyframes of a window that must see a landmark for it to count
-  // Shift at the picture's corner, of its distance from the middle, from which a lens bends
-  // strongly. Measured (docs/development/decisions/0009-lens-check.md): lenses that are told of or
-  // bend little up to 0.04, one with k1 = -0.22 that nobody told of 0.09 to 0.11.
+  int window = 10;
+  int least_window = 6;
+  int min_windows = 3;
+  // One takes some 5 ms.
+  int max_windows = 40;
+  int min_seen = 3;
+  // Calibrated lenses and those with little distortion have up to 0.04, an undeclared k1 = -0.22
+  // has 0.09 to 0.11 (decision 0009-lens-check).
   double min_bend = 0.06;
-  double min_sigmas = 3;  // that the median of the windows must be away from 0
-  void Check() const;     // throws Error (usage) naming the field that cannot be
+  double min_sigmas = 3;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct LensCheck {

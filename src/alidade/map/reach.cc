@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 namespace {
@@ -27,19 +28,22 @@ std::optional<double> FastestOf(std::span<const TimedPlace> way, double span) {
 
 }  // namespace
 
-void ReachSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("setting loop.reach.") + what);
+std::span<const Setting> ReachSettings::Table() {
+  using T = ReachSettings;
+  static constexpr Setting kRows[] = {
+      ExpertSetting<&T::speed>(
+          "loop.reach.speed", kNotNegative, "",
+          "A lost camera moves at most this times the highest speed it had just before."),
+      ExpertSetting<&T::depth_speed>("loop.reach.depth_speed", kNotNegative, "1/s",
+                                     "Plus this share of the median depth per second."),
+      ExpertSetting<&T::drift>(
+          "loop.reach.drift", kNotNegative, "",
+          "Plus this share of the path since the place was last seen: the drift of tracking."),
   };
-  require(speed >= 0, "speed must not be negative");
-  require(span > 0, "span must be positive");
-  require(depth_speed >= 0, "depth_speed must not be negative");
-  require(floor >= 0, "floor must not be negative");
-  require(drift >= 0, "drift must not be negative");
-  require(plain_share >= 0 && plain_share <= 1, "plain_share must be between 0 and 1");
-  require(elsewhere_share >= 0 && elsewhere_share <= 1, "elsewhere_share must be between 0 and 1");
-  require(plain_alike >= 0 && plain_alike <= 1, "plain_alike must be between 0 and 1");
+  return kRows;
 }
+
+void ReachSettings::Check() const { CheckRanges(*this); }
 
 double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
                const ReachSettings& settings) {

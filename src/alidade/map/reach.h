@@ -10,28 +10,34 @@
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
 // Limits the distance from the last known position to
 //   floor * depth + (speed * fastest + depth_speed * depth) * seconds + drift * gone,
 // with `fastest` the highest speed in the last `span` seconds, `depth` the median depth at the
 // candidate place and `gone` the length of the path since that place was last observed. The closer
 // a place is to this limit, the more of it must be matched.
+// Range, unit and meaning of the named fields: Table() in reach.cc.
 struct ReachSettings {
-  double speed = 2;          // times the fastest the camera was just before
-  double span = 2;           // seconds that "just before" is
-  double depth_speed = 0.1;  // of the median depth, per second: who stood may walk on
-  double floor = 0.3;        // of the median depth
-  double drift = 0.05;       // of the way: what tracking may be off by
-  // For a place as far as that or farther (a film may be cut): the share of the landmarks that
-  // should be seen that must be found, and of the keypoints there, how many must look like them
-  // (between maps, see loop.min_merge_alike). Measured, found and alike: other parts of a corridor
-  // .2 to .51 and .4 to .79; the same place a moment later .6 to .7 and .8 to .9, from elsewhere
-  // .15 and .48.
+  double speed = 2;
+  // Seconds.
+  double span = 2;
+  // A person who stood may walk on.
+  double depth_speed = 0.1;
+  // Share of the median depth.
+  double floor = 0.3;
+  double drift = 0.05;
+  // For a place at the limit or beyond (a recording may be cut): share of the landmarks expected in
+  // view that must be found, and of the keypoints there whose descriptors must match. Other parts
+  // of a corridor have 0.2 to 0.51 and 0.4 to 0.79; the same place a moment later 0.6 to 0.7 and
+  // 0.8 to 0.9.
   double plain_share = 0.6;
   double plain_alike = 0.85;
-  // The share asked while lost where the camera was last in another map: no way speaks against a
-  // place, nor for it. Measured: wrong .35, right .29 to .47.
+  // The share asked while lost where the camera was last in another map, so that no path supports
+  // or contradicts a place. Wrong ones have at most 0.35, correct ones 0.29 to 0.47.
   double elsewhere_share = 0.4;
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct TimedPlace {

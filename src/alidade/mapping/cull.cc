@@ -19,7 +19,7 @@ std::vector<LandmarkId> FindWeakLandmarks(const MapSnapshot& map,
     const SightingTally* known = tallies.Find(id);
     const SightingTally tally = known ? *known : SightingTally{};
     const int age = static_cast<int>(newest.value - landmark->born.value);
-    if (tally.expected > 0 && tally.found < settings.min_found_share * tally.expected) {
+    if (tally.expected > 0 && tally.found < settings.min_observed_share * tally.expected) {
       weak.push_back(id);
     } else if (age >= 2 && landmark->observations.size() <= too_few) {
       weak.push_back(id);

@@ -82,7 +82,7 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
     free.erase(free.begin());
   }
   std::sort(fixed.begin(), fixed.end());
-  AdjustSettings adjust{settings.noise, settings.bundle, settings.least_noise,
+  AdjustSettings adjust{settings.noise, settings.bundle, settings.min_noise_ratio,
                         settings.assumed_depth_error, settings.assumed_depth_degrees};
   if (one_camera) adjust.bundle.max_iterations = settings.window_iterations_mono;
   return AdjustKeyFrames(map, free, fixed, camera, adjust, stop);

@@ -95,7 +95,7 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
     }
     commit.RefreshCovisibility(second);
   });
-  AdjustSettings thorough{settings_.noise, settings_.bundle, settings_.least_noise};
+  AdjustSettings thorough{settings_.noise, settings_.bundle, settings_.min_noise_ratio};
   thorough.bundle.max_iterations = 20;
   const Adjustment adjusted = AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr);
   map_.Commit([&](MapCommit& commit) {

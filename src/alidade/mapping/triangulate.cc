@@ -142,7 +142,7 @@ std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
     unknown.push_back(b);
     return true;
   });
-  if (!unknown.empty() && CountOfKnownScale(map, a) < settings.enough_known_scale)
+  if (!unknown.empty() && CountOfKnownScale(map, a) < settings.sufficient_known_scale)
     others.insert(others.end(), unknown.begin(), unknown.end());
   std::vector<std::vector<Partner>> partners(others.size());
   ParallelFor(static_cast<int>(others.size()), [&](int i) {

@@ -25,7 +25,7 @@ bool FitsKeypoint(const Camera& camera, const KeyFrame& keyframe, const Keypoint
 // keyframes, and triangulates those with sufficient parallax and consistent reprojection and scale
 // (Mur-Artal et al. 2015, §VI-C). Each keypoint is used at most once. Monocular: keyframes at a
 // known distance come first, others are used only if necessary (MapperSettings::max_baseline_error,
-// enough_known_scale).
+// sufficient_known_scale).
 std::vector<NewLandmark> TriangulateNew(const MapSnapshot& map, KeyFrameId id,
                                         const std::vector<KeyFrameId>& at_known_distance,
                                         const Camera& camera, const MapperSettings& settings);

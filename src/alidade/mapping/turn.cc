@@ -54,7 +54,7 @@ std::vector<NewLandmark> MapTurn(const MapSnapshot& map, KeyFrameId id,
     count += used[i];
   }
   for (const NewLandmark& landmark : made) used[landmark.second.keypoint] = 1;
-  if (static_cast<double>(count) >= settings.turn_landmarks * settings.match_scale) return {};
+  if (static_cast<double>(count) >= settings.rotation_landmarks * settings.match_scale) return {};
 
   const double depth = MedianDepth(map, a).value_or(1);
   const Se3 T_world_a = a.T_camera_world.Inverse();

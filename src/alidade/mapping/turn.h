@@ -10,8 +10,8 @@
 
 namespace alidade {
 
-// Only for a keyframe with fewer than settings.turn_landmarks (scaled by match_scale), including
-// those in `made`. Matches keypoints with covisible keyframes at too small a baseline to
+// Only for a keyframe with fewer than settings.rotation_landmarks (scaled by match_scale),
+// including those in `made`. Matches keypoints with covisible keyframes at too small a baseline to
 // triangulate (min_baseline_ratio), and assumes the keyframe's median depth. Such landmarks
 // constrain the rotation, but hardly the position, and their scale is unknown. Keypoints used by
 // `made` are skipped.

@@ -12,12 +12,15 @@
 namespace ALIDADE_API alidade {
 
 struct VocabularySettings {
-  int branching = 10;  // children of a node at most
-  int levels = 4;      // of children below the root: at most branching^levels words. 8, 16 or 20
-                       // children and 3 or 5 levels find as many revisits
-  int min_split = 16;  // descriptors of the sample: a node with fewer stays a word
-  int rounds = 3;      // of assigning to centres and taking majorities, for each node
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  // Most children of a node. 8, 16 or 20 of them and 3 or 5 levels find as many revisits.
+  int branching = 10;
+  // At most branching^levels words.
+  int levels = 4;
+  // A node with fewer descriptors of the sample stays a word.
+  int min_split = 16;
+  // Rounds of assigning descriptors to centers and taking majorities, for each node.
+  int rounds = 3;
+  void Check() const;  // throws Error (usage) naming the invalid field
 };
 
 // Immutable after construction.

@@ -14,12 +14,15 @@
 namespace ALIDADE_API alidade {
 
 struct WordMatchSettings {
-  int level = 3;          // of the tree: two keypoints are compared when their words lie below the
-                          // same node there. 2 takes twice as long and finds hardly more
-  int max_distance = 60;  // bits of 256
-  double ratio = 0.9;  // best below this share of the second best below the node (Lowe 2004); there
-                       // are few below one, 0.8 loses as many right ones as wrong
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  // Level of the vocabulary tree. Two keypoints are compared when their words lie below the same
+  // node of it. 2 takes twice as long and finds few more.
+  int level = 3;
+  // Largest descriptor distance, bits of 256.
+  int max_distance = 60;
+  // Highest ratio of best to second-best distance below the node (Lowe 2004). There are few
+  // candidates below one node: 0.8 loses as many correct matches as wrong ones.
+  double ratio = 0.9;
+  void Check() const;  // throws Error (usage) naming the invalid field
 };
 
 struct KeypointWord {

@@ -3,31 +3,72 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 
-void SemiDenseSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("setting semidense.") + what);
+std::span<const Setting> SemiDenseSettings::Table() {
+  using T = SemiDenseSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::enabled>("semidense.enabled", kOnOff, "",
+                                 "Compute semi-dense depth of the keyframes."),
+      PublicSetting<&T::keyframes>("semidense.keyframes", kPositive, "keyframes",
+                                   "Best covisible keyframes searched for each pixel."),
+      PublicSetting<&T::min_gradient>("semidense.min_gradient", kPositive, "grey levels/px",
+                                      "Pixels with a smaller gradient get no depth."),
+      PublicSetting<&T::min_compatible>(
+          "semidense.min_compatible", kPositive, "keyframes",
+          "Keyframes that must agree on a depth; more gives fewer, better points."),
+      PublicSetting<&T::max_waiting>(
+          "semidense.max_waiting", kPositive, "keyframes",
+          "Most keyframes waiting for depth; beyond, the oldest get none."),
+      PublicSetting<&T::voxel>(
+          "semidense.voxel", ZeroOr(AtLeast(1e-6)), "m or map units",
+          "Edge of the cubes that keep one point each in semidense.ply; 0: all points."),
+      ExpertSetting<&T::from_sensor>("semidense.from_sensor", kOnOff, "",
+                                     "RGB-D: take the depth camera's depth instead, to compare."),
+      ExpertSetting<&T::max_edge_angle>(
+          "semidense.max_edge_angle", {.min = 0, .max = 90, .open_min = true}, "degrees",
+          "Largest angle between a pixel's gradient and the epipolar line."),
+      ExpertSetting<&T::max_turn>("semidense.max_turn", {.min = 0, .max = 180, .open_min = true},
+                                  "degrees",
+                                  "Largest difference between the gradient directions of a match."),
+      ExpertSetting<&T::intensity_sigma>("semidense.intensity_sigma", kPositive, "grey levels",
+                                         "Standard deviation of the intensities of a match."),
+      ExpertSetting<&T::max_residual>(
+          "semidense.max_residual", kPositive, "grey levels",
+          "Largest root mean square difference between the surroundings of a match."),
+      ExpertSetting<&T::max_landmark_difference>("semidense.max_landmark_difference", kPositive, "",
+                                                 "A keyframe's depth is kept when three quarters "
+                                                 "of it lie this near to landmarks beside it, "
+                                                 "in relative inverse depth."),
+      ExpertSetting<&T::fuse>("semidense.fuse", kOnOff, "",
+                              "Fuse hypotheses; 0: the one with the smallest variance."),
+      ExpertSetting<&T::smooth>("semidense.smooth", kOnOff, "",
+                                "Smooth depth with the neighbors in the keyframe."),
+      ExpertSetting<&T::cross_check>("semidense.cross_check", kOnOff, "",
+                                     "Check depth against that of other keyframes."),
+      ExpertSetting<&T::delay>("semidense.delay", kNotNegative, "keyframes",
+                               "Keyframes that must follow before one gets its depth."),
+      ExpertSetting<&T::redo_baseline>(
+          "semidense.redo_baseline", kPositive, "",
+          "Depth is computed again when a baseline changed by this share."),
   };
-  require(keyframes >= 1, "keyframes must be at least 1");
-  require(min_gradient > 0, "min_gradient must be positive");
-  require(max_edge_angle > 0 && max_edge_angle <= 90, "max_edge_angle must be between 0 and 90");
-  require(max_turn > 0 && max_turn <= 180, "max_turn must be between 0 and 180");
-  require(gradient_weight > 0, "gradient_weight must be positive");
-  require(intensity_sigma > 0, "intensity_sigma must be positive");
-  require(line_sigma >= 0, "line_sigma must not be negative");
-  require(max_residual > 0, "max_residual must be positive");
-  require(chi2_pair > 0 && chi2_check > 0, "chi2_pair and chi2_check must be positive");
-  require(min_compatible >= 1, "min_compatible must be at least 1");
-  require(keyframes >= min_compatible,
-          "keyframes must be at least min_compatible: else none could ever agree");
-  require(max_landmark_difference > 0, "max_landmark_difference must be positive");
-  require(delay >= 0, "delay must not be negative");
-  require(max_waiting > delay,
-          "max_waiting must be more than delay: none would ever have its turn");
-  require(redo_baseline > 0, "redo_baseline must be positive");
-  require(voxel == 0 || voxel >= 1e-6, "voxel must be 0 or at least 1e-6");
+  return kRows;
+}
+
+void SemiDenseSettings::Check() const {
+  CheckRanges(*this);
+  if (keyframes < min_compatible) {
+    ThrowUsage(
+        "setting semidense.keyframes must be at least semidense.min_compatible: otherwise no "
+        "depth could ever be confirmed");
+  }
+  if (max_waiting <= delay) {
+    ThrowUsage(
+        "setting semidense.max_waiting must exceed expert.semidense.delay: otherwise no "
+        "keyframe would ever get its depth");
+  }
 }
 
 }  // namespace alidade

@@ -5,6 +5,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/median.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 namespace {
@@ -16,12 +17,22 @@ constexpr size_t kFewestIntervals = 3;  // with fewer there is no usual interval
 
 }  // namespace
 
-void ClockSettings::Check() const {
-  if (!(gap_seconds > 0)) ThrowUsage("time.gap_seconds must be positive");
-  if (!(gap_intervals >= 1)) ThrowUsage("time.gap_intervals must be at least 1");
-  if (!(max_latency >= 0)) ThrowUsage("time.max_latency must not be negative");
-  if (agree_frames < 1) ThrowUsage("time.agree_frames must be at least 1");
+std::span<const Setting> ClockSettings::Table() {
+  using T = ClockSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::gap_seconds>(
+          "time.gap_seconds", kPositive, "s",
+          "A longer pause between frames is a gap: the motion before it is not extrapolated."),
+      PublicSetting<&T::max_latency>(
+          "time.max_latency", kNotNegative, "s",
+          "Live and real-time runs skip frames that would be processed later than this."),
+      ExpertSetting<&T::gap_intervals>("time.gap_intervals", AtLeast(1), "",
+                                       "A gap is also longer than this times the usual interval."),
+  };
+  return kRows;
 }
+
+void ClockSettings::Check() const { CheckRanges(*this); }
 
 double CameraClock::UsualInterval() const {
   if (intervals_.size() < kFewestIntervals) return 0;

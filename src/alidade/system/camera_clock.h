@@ -3,23 +3,27 @@
 #pragma once
 
 #include <deque>
+#include <span>
 
 #include "alidade/base/api.h"
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in camera_clock.cc.
 struct ClockSettings {
-  // A pause is a gap when it is longer than both: the motion before says nothing of the place
-  // after.
-  double gap_seconds = 1;     // seconds; in one a hand turns a camera right round
-  double gap_intervals = 10;  // times the usual interval: pictures taken every 2 s have no gaps
-  // Frames in a row that are not newer than the last one taken, but in order among themselves, for
-  // the clock to be believed to have been set back. Fewer are late ones, or doubles.
+  // In one second a hand turns a camera around.
+  double gap_seconds = 1;
+  // Images taken every 2 s have no gaps.
+  double gap_intervals = 10;
+  // Consecutive frames older than the last one taken, but in order, after which the clock counts as
+  // set back. Fewer are late or duplicate frames.
   int agree_frames = 3;
-  // Seconds a frame may be late where a program plays frames at a rate or from a camera (threaded):
-  // then it gives way to a newer one. A quarter of a second still feels live. Slam knows no delay.
+  // A quarter of a second still feels live.
   double max_latency = 0.25;
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 enum class ClockStep {

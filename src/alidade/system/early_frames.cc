@@ -27,11 +27,11 @@ KeyFrameId NearestKeyFrame(const MapSnapshot& map, MapId of, int number) {
 }  // namespace
 
 void EarlyFrames::Keep(const Frame& frame, int index, MapId map) {
-  if (settings_.most == 0) return;
+  if (settings_.max_frames == 0) return;
   auto kept = std::make_shared<Frame>(frame);
   kept->picture = nullptr;
   kept->glance.release();
-  if (static_cast<int>(frames_.size()) >= settings_.most) frames_.pop_front();
+  if (static_cast<int>(frames_.size()) >= settings_.max_frames) frames_.pop_front();
   frames_.push_back({std::move(kept), index, map, !map.valid()});
 }
 
@@ -46,7 +46,7 @@ void EarlyFrames::Begin(MapId map, int number) {
 }
 
 void EarlyFrames::Tracked(const Frame& frame, int index) {
-  if (map_.valid() && frame.number - begun_ < settings_.settle) Keep(frame, index, map_);
+  if (map_.valid() && frame.number - begun_ < settings_.settle_frames) Keep(frame, index, map_);
 }
 
 void EarlyFrames::Release() {
@@ -75,7 +75,7 @@ void EarlyFrames::SetCamera(const Camera& camera) {
 
 void EarlyFrames::Place(int count, int number, Tracker& tracker, const MapSnapshot& map,
                         FrameLog& log) {
-  if (number - begun_ < settings_.settle) return;
+  if (number - begun_ < settings_.settle_frames) return;
   for (; count > 0; --count) {
     const auto last = std::find_if(frames_.rbegin(), frames_.rend(),
                                    [](const Early& early) { return early.map.valid(); });
@@ -100,12 +100,12 @@ void EarlyFrames::PlaceOne(const Early& early, Tracker& tracker, const MapSnapsh
     missed_in_ = early.map;
     missed_ = 0;
   }
-  if (early.before && missed_ >= settings_.most_missed) return;
+  if (early.before && missed_ >= settings_.max_missed_frames) return;
   const TrackEstimate estimate = tracker.PlaceAgain(early.frame, map, near);
   if (early.before) missed_ = estimate.tracked ? 0 : missed_ + 1;
   if (!estimate.tracked) return;
   if (early.before && way_in_ == early.map && Leaps(estimate, map)) {
-    missed_ = settings_.most_missed;
+    missed_ = settings_.max_missed_frames;
     return;
   }
   const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);

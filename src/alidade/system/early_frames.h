@@ -1,8 +1,8 @@
 // Deferred localization with one camera. Buffers frames without a pose (before the start of a map,
-// or lost) and the frames tracked in the first settings.settle frames of a map, whose poses rest on
-// two views. Localizes them again settings.settle frames after the start of the map
-// (docs/development/decisions/0016-deferred-localization.md). Holds at most settings.most frames;
-// used by the driving thread.
+// or lost) and the frames tracked in the first settings.settle_frames frames of a map, whose poses
+// rest on two views. Localizes them again settings.settle_frames frames after the start of the map
+// (docs/development/decisions/0016-deferred-localization.md). Holds at most settings.max_frames
+// frames; used by the driving thread.
 #pragma once
 
 #include <deque>
@@ -37,9 +37,9 @@ class EarlyFrames {
   void SetCamera(const Camera& camera);
 
   // Localizes up to `count` buffered frames, newest first, unless frame `number` is less than
-  // settings.settle frames after the start of the newest map. Of the frames before a start, the
-  // rest is given up after settings.most_missed consecutive failures, or at a position beyond the
-  // motion gate (settings.max_leap).
+  // settings.settle_frames frames after the start of the newest map. Of the frames before a start,
+  // the rest is given up after settings.max_missed_frames consecutive failures, or at a position
+  // beyond the motion gate (settings.max_leap).
   void Place(int count, int number, Tracker& tracker, const MapSnapshot& map, FrameLog& log);
 
  private:

@@ -418,7 +418,7 @@ void FramePipeline::Finish(double limit) {
     UseCamera();
   }
   DropUnknownScale(last);
-  LocalizeEarlierFrames(settings_.early.most, std::numeric_limits<int>::max());
+  LocalizeEarlierFrames(settings_.early.max_frames, std::numeric_limits<int>::max());
 }
 
 }  // namespace alidade

@@ -6,30 +6,68 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
 
-void LensWatchSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("refine.") + what);
+std::span<const Setting> LensWatchSettings::Table() {
+  using T = LensWatchSettings;
+  static constexpr Setting kRows[] = {
+      ExpertSetting<&T::first_keyframes>(
+          "camera.first_keyframes", AtLeast(6), "keyframes",
+          "Keyframes of a map when camera and readout time are first estimated."),
+      ExpertSetting<&T::growth>(
+          "camera.growth", MoreThan(1), "",
+          "They are estimated again when it has this times as many keyframes."),
+      ExpertSetting<&T::focal_sigma>(
+          "camera.focal_sigma", kPositive, "",
+          "Prior standard deviation of the focal length's logarithm; 0.35: 66 degrees may be 49 to "
+          "85."),
+      ExpertSetting<&T::readout_sigma>(
+          "camera.readout_sigma", kNotNegative, "s",
+          "Prior standard deviation of the rolling-shutter readout time about none."),
+      PublicSetting<&T::enabled>(
+          "refine.enabled", kOnOff, "",
+          "One camera: estimate its focal length and distortion while the map "
+          "grows."),
+      ExpertSetting<&T::max_windows>("refine.max_windows", kPositive, "windows",
+                                     "Windows of 12 keyframes used, spread over the map."),
+      ExpertSetting<&T::bend_windows>("refine.bend_windows", kPositive, "windows",
+                                      "With fewer windows, distortion is not estimated."),
+      ExpertSetting<&T::max_sigma>("refine.max_sigma", kPositive, "",
+                                   "Largest relative standard deviation of a focal length that is "
+                                   "used."),
+      ExpertSetting<&T::far_off>(
+          "refine.far_off", MoreThan(1), "",
+          "It is also used when it differs from the current one by more than "
+          "this many standard deviations."),
+      ExpertSetting<&T::min_change>(
+          "refine.min_change", kPositive, "",
+          "A smaller relative change of a pixel's distance from the center "
+          "is not applied."),
+      ExpertSetting<&T::again>("refine.again", AtLeast(1), "keyframes",
+                               "New keyframes after which a change by more than twice that is "
+                               "estimated again."),
+      ExpertSetting<&T::settled>("refine.settled", kNotNegative, "",
+                                 "The estimate has converged when log focal, k1 and k2 change by "
+                                 "less."),
+      ExpertSetting<&T::settled_cost>("refine.settled_cost", kNotNegative, "",
+                                      "And the cost falls by a smaller share."),
+      ExpertSetting<&T::step>("refine.step", kPositiveShare, "",
+                              "The map is moved to another camera in steps of this share."),
+      ExpertSetting<&T::rework>("refine.rework", kPositive, "",
+                                "After a larger change all keyframes are matched again."),
+      ExpertSetting<&T::begin_anew>(
+          "refine.begin_anew", kPositive, "",
+          "After a larger change the map is built again from its frames."),
+      ExpertSetting<&T::keep_frames>("refine.keep_frames", kNotNegative, "frames",
+                                     "Frames kept for that; 0: a map is never built again."),
   };
-  require(first_keyframes >= 6, "first_keyframes must be at least 6");
-  require(growth > 1, "growth must be above 1");
-  require(max_windows >= 1, "max_windows must be positive");
-  require(focal_sigma > 0, "focal_sigma must be positive");
-  require(readout_sigma >= 0, "readout_sigma cannot be negative");
-  require(max_sigma > 0, "max_sigma must be positive");
-  require(far_off > 1, "far_off must be above 1");
-  require(again >= 1, "again must be at least 1");
-  require(settled >= 0 && settled_cost >= 0, "settled and settled_cost cannot be negative");
-  require(min_change > 0, "min_change must be positive");
-  require(bend_windows >= 1, "bend_windows must be positive");
-  require(rework > 0, "rework must be positive");
-  require(begin_anew > 0, "begin_anew must be positive");
-  require(keep_frames >= 0, "keep_frames cannot be negative");
-  require(step > 0 && step <= 1, "step must lie in 0..1");
+  return kRows;
 }
+
+void LensWatchSettings::Check() const { CheckRanges(*this); }
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include "alidade/looping/loop_closer.h"
 #include "alidade/map/adjust.h"
 #include "alidade/mapping/fuse.h"
+#include "alidade/system/setting_names.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {
@@ -22,7 +23,7 @@ SlamSettings SettingsOf(const SavedMap& saved) {
   SlamSettings settings;
   for (const auto& [name, value] : saved.settings) {
     try {
-      settings.Set(name, value);
+      SetByName(settings.Parts(), name, value, OldNames::kAccept);
     } catch (const Error&) {  // a setting of another version
     }
   }

@@ -4,28 +4,54 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/map/camera_estimate.h"
 
 namespace alidade {
 
-void ReadoutSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("readout.") + what);
+std::span<const Setting> ReadoutSettings::Table() {
+  using T = ReadoutSettings;
+  static constexpr Setting kRows[] = {
+      SameSetting<&T::first_keyframes>("camera.first_keyframes", AtLeast(6)),
+      ExpertSetting<&T::prior_sigma>("readout.prior_sigma", kPositive, "s",
+                                     "Prior standard deviation of the readout time about none."),
+      PublicSetting<&T::enabled>("readout.enabled", kOnOff, "",
+                                 "Estimate and correct the rolling-shutter readout time."),
+      ExpertSetting<&T::growth>(
+          "readout.growth", MoreThan(1), "",
+          "It is estimated again when the map has this times as many keyframes."),
+      ExpertSetting<&T::max_windows>("readout.max_windows", kPositive, "windows",
+                                     "Windows of 12 keyframes used, spread over the map."),
+      ExpertSetting<&T::max_iterations>("readout.max_iterations", kPositive, "",
+                                        "Iterations of each window."),
+      ExpertSetting<&T::max_sigma>("readout.max_sigma", kPositive, "s",
+                                   "An estimate with a larger standard deviation is not used."),
+      ExpertSetting<&T::least>("readout.least", kNotNegative, "s",
+                               "A shorter readout time counts as none."),
+      ExpertSetting<&T::longest>("readout.longest", FromTo(0, 0.2), "s",
+                                 "A longer readout time is not used."),
+      ExpertSetting<&T::min_change>("readout.min_change", kNotNegative, "s",
+                                    "A smaller change of the readout time is not applied."),
+      ExpertSetting<&T::min_hint>("readout.min_hint", kPositive, "s",
+                                  "Change of the readout time that frames must indicate."),
+      ExpertSetting<&T::hint_sigma>("readout.hint_sigma", kPositive, "s",
+                                    "Largest standard deviation of that change."),
+      ExpertSetting<&T::hint_explained>("readout.hint_explained", kZeroToOne, "",
+                                        "Share of the squared residuals that the change removes."),
+      ExpertSetting<&T::hint_frames>("readout.hint_frames", kPositive, "frames",
+                                     "Frames that indicate it."),
+      ExpertSetting<&T::hint_growth>("readout.hint_growth", kPositive, "",
+                                     "Factor on the change: the map hides half of it."),
+      ExpertSetting<&T::hints_upright>("readout.hints_upright", kPositive, "",
+                                       "Consecutive indications that upright images need."),
   };
-  require(first_keyframes >= 6, "first_keyframes must be at least 6");
-  require(growth > 1, "growth must be above 1");
-  require(max_iterations >= 1, "max_iterations must be positive");
-  require(max_windows >= 1, "max_windows must be positive");
-  require(prior_sigma > 0, "prior_sigma must be positive");
-  require(min_hint > 0 && hint_sigma > 0, "min_hint and hint_sigma must be positive");
-  require(hint_explained >= 0 && hint_explained <= 1, "hint_explained must lie in 0..1");
-  require(hint_frames >= 1, "hint_frames must be at least 1");
-  require(hint_growth > 0, "hint_growth must be positive");
-  require(hints_upright >= 1, "hints_upright must be at least 1");
-  require(max_sigma > 0, "max_sigma must be positive");
-  require(least >= 0, "least cannot be negative");
-  require(longest > least && longest <= 0.2, "longest must lie between least and 0.2");
-  require(min_change >= 0, "min_change cannot be negative");
+  return kRows;
+}
+
+void ReadoutSettings::Check() const {
+  CheckRanges(*this);
+  if (longest <= least)
+    ThrowUsage("setting expert.readout.longest must exceed expert.readout.least");
 }
 
 ReadoutWatch::ReadoutWatch(const Camera& camera, const MeasurementNoise& noise,

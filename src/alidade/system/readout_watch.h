@@ -13,32 +13,34 @@
 
 namespace ALIDADE_API alidade {
 
-// For cameras whose readout time is not given (`readout` in the camera's file). Rows that are read
-// later are seen from a later pose: ignoring 30 ms costs half of the accuracy of hand-held
-// recordings (docs/development/decisions/0007-rolling-shutter.md).
+struct Setting;
+
+// Range, unit and meaning: Table() in readout_watch.cc.
 struct ReadoutSettings {
   bool enabled = true;
-  int first_keyframes = 10;   // of a map, when it is asked first …
-  double growth = 1.4;        // … and again when it has so many times as many
-  int max_windows = 8;        // stretches of 12 keyframes that are asked, spread over the map
-  double prior_sigma = 0.02;  // seconds: what is believed of it beforehand, about none
-  int max_iterations = 6;     // of those adjustments: the map is nearly where they end
-  double max_sigma = 0.002;   // seconds; what is told worse is not taken …
-  double least = 0.004;       // … nor less than this, seconds: it is none, …
-  double longest = 0.045;     // … nor more: images come each 33 ms as a rule
-  double min_change = 0.001;  // seconds, of what is taken already
-  // Maps agree with what they were made with. So frames are asked, too: where they tell of a change
-  // of so many seconds at least, to so many at most (one sigma, independent errors), …
-  double min_hint = 0.003, hint_sigma = 0.0004;
-  // … and the change does away with such a share of the squares of their residuals, …
+  int first_keyframes = 10;
+  double growth = 1.4;
+  int max_windows = 8;
+  // Phones and webcams take 10 to 30 ms, others none.
+  double prior_sigma = 0.02;
+  // The map is close to where they converge.
+  int max_iterations = 6;
+  double max_sigma = 0.002;
+  double least = 0.004;
+  // Images usually come every 33 ms.
+  double longest = 0.045;
+  double min_change = 0.001;
+  // A map agrees with the readout time it was made with, so frames are asked, too.
+  double min_hint = 0.003;
+  double hint_sigma = 0.0004;
   double hint_explained = 0.01;
-  int hint_frames = 15;  // … so many of them at least, …
-  // … and of upright pictures so often on end, the same way. Those are read across: where the
-  // camera turns about the upright axis that stretches them sideways, as a map does whose scale
-  // drifts.
+  int hint_frames = 15;
+  // Upright images are read across: rotation about the vertical axis stretches them sideways, as a
+  // drift of scale stretches a map.
   int hints_upright = 2;
-  double hint_growth = 2;  // … so many times that is taken, since half of it the map hides
-  void Check() const;      // throws Error (usage) naming the field that cannot be
+  double hint_growth = 2;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 class ReadoutWatch {

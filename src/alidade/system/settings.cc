@@ -1,56 +1,38 @@
 #include "alidade/system/settings.h"
 
-#include <algorithm>
-#include <type_traits>
-
 #include "alidade/base/error.h"
-#include "alidade/base/nearest_name.h"
-#include "alidade/system/setting_text.h"
-#include "alidade/system/settings_fields.h"
+#include "alidade/system/setting_names.h"
 
 namespace alidade {
-namespace {
 
-template <typename Value>
-Value Parse(const std::string& name, const std::string& text) {
-  if constexpr (std::is_same_v<Value, DynamicsMode>) {
-    return DynamicsModeNamed("setting " + name, text);
-  } else {
-    return ParseSetting<Value>(name, text);
-  }
+std::vector<SettingsPart> SlamSettings::Parts() {
+  return {PartOf(*this),
+          PartOf(tracker),
+          PartOf(tracker.extractor),
+          PartOf(tracker.motion),
+          PartOf(mapper),
+          PartOf(loop),
+          PartOf(loop.reach),
+          PartOf(places),
+          PartOf(start),
+          PartOf(start.two_view),
+          PartOf(early),
+          PartOf(trajectory),
+          PartOf(time),
+          PartOf(semidense),
+          PartOf(dynamics),
+          PartOf(dynamics.detector),
+          PartOf(refine),
+          PartOf(readout)};
 }
-
-template <typename Value>
-std::string Format(const Value& value) {
-  if constexpr (std::is_same_v<Value, DynamicsMode>) {
-    return NameOf(value);
-  } else {
-    return FormatSetting(value);
-  }
-}
-
-}  // namespace
 
 void SlamSettings::Set(const std::string& name, const std::string& value) {
-  bool known = false;
-  VisitFields(*this, [&](const char* field, auto& member) {
-    if (name != field) return;
-    known = true;
-    member = Parse<std::decay_t<decltype(member)>>(name, value);
-  });
-  if (known) return;
-  std::vector<std::string> names;
-  VisitFields(*this, [&](const char* field, const auto&) { names.push_back(field); });
-  ThrowUsage("unknown setting '" + name + "'" + DidYouMean(name, names));
+  SetByName(Parts(), name, value);
 }
 
 std::vector<std::pair<std::string, std::string>> SlamSettings::All() const {
-  std::vector<std::pair<std::string, std::string>> all;
-  VisitFields(*this, [&](const char* field, const auto& member) {
-    all.push_back({field, Format(member)});
-  });
-  std::sort(all.begin(), all.end());
-  return all;
+  SlamSettings copy = *this;
+  return AllByName(copy.Parts());
 }
 
 void SlamSettings::ApplyProfile(const std::string& profile) {
@@ -82,23 +64,65 @@ void SlamSettings::FindCamera() {
   refine.enabled = true;
 }
 
-void TrajectorySettings::Check() const {
-  if (!(keep_seconds >= 0)) ThrowUsage("trajectory.keep_seconds must not be negative");
+std::span<const Setting> TrajectorySettings::Table() {
+  static constexpr Setting kRows[] = {
+      PublicSetting<&TrajectorySettings::keep_seconds>(
+          "trajectory.keep_seconds", kNotNegative, "s",
+          "Poses of older frames are discarded; 0: all are kept."),
+  };
+  return kRows;
+}
+
+void TrajectorySettings::Check() const { CheckRanges(*this); }
+
+std::span<const Setting> EarlyFrameSettings::Table() {
+  using T = EarlyFrameSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::max_frames>(
+          "early.max_frames", kNotNegative, "frames",
+          "One camera: frames before the start of a map that are kept to be localized later; 0: "
+          "none."),
+      ExpertSetting<&T::settle_frames>("early.settle_frames", kNotNegative, "frames",
+                                       "They are localized this many frames after the start."),
+      ExpertSetting<&T::max_missed_frames>("early.max_missed_frames", kPositive, "frames",
+                                           "After as many consecutive failures the earlier frames "
+                                           "are given up."),
+      ExpertSetting<&T::max_leap>("early.max_leap", kPositive, "",
+                                  "A frame farther from the extrapolated path than this times the "
+                                  "expected motion is dropped, "
+                                  "with those before it."),
+      ExpertSetting<&T::min_leap>("early.min_leap", kNotNegative, "",
+                                  "A distance below this share of the median depth is no jump."),
+  };
+  return kRows;
 }
 
 void EarlyFrameSettings::Check() const {
-  if (most < 0 || settle < 0 || most_missed < 1)
-    ThrowUsage("early.most and early.settle must not be negative, early.most_missed not below 1");
-  if (!(max_leap > 0)) ThrowUsage("early.max_leap must be positive");
-  if (!(min_leap >= 0)) ThrowUsage("early.min_leap must not be negative");
-  if (!(leap_seconds > 0)) ThrowUsage("early.leap_seconds must be positive");
+  CheckRanges(*this);
+  if (!(leap_seconds > 0)) ThrowUsage("EarlyFrameSettings::leap_seconds must be positive");
+}
+
+std::span<const Setting> SlamSettings::Table() {
+  using T = SlamSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::image_width>("image_width", ZeroOr(AtLeast(100)), "px",
+                                     "Images are scaled to this width; 0: by max_image_side only."),
+      PublicSetting<&T::max_image_side>("max_image_side", ZeroOr(AtLeast(100)), "px",
+                                        "Larger images are downscaled to this side; 0: never."),
+      PublicSetting<&T::seed>("seed", kNotNegative, "", "Seed of every random choice."),
+      PublicSetting<&T::new_map_seconds>("new_map_seconds", kNotNegative, "s",
+                                         "A lost camera starts a new map only after this time."),
+      PublicSetting<&T::new_map_frames>(
+          "new_map_frames", kPositive, "frames",
+          "A lost camera starts a new map only after as many frames with enough keypoints."),
+      PublicSetting<&T::min_map_keyframes>("min_map_keyframes", kNotNegative, "keyframes",
+                                           "A map left with fewer is dropped."),
+  };
+  return kRows;
 }
 
 void SlamSettings::Check() const {
-  if (image_width != 0 && image_width < 100)
-    ThrowUsage("image_width must be 0 or at least 100 pixels");
-  if (max_image_side != 0 && max_image_side < 100)
-    ThrowUsage("max_image_side must be 0 or at least 100 pixels");
+  CheckRanges(*this);
   tracker.Check();
   mapper.Check();
   loop.Check();
@@ -107,15 +131,12 @@ void SlamSettings::Check() const {
   dynamics.Check();
   trajectory.Check();
   time.Check();
-  if (!(new_map_seconds >= 0) || new_map_frames < 1)
-    ThrowUsage("new_map_seconds must not be negative, new_map_frames must be at least 1");
-  if (min_map_keyframes < 0) ThrowUsage("min_map_keyframes must not be negative");
   start.Check();
   early.Check();
   readout.Check();
   refine.Check();
   if (refine.enabled && sensor != Sensor::kMono)
-    ThrowUsage("refine.enabled is for one camera (mono)");
+    ThrowUsage("setting refine.enabled is for one camera (mono)");
 }
 
 }  // namespace alidade

@@ -1,12 +1,13 @@
-// All settings of the system in one place. Each is a field; the name in YAML and after --set is its
-// path here, e.g. tracker.extractor.features.
+// All settings of the system in one place.
 #pragma once
 
-#include <functional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/base/api.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/dynamics/settings.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/looping/settings.h"
@@ -21,43 +22,40 @@
 
 namespace ALIDADE_API alidade {
 
+// Range, unit and meaning of the fields: the Table() of each struct.
 struct TrajectorySettings {
-  // Frames older than this are let go, a few hundred at a time: what a program that runs for days
-  // has no use for. 0: every frame is kept, at 16 MB an hour (30 frames per second).
+  // Frames take 16 MB an hour at 30 per second.
   double keep_seconds = 0;
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
-// Frames that one camera saw before its map could tell where they were, and in its first moments,
-// are placed in it later (EarlyFrames).
+// Deferred localization (EarlyFrames): frames before the start of a monocular map, and its first
+// ones, are localized in it later.
 struct EarlyFrameSettings {
-  // Frames kept for it, some 80 kB each; 0: none is placed later. 13 s at 30 Hz, 7 at 60: a drone
-  // far from all it sees starts after 6.5 s.
-  int most = 400;
-  int settle = 60;  // frames after the start, from when on one is placed with each tracked frame
-  int most_missed = 10;  // on end that are not recognised, going back: the rest is not tried
-  // Cameras do not leap: a frame before the start that lies farther from where those after it lead
-  // than this times (the way from the next one, or that of leap_seconds, + 3 standard deviations
-  // of its position) is not placed, nor are those before it. What is seen of a map's edge alone can
-  // be all at a wrong depth, and agree. Measured in turns: right .05 to 1.15, the first one that is
-  // wrong 1.53 to 2.5.
+  // 13 s at 30 Hz; some 80 kB each. A drone far from everything it sees starts after 6.5 s.
+  int max_frames = 400;
+  int settle_frames = 60;
+  int max_missed_frames = 10;
+  // Landmarks at the edge of a map can share one depth error and so agree on a wrong pose. Correct
+  // jumps are 0.05 to 1.15, wrong ones 1.53 and more (decision 0016-deferred-localization).
   double max_leap = 1.4;
-  // Of the median depth: less is none. Measured: a video at 60 Hz, shaken .016, wrong .023 to .03.
+  // Correct ones have 0.016, wrong ones 0.023 and more.
   double min_leap = 0.02;
-  // Speed is told over so long at least: phones' videos show each second picture twice.
+  // Shortest time, in seconds, over which speed is measured: videos of phones repeat images.
   double leap_seconds = 0.05;
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct SlamSettings {
   Sensor sensor = Sensor::kMono;
   bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
-  // Pixels; images are scaled down to it. Phone: 400. 0: as they come, but no side longer than
-  // max_image_side (0: any): 1920x1080 is worked on in 22 ms on two cores, 4K in 90, and 1000
-  // features are no better placed there. A width that is given is taken, however large.
+  // 1920 x 1080 takes 22 ms on two cores, 4K takes 90 ms, and 1000 features are no better placed
+  // there (decision 0027-image-size-limit).
   int image_width = 0;
   int max_image_side = 1920;
-  uint64_t seed = 1;  // of every random choice
+  uint64_t seed = 1;
   TrackerSettings tracker;
   MapperSettings mapper;
   MonoStartSettings start;
@@ -71,11 +69,10 @@ struct SlamSettings {
   TrajectorySettings trajectory;
   ClockSettings time;
   bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
-  // When lost, a new map is started only after so long and so many frames that showed something:
-  // with depth it could start at once, and would always be quicker than recognising a place.
+  // With depth a new map could start at once, always sooner than a place is recognized.
   double new_map_seconds = 1.0;
   int new_map_frames = 15;
-  int min_map_keyframes = 5;  // a map left with fewer is forgotten
+  int min_map_keyframes = 5;
 
   // "desktop": 1000 features at full size; "phone": 400 pixels wide, 500 features, match counts ×
   // 0.8, semi-dense depth from 5 keyframes. Throws Error (usage) for another name.
@@ -86,16 +83,17 @@ struct SlamSettings {
   // That, and one camera's lens is found while the map grows. A rolling shutter is looked for with
   // the lens, not on its own: a wrong lens may be taken for it.
   void FindCamera();
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();  // of its own fields; Parts() has those of all structs
+  void Check() const;                       // throws Error (usage) naming the invalid setting
   // Whether the colours of images are of use.
   bool WantsColor() const {
     return (semidense.enabled && !localise) || dynamics.mode == DynamicsMode::kFull;
   }
 
-  // Sets one field from text. Throws Error (usage) for an unknown name, with the nearest known one,
-  // or a value that is not of its type.
+  // Every struct with its table.
+  std::vector<SettingsPart> Parts();
+  // As SetByName() and AllByName() (system/setting_names.h).
   void Set(const std::string& name, const std::string& value);
-  // Every field as (name, value), in order of name.
   std::vector<std::pair<std::string, std::string>> All() const;
 };
 

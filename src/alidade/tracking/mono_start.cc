@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/median.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/features/glance.h"
 
 namespace alidade {
@@ -31,27 +32,49 @@ struct Extent {
 
 }  // namespace
 
-void MonoStartSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("start.") + what);
+std::span<const Setting> MonoStartSettings::Table() {
+  using T = MonoStartSettings;
+  static constexpr Setting kRows[] = {
+      SameSetting<&T::match_scale>("match_scale", {.min = 0, .max = 4, .open_min = true}),
+      PublicSetting<&T::min_depth_landmarks>("start.min_depth_landmarks", AtLeast(20), "landmarks",
+                                             "Stereo and RGB-D: landmarks with depth that the "
+                                             "first frame must have, per 1000 features."),
+      PublicSetting<&T::min_matches>(
+          "start.min_matches", AtLeast(20), "matches",
+          "One camera: with fewer matches a reference frame is given up, per 1000 features."),
+      PublicSetting<&T::trial_frames>("start.trial_frames", kPositive, "frames",
+                                      "One camera: frames that must confirm a new map."),
+      ExpertSetting<&T::trial_share>(
+          "start.trial_share", kZeroToOne, "",
+          "Share of the landmarks expected in view that must be tracked in each of them."),
+      ExpertSetting<&T::reference_gap>("start.reference_gap", kPositive, "frames",
+                                       "Frames between two reference frames."),
+      ExpertSetting<&T::window>(
+          "start.window", kPositiveShare, "",
+          "Largest motion of a keypoint between two frames, as a share of the image width."),
+      ExpertSetting<&T::max_still_share>(
+          "start.max_still_share", kPositiveShare, "",
+          "No start when more than this share of the matches does not move: the camera is "
+          "stationary."),
+      ExpertSetting<&T::max_still_picture>(
+          "start.max_still_picture", kPositive, "",
+          "No start when more than this share of the image edges does not move."),
+      ExpertSetting<&T::min_still_motion>("start.min_still_motion", kPositive, "",
+                                          "Motion of the landmarks, as a share of the image width, "
+                                          "after which an unconfirmed map is "
+                                          "tested for a stationary camera."),
+      ExpertSetting<&T::min_still_frames>(
+          "start.min_still_frames", kPositive, "frames",
+          "Frames that must show a stationary camera for such a map to be dropped."),
   };
+  return kRows;
+}
+
+void MonoStartSettings::Check() const {
+  CheckRanges(*this);
   two_view.Check();
-  require(min_depth_landmarks >= 20, "min_depth_landmarks must be at least 20");
-  require(min_matches >= 20, "min_matches must be at least 20");
-  require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
-  require(references >= 1 && reference_gap >= 1, "references and reference_gap must be positive");
-  require(window > 0 && window <= 1, "window must lie in (0, 1]");
-  require(min_motion >= 0 && min_motion < window, "min_motion must lie in [0, window)");
-  require(still_pixels > 0, "still_pixels must be positive");
-  require(min_still_peak >= 1, "min_still_peak must be at least 1");
-  require(max_still_share > 0 && max_still_share <= 1, "max_still_share must lie in (0, 1]");
-  require(max_still_picture > 0, "max_still_picture must be positive");
-  require(min_still_area >= 0, "min_still_area must not be negative");
-  require(still_memory >= 0, "still_memory must not be negative");
-  require(min_still_motion > 0, "min_still_motion must be positive");
-  require(min_still_frames >= 1, "min_still_frames must be at least 1");
-  require(trial_frames >= 1, "trial_frames must be at least 1");
-  require(trial_share >= 0 && trial_share <= 1, "trial_share must lie in [0, 1]");
+  if (!(min_motion >= 0 && min_motion < window))
+    ThrowUsage("setting expert.start.window must exceed MonoStartSettings::min_motion");
 }
 
 MonoStart::Step MonoStart::StepOf(TwoViewFailure failure) {

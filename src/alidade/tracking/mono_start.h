@@ -16,47 +16,44 @@
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in mono_start.cc.
 struct MonoStartSettings {
   TwoViewSettings two_view;
-  // With depth: landmarks the first frame must give, of 1000 features; ten times what a frame must
-  // find again (tracker.min_tracked).
   int min_depth_landmarks = 200;
-  int min_matches = 100;  // for 1000 features; with the reference frame, below which it is given up
-  double match_scale = 1.0;  // multiplies counts of matches; phone 0.8
-  int references = 4;        // kept at a time, at most
-  int reference_gap = 6;     // frames between them
-  double window = 0.16;      // of the image's width: how far a keypoint may move between two frames
-  // Of the image's width: median motion below which a pair is not tried. Only saves time: what a
-  // pair can tell is for the two views to say.
+  int min_matches = 100;
+  double match_scale = 1.0;
+  // Reference frames kept at a time.
+  int references = 4;
+  int reference_gap = 6;
+  double window = 0.16;
+  // Share of the image width: a pair with less median motion is not tried, which saves time.
   double min_motion = 0.0075;
-  // A camera that stands still while something moves before it takes the thing for a place it moves
-  // past: two views cannot tell. But the rest of the picture stays where it was to a fraction of a
-  // pixel, which a moving camera shows only by chance. Refused when at least `max_still_share` of
-  // the matches moved by less than `still_pixels`, `min_still_peak` times as many as by one to two
-  // times that (around a chance meeting of motions there are as many or more: 0.2 to 0.8 in videos;
-  // a still camera has 1.3 before slow hands in a small picture, 4 to 20 else), and these lie about
-  // in at least `min_still_area` of the area of the others: what is fixed to the camera (a bonnet,
-  // a caption) is in one place.
+  // Behind a moving object a stationary camera must not start a map: two views cannot tell the two
+  // apart, but the background stays in place within a fraction of a pixel. A pair is refused when
+  // at least max_still_share of the matches moved by less than still_pixels (pixels),
+  // min_still_peak times as many as by one to two times that, and these cover at least
+  // min_still_area of the area of the others: what is fixed to the camera (a hood, a caption) is in
+  // one place. The peak is 0.2 to 0.8 in videos of moving cameras, 1.3 to 20 with a stationary one
+  // (decision 0017-stationary-camera).
   double still_pixels = 1.0;
   double max_still_share = 0.1;
   double min_still_peak = 1.2;
   double min_still_area = 0.4;
-  // Keypoints may all be on the thing. Refused, too, when this share of the picture's edges stays
-  // in each direction (StillShare() in features/glance.h): where a camera starts to move 0 to 0.09
-  // do, before a camera on a tripod 0.15 to 0.6.
+  // All keypoints may lie on the object. 0 to 0.09 of the image edges stay in place where a camera
+  // starts to move, 0.15 to 0.6 with a camera on a tripod (StillShare() in features/glance.h).
   double max_still_picture = 0.13;
-  // What moves hides the rest now and then: after a pair was refused for that, none of the next so
-  // many frames begins a map.
+  // Frames after such a refusal in which no map starts: the object sometimes covers the background.
   int still_memory = 10;
-  // The same is asked of each frame of a young map and the last one before it since which landmarks
-  // have moved by so much of the image's width (median): it is given up when so many of these
-  // frames, and more than half of them, show the picture of that one again; at a recording's end
-  // a third of so many do.
+  // An unconfirmed map is tested in the same way against the last frame since which landmarks have
+  // moved by min_still_motion. At the end of a recording a third of min_still_frames suffices.
   double min_still_motion = 0.0075;
   int min_still_frames = 12;
-  int trial_frames = 5;      // frames that must confirm the map before it is believed
-  double trial_share = 0.3;  // of its points that should be in sight, tracked in each of them
-  void Check() const;        // throws Error (usage) naming the field that cannot be
+  int trial_frames = 5;
+  double trial_share = 0.3;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct MonoStartResult {

@@ -3,12 +3,22 @@
 #include <algorithm>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 
+std::span<const Setting> MotionSettings::Table() {
+  static constexpr Setting kRows[] = {
+      ExpertSetting<&MotionSettings::max_extrapolation>(
+          "tracker.max_extrapolation", kPositive, "s",
+          "Longest time for which a motion is assumed to continue."),
+  };
+  return kRows;
+}
+
 void MotionSettings::Check() const {
-  if (!(max_extrapolation > 0)) ThrowUsage("tracker.max_extrapolation must be positive");
-  if (!(jitter >= 0)) ThrowUsage("tracker.time_jitter must not be negative");
+  CheckRanges(*this);
+  if (!(jitter >= 0)) ThrowUsage("MotionSettings::jitter must not be negative");
 }
 
 void Motion::Add(const Se3& T_now_last, double seconds) {

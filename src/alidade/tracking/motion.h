@@ -2,21 +2,24 @@
 #pragma once
 
 #include <deque>
+#include <span>
 
 #include "alidade/base/api.h"
 #include "alidade/geometry/se3.h"
 
 namespace ALIDADE_API alidade {
 
+struct Setting;
+
+// Range, unit and meaning of the named fields: Table() in motion.cc.
 struct MotionSettings {
-  // Seconds a motion is taken to go on at most: nobody moves a camera evenly for longer. (Frames
-  // that are further apart as a rule: for one frame.)
+  // Hands do not move a camera evenly for longer. Where frames are further apart: one interval.
   double max_extrapolation = 0.5;
-  // Intervals that differ by less than this share count as equal: stamps are given by computers,
-  // which are late now and then, exposures by cameras, which are not (TUM fr1: 27 to 40 ms). A
-  // frame dropped doubles it.
+  // Intervals whose ratio is below 1 + jitter count as equal: stamps given by a computer are
+  // sometimes late, exposures are not. A dropped frame doubles the interval.
   double jitter = 0.5;
-  void Check() const;  // throws Error (usage) naming the field that cannot be
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 class Motion {

@@ -1,48 +1,100 @@
 #include "alidade/tracking/settings.h"
 
-#include <string>
-
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 
-void TrackerSettings::Check() const {
-  const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("tracker.") + what);
+std::span<const Setting> TrackerSettings::Table() {
+  using T = TrackerSettings;
+  using N = MeasurementNoise;
+  static constexpr Setting kRows[] = {
+      ExpertSetting<&T::match_scale>(
+          "match_scale", {.min = 0, .max = 4, .open_min = true}, "",
+          "Multiplies the required counts of matches, which are given for 1000 features."),
+      ExpertSetting<&T::noise, &N::sigma_px>(
+          "noise.tracking_sigma", kPositive, "px",
+          "Standard deviation of a keypoint on level 0 in pose estimation."),
+      SameSetting<&T::noise, &N::sigma_right_px>("noise.disparity_sigma", kPositive),
+      PublicSetting<&T::min_tracked>("tracker.min_tracked", AtLeast(6), "inliers",
+                                     "A frame with fewer landmarks of the local map is lost."),
+      PublicSetting<&T::predict_seconds>(
+          "tracker.predict_seconds", kNotNegative, "s",
+          "How long the pose of a lost camera is still predicted from its motion."),
+      PublicSetting<&T::min_relocalized>(
+          "tracker.min_relocalized", AtLeast(10), "inliers",
+          "Landmarks that must fit before a lost camera counts as relocalized."),
+      PublicSetting<&T::depth_range>("tracker.depth_range", kPositive, "m",
+                                     "Readings of a depth camera beyond this are ignored."),
+      PublicSetting<&T::keyframe_share_mono>("tracker.keyframe_share_mono", kPositive, "",
+                                             "One camera: a new keyframe when inliers fall below "
+                                             "this share of their maximum since the "
+                                             "last one."),
+      PublicSetting<&T::keyframe_share_depth>(
+          "tracker.keyframe_share_depth", kPositive, "",
+          "Stereo and RGB-D: a new keyframe when inliers fall below this share of their maximum "
+          "since the last one."),
+      PublicSetting<&T::min_keyframe_gap>("tracker.min_keyframe_gap", kNotNegative, "frames",
+                                          "Fewest frames between two keyframes."),
+      PublicSetting<&T::max_keyframe_gap>("tracker.max_keyframe_gap", kPositive, "frames",
+                                          "Most frames between two keyframes."),
+      ExpertSetting<&T::min_predicted>(
+          "tracker.min_predicted", kPositive, "matches",
+          "With fewer matches with the last frame, the search radius is doubled."),
+      ExpertSetting<&T::min_after_prediction>(
+          "tracker.min_after_prediction", AtLeast(4), "inliers",
+          "With fewer inliers after the prediction, the reference keyframe is tried."),
+      ExpertSetting<&T::min_inlier_share>(
+          "tracker.min_inlier_share", kShareBelowOne, "",
+          "A frame is lost below this ratio of inliers to landmarks expected in view."),
+      ExpertSetting<&T::cut_inlier_share>(
+          "tracker.cut_inlier_share", kShareBelowOne, "",
+          "Below this share of the last frame's inliers, the pose must pass the test of a "
+          "relocalization: the recording may have been cut."),
+      ExpertSetting<&T::unconfirmed_frames>(
+          "tracker.unconfirmed_frames", kNotNegative, "frames",
+          "Stereo and RGB-D: frames after a start or relocalization whose predicted motion is "
+          "compared with a search over the whole image."),
+      ExpertSetting<&T::max_motion_age>(
+          "tracker.max_motion_age", kNotNegative, "s",
+          "After a longer time without a pose, the predicted motion is not trusted."),
+      ExpertSetting<&T::min_late_agreement>(
+          "tracker.min_late_agreement", kShareBelowOne, "",
+          "Mean fit of the matches after such a time: 1 without error, 0 at the 95 % gate."),
+      ExpertSetting<&T::min_agreement>("tracker.min_agreement", kShareBelowOne, "",
+                                       "Share of a frame's matches that must fit one pose."),
+      ExpertSetting<&T::max_distance>(
+          "tracker.max_distance", FromTo(1, 256), "bits",
+          "Largest descriptor distance of a match when a pose guides the search."),
+      ExpertSetting<&T::last_frame_radius>("tracker.last_frame_radius", kPositive, "px",
+                                           "One camera: search radius on level 0 around the "
+                                           "position predicted from the last frame."),
+      ExpertSetting<&T::last_frame_radius_depth>("tracker.last_frame_radius_depth", kPositive, "px",
+                                                 "The same for stereo and RGB-D."),
+      ExpertSetting<&T::local_radius>(
+          "tracker.local_radius", kPositive, "px",
+          "One camera: search radius on level 0 around a projected landmark."),
+      ExpertSetting<&T::local_radius_depth>("tracker.local_radius_depth", kPositive, "px",
+                                            "The same for stereo and RGB-D."),
+      ExpertSetting<&T::local_keyframes>("tracker.local_keyframes", kPositive, "keyframes",
+                                         "Most keyframes in the local map."),
+      ExpertSetting<&T::min_relocalized_share>(
+          "tracker.min_relocalized_share", kZeroToOne, "",
+          "Share of the landmarks expected in view that a relocalization must find."),
+      ExpertSetting<&T::min_relocalized_spread>(
+          "tracker.min_relocalized_spread", {.min = 0, .max = 0.5, .open_max = true}, "",
+          "Root mean square distance of these landmarks from their center, as a share of the image "
+          "diagonal."),
   };
+  return kRows;
+}
+
+void TrackerSettings::Check() const {
   extractor.Check();
   motion.Check();
-  require(match_scale > 0 && match_scale <= 4, "match_scale must lie in (0, 4]");
-  require(min_predicted > 0, "min_predicted must be positive");
-  require(min_after_prediction >= 4, "min_after_prediction must be at least 4");
-  require(min_tracked >= 6, "min_tracked must be at least 6");
-  require(min_found_share >= 0 && min_found_share < 1, "min_found_share must lie in [0, 1)");
-  require(min_relocalised_spread >= 0 && min_relocalised_spread < 0.5,
-          "min_relocalised_spread must lie in [0, 0.5)");
-  require(torn_share >= 0 && torn_share < 1, "torn_share must lie in [0, 1)");
-  require(unproven_frames >= 0, "unproven_frames cannot be negative");
-  require(unproven_seconds >= 0, "unproven_seconds cannot be negative");
-  require(min_late_agreement >= 0 && min_late_agreement < 1,
-          "min_late_agreement must lie in [0, 1)");
-  require(min_agreement >= 0 && min_agreement < 1, "min_agreement must lie in [0, 1)");
-  require(good_agreement >= 0 && good_agreement <= 1, "good_agreement must lie in [0, 1]");
-  require(bad_frame_sigma >= 1, "bad_frame_sigma must be at least 1");
-  require(max_distance > 0 && max_distance <= 256, "max_distance must lie in 1..256 bits");
-  require(local_ratio > 0 && local_ratio <= 1, "local_ratio must lie in (0, 1]");
-  require(last_frame_radius > 0 && last_frame_radius_depth > 0 && local_radius > 0 &&
-              local_radius_depth > 0,
-          "radii must be positive");
-  require(relocalise_radius > 0, "relocalise_radius must be positive");
-  require(min_relocalised >= 10, "min_relocalised must be at least 10");
-  require(min_relocalised_share >= 0 && min_relocalised_share <= 1,
-          "min_relocalised_share must lie in [0, 1]");
-  require(local_keyframes > 0, "local_keyframes must be positive");
-  require(predict_seconds >= 0, "predict_seconds cannot be negative");
-  require(depth_range > 0, "depth_range must be positive");
-  require(noise.sigma_px > 0 && noise.sigma_right_px > 0, "noise must be positive");
-  require(keyframe_min_gap >= 0 && keyframe_max_gap > keyframe_min_gap,
-          "keyframe_max_gap must exceed keyframe_min_gap");
-  require(keyframe_share_mono > 0 && keyframe_share_depth > 0, "keyframe_share_* must be positive");
+  CheckRanges(*this);
+  if (max_keyframe_gap <= min_keyframe_gap)
+    ThrowUsage("setting tracker.max_keyframe_gap must exceed tracker.min_keyframe_gap");
 }
 
 }  // namespace alidade

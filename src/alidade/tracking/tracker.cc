@@ -148,9 +148,9 @@ TrackEstimate Tracker::PlaceAgain(const std::shared_ptr<const Frame>& frame, con
 // hence the minimum spread.
 bool Tracker::IsCertain(const TrackEstimate& estimate) const {
   const auto expected = static_cast<double>(estimate.sightings.size());
-  return estimate.placed.inliers >= Scaled(settings_.min_relocalised) &&
-         estimate.placed.inliers >= settings_.min_relocalised_share * expected &&
-         Spread(estimate.placed) >= settings_.min_relocalised_spread;
+  return estimate.placed.inliers >= Scaled(settings_.min_relocalized) &&
+         estimate.placed.inliers >= settings_.min_relocalized_share * expected &&
+         Spread(estimate.placed) >= settings_.min_relocalized_spread;
 }
 
 // Root mean square distance of the matched keypoints from their mean, relative to the image
@@ -247,10 +247,10 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
   // A wrong pose matches only few of the landmarks that it predicts to be visible.
   estimate.tracked =
       guess.inliers >= Scaled(settings_.min_tracked) &&
-      guess.inliers >= settings_.min_found_share * static_cast<double>(estimate.sightings.size());
+      guess.inliers >= settings_.min_inlier_share * static_cast<double>(estimate.sightings.size());
   // After an abrupt change of view (a cut), chance matches can be as many as in the hardest valid
   // frame: apply the relocalization test.
-  const bool torn = motion_.known() && guess.inliers < settings_.torn_share * last_.inliers;
+  const bool torn = motion_.known() && guess.inliers < settings_.cut_inlier_share * last_.inliers;
   estimate.placed = std::move(guess);
   if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
   // Wide search windows find matches for most landmarks at any nearby pose; at a wrong pose they
@@ -273,8 +273,8 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   // is about to fail.
   if (agreement < settings_.min_agreement && placed.inliers > 2 * Scaled(settings_.min_tracked))
     return false;
-  if (since >= settings_.keyframe_max_gap) return true;
-  if (since < settings_.keyframe_min_gap) return false;
+  if (since >= settings_.max_keyframe_gap) return true;
+  if (since < settings_.min_keyframe_gap) return false;
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
   if (placed.inliers < share * most_inliers_) return true;
   if (!has_depth_) return false;
@@ -291,7 +291,7 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   // Allocations come first, so that bad_alloc leaves the tracker unchanged.
   PlacedFrame copy = placed;
   const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
-  unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unproven_frames;
+  unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unconfirmed_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
     motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
                 placed.frame->time - last_.frame->time);

@@ -106,7 +106,7 @@ class Tracker {
   PlacedFrame PredictByMotion(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
   // True if no recent frame has a pose, so that the motion model is unreliable.
   bool IsLate(const Frame& frame) const {
-    return !last_.frame || frame.time - last_.frame->time > settings_.unproven_seconds;
+    return !last_.frame || frame.time - last_.frame->time > settings_.max_motion_age;
   }
   // Matches the whole image by descriptors only, and returns this guess or the given one, whichever
   // agrees better with the map.

@@ -40,7 +40,7 @@ PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
 // Matches the surrounding landmarks in windows as wide as after relocalization by descriptors.
 void Tracker::FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyframes) {
   TrackerSettings wide = settings_;
-  wide.local_radius = wide.local_radius_depth = settings_.relocalise_radius;
+  wide.local_radius = wide.local_radius_depth = settings_.relocalize_radius;
   const LocalMap local = gatherer_.Gather(map, placed.matches, placed.T_camera_world, keyframes);
   placed.matches = MatchLocalMap(placed, local, camera_, wide).matches;
   Optimise(placed, map);

@@ -168,7 +168,7 @@ test('types are those of ROS 2, and the file is whole', options, () => {
 });
 
 test('a recorded stream that is exported gives the same messages', options, async () => {
-  await run('run', ...ROOM, '--record', '--set', 'stream.whole_seconds=0.4', '--out', at('streamed'));
+  await run('run', ...ROOM, '--record', '--set', 'expert.stream.whole_seconds=0.4', '--out', at('streamed'));
   await run('export', at('streamed'), '--to', 'mcap', at('exported.mcap'));
   const exported = await readIndexed(at('exported.mcap'));
   // Processing times differ; the path is compared below.

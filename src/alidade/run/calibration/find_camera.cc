@@ -7,41 +7,14 @@
 #include <optional>
 
 #include "alidade/base/error.h"
+#include "alidade/base/settings_table.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/map/view.h"
 #include "alidade/run/play/loop.h"
-#include "alidade/run/setup/setting_group.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
 namespace {
-
-// `s` is a CalibrateSettings, const or not.
-constexpr auto kCalibrateFields = [](auto& s, auto&& visit) {
-  visit("calibrate.enabled", s.enabled);
-  visit("calibrate.max_off", s.max_off);
-  visit("calibrate.max_restart_sigma", s.max_restart_sigma);
-  visit("calibrate.max_retry_sigma", s.max_retry_sigma);
-  visit("calibrate.retry_bend", s.retry_bend);
-  visit("calibrate.enough_sigma", s.enough_sigma);
-  visit("calibrate.max_passes", s.max_passes);
-  visit("calibrate.first_keyframes", s.first_keyframes);
-  visit("calibrate.growth", s.growth);
-  visit("calibrate.told_sigma", s.told_sigma);
-  visit("calibrate.max_seconds", s.max_seconds);
-  visit("calibrate.window", s.window);
-  visit("calibrate.max_windows", s.max_windows);
-  visit("calibrate.min_keyframes", s.min_keyframes);
-  visit("calibrate.min_seen", s.min_seen);
-  visit("calibrate.max_focal_sigma", s.max_focal_sigma);
-  visit("calibrate.focal_sigma", s.adjust.focal_sigma);
-  visit("calibrate.k1_corner_sigma", s.k1_corner_sigma);
-  visit("calibrate.k2_corner_sigma", s.k2_corner_sigma);
-  visit("calibrate.centre_sigma", s.centre_sigma);
-  visit("calibrate.readout_sigma", s.readout_sigma);
-  visit("calibrate.inflation", s.adjust.inflation);
-  visit("calibrate.bound", s.adjust.bound);
-};
 
 // One run over the recording with one camera.
 class Pass {
@@ -110,30 +83,49 @@ class Pass {
 
 }  // namespace
 
+std::span<const Setting> CalibrateSettings::Table() {
+  using T = CalibrateSettings;
+  static constexpr Setting kRows[] = {
+      SameSetting<&T::first_keyframes>("camera.first_keyframes", AtLeast(6)),
+      SameSetting<&T::growth>("camera.growth", MoreThan(1)),
+      PublicSetting<&T::enabled>("calibrate.enabled", kOnOff, "",
+                                 "One camera: calibrate it first when nothing is known of it."),
+      ExpertSetting<&T::max_seconds>("calibrate.max_seconds", kPositive, "s",
+                                     "Length of the recording's part that is used."),
+      ExpertSetting<&T::max_passes>("calibrate.max_passes", AtLeast(1), "",
+                                    "Most passes over the recording."),
+      ExpertSetting<&T::max_off>("calibrate.max_off", kPositive, "",
+                                 "A pass ends when the camera differs by more than this share from "
+                                 "the one it began with."),
+      ExpertSetting<&T::max_restart_sigma>(
+          "calibrate.max_restart_sigma", kPositive, "",
+          "Relative standard deviation of a focal length with which a new pass begins."),
+      ExpertSetting<&T::max_retry_sigma>("calibrate.max_retry_sigma", kPositive, "",
+                                         "The same at the end of the recording."),
+      ExpertSetting<&T::retry_bend>(
+          "calibrate.retry_bend", {.min = -0.3, .max = 0.3, .open_min = true, .open_max = true}, "",
+          "A search without result starts again with this shift at the image corners; 0: it does "
+          "not."),
+      ExpertSetting<&T::enough_sigma>(
+          "calibrate.enough_sigma", kPositive, "",
+          "A pass ends early below this relative standard deviation of the focal length."),
+      ExpertSetting<&T::told_sigma>(
+          "calibrate.told_sigma", kPositive, "",
+          "Relative standard deviation of a focal length from the recording's metadata."),
+  };
+  return kRows;
+}
+
 void CalibrateSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
-    if (!holds) ThrowUsage(std::string("calibrate.") + what);
+    if (!holds) ThrowUsage(std::string("setting expert.") + what);
   };
   CameraEstimateSettings::Check();
-  require(max_off > 0, "max_off must be positive");
-  require(max_restart_sigma > 0, "max_restart_sigma must be positive");
+  CheckRanges(*this);
   require(max_retry_sigma >= max_restart_sigma,
-          "max_retry_sigma must not be below max_restart_sigma");
-  require(std::abs(retry_bend) < 0.3, "retry_bend must lie between -0.3 and 0.3");
-  require(enough_sigma > 0, "enough_sigma must be positive");
-  require(max_passes >= 1, "max_passes must be at least 1");
-  require(first_keyframes >= min_keyframes, "first_keyframes must be at least min_keyframes");
-  require(growth > 1, "growth must be above 1");
-  require(told_sigma > 0, "told_sigma must be positive");
-  require(max_seconds > 0, "max_seconds must be positive");
-}
-
-void CalibrateSettings::Set(const std::string& name, const std::string& value) {
-  SetByName(*this, kCalibrateFields, name, value);
-}
-
-std::vector<std::pair<std::string, std::string>> CalibrateSettings::All() const {
-  return AllByName(*this, kCalibrateFields);
+          "calibrate.max_retry_sigma must be at least expert.calibrate.max_restart_sigma");
+  require(first_keyframes >= min_keyframes,
+          "camera.first_keyframes must be at least expert.calibrate.min_keyframes");
 }
 
 Camera CameraOfSize(const Camera& camera, const Camera& of) {

@@ -4,8 +4,8 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "alidade/io/frame_source.h"
@@ -14,41 +14,29 @@
 
 namespace alidade {
 
+// Range, unit and meaning: Table() in find_camera.cc, and that of CameraEstimateSettings.
 struct CalibrateSettings : CameraEstimateSettings {
-  // A rolling shutter bends pictures as a wrong lens does: both are looked for at once. Phones and
+  // A rolling shutter distorts images as a wrong lens does: both are estimated at once. Phones and
   // webcams take 10 to 30 ms, others none.
   CalibrateSettings() { readout_sigma = 0.02; }
 
-  bool enabled = true;  // recordings of one camera of which nothing is known are calibrated first
-  // A pass ends, and the next one begins with the camera found, when its own differs by more than
-  // this (focal length, relative; or as a shift at the picture's corners, of their distance from
-  // the middle), and by two standard deviations. A map made with a camera that is far off is bent
-  // the more the longer it gets.
+  bool enabled = true;
+  // A map made with a wrong camera is distorted the more the longer it gets.
   double max_off = 0.06;
-  // Standard deviation (relative) of a focal length that is worth to begin anew with: better than
-  // what it replaces.
   double max_restart_sigma = 0.02;
-  // The same when the recording is at its end and nothing better was found: a map made with a
-  // camera that is far off says little of any, but points the right way.
+  // A map made with a very wrong camera says little, but points in the right direction.
   double max_retry_sigma = 0.1;
-  // A search that ends without an answer begins once more with a lens that shifts the picture's
-  // corners by this share of their distance from the middle, as wide lenses do. 0: it does not.
   double retry_bend = -0.13;
-  // A pass that began with the right camera ends when the focal length's standard deviation is
-  // below this, and two estimates on end agree as well: the rest would say little more.
   double enough_sigma = 0.004;
-  int max_passes = 6;        // over the recording, at most, of a search
-  int first_keyframes = 10;  // of a map when it is asked first, …
-  double growth = 1.3;       // … and again whenever it has so many times as many
-  // Standard deviation (relative) of a focal length that the recording itself tells (EXIF, what
-  // phones write into videos): sensors are cropped for video and against shake.
+  int max_passes = 6;
+  int first_keyframes = 10;
+  double growth = 1.3;
+  // Sensors are cropped for video and for stabilization.
   double told_sigma = 0.1;
-  double max_seconds = 120;  // of the recording, from its begin, that are looked at
+  double max_seconds = 120;
 
-  void Check() const;
-  // As SlamSettings::Set() and All(); names begin with "calibrate.".
-  void Set(const std::string& name, const std::string& value);
-  std::vector<std::pair<std::string, std::string>> All() const;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 struct CameraFound {

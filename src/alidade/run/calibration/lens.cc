@@ -5,33 +5,9 @@
 #include <new>
 
 #include "alidade/map/view.h"
-#include "alidade/run/setup/setting_group.h"
 
 namespace alidade {
-namespace {
-
-// `s` is a LensSettings, const or not.
-constexpr auto kLensFields = [](auto& s, auto&& visit) {
-  visit("lens.window", s.window);
-  visit("lens.least_window", s.least_window);
-  visit("lens.min_windows", s.min_windows);
-  visit("lens.max_windows", s.max_windows);
-  visit("lens.min_seen", s.min_seen);
-  visit("lens.min_bend", s.min_bend);
-  visit("lens.min_sigmas", s.min_sigmas);
-};
-
-}  // namespace
-
-void LensSettings::Set(const std::string& name, const std::string& value) {
-  SetByName(*this, kLensFields, name, value);
-}
-
-std::vector<std::pair<std::string, std::string>> LensSettings::All() const {
-  return AllByName(*this, kLensFields);
-}
-
-LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensSettings& settings) {
+LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckSettings& settings) {
   if (used.localise) return {};
   try {
     const MapSnapshot map = slam.Snapshot();

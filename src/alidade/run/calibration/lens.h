@@ -2,23 +2,15 @@
 #pragma once
 
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "alidade/map/lens_check.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
 
-struct LensSettings : LensCheckSettings {
-  // As SlamSettings::Set() and All(); names begin with "lens.".
-  void Set(const std::string& name, const std::string& value);
-  std::vector<std::pair<std::string, std::string>> All() const;
-};
-
 // Of the map with most keyframes. No windows where there is none, or a loaded map was only looked
 // at, or there is no memory for it.
-LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensSettings& settings);
+LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckSettings& settings);
 
 // The warning, with what helps; empty when there is nothing to warn of.
 std::string LensInWords(const LensCheck& check, const Camera& camera);

@@ -94,7 +94,7 @@ void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   }
   {
     std::unique_lock<std::mutex> lock(queue_mutex_);
-    const auto most = static_cast<size_t>(settings_.waiting);
+    const auto most = static_cast<size_t>(settings_.max_waiting);
     if (file_path_) {
       changed_.wait(lock, [&] { return failed_ || queue_.size() < most; });
     } else if (queue_.size() >= most) {

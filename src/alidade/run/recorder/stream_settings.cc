@@ -1,49 +1,37 @@
 #include "alidade/run/recorder/stream_settings.h"
 
-#include "alidade/run/setup/setting_group.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
-namespace {
 
-// `s` is a StreamFeedSettings, const or not.
-constexpr auto kVisit = [](auto& s, auto&& visit) {
-  visit("stream.depth_points", s.stream.depth_points);
-  visit("stream.detection_seconds", s.stream.detection_seconds);
-  visit("stream.edge_shared", s.stream.edge_shared);
-  visit("stream.landmark_tolerance", s.stream.landmark_tolerance);
-  visit("stream.mcap_rate", s.mcap_rate);
-  visit("stream.mcap_seconds", s.mcap_seconds);
-  visit("stream.outline_tolerance", s.stream.outline_tolerance);
-  visit("stream.path_frames", s.stream.path_frames);
-  visit("stream.picture_quality", s.picture_quality);
-  visit("stream.picture_width", s.picture_width);
-  visit("stream.pictures_hz", s.pictures_hz);
-  visit("stream.waiting", s.waiting);
-  visit("stream.whole_seconds", s.whole_seconds);
-};
-
-}  // namespace
+std::span<const Setting> StreamFeedSettings::Table() {
+  using T = StreamFeedSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::picture_width>("stream.picture_width", FromTo(16, 8192), "px",
+                                       "Camera images are sent at this width."),
+      PublicSetting<&T::picture_quality>("stream.picture_quality", FromTo(1, 100), "",
+                                         "JPEG quality of these images."),
+      PublicSetting<&T::pictures_hz>("stream.pictures_hz", kNotNegative, "1/s",
+                                     "Most images sent per second of the recording."),
+      PublicSetting<&T::mcap_seconds>(
+          "stream.mcap_seconds", kNotNegative, "s",
+          "MCAP files: shortest time between two copies of the path, landmarks or points."),
+      PublicSetting<&T::mcap_rate>("stream.mcap_rate", kPositive, "bytes/s",
+                                   "MCAP files: larger copies are written less often, so that each "
+                                   "takes at most this rate."),
+      ExpertSetting<&T::whole_seconds>(
+          "stream.whole_seconds", kPositive, "s",
+          "Recorded streams: time between two complete states, where a reader can begin."),
+      ExpertSetting<&T::max_waiting>("stream.max_waiting", AtLeast(1), "frames",
+                                     "Most frames waiting to be encoded; beyond, the newest "
+                                     "counts, or a recording run waits."),
+  };
+  return kRows;
+}
 
 void StreamFeedSettings::Check() const {
   stream.Check();
-  const auto check = [](bool good, const char* name, const char* range) {
-    if (!good) ThrowUsage("stream." + std::string(name) + " must be " + range);
-  };
-  check(picture_width >= 16 && picture_width <= 8192, "picture_width", "within 16…8192");
-  check(picture_quality >= 1 && picture_quality <= 100, "picture_quality", "within 1…100");
-  check(pictures_hz >= 0, "pictures_hz", "at least 0");
-  check(whole_seconds > 0, "whole_seconds", "above 0");
-  check(mcap_seconds >= 0, "mcap_seconds", "at least 0");
-  check(mcap_rate > 0, "mcap_rate", "above 0");
-  check(waiting >= 1, "waiting", "at least 1");
-}
-
-void StreamFeedSettings::Set(const std::string& name, const std::string& value) {
-  SetByName(*this, kVisit, name, value);
-}
-
-std::vector<std::pair<std::string, std::string>> StreamFeedSettings::All() const {
-  return AllByName(*this, kVisit);
+  CheckRanges(*this);
 }
 
 }  // namespace alidade

@@ -5,8 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "alidade/base/error.h"
-#include "alidade/run/setup/setting_group.h"
+#include "alidade/base/settings_table.h"
 
 namespace alidade {
 namespace {
@@ -33,34 +32,26 @@ struct Differences {
   double Blur() const { return all > 0 ? (all - lost) / all : 1; }
 };
 
-// `s` is a LookSettings, const or not.
-constexpr auto kVisit = [](auto& s, auto&& visit) {
-  visit("look.blur", s.blur);
-  visit("look.contrast", s.contrast);
-  visit("look.corners", s.corners);
-  visit("look.dark", s.dark);
-};
-
 }  // namespace
 
-void LookSettings::Check() const {
-  const auto within = [](double value, int most, const char* name) {
-    if (!(value >= 0 && value <= most))
-      ThrowUsage("look." + std::string(name) + " must be within 0…" + std::to_string(most));
+std::span<const Setting> LookSettings::Table() {
+  using T = LookSettings;
+  static constexpr Setting kRows[] = {
+      PublicSetting<&T::min_brightness>("look.min_brightness", FromTo(0, 255), "grey levels",
+                                        "Lost frames with a lower mean are reported as dark."),
+      PublicSetting<&T::blur>("look.blur", kZeroToOne, "",
+                              "Lost frames that lost this share of the sharpness of the others are "
+                              "reported as blurred."),
+      ExpertSetting<&T::contrast>("look.contrast", FromTo(0, 255), "grey levels",
+                                  "Lost frames with less coarse contrast are reported as bare."),
+      ExpertSetting<&T::corners>("look.corners", kZeroToOne, "",
+                                 "Lost sharp frames with less than this share of the wanted "
+                                 "keypoints are reported as bare."),
   };
-  within(dark, 255, "dark");
-  within(blur, 1, "blur");
-  within(contrast, 255, "contrast");
-  within(corners, 1, "corners");
+  return kRows;
 }
 
-void LookSettings::Set(const std::string& name, const std::string& value) {
-  SetByName(*this, kVisit, name, value);
-}
-
-std::vector<std::pair<std::string, std::string>> LookSettings::All() const {
-  return AllByName(*this, kVisit);
-}
+void LookSettings::Check() const { CheckRanges(*this); }
 
 double BlurOf(const cv::Mat& gray) {
   Differences along, down;
@@ -92,7 +83,7 @@ double CoarseContrast(const cv::Mat& gray) {
 
 Look LookOf(const cv::Mat& gray, double corners, double usual_blur, const LookSettings& settings) {
   if (gray.empty() || gray.type() != CV_8UC1) return Look::kOrdinary;
-  if (cv::mean(gray)[0] < settings.dark) return Look::kDark;
+  if (cv::mean(gray)[0] < settings.min_brightness) return Look::kDark;
   if (CoarseContrast(gray) < settings.contrast) return Look::kBare;
   if (BlurOf(gray) > usual_blur + settings.blur * (1 - usual_blur)) return Look::kBlurred;
   return corners < settings.corners ? Look::kBare : Look::kOrdinary;

@@ -2,27 +2,25 @@
 #pragma once
 
 #include <opencv2/core.hpp>
-#include <string>
-#include <utility>
-#include <vector>
+#include <span>
 
 namespace alidade {
 
 enum class Look { kOrdinary, kDark, kBlurred, kBare };
 
-struct LookSettings {
-  double dark = 25;    // mean grey level (0…255) below which a picture is dark
-  double blur = 0.25;  // share of what the run's sharp pictures have over 1 in BlurOf() that must
-                       // be gone. Cameras differ: sharp is 0.25 to 0.55, blurred 0.6 and more
-  double contrast = 2.5;  // CoarseContrast() in grey levels below which a picture is bare: rooms
-                          // have 6 to 17, empty walls with their shadows 2
-  double corners = 0.25;  // share of the corners wanted below which a sharp picture is bare: a
-                          // third is enough to go on
-  void Check() const;     // throws Error (usage) naming the field that cannot be
+struct Setting;
 
-  // As SlamSettings::Set() and All(); names begin with "look.".
-  void Set(const std::string& name, const std::string& value);
-  std::vector<std::pair<std::string, std::string>> All() const;
+// Range, unit and meaning: Table() in look.cc.
+struct LookSettings {
+  double min_brightness = 25;
+  // Cameras differ: sharp images have 0.25 to 0.55 in BlurOf(), blurred ones 0.6 and more.
+  double blur = 0.25;
+  // Rooms have 6 to 17, empty walls with their shadows 2.
+  double contrast = 2.5;
+  // A third is enough for tracking.
+  double corners = 0.25;
+  static std::span<const Setting> Table();
+  void Check() const;  // throws Error (usage) naming the invalid setting
 };
 
 // What BlurOf() is of a sharp picture when none was seen: in the middle of those of cameras.

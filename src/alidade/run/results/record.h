@@ -37,9 +37,9 @@ struct RunRecord {
   SourceInfo source;
   CameraRecord camera;
   SlamSettings settings;
-  StreamFeedSettings stream;    // of who tells the run, if somebody does
-  LookSettings look;            // of frames without a pose
-  LensSettings lens_check;      // of what the lens is asked
+  StreamFeedSettings stream;  // of who tells the run, if somebody does
+  LookSettings look;          // of frames without a pose
+  LensCheckSettings lens_check;
   CalibrateSettings calibrate;  // of how an unknown camera is found
   std::string profile;
 

@@ -1,6 +1,6 @@
 #include "alidade/run/setup/run_settings.h"
 
-#include <algorithm>
+#include "alidade/system/setting_names.h"
 
 namespace alidade {
 
@@ -12,28 +12,22 @@ void RunSettings::Check() const {
   calibrate.Check();
 }
 
+std::vector<SettingsPart> RunSettings::Parts() {
+  std::vector<SettingsPart> parts = slam.Parts();
+  CameraEstimateSettings& estimate = calibrate;
+  for (const SettingsPart& part : {PartOf(stream), PartOf(stream.stream), PartOf(look),
+                                   PartOf(lens), PartOf(calibrate), PartOf(estimate)})
+    parts.push_back(part);
+  return parts;
+}
+
 void RunSettings::Set(const std::string& name, const std::string& value) {
-  if (name.rfind("stream.", 0) == 0) {
-    stream.Set(name, value);
-  } else if (name.rfind("look.", 0) == 0) {
-    look.Set(name, value);
-  } else if (name.rfind("lens.", 0) == 0) {
-    lens.Set(name, value);
-  } else if (name.rfind("calibrate.", 0) == 0) {
-    calibrate.Set(name, value);
-  } else {
-    slam.Set(name, value);
-  }
+  SetByName(Parts(), name, value);
 }
 
 std::vector<std::pair<std::string, std::string>> RunSettings::All() const {
-  auto all = slam.All();
-  for (auto& setting : stream.All()) all.push_back(std::move(setting));
-  for (auto& setting : look.All()) all.push_back(std::move(setting));
-  for (auto& setting : calibrate.All()) all.push_back(std::move(setting));
-  for (auto& setting : lens.All()) all.push_back(std::move(setting));
-  std::sort(all.begin(), all.end());
-  return all;
+  RunSettings copy = *this;
+  return AllByName(copy.Parts());
 }
 
 }  // namespace alidade
