@@ -144,64 +144,113 @@ namespace {
 using Opener = std::function<std::unique_ptr<FrameSource>()>;
 using Watcher = std::function<bool(const CalibrateProgress&)>;
 
-// Passes that begin with `camera`, the first of them over `first` where that is open already.
-// `found`: counts on; `stopped`: go_on said so, and nothing is known.
+// How far two cameras may be apart and still agree, in standard deviations of the focal length.
+constexpr double kAgreement = 3;
+// Passes that must agree. A map supports the camera it was made with, and the matches of two maps
+// of one recording differ by chance: estimates of single passes differ by up to 2 %, those of two
+// that agree by half as much (docs/development/decisions/0005-offline-self-calibration.md).
+constexpr size_t kAgreeingPasses = 2;
+
+// A pass whose answer is the camera it began with, up to its standard deviation.
+struct Agreeing {
+  CameraEstimate estimate;
+  std::vector<LensWindow> windows;  // of pictures of `used`
+  Camera used;
+};
+
+// The camera that the maps of all passes support together. They show the same images: the standard
+// deviation is that of one pass, the last.
+CameraEstimate Together(const std::vector<Agreeing>& passes, const MeasurementNoise& noise,
+                        const CalibrateSettings& calibrate) {
+  CameraEstimate estimate = passes.back().estimate;
+  if (passes.size() < 2) return estimate;
+  std::vector<LensWindow> windows;
+  for (const Agreeing& pass : passes)
+    windows.insert(windows.end(), pass.windows.begin(), pass.windows.end());
+  const Camera& used = passes.back().used;
+  const CameraEstimate joint = EstimateCamera(std::move(windows), used, noise, calibrate);
+  const Camera size = estimate.camera;
+  estimate.camera = CameraOfSize(joint.camera, size);
+  estimate.observations = joint.observations;
+  estimate.noise = joint.noise;
+  return estimate;
+}
+
+enum class PassEnd { kRecordingEnded, kBetterCamera, kEnough, kStopped };
+
+// Plays a pass until it knows enough, a clearly better camera to begin with, or the recording ends.
+// `estimate`: the last one. `may_restart`: another pass may follow.
+PassEnd Play(Pass& pass, const Camera& start, const CalibrateSettings& calibrate, bool may_restart,
+             const Watcher& go_on, CalibrateProgress& progress, CameraEstimate& estimate) {
+  std::optional<CameraEstimate> before;
+  while (pass.Step()) {
+    progress.frames = pass.count();
+    PassEnd end = PassEnd::kRecordingEnded;
+    if (const auto now = pass.Ask()) {
+      progress.keyframes = pass.keyframes();
+      progress.estimate = estimate = *now;
+      const double off = Apart(now->camera, start);
+      // Of two consecutive estimates that agree: the first one of a young map may be wrong.
+      if (before && now->focal_sigma <= calibrate.max_restart_sigma && off > calibrate.max_off &&
+          off > 2 * now->focal_sigma &&
+          std::abs(std::log(now->camera.fx / before->camera.fx)) <=
+              2 * std::hypot(now->focal_sigma, before->focal_sigma) &&
+          may_restart)
+        end = PassEnd::kBetterCamera;
+      if (now->focal_sigma <= calibrate.enough_sigma && off <= calibrate.max_off && before &&
+          Apart(now->camera, before->camera) <= 2 * calibrate.enough_sigma)
+        end = PassEnd::kEnough;
+      before = now;
+    }
+    if (!go_on(progress)) return PassEnd::kStopped;
+    if (end != PassEnd::kRecordingEnded) return end;
+  }
+  return PassEnd::kRecordingEnded;
+}
+
+// Passes, each beginning with the camera found so far, until kAgreeingPasses agree. The first one,
+// with `camera`, plays `first` if that is open. `found` goes on counting; `stopped`: go_on said so,
+// and nothing is known.
 void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camera,
             const SlamSettings& settings, const CalibrateSettings& calibrate, const Watcher& go_on,
             CameraFound& found, bool& stopped) {
-  bool settled = false;  // the last pass began with what it found
   const int most = found.passes + calibrate.max_passes;
-  while (found.passes < most) {
+  std::vector<Agreeing> agreeing;
+  while (found.passes < most && agreeing.size() < kAgreeingPasses) {
     ++found.passes;
     Pass pass(first ? std::move(first) : open(), camera, settings, calibrate);
     CalibrateProgress progress{found.passes, 0, 0, {}};
-    std::optional<CameraEstimate> before;
-    bool anew = false, enough = false;
-    while (!anew && !enough && pass.Step()) {
-      ++found.frames;
-      progress.frames = pass.count();
-      if (const auto now = pass.Ask()) {
-        progress.keyframes = pass.keyframes();
-        progress.estimate = found.estimate = *now;
-        const double off = Apart(now->camera, camera);
-        // Of two estimates on end that agree: the first of a young map may be of a false start.
-        anew = before && now->focal_sigma <= calibrate.max_restart_sigma &&
-               off > calibrate.max_off && off > 2 * now->focal_sigma &&
-               std::abs(std::log(now->camera.fx / before->camera.fx)) <=
-                   2 * std::hypot(now->focal_sigma, before->focal_sigma) &&
-               found.passes < most;
-        enough = now->focal_sigma <= calibrate.enough_sigma && off <= calibrate.max_off && before &&
-                 Apart(now->camera, before->camera) <= 2 * calibrate.enough_sigma;
-        before = now;
-      }
-      if (!go_on(progress)) {
-        stopped = true;
-        found.estimate.known = false;
-        found.why_not = "the search was stopped";
-        return;
-      }
+    CameraEstimate last;
+    const PassEnd end = Play(pass, camera, calibrate, found.passes < most, go_on, progress, last);
+    found.frames += pass.count();
+    if (end == PassEnd::kStopped) {
+      stopped = true;
+      found.estimate = last;
+      found.estimate.known = false;
+      found.why_not = "the search was stopped";
+      return;
     }
-    if (!anew) {
-      if (!enough) {
-        pass.Finish();
-        found.estimate = pass.Estimate();
-      }
-      const CameraEstimate& last = found.estimate;
-      const double off = Apart(last.camera, camera);
-      anew = last.keyframes >= calibrate.first_keyframes &&
-             last.focal_sigma <= calibrate.max_retry_sigma && off > calibrate.max_off &&
-             off > 2 * last.focal_sigma;
+    if (end == PassEnd::kRecordingEnded) {
+      pass.Finish();
+      last = pass.Estimate();
     }
-    settled = Apart(found.estimate.camera, camera) <= calibrate.max_off;
+    found.estimate = last;
     found.windows = pass.windows();
     found.windows_camera = pass.used();
-    if (!anew) break;
-    camera = found.estimate.camera;
+    const bool useful = last.keyframes >= calibrate.first_keyframes &&
+                        last.focal_sigma <= calibrate.max_retry_sigma;
+    if (end != PassEnd::kBetterCamera && !useful) break;
+    if (end != PassEnd::kBetterCamera && last.focal_sigma <= calibrate.max_restart_sigma &&
+        Apart(last.camera, camera) <= kAgreement * last.focal_sigma)
+      agreeing.push_back({last, pass.windows(), pass.used()});
+    camera = last.camera;
   }
+  if (!agreeing.empty()) found.estimate = Together(agreeing, settings.mapper.noise, calibrate);
   const CameraEstimate& last = found.estimate;
   found.usable = last.keyframes >= calibrate.first_keyframes &&
                  last.focal_sigma <= calibrate.max_restart_sigma;
-  found.estimate.known = last.known && found.usable && settled;
+  const bool agreed = agreeing.size() >= kAgreeingPasses;
+  found.estimate.known = last.known && found.usable && agreed;
   if (found.estimate.known) {
     found.why_not.clear();
     return;
@@ -209,7 +258,7 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
   found.why_not = last.keyframes == 0 ? "nothing was mapped"
                   : last.keyframes < calibrate.first_keyframes
                       ? "only " + std::to_string(last.keyframes) + " keyframes were mapped"
-                  : found.usable
+                  : found.usable && !agreed
                       ? "estimates differ from pass to pass"
                       : "the camera turns and moves too little for its focal length to tell";
 }
