@@ -43,7 +43,13 @@ std::span<const Setting> ReachSettings::Table() {
   return kRows;
 }
 
-void ReachSettings::Check() const { CheckRanges(*this); }
+void ReachSettings::Check() const {
+  CheckRanges(*this);
+  const auto is_share = [](double value) { return value >= 0 && value <= 1; };
+  if (!(span > 0) || !(floor >= 0) || !is_share(plain_share) || !is_share(plain_alike) ||
+      !is_share(elsewhere_share))
+    ThrowUsage("ReachSettings: span must be positive, floor not negative, shares from 0 to 1");
+}
 
 double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double depth, double gone,
                const ReachSettings& settings) {
