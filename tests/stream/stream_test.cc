@@ -316,7 +316,8 @@ TEST(Stream, TellsWhyAFrameHasNoPose) {
   StreamScene scene;
   scene.Take(encoder.Hello());
   StreamFrame told;
-  told.result = slam.Track({0, cv::Mat::zeros(Room().camera().height, Room().camera().width, CV_8U)});
+  const cv::Mat black = cv::Mat::zeros(Room().camera().height, Room().camera().width, CV_8U);
+  told.result = slam.Track({0, black, {}, {}});
   ASSERT_EQ(told.result.failure, TrackFailure::kFewCorners);
   told.map = slam.Snapshot();
   for (const std::string& message : encoder.Add(told)) scene.Take(message);
