@@ -72,10 +72,10 @@ int Phone(const PhoneArguments& arguments) {
   if (!local) std::fputs(QrCode(address).c_str(), stdout);
   std::printf("The page for phones is at %s (Ctrl-C ends)\n", address.c_str());
   if (arguments.connected)
-    std::printf("Pages may send their pictures here%s\n",
+    std::printf("Pages may send their images here%s\n",
                 core.empty()
                     ? "; the core for browsers was not built (scripts/wasm/build), so all do"
-                    : ": Settings, Work on the computer that serves this page");
+                    : ": Settings, Make the map on the computer that serves this page");
   if (!server->fingerprint().empty())
     std::printf(
         "The certificate was made just now: the phone's browser asks once whether to go on.\n"

@@ -25,7 +25,7 @@ constexpr size_t kFrameHead = 16;  // bytes before the JPEG: number, zero, secon
 const char* NameOfState(TrackState state) {
   return state == TrackState::kTracking ? "tracking"
          : state == TrackState::kLost   ? "lost"
-                                        : "initialising";
+                                        : "initializing";
 }
 
 FrameMessage Text(const nlohmann::json& told) {
@@ -178,6 +178,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     const TrackResult& result = frame.result;
     nlohmann::json told = {{"frame", number},
                            {"state", NameOfState(result.state)},
+                           {"failure", nullptr},
                            {"reason", result.state == TrackState::kTracking ? "" : result.reason()},
                            {"milliseconds", frame.milliseconds},
                            {"keyframes", frame.keyframes},
@@ -189,6 +190,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
                            {"pose", nullptr},
                            {"predicted", nullptr},
                            {"skipped", false}};
+    if (result.failure != TrackFailure::kNone) told["failure"] = FailureName(result.failure);
     if (result.state == TrackState::kTracking) told["pose"] = NumbersOf(result.T_world_camera);
     if (result.predicted) told["predicted"] = NumbersOf(*result.predicted);
     return told;

@@ -15,7 +15,7 @@ constexpr double kInterval = 200;  // ms between two updates
 const char* NameOf(TrackState state) {
   switch (state) {
     case TrackState::kInitializing:
-      return "initialising";
+      return "initializing";
     case TrackState::kTracking:
       return "tracking";
     case TrackState::kLost:

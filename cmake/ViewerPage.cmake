@@ -18,12 +18,14 @@ function(alidade_viewer_page OUT)
     endif()
   endif()
   # Without the folders created by npm: node_modules, dist, generated.
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/shared/src/*
+  file(GLOB SOURCES LIST_DIRECTORIES false CONFIGURE_DEPENDS ${WEB}/*.json ${WEB}/*/package.json ${WEB}/tools/* ${WEB}/scene/src/* ${WEB}/shared/src/*
        ${WEB}/viewer/src/* ${WEB}/phone/src/* ${WEB}/core/src/*)
   set(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/BuildViewerPage.cmake)
   add_custom_command(
     OUTPUT ${OUT}
     COMMAND ${CMAKE_COMMAND} -DWEB=${WEB} -DNPM=${NPM} -DMODE=${ALIDADE_WEB} -DOUT=${OUT} -P ${SCRIPT}
     DEPENDS ${SCRIPT} ${SOURCES} ${PROJECT_SOURCE_DIR}/src/alidade/stream/stream.fbs
+            ${PROJECT_SOURCE_DIR}/src/alidade/tracking/track_failure.h ${PROJECT_SOURCE_DIR}/src/alidade/tracking/track_failure.cc
+            ${PROJECT_SOURCE_DIR}/wasm/frame_numbers.h
     COMMENT "The viewer's page" VERBATIM)
 endfunction()

@@ -4,7 +4,6 @@
 #include <emscripten.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -14,6 +13,7 @@
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
 #include "alidade/phone/phone_slam.h"
+#include "frame_numbers.h"
 
 namespace {
 
@@ -26,8 +26,8 @@ struct Session {
       : slam(std::move(of)), pixels(static_cast<size_t>(width) * height * 4) {}
   std::unique_ptr<PhoneSlam> slam;
   std::vector<uint8_t> pixels;
-  std::array<double, 24> numbers{};
-  std::string reason, bytes;
+  FrameNumbers numbers;
+  std::string bytes;
   std::vector<float> features;
 };
 
@@ -118,44 +118,40 @@ EMSCRIPTEN_KEEPALIVE void alidade_delete(Session* session) { delete session; }
 // Buffer for the next image, up to 4 bytes per pixel.
 EMSCRIPTEN_KEEPALIVE uint8_t* alidade_pixels(Session* session) { return session->pixels.data(); }
 
-// Returns the numbers of web/core's Frame, in order; null on failure.
-EMSCRIPTEN_KEEPALIVE const double* alidade_track(Session* session, int channels, double time) {
+// Returns null on failure.
+EMSCRIPTEN_KEEPALIVE const FrameNumbers* alidade_track(Session* session, int channels,
+                                                       double time) {
   return Guarded(
-      [&]() -> const double* {
+      [&]() -> const FrameNumbers* {
         const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
-        session->reason = frame.result.reason();
-        const alidade::Se3 pose = frame.result.predicted.value_or(frame.result.T_world_camera);
-        const Eigen::Vector3d& t = pose.t;
+        const alidade::TrackResult& result = frame.result;
+        const alidade::Se3 pose = result.predicted.value_or(result.T_world_camera);
         const Eigen::Quaterniond q(pose.R);
-        const bool placed =
-            frame.result.state == alidade::TrackState::kTracking || frame.result.predicted;
-        session->numbers = {static_cast<double>(frame.result.state),
-                            placed ? 1.0 : 0.0,
-                            frame.result.predicted ? 1.0 : 0.0,
-                            static_cast<double>(frame.keyframes),
-                            static_cast<double>(frame.landmarks),
-                            static_cast<double>(frame.matches),
-                            static_cast<double>(frame.features),
-                            static_cast<double>(frame.maps),
-                            frame.milliseconds,
-                            frame.fov,
-                            frame.fov_sigma,
-                            static_cast<double>(frame.camera_changes),
-                            t.x(),
-                            t.y(),
-                            t.z(),
-                            q.x(),
-                            q.y(),
-                            q.z(),
-                            q.w(),
-                            static_cast<double>(frame.number)};
-        return session->numbers.data();
+        const bool tracking = result.state == alidade::TrackState::kTracking;
+        session->numbers = {.number = static_cast<double>(frame.number),
+                            .state = static_cast<double>(result.state),
+                            .failure = static_cast<double>(result.failure),
+                            .placed = tracking || result.predicted ? 1.0 : 0.0,
+                            .predicted = result.predicted ? 1.0 : 0.0,
+                            .keyframes = static_cast<double>(frame.keyframes),
+                            .landmarks = static_cast<double>(frame.landmarks),
+                            .matches = static_cast<double>(frame.matches),
+                            .features = static_cast<double>(frame.features),
+                            .maps = static_cast<double>(frame.maps),
+                            .milliseconds = frame.milliseconds,
+                            .fov = frame.fov,
+                            .fov_sigma = frame.fov_sigma,
+                            .camera_changes = static_cast<double>(frame.camera_changes),
+                            .tx = pose.t.x(),
+                            .ty = pose.t.y(),
+                            .tz = pose.t.z(),
+                            .qx = q.x(),
+                            .qy = q.y(),
+                            .qz = q.z(),
+                            .qw = q.w()};
+        return &session->numbers;
       },
       nullptr);
-}
-
-EMSCRIPTEN_KEEPALIVE const char* alidade_reason(Session* session) {
-  return session->reason.c_str();
 }
 
 // Features of the last frame: x, y (pixels) and 1 if matched to a landmark, at `*at`. Returns their

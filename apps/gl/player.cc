@@ -55,7 +55,7 @@ cv::Mat StreamPlayer::TakePicture() {
 }
 
 std::string StreamPlayer::Title() const {
-  static const char* const kStates[] = {"initialising", "tracking", "lost"};
+  static const char* const kStates[] = {"initializing", "tracking", "lost"};
   const SceneNow& now = scene_.now;
   const auto state = static_cast<size_t>(now.state);
   return name_ + ": " + std::to_string(now.keyframes) + " keyframes, " +

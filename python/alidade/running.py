@@ -28,7 +28,7 @@ class Progress:
     total: Optional[int]
     """None: unknown"""
     state: str
-    """initialising, tracking or lost"""
+    """initializing, tracking or lost"""
     keyframes: int
     points: int
     viewer: Optional[str] = None

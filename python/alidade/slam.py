@@ -27,11 +27,13 @@ class TrackResult:
     time: float
     """seconds"""
     state: str
-    """"initialising", "tracking" or "lost\""""
+    """"initializing", "tracking" or "lost\""""
     pose: Optional[numpy.ndarray]
     """(4, 4) T_world_camera; None unless tracking"""
+    failure: Optional[str]
+    """why there is no pose, as a name such as "few_matches"; None while tracking"""
     reason: str
-    """why there is no pose"""
+    """the failure in words"""
     matches: int
     """number of landmarks matched consistently with the pose"""
     covariance: Optional[numpy.ndarray]

@@ -6,7 +6,7 @@ namespace {
 using py::literals::operator""_a;
 
 const char* StateOf(const TrackedFrame& frame) {
-  constexpr const char* kStates[] = {"initialising", "tracking", "lost"};
+  constexpr const char* kStates[] = {"initializing", "tracking", "lost"};
   return kStates[static_cast<int>(frame.result.state)];
 }
 
@@ -33,11 +33,17 @@ py::object CovarianceOf(const TrackedFrame& frame) {
   return array;
 }
 
+py::object FailureOf(const TrackedFrame& frame) {
+  const TrackFailure failure = frame.result.failure;
+  return failure == TrackFailure::kNone ? py::object(py::none())
+                                        : py::object(py::str(FailureName(failure)));
+}
+
 // Keyword arguments of alidade.TrackResult.
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
   return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
-                  "pose"_a = PoseOf(frame), "reason"_a = result.reason(),
+                  "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame), "reason"_a = result.reason(),
                   "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
                   "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
                   "cut"_a = result.cut, "expected"_a = result.quality.expected,

@@ -58,7 +58,8 @@ def test_no_pose_says_why(desk):
     recording, frames = desk
     slam = alidade.Slam(recording.camera, sensor="mono")
     result = slam.track(0.0, frames[0].image)
-    assert result.pose is None and result.state == "initialising" and result.reason
+    assert result.pose is None and result.state == "initializing"
+    assert result.failure and result.reason
     assert result.covariance is None and not result.keyframe
 
 

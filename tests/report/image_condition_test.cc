@@ -43,8 +43,8 @@ TEST(Look, OddPicturesAreNoTrouble) {
 TEST(LostInWords, SaysWhatBeganItAndWhatHelpsToComeBack) {
   const std::vector<UntrackedFrames> untracked = {
       {100, 100, "too few landmarks found", Look::kBlurred, 1},
-      {100.1, 100.3, "the place was not recognised", Look::kBlurred, 3},
-      {100.4, 106, "the place was not recognised", Look::kOrdinary, 56}};
+      {100.1, 100.3, "the place was not recognized", Look::kBlurred, 3},
+      {100.4, 106, "the place was not recognized", Look::kOrdinary, 56}};
   const auto lines = LostInWords({{100, 106.1}}, untracked, 90);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("10.00 s to 16.10 s: the picture was blurred."));

@@ -1,5 +1,8 @@
-// Generates from stream.fbs: flatc's TypeScript accessors, and a table of all fields for the verifier, for which flatc
-// has no TypeScript version. Output in scene/generated, which is not under version control.
+// Generates TypeScript from sources in C++, so that names and words exist once. Not under version control.
+// - scene/generated, from stream.fbs: flatc's accessors, and a table of all fields for the verifier, for which flatc has
+//   no TypeScript version.
+// - failures.ts, in scene/generated and core/src/generated: why a frame has no pose, from src/alidade/tracking.
+// - core/src/generated/frame_numbers.ts, from wasm/frame_numbers.h.
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
@@ -58,6 +61,47 @@ export function parseSchema(text) {
   return { root, identifier, tables: schema };
 }
 
+const strings = (text) => [...text.matchAll(/"((?:[^"\\]|\\.)*)"/g)].map(([quoted]) => JSON.parse(quoted)).join('');
+
+// 'kFewCorners' → 'few_corners'
+const nameOf = (enumerator) => enumerator.slice(1).replace(/(?!^)([A-Z])/g, '_$1').toLowerCase();
+
+// Words by enumerator, of a function in C++ that consists of one switch.
+function words(text, call) {
+  const from = text.indexOf(`const char* ${call}(TrackFailure failure) {`);
+  const body = text.slice(from, text.indexOf('\n}', from));
+  const of = {};
+  for (const [, cases, returned] of body.matchAll(/((?:case TrackFailure::\w+:\s*)+)return ([^;]+);/g)) {
+    for (const [, name] of cases.matchAll(/TrackFailure::(\w+)/g)) of[nameOf(name)] = strings(returned);
+  }
+  return of;
+}
+
+// Names in the enum's order, and words, from the texts of track_failure.h and track_failure.cc.
+export function parseFailures(header, source) {
+  const [, body] = /enum class TrackFailure[^{]*\{([^}]*)\}/.exec(header);
+  const names = [...body.replace(/\/\/.*$/gm, '').matchAll(/\b(k\w+)/g)].map(([, name]) => nameOf(name));
+  return { names, reasons: words(source, 'ReasonText') };
+}
+
+// Field names of struct FrameNumbers, in order: 'fov_sigma' → 'fovSigma'.
+export function parseNumbers(header) {
+  const [, body] = /struct FrameNumbers \{([^}]*)\}/.exec(header);
+  return [...body.replace(/\/\/.*$/gm, '').matchAll(/\bdouble (\w+)/g)].map(([, name]) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()));
+}
+
+const source = (path) => readFileSync(fileURLToPath(new URL(`../../${path}`, import.meta.url)), 'utf8');
+
+function failuresText() {
+  const { names, reasons } = parseFailures(source('src/alidade/tracking/track_failure.h'), source('src/alidade/tracking/track_failure.cc'));
+  const [none, ...failures] = names;
+  if (none !== 'none' || failures.some((name) => !reasons[name])) throw new Error('web: track_failure.h and .cc could not be read');
+  return '// Made from src/alidade/tracking/track_failure.h and .cc by tools/generate.mjs.\n' +
+    `export const FAILURES = ${JSON.stringify(failures, null, 1)} as const; // of TrackFailure 1, 2, …\n` +
+    '/** Why a frame has no pose. */\nexport type Failure = (typeof FAILURES)[number];\n' +
+    `/** The same in words. */\nexport const REASONS: Readonly<Record<Failure, string>> = ${JSON.stringify(reasons, null, 1)};\n`;
+}
+
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const schema = parseSchema(readFileSync(fbs, 'utf8'));
   rmSync(out, { recursive: true, force: true });
@@ -70,4 +114,11 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
   }
   writeFileSync(`${out}schema.ts`, '// Made from stream.fbs by tools/generate.mjs.\n' +
     `export const SCHEMA = ${JSON.stringify(schema, null, 1)} as const;\n`);
+  const core = fileURLToPath(new URL('../core/src/generated/', import.meta.url));
+  rmSync(core, { recursive: true, force: true });
+  mkdirSync(core, { recursive: true });
+  const failures = failuresText();
+  for (const folder of [out, core]) writeFileSync(`${folder}failures.ts`, failures);
+  writeFileSync(`${core}frame_numbers.ts`, '// Made from wasm/frame_numbers.h by tools/generate.mjs.\n' +
+    `export const FRAME_NUMBERS = ${JSON.stringify(parseNumbers(source('wasm/frame_numbers.h')), null, 1)} as const;\n`);
 }

@@ -265,7 +265,6 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   path_->Add(entry, static_cast<size_t>(settings_.path_frames));
 
   fb::FlatBufferBuilder builder(65536);
-  const auto reason = builder.CreateString(result.reason());
   const auto cut = builder.CreateString(result.cut);
   const auto ms = builder.CreateVector(frame.ms.data(), frame.ms.size());
   std::vector<uint8_t> features;
@@ -296,7 +295,6 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   made.add_number(frame.number);
   made.add_time(frame.time);
   made.add_state(static_cast<stream::State>(result.state));
-  made.add_reason(reason);
   made.add_cut(cut);
   made.add_keyframe(result.keyframe);
   if (placed) {
@@ -306,6 +304,7 @@ std::string StreamEncoder::EncodeFrame(const StreamFrame& frame) {
   }
   if (result.state == TrackState::kTracking || result.predicted) made.add_t_world_camera(&live);
   made.add_predicted(result.predicted.has_value());
+  made.add_failure(static_cast<stream::Failure>(result.failure));
   made.add_keyframes(static_cast<uint32_t>(map.keyframe_count()));
   made.add_landmarks(static_cast<uint32_t>(map.landmark_count()));
   made.add_matches(static_cast<uint32_t>(result.matches));

@@ -13,6 +13,7 @@
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/io/cloud.h"
+#include "alidade/tracking/track_failure.h"
 
 namespace alidade {
 
@@ -69,7 +70,8 @@ struct SceneNow {
   int number = 0;
   int state = 0;    // TrackState
   double time = 0;  // seconds
-  std::string reason;
+  TrackFailure failure = TrackFailure::kNone;  // why there is no pose
+  std::string reason;                          // in words; of old streams that have nothing else
   MapId map;                          // invalid: no pose
   std::optional<Se3> T_world_camera;  // when tracked
   std::optional<Se3> T_world_guess;   // when recently lost: the pose predicted by the last motion

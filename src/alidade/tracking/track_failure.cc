@@ -35,7 +35,7 @@ const char* ReasonText(TrackFailure failure) {
     case TrackFailure::kFewLandmarks:
       return "too few landmarks found";
     case TrackFailure::kNotRecognized:
-      return "the place was not recognised";
+      return "the place was not recognized";
     case TrackFailure::kUnknownScale:
       return "a turn left no scale: move sideways while turning";
     case TrackFailure::kMappingStopped:

@@ -37,6 +37,8 @@ constexpr int kTrackFailures = 18;
 const char* ReasonText(TrackFailure failure);
 // What helps against it, as a sentence without the full stop; "" where there is no advice.
 const char* AdviceText(TrackFailure failure);
+// The name in other languages and files: "few_corners" for kFewCorners; "" for kNone. A literal.
+const char* FailureName(TrackFailure failure);
 // The failure whose reason is `text`; kNone when there is none.
 TrackFailure FailureWithReason(const char* text);
 

@@ -8,6 +8,13 @@
 // The core is the C++ library compiled to WebAssembly. Calls are synchronous and take milliseconds; in a page, make
 // them in a Worker.
 
+import { FAILURES, REASONS } from './generated/failures.js';
+import type { Failure } from './generated/failures.js';
+import { FRAME_NUMBERS } from './generated/frame_numbers.js';
+
+export { FAILURES, REASONS };
+export type { Failure };
+
 /**
  * Interface of the compiled module. Its memory may be replaced when it grows, so views must be created for each use.
  */
@@ -24,7 +31,6 @@ interface Core {
   _alidade_delete(session: number): void;
   _alidade_pixels(session: number): number;
   _alidade_track(session: number, channels: number, time: number): number;
-  _alidade_reason(session: number): number;
   _alidade_features(session: number, at: number): number;
   _alidade_detected(session: number, number: number, found: number, count: number): number;
   _alidade_bytes(session: number, what: number, at: number): number;
@@ -59,7 +65,7 @@ export interface SlamOptions {
   wasmBinary?: ArrayBuffer | Uint8Array; // used instead of fetching alidade.wasm (Node)
 }
 
-export type State = 'initialising' | 'tracking' | 'lost';
+export type State = 'initializing' | 'tracking' | 'lost';
 
 export interface Pose {
   position: [number, number, number]; // of the camera in the world, map units
@@ -72,7 +78,8 @@ export interface Frame {
   state: State;
   pose: Pose | null; // null unless tracking
   predicted: Pose | null; // recently lost: extrapolated from the motion, a guess; null otherwise
-  reason: string; // why there is no pose; '' while tracking
+  failure: Failure | null; // why there is no pose; null while tracking
+  reason: string; // `failure` in words; '' for null
   counts: { keyframes: number; landmarks: number; matches: number; features: number; maps: number };
   milliseconds: number; // processing time
   fov: number; // current estimate of the horizontal field of view, degrees
@@ -89,10 +96,13 @@ export interface Detection {
   x: number; y: number; width: number; height: number;
 }
 
-const STATES: State[] = ['initialising', 'tracking', 'lost'];
-const NUMBERS = 20;
+const STATES: State[] = ['initializing', 'tracking', 'lost'];
 const DETECTION = 6; // numbers per detection
 const enum Bytes { Messages = 0, Trajectory = 1, Map = 2, Cloud = 3 }
+
+function frameNumbers(numbers: Float64Array): Record<(typeof FRAME_NUMBERS)[number], number> {
+  return Object.fromEntries(FRAME_NUMBERS.map((name, i) => [name, numbers[i]!])) as Record<(typeof FRAME_NUMBERS)[number], number>;
+}
 
 /** An error of the core, with its message. */
 export class AlidadeError extends Error {
@@ -124,7 +134,7 @@ export class Slam {
     });
     const { width, height } = options;
     if (!(Number.isInteger(width) && Number.isInteger(height) && width > 0 && height > 0 && width * height <= 1 << 26))
-      throw new AlidadeError(`pictures of ${width}x${height} pixels cannot be`);
+      throw new AlidadeError(`images of ${width}x${height} pixels are not possible`);
     const lines = Object.entries(options.settings ?? {})
       .map(([name, value]) => `${name}=${typeof value === 'boolean' ? Number(value) : value}`).join('\n');
     const copy = (words: string) => {
@@ -160,21 +170,22 @@ export class Slam {
     const bytes = 'data' in picture ? picture.data : picture;
     const channels = bytes.length / (this.width * this.height);
     if (channels !== 1 && channels !== 4)
-      throw new AlidadeError(`a picture of ${bytes.length} bytes is not one of ${this.width}x${this.height} pixels`);
+      throw new AlidadeError(`an image of ${bytes.length} bytes is not one of ${this.width}x${this.height} pixels`);
     core.HEAPU8.set(bytes, core._alidade_pixels(this.#session));
     const at = core._alidade_track(this.#session, channels, time);
     if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
-    const n = Array.from(new Float64Array(core.HEAPU8.buffer, at, NUMBERS)) as [number, ...number[]];
-    const [state, placed, predicted, keyframes, landmarks, matches, features, maps, milliseconds, fov, fovSigma, cameraChanges] = n as number[] & { length: 19 };
-    const pose: Pose | null = placed ? { position: [n[12]!, n[13]!, n[14]!], orientation: [n[15]!, n[16]!, n[17]!, n[18]!] } : null;
+    const n = frameNumbers(new Float64Array(core.HEAPU8.buffer, at, FRAME_NUMBERS.length));
+    const pose: Pose = { position: [n.tx, n.ty, n.tz], orientation: [n.qx, n.qy, n.qz, n.qw] };
+    const failure = FAILURES[n.failure - 1] ?? null; // 0: none
     return {
-      number: n[19]!,
-      state: STATES[state!] ?? 'lost',
-      pose: predicted ? null : pose,
-      predicted: predicted ? pose : null,
-      reason: state === 1 ? '' : core.UTF8ToString(core._alidade_reason(this.#session)),
-      counts: { keyframes: keyframes!, landmarks: landmarks!, matches: matches!, features: features!, maps: maps! },
-      milliseconds: milliseconds!, fov: fov!, fovSigma: fovSigma!, cameraChanges: cameraChanges!,
+      number: n.number,
+      state: STATES[n.state] ?? 'lost',
+      pose: n.placed && !n.predicted ? pose : null,
+      predicted: n.predicted ? pose : null,
+      failure,
+      reason: failure ? REASONS[failure] : '',
+      counts: { keyframes: n.keyframes, landmarks: n.landmarks, matches: n.matches, features: n.features, maps: n.maps },
+      milliseconds: n.milliseconds, fov: n.fov, fovSigma: n.fovSigma, cameraChanges: n.cameraChanges,
     };
   }
 

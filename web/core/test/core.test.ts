@@ -8,6 +8,7 @@ import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
 import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 import { decode } from '../../scene/src/decode.ts';
+import { REASONS } from '../src/index.ts';
 import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
 
 declare const WEB: string;
@@ -46,6 +47,7 @@ test('a real recording: as good as the native core', onKitchen, async () => {
     const frame = slam.track(grayOf(recording, i), recording.times[i]!);
     milliseconds.push(frame.milliseconds);
     assert.equal(frame.state === 'tracking', frame.reason === '');
+    assert.equal(frame.state === 'tracking', frame.failure === null);
     messages = slam.messages();
     assert.ok(messages.length >= 1);
   }
@@ -127,9 +129,10 @@ test('what cannot be is refused in words, and nothing is lost', options, async (
   assert.throws(() => slam.track(new Uint8Array(10), 0), /10 bytes/);
   assert.throws(() => slam.track(new Uint8Array(64 * 48), NaN), /time/);
   const frame = slam.track(new Uint8Array(64 * 48), 1);
-  assert.equal(frame.state, 'initialising');
+  assert.equal(frame.state, 'initializing');
   assert.equal(frame.pose, null);
-  assert.notEqual(frame.reason, '');
+  assert.equal(frame.failure, 'few_corners');
+  assert.equal(frame.reason, REASONS.few_corners);
   assert.deepEqual(slam.features(), []);
   slam.delete();
   slam.delete();

@@ -44,7 +44,7 @@ export class Control {
     } catch (error) {
       this.closeCamera();
       this.dispatch({ kind: 'phase', phase: 'idle' });
-      this.notice(error instanceof CameraProblem ? error.message : `It could not begin: ${(error as Error).message}.`, 'start');
+      this.notice(error instanceof CameraProblem ? error.message : `It could not start: ${(error as Error).message}.`, 'start');
     } finally {
       this.dispatch({ kind: 'opening', opening: false });
     }
@@ -118,14 +118,14 @@ export class Control {
 
   save(): void {
     const { engine } = this;
-    if (engine instanceof RemoteEngine) return this.offer([], 'The computer that does the work keeps the map, when it was started with --out.');
-    if (!engine) return this.offer([], 'Nothing yet.');
+    if (engine instanceof RemoteEngine) return this.offer([], 'The computer that serves this page writes the map when the session ends, if it was started with --out.');
+    if (!engine) return this.offer([], 'There is nothing to save yet.');
     const of = (what: 'map' | 'trajectory' | 'cloud', type: string) => async () => new Blob([await engine.ask(what)], { type });
     this.offer([
       { name: 'map.alidade', what: 'Map: alidade view, alidade run --load', bytes: of('map', 'application/octet-stream') },
-      { name: 'trajectory.txt', what: 'Path of the camera (TUM format)', bytes: of('trajectory', 'text/plain') },
+      { name: 'trajectory.txt', what: 'Trajectory of the camera (TUM format)', bytes: of('trajectory', 'text/plain') },
       { name: 'landmarks.ply', what: 'Map points (PLY): MeshLab, CloudCompare', bytes: of('cloud', 'application/octet-stream') },
-    ], 'Lengths are in map units: one camera cannot tell metres. Record keeps the pictures themselves.');
+    ], 'Lengths are in map units, because one camera does not measure meters. Record saves the images.');
   }
 
   // The page is visible again.

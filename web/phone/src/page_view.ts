@@ -62,7 +62,7 @@ export class PageView {
     const { keyframes, landmarks, matches } = shown?.frame.counts ?? { keyframes: 0, landmarks: 0, matches: 0 };
     const numbers = { keyframes, landmarks, matches, milliseconds: Math.round(shown?.frame.milliseconds ?? 0) };
     for (const [name, value] of Object.entries(numbers)) write(document.querySelector(`[data-count=${name}]`)!, String(value));
-    document.body.dataset.state = shown?.frame.state ?? 'initialising';
+    document.body.dataset.state = shown?.frame.state ?? 'initializing';
     document.body.dataset.frames = String(counters.processed);
   }
 }

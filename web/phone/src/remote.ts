@@ -1,6 +1,7 @@
 // Engine on the computer that serves the page: sends images as JPEGs and receives results (docs/reference/phone-protocol.md). At most
 // IN_FLIGHT images are unanswered; control.ts then skips to the newest.
-import type { Frame, Pose } from '../../core/src/index.ts';
+import { failureWithReason, FAILURES, REASONS } from '../../scene/src/failures.ts';
+import type { Frame, Pose, State } from '../../core/src/index.ts';
 import type { Engine, Hooks } from './engine.ts';
 import type { Saved, Start } from './protocol.ts';
 
@@ -14,7 +15,7 @@ const MOST_BUFFERED = 1 << 20; // bytes not yet sent by the browser; beyond this
 
 interface Told {
   welcome?: boolean; last?: number; resumed?: boolean; error?: string;
-  frame?: number; state?: Frame['state']; reason?: string; milliseconds?: number; skipped?: boolean;
+  frame?: number; state?: string; failure?: string | null; reason?: string; milliseconds?: number; skipped?: boolean;
   keyframes?: number; landmarks?: number; matches?: number; features?: number; fov?: number; fovSigma?: number; pose?: number[] | null; predicted?: number[] | null;
 }
 
@@ -53,7 +54,7 @@ export class RemoteEngine implements Engine {
 
   ask(what: Saved): Promise<Uint8Array<ArrayBuffer>> {
     if (what === 'finish') return Promise.resolve(new Uint8Array());
-    return Promise.reject(new Error('it is on the computer that does the work'));
+    return Promise.reject(new Error('it is on the computer that serves this page'));
   }
 
   close(): void {
@@ -129,7 +130,7 @@ export class RemoteEngine implements Engine {
     this.sent.clear();
     this.pending = []; // the whole state follows
     if (this.over) return;
-    this.hooks.lost('No connection to the computer that does the work. Trying again …');
+    this.hooks.lost('No connection to the computer that serves this page. Trying again …');
     setTimeout(() => { if (!this.over) this.connect(); }, AGAIN[Math.min(this.tries++, AGAIN.length - 1)]);
   }
 
@@ -161,7 +162,7 @@ export class RemoteEngine implements Engine {
     this.hooks.done({
       kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn,
       frame: {
-        number: told.frame!, state: told.state ?? 'lost', reason: told.reason ?? '', pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
+        number: told.frame!, state: stateFrom(told.state), ...failureFrom(told), pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
         milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0,
       },
@@ -173,6 +174,17 @@ export class RemoteEngine implements Engine {
     this.pending = [];
     this.hooks.messages(messages);
   }
+}
+
+// Programs of version 0.1 say 'initialising'.
+function stateFrom(told: string | undefined): State {
+  return told === 'tracking' ? told : told === 'initializing' || told === 'initialising' ? 'initializing' : 'lost';
+}
+
+// Programs of version 0.1 send words only.
+function failureFrom({ failure, reason = '' }: Told): Pick<Frame, 'failure' | 'reason'> {
+  const found = FAILURES.find((one) => one === failure) ?? failureWithReason(reason);
+  return { failure: found, reason: found ? REASONS[found] : reason };
 }
 
 // Seven numbers: quaternion x y z w, position.

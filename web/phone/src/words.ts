@@ -1,30 +1,37 @@
 // Short texts for phone users: the core's state, and what to do.
-import type { Frame } from '../../core/src/index.ts';
+import type { Failure, Frame } from '../../core/src/index.ts';
 import { sentence, STATE_WORDS } from '../../shared/src/words.ts';
 import type { PageState } from './page_state.ts';
 
 const DARK = 35; // mean gray level, 0…255
 
-const ADVICE: readonly [RegExp, string][] = [
-  [/hardly moves/, 'Move sideways, slowly.'],
-  [/too little parallax|turn on the spot/, 'Move sideways: turning is not enough.'],
-  [/stand still/, 'Move the phone, not the things before it.'],
-  [/two motions explain/, 'Show it something with depth: what is seen is flat.'],
-  [/no frame yet/, 'Move sideways, slowly.'],
-  [/too few matches between frames/, 'Move more slowly.'],
-  [/too few points agree|did not hold|first points moved/, 'Move slowly; keep people out of the picture.'],
-  [/too few corners/, 'Nothing to hold on to: show it something with texture.'],
-  [/not recognised/, 'Go back to a place it has seen, and look the same way.'],
-  [/too few landmarks found/, 'Go back slowly to what it has seen.'],
-];
+// What helps against each failure.
+const ADVICE: Readonly<Record<Failure, string>> = {
+  first_view: 'Move sideways, slowly.',
+  few_corners: 'Show it something with texture.',
+  few_matches: 'Move more slowly.',
+  little_motion: 'Move sideways, slowly.',
+  no_motion_model: 'Move slowly; keep people out of the image.',
+  low_parallax: 'Move sideways: rotation is not enough.',
+  pure_rotation: 'Move sideways: rotation is not enough.',
+  two_motions: 'Show it something with depth: the scene is flat.',
+  still_camera: 'Move the phone, not the objects in front of it.',
+  not_confirmed: 'Move slowly; keep people out of the image.',
+  moving_start: 'Move slowly; keep people out of the image.',
+  few_depths: 'Go nearer to something with texture.',
+  few_near_depths: 'Go nearer to something with texture.',
+  few_landmarks: 'Go back slowly to what was mapped.',
+  not_recognized: 'Go back to a place that was mapped, and look in the same direction.',
+  unknown_scale: 'Move sideways while rotating.',
+  mapping_stopped: 'No new map can begin: stop, and start anew.',
+};
 
 // `light`: mean gray level of the image; NaN: unknown.
-export function advice({ state, reason, predicted }: Frame, light: number): string {
+export function advice({ state, failure, reason, predicted }: Frame, light: number): string {
   if (state === 'tracking') return light < DARK ? 'It is dark: more light would help.' : '';
-  if (predicted) return 'Hold on: it guesses where you are.';
+  if (predicted) return 'Lost just now: the pose is predicted from the last motion.';
   if (light < DARK) return 'Too dark: switch on a light.';
-  const found = ADVICE.find(([pattern]) => pattern.test(reason));
-  return found?.[1] ?? sentence(reason);
+  return failure ? ADVICE[failure] : sentence(reason);
 }
 
 // Where the images of the next session go; the user reads it before the camera starts. `host`: of the page.
@@ -35,13 +42,13 @@ export function whereText({ remote, info }: PageState, host: string): string {
 }
 
 export function statusOf({ phase, why, session, shown, cube }: PageState): { word: string; advice: string } {
-  if (phase === 'ended') return { word: 'Ended', advice: why ? '' : 'What there is can be saved.' };
+  if (phase === 'ended') return { word: 'Ended', advice: why ? '' : session?.remote ? 'The computer that serves this page has the map.' : 'The results can be saved.' };
   if (shown) {
     const { frame, light } = shown;
     const tap = frame.state === 'tracking' && !cube && frame.counts.keyframes > 3;
     return { word: STATE_WORDS[frame.state], advice: advice(frame, light) || (tap ? 'Tap a surface to put a cube on it.' : '') };
   }
-  if (session) return { word: 'Loading', advice: session.remote ? 'Asking for the computer that does the work …' : 'The core (4 MB, the first time) …' };
+  if (session) return { word: 'Loading', advice: session.remote ? 'Connecting to the computer that makes the map …' : 'The core (4 MB, the first time) …' };
   return { word: 'Ready', advice: '' };
 }
 

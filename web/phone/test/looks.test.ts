@@ -115,7 +115,7 @@ for (const scheme of ['light', 'dark'] as const) {
     const { page } = await open(still, site.address, phone(scheme));
     await page.tap('#start');
     await page.waitForFunction(() => window.phone.counters.processed > 20, undefined, { timeout: 60e3 });
-    assert.equal(await page.getAttribute('body', 'data-state'), 'initialising');
+    assert.equal(await page.getAttribute('body', 'data-state'), 'initializing');
     await look(page, `${scheme}-starting`);
     await page.context().close();
   });

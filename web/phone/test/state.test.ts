@@ -9,7 +9,7 @@ import { DEFAULTS } from '../src/settings.ts';
 import { statusOf } from '../src/words.ts';
 
 const FRAME: Frame = {
-  number: 0, state: 'tracking', pose: null, predicted: null, reason: '', counts: { keyframes: 5, landmarks: 300, matches: 80, features: 500, maps: 1 },
+  number: 0, state: 'tracking', pose: null, predicted: null, failure: null, reason: '', counts: { keyframes: 5, landmarks: 300, matches: 80, features: 500, maps: 1 },
   milliseconds: 8, fov: 62, fovSigma: 0, cameraChanges: 0,
 };
 const done = (frame: Partial<Frame> = {}, bitmap: { close(): void } | null = null): Done =>
@@ -74,12 +74,12 @@ test('the page says what it does at each moment', () => {
   state.apply({ kind: 'phase', phase: 'running' });
   state.apply({ kind: 'begin', remote: false, fov: null });
   assert.equal(statusOf(state).word, 'Loading');
-  state.apply({ kind: 'done', done: done({ state: 'initialising', reason: 'the camera hardly moves' }), messages: [] });
+  state.apply({ kind: 'done', done: done({ state: 'initializing', failure: 'little_motion', reason: 'the camera hardly moves' }), messages: [] });
   assert.deepEqual(statusOf(state), { word: 'Starting', advice: 'Move sideways, slowly.' });
   state.apply({ kind: 'done', done: done(), messages: [] });
   assert.deepEqual(statusOf(state), { word: 'Tracking', advice: 'Tap a surface to put a cube on it.' });
   state.apply({ kind: 'phase', phase: 'ended' });
-  assert.deepEqual(statusOf(state), { word: 'Ended', advice: 'What there is can be saved.' });
+  assert.deepEqual(statusOf(state), { word: 'Ended', advice: 'The results can be saved.' });
   state.apply({ kind: 'done', done: done({ state: 'lost' }), messages: [] }); // was under way
   assert.equal(statusOf(state).word, 'Ended');
 });

@@ -1,8 +1,9 @@
 // Decodes bytes to a message. A pure function; malformed input throws DecodeError.
 import * as flatbuffers from 'flatbuffers';
 import * as fb from '../generated/stream_generated.ts';
+import { failureWithReason, FAILURES, REASONS } from './failures.ts';
 import { EVENT_KINDS, STATES } from './messages.ts';
-import type { Camera, DepthCloud, Event, Frame, Hello, KeyFrame, MapChange, Message, Pose } from './messages.ts';
+import type { Camera, DepthCloud, Event, Failure, Frame, Hello, KeyFrame, MapChange, Message, Pose } from './messages.ts';
 import { DecodeError, verify } from './verify.ts';
 
 export { DecodeError } from './verify.ts';
@@ -98,7 +99,7 @@ function frame(body: fb.Frame): Frame {
   const picture = body.picture();
   return {
     kind: 'frame', number: body.number(), time: body.time(), state: entry(STATES, body.state(), 'state'),
-    reason: body.reason() ?? '', cut: body.cut() ?? '', predicted: body.predicted(), keyframe: body.keyframe(),
+    ...failure(body), cut: body.cut() ?? '', predicted: body.predicted(), keyframe: body.keyframe(),
     reference: body.reference(), map: body.map(),
     T_reference_camera: inReference && pose(inReference), T_world_camera: inWorld && pose(inWorld),
     keyframes: body.keyframes(), landmarks: body.landmarks(), matches: body.matches(), maps: body.maps(),
@@ -115,6 +116,14 @@ function frame(body: fb.Frame): Frame {
       bytes: new Uint8Array(picture.bytesArray() ?? []),
     },
   };
+}
+
+// Streams of Alidade 0.1 have words instead of the failure. Failures of later versions are shown without words.
+function failure(body: fb.Frame): { failure: Failure | null; reason: string } {
+  const told = FAILURES[body.failure() - 1];
+  if (told) return { failure: told, reason: REASONS[told] };
+  const words = body.reason() ?? '';
+  return { failure: failureWithReason(words), reason: words };
 }
 
 function keyframe(k: fb.KeyFrame): KeyFrame {

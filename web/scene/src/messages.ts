@@ -1,10 +1,14 @@
 // Messages of the stream as plain values. Names, units and frames are those of src/alidade/stream/stream.fbs.
 
+import type { Failure } from './failures.ts';
+
+export type { Failure };
+
 export const NONE = 0xffffffff; // the invalid id
 
 export type Pose = readonly number[]; // qx qy qz qw tx ty tz; T_a_b maps points of b into a
 
-export const STATES = ['initialising', 'tracking', 'lost'] as const;
+export const STATES = ['initializing', 'tracking', 'lost'] as const;
 export type TrackingState = (typeof STATES)[number];
 
 export const USES = ['free', 'matched', 'fresh', 'moving'] as const;
@@ -42,7 +46,9 @@ export interface Picture { width: number; height: number; type: string; bytes: U
 export interface Frame {
   kind: 'frame';
   number: number; time: number;
-  state: TrackingState; reason: string; cut: string;
+  state: TrackingState; cut: string;
+  failure: Failure | null; // why there is no pose; null: tracking, or unknown
+  reason: string; // in words
   predicted: boolean; // lost; T_world_camera is extrapolated from the last motion
   keyframe: boolean;
   reference: number; map: number;

@@ -1,9 +1,16 @@
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { test } from 'node:test';
+import * as flatbuffers from 'flatbuffers';
+import * as fb from '../generated/stream_generated.ts';
 import { decode, DecodeError } from '../src/decode.ts';
+import { failureWithReason, FAILURES, REASONS } from '../src/failures.ts';
 import type { Message } from '../src/messages.ts';
 import { encode } from './encode.ts';
 import { Sample } from './sample.ts';
+
+declare const WEB: string;
 
 const SMALL = { frames: 120, landmarks: 600, depthPoints: 40, pictures: false };
 
@@ -75,3 +82,42 @@ function comparable(message: Message): unknown {
   };
   return round(message);
 }
+
+// A frame message of Alidade 0.1: words, no failure.
+function oldFrame(reason: string): Uint8Array {
+  const b = new flatbuffers.Builder(256);
+  const words = b.createString(reason);
+  fb.Frame.startFrame(b);
+  fb.Frame.addState(b, fb.State.lost);
+  fb.Frame.addReason(b, words);
+  const frame = fb.Frame.endFrame(b);
+  fb.Message.startMessage(b);
+  fb.Message.addBodyType(b, fb.Body.Frame);
+  fb.Message.addBody(b, frame);
+  fb.Message.finishMessageBuffer(b, fb.Message.endMessage(b));
+  return b.asUint8Array().slice();
+}
+
+test('a stream of 0.1, which has words only, is still shown', () => {
+  const told = (reason: string) => {
+    const message = decode(oldFrame(reason));
+    assert.ok(message.kind === 'frame');
+    return [message.failure, message.reason];
+  };
+  assert.deepEqual(told('the camera hardly moves'), ['little_motion', 'the camera hardly moves']);
+  assert.deepEqual(told('the place was not recognised'), ['not_recognized', 'the place was not recognised']);
+  assert.deepEqual(told('words that nobody knows'), [null, 'words that nobody knows']);
+  assert.deepEqual(told(''), [null, '']);
+});
+
+test('failures and their words are those of the C++ sources, in the order of the stream', () => {
+  const read = (path: string) => readFileSync(join(WEB, '../src/alidade', path), 'utf8');
+  const ids = Object.values(fb.Failure).filter((name) => typeof name === 'string');
+  assert.deepEqual(ids, ['none', ...FAILURES]);
+  const cc = read('tracking/track_failure.cc');
+  const returned = [...cc.matchAll(/return "([^"]+)";/g)].map(([, words]) => words);
+  assert.deepEqual(FAILURES.map((failure) => REASONS[failure]), returned);
+  const header = read('tracking/track_failure.h');
+  assert.equal(FAILURES.length + 1, Number(/kTrackFailures = (\d+)/.exec(header)![1]));
+  for (const failure of FAILURES) assert.equal(failureWithReason(REASONS[failure]), failure);
+});

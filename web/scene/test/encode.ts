@@ -1,6 +1,7 @@
 // Encodes messages with flatc's builder, for tests and samples.
 import * as flatbuffers from 'flatbuffers';
 import * as fb from '../generated/stream_generated.ts';
+import { FAILURES } from '../src/failures.ts';
 import { EVENT_KINDS, STATES } from '../src/messages.ts';
 import type { Frame, Hello, KeyFrame, MapChange, Message, Pose } from '../src/messages.ts';
 
@@ -67,7 +68,6 @@ function hello(b: Builder, m: Hello): Offset {
 }
 
 function frame(b: Builder, m: Frame): Offset {
-  const reason = b.createString(m.reason);
   const cut = b.createString(m.cut);
   const ms = fb.Frame.createMsVector(b, m.ms);
   const features = bytes(b, m.features);
@@ -87,7 +87,7 @@ function frame(b: Builder, m: Frame): Offset {
   fb.Frame.addNumber(b, m.number);
   fb.Frame.addTime(b, m.time);
   fb.Frame.addState(b, STATES.indexOf(m.state));
-  fb.Frame.addReason(b, reason);
+  fb.Frame.addFailure(b, m.failure ? FAILURES.indexOf(m.failure) + 1 : 0);
   fb.Frame.addCut(b, cut);
   fb.Frame.addKeyframe(b, m.keyframe);
   fb.Frame.addReference(b, m.reference);

@@ -2,6 +2,7 @@
 // are culled; it is lost for a while in front of a white sheet. World: x right, y down, z forward of the first
 // keyframe.
 import type { Culled, DepthCloud, Frame, KeyFrame, MapChange, Message, PathFrame, Pose } from '../src/messages.ts';
+import { REASONS } from '../src/failures.ts';
 import { NONE } from '../src/messages.ts';
 import { compose, inverse, rotate, transform } from '../src/pose.ts';
 import { encode } from './encode.ts';
@@ -98,7 +99,7 @@ export class Sample {
     const waiting = i < 8;
     const event = (what: Extract<Message, { kind: 'event' }>['what'], text: string, a = NONE, b = NONE) =>
       messages.push({ kind: 'event', what, number: i, time: i / 30, text, a, b });
-    if (i === 0) event('waiting', 'the camera hardly moves');
+    if (i === 0) event('waiting', REASONS.little_motion);
     if (i === 8) event('started', 'map 0 begins');
     if (!lost && !waiting) this.drift = compose(this.drift, 1, [...about(1, this.closed ? 0 : 0.00035).slice(0, 4), 0.0006, 0, 0]);
     const T_world_camera = compose(this.drift, 1, this.truth[i]);
@@ -114,7 +115,7 @@ export class Sample {
     }
     if (i === this.frames - 1) event('finished', '');
     this.events.push(...messages);
-    const frame = this.told = this.frame(i, lost ? 'lost' : waiting ? 'initialising' : 'tracking', keyframe, fresh);
+    const frame = this.told = this.frame(i, lost ? 'lost' : waiting ? 'initializing' : 'tracking', keyframe, fresh);
     return [...(keyframe ? [change] : []), ...messages, frame];
   }
 
@@ -328,9 +329,10 @@ export class Sample {
     const someone = i % 200 > 100;
     const ms = (mean: number, share = 0.3) => mean * (1 + share * (this.random.next() - 0.5));
     const track = ms(3), extract = ms(5);
+    const failure = state === 'lost' ? 'few_landmarks' : state === 'initializing' ? 'low_parallax' : null;
     return {
       kind: 'frame', number: i, time: i / 30, state, cut: '', predicted: false, keyframe,
-      reason: state === 'lost' ? 'too few landmarks found' : state === 'initialising' ? 'too little parallax: move the camera sideways' : '',
+      failure, reason: failure ? REASONS[failure] : '',
       reference, map: tracking ? 0 : NONE, T_reference_camera, T_world_camera: tracking ? T_world_camera : null,
       keyframes: this.keyframes.size, landmarks: this.points.size, matches: tracking ? matches : 0, maps: this.keyframes.size ? 1 : 0,
       foundShare: tracking ? 0.8 : 0, ms: [track + extract + 1, extract, track, keyframe ? ms(22) : -1, -1, keyframe ? ms(30) : -1, -1, -1],

@@ -30,7 +30,7 @@ export class Panel {
       matches: now?.matches ?? 0, frames: latest ? latest.number + 1 : 0,
     };
     for (const [name, element] of this.counts) write(element, String(numbers[name]));
-    const name = latest?.state ?? 'initialising';
+    const name = latest?.state ?? 'initializing';
     if (document.body.dataset.state !== name) document.body.dataset.state = name;
     const over = state.playback?.finished ? endText(state) : null;
     document.body.classList.toggle('ended', over !== null);

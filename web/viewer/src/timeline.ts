@@ -5,7 +5,7 @@ import { byId, write } from '../../shared/src/dom.ts';
 import type { Player } from './player.ts';
 import { clock, eventText } from './words.ts';
 
-const RANK = { tracking: 0, initialising: 1, lost: 2 }; // each pixel shows the worst state of its frames
+const RANK = { tracking: 0, initializing: 1, lost: 2 }; // each pixel shows the worst state of its frames
 
 export class Timeline {
   private readonly canvas = byId('timeline-canvas') as HTMLCanvasElement;
@@ -86,7 +86,7 @@ export class Timeline {
       if (columns[x] === RANK.tracking) {
         draw.fillStyle = colour('--tracked');
         draw.fillRect(x, barTop, 1, bar);
-      } else if (columns[x] === RANK.initialising) {
+      } else if (columns[x] === RANK.initializing) {
         draw.fillStyle = colour('--dot');
         draw.fillRect(x, barTop + bar / 4, 1, bar / 2);
       } else if (Math.floor(x / (2 * ratio)) % 2 === 0) {

@@ -1,30 +1,36 @@
 // Texts for users: what the program is doing, and what to do.
-import type { Event, Frame, State } from '@alidade/scene';
+import type { Event, Failure, Frame, State } from '@alidade/scene';
 import { sentence } from '../../shared/src/words.ts';
 
-const ADVICE: readonly [RegExp, string][] = [
-  [/hardly moves/, 'Move the camera sideways, slowly.'],
-  [/too little parallax/, 'Turning is not enough: it has to see things from another place.'],
-  [/turn on the spot explains/, 'Turning is not enough: it has to see things from another place.'],
-  [/camera seems to stand still/, 'The camera itself has to move, not the things before it.'],
-  [/two motions explain/, 'What is seen is flat: show it something with depth.'],
-  [/too few matches between frames/, 'Move more slowly, or add light.'],
-  [/too few points agree/, 'Move more slowly, and keep moving things out of the picture.'],
-  [/too few corners with depth/, 'Show it something with texture, within the range of the depth camera.'],
-  [/too few corners/, 'Nothing to hold on to: show it something with texture, or add light.'],
-  [/not recognised/, 'Go back to a place it has seen, and look the same way.'],
-  [/too few landmarks found/, 'Blurred, covered, or a blank wall: go back slowly to what it has seen.'],
-  [/mapping has stopped/, 'The program says why on its terminal.'],
-];
+// What helps against each failure.
+const ADVICE: Readonly<Record<Failure, string>> = {
+  first_view: 'Move the camera sideways, slowly.',
+  few_corners: 'Show it something with texture, or add light.',
+  few_matches: 'Move more slowly, or add light.',
+  little_motion: 'Move the camera sideways, slowly.',
+  no_motion_model: 'Move more slowly, and keep moving objects out of the image.',
+  low_parallax: 'Rotation is not enough: the camera has to see the scene from another place.',
+  pure_rotation: 'Rotation is not enough: the camera has to see the scene from another place.',
+  two_motions: 'The scene is flat: show it something with depth.',
+  still_camera: 'The camera itself has to move, not the objects in front of it.',
+  not_confirmed: 'Keep moving sideways, slowly.',
+  moving_start: 'Keep moving objects out of the image.',
+  few_depths: 'Show it something with texture, within the range of the depth camera.',
+  few_near_depths: 'Go nearer to something with texture.',
+  few_landmarks: 'The image may be blurred, covered or without texture: go back slowly to what was mapped.',
+  not_recognized: 'Go back to a place that was mapped, and look in the same direction.',
+  unknown_scale: 'Move sideways while rotating.',
+  mapping_stopped: 'The program names the cause on its terminal.',
+};
 
-export function advice(reason: string): string {
-  return ADVICE.find(([pattern]) => pattern.test(reason))?.[1] ?? '';
+export function advice(failure: Failure | null): string {
+  return failure ? ADVICE[failure] : '';
 }
 
 export function reasonText(frame: Frame): string {
   if (frame.state === 'tracking') return '';
-  const guess = frame.predicted ? 'Shown where its motion leads.' : '';
-  return [sentence(frame.reason), guess || advice(frame.reason)].filter(Boolean).join(' ');
+  const guess = frame.predicted ? 'The camera is drawn where its last motion leads.' : '';
+  return [sentence(frame.reason), guess || advice(frame.failure)].filter(Boolean).join(' ');
 }
 
 // For the end of the run.

@@ -29,7 +29,7 @@ RosStatus StateOf(const SceneNow& now, MapId map, const std::string& source) {
     status.message = "lost" + why;
   } else {
     status.level = RosStatus::kWarn;
-    status.message = "initialising" + why;
+    status.message = "initializing" + why;
   }
   status.values = {{"frame", std::to_string(now.number)},
                    {"matches", std::to_string(now.matches)},

@@ -118,9 +118,9 @@ std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& s
         line += ". " + advice;
     }
     if (to - from > kLong && frames.size() > 1 &&
-        MostFrequentReason(frames) == "the place was not recognised") {
+        MostFrequentReason(frames) == "the place was not recognized") {
       line +=
-          ". It stayed lost as the place was not recognised: going back to where the camera has "
+          ". It stayed lost as the place was not recognized: going back to where the camera has "
           "been, and looking the way it did, helps";
     }
     lines.push_back(line + ".");

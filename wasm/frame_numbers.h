@@ -1,0 +1,27 @@
+// The numbers of a frame that JavaScript reads from the module's memory. web/tools/generate.mjs reads
+// this file, so that names and order exist once: each field is one double.
+#pragma once
+
+struct FrameNumbers {
+  double number = 0;
+  double state = 0;    // TrackState
+  double failure = 0;  // TrackFailure
+  double placed = 0;   // 1: there is a pose, below
+  double predicted = 0;  // 1: that pose is a guess
+  double keyframes = 0;
+  double landmarks = 0;
+  double matches = 0;
+  double features = 0;
+  double maps = 0;
+  double milliseconds = 0;
+  double fov = 0;
+  double fov_sigma = 0;
+  double camera_changes = 0;
+  double tx = 0;
+  double ty = 0;
+  double tz = 0;
+  double qx = 0;
+  double qy = 0;
+  double qz = 0;
+  double qw = 1;
+};
