@@ -68,7 +68,8 @@ TEST_F(RunOptions, SettingsOfTheStreamThatCannotBeAreRefused) {
   ExpectError(2, {"--set", "expert.stream.max_waiting=few"}, "'few' is not a whole number");
   ExpectError(2, {"--set", "stream.picture_quality=0"},
               "stream.picture_quality must be from 1 to 100");
-  ExpectError(2, {"--set", "stream.edge_shared=0", "--record"}, "stream.edge_shared must be");
+  ExpectError(2, {"--set", "expert.stream.edge_shared=0", "--record"},
+              "expert.stream.edge_shared must be");
   ExpectError(2, {"--set", "look.blurr=0.3"}, "did you mean 'look.blur'");
   ExpectError(2, {"--set", "look.min_brightness=256"},
               "look.min_brightness must be from 0 to 255, not 256");
