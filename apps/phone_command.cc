@@ -116,10 +116,11 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
                    "program, or build-wasm of the tree it was built in)")
       ->type_name("FOLDER");
   command
-      ->add_option("--out", arguments->out,
-                   "With --connected: folder for results. Each session's map, trajectory and points "
-                   "get a new folder in it (session-1, session-2, …), when the page has been away "
-                   "for five minutes or the program ends")
+      ->add_option(
+          "--out", arguments->out,
+          "With --connected: folder for results. Each session's map, trajectory and points "
+          "get a new folder in it (session-1, session-2, …), when the page has been away "
+          "for five minutes or the program ends")
       ->type_name("FOLDER");
   command->add_option("--set", arguments->set, "With --connected: a setting, as for run")
       ->type_name("NAME=VALUE");

@@ -19,7 +19,8 @@ struct PhoneHostSettings {
   int max_sessions = 4;       // maps at a time: each has a thread, and some 200 MB when it is large
   double keep_seconds = 300;  // a page that lost its network goes on with its map for so long
   int max_pixels = 4'000'000;  // of an image
-  // Folder for the results: each session gets a new folder session-N in it, at its end. Empty: none.
+  // Folder for the results: each session gets a new folder session-N in it, at its end. Empty:
+  // none.
   std::string out;
   PhoneSettings phone = PhoneSettings::Default(true);
 };

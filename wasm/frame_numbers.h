@@ -1,12 +1,12 @@
-// The numbers of a frame that JavaScript reads from the module's memory. web/tools/generate.mjs reads
-// this file, so that names and order exist once: each field is one double.
+// The numbers of a frame that JavaScript reads from the module's memory. web/tools/generate.mjs
+// reads this file, so that names and order exist once: each field is one double.
 #pragma once
 
 struct FrameNumbers {
   double number = 0;
-  double state = 0;    // TrackState
-  double failure = 0;  // TrackFailure
-  double placed = 0;   // 1: there is a pose, below
+  double state = 0;      // TrackState
+  double failure = 0;    // TrackFailure
+  double placed = 0;     // 1: there is a pose, below
   double predicted = 0;  // 1: that pose is a guess
   double keyframes = 0;
   double landmarks = 0;

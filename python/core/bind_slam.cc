@@ -43,11 +43,11 @@ py::object FailureOf(const TrackedFrame& frame) {
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
   return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
-                  "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame), "reason"_a = result.reason(),
-                  "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
-                  "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
-                  "cut"_a = result.cut, "expected"_a = result.quality.expected,
-                  "inliers"_a = result.quality.inliers,
+                  "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame),
+                  "reason"_a = result.reason(), "matches"_a = result.matches,
+                  "covariance"_a = CovarianceOf(frame), "keyframe"_a = result.keyframe,
+                  "predicted"_a = PredictedOf(frame), "cut"_a = result.cut,
+                  "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,
                   "found_share"_a = result.quality.found_share, "warning"_a = result.warning);
 }
 

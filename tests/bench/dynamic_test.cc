@@ -50,8 +50,8 @@ class BenchDynamic : public testing::Test {
 };
 
 TEST_F(BenchDynamic, GivesTheErrorsThatEvaluateGives) {
-  const json bench =
-      Bench({Recording(), "--sensor", "rgbd", "--no-live", "--set", "expert.dynamics.drop_detections=0"});
+  const json bench = Bench(
+      {Recording(), "--sensor", "rgbd", "--no-live", "--set", "expert.dynamics.drop_detections=0"});
   const std::string name = fs::path(Recording()).filename().string() + ", ";
   for (const std::string mode : {"off", "geometry"}) {
     const json ate = Evaluate("ate", mode);

@@ -4,7 +4,7 @@
 // - failures.ts, in scene/generated and core/src/generated: why a frame has no pose, from src/alidade/tracking.
 // - core/src/generated/frame_numbers.ts, from wasm/frame_numbers.h.
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { fileURLToPath } from 'node:url';
 
 const fbs = fileURLToPath(new URL('../../src/alidade/stream/stream.fbs', import.meta.url));
@@ -102,23 +102,41 @@ function failuresText() {
     `/** The same in words. */\nexport const REASONS: Readonly<Record<Failure, string>> = ${JSON.stringify(reasons, null, 1)};\n`;
 }
 
+// Makes `folder` hold what is in `made`, and removes `made`. Each file is replaced at once, and only where it differs:
+// another build may be reading it.
+function replace(folder, made) {
+  mkdirSync(folder, { recursive: true });
+  const names = readdirSync(made);
+  for (const name of readdirSync(folder)) {
+    if (!names.includes(name)) rmSync(`${folder}/${name}`, { recursive: true, force: true });
+  }
+  for (const name of names) {
+    const [from, to] = [`${made}/${name}`, `${folder}/${name}`];
+    if (statSync(from).isDirectory()) replace(to, from);
+    else if (!existsSync(to) || !readFileSync(from).equals(readFileSync(to))) renameSync(from, to);
+  }
+  rmSync(made, { recursive: true, force: true });
+}
+
 if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const schema = parseSchema(readFileSync(fbs, 'utf8'));
-  rmSync(out, { recursive: true, force: true });
-  mkdirSync(out, { recursive: true });
+  const made = fileURLToPath(new URL(`../generated-${process.pid}/`, import.meta.url));
+  const [scene, core] = [`${made}scene/`, `${made}core/`];
+  for (const folder of [scene, core]) mkdirSync(folder, { recursive: true });
   try {
-    execFileSync('flatc', ['--ts', '-o', out, fbs], { stdio: 'inherit' });
+    execFileSync('flatc', ['--ts', '-o', scene, fbs], { stdio: 'inherit' });
   } catch (error) {
+    rmSync(made, { recursive: true, force: true });
     console.error(`web: flatc could not be run (${error.message}); Debian's package is flatbuffers-compiler`);
     process.exit(1);
   }
-  writeFileSync(`${out}schema.ts`, '// Made from stream.fbs by tools/generate.mjs.\n' +
+  writeFileSync(`${scene}schema.ts`, '// Made from stream.fbs by tools/generate.mjs.\n' +
     `export const SCHEMA = ${JSON.stringify(schema, null, 1)} as const;\n`);
-  const core = fileURLToPath(new URL('../core/src/generated/', import.meta.url));
-  rmSync(core, { recursive: true, force: true });
-  mkdirSync(core, { recursive: true });
   const failures = failuresText();
-  for (const folder of [out, core]) writeFileSync(`${folder}failures.ts`, failures);
+  for (const folder of [scene, core]) writeFileSync(`${folder}failures.ts`, failures);
   writeFileSync(`${core}frame_numbers.ts`, '// Made from wasm/frame_numbers.h by tools/generate.mjs.\n' +
     `export const FRAME_NUMBERS = ${JSON.stringify(parseNumbers(source('wasm/frame_numbers.h')), null, 1)} as const;\n`);
+  replace(out, scene);
+  replace(fileURLToPath(new URL('../core/src/generated/', import.meta.url)), core);
+  rmSync(made, { recursive: true, force: true });
 }

@@ -58,9 +58,8 @@ std::span<const Setting> LensCheckSettings::Table() {
       ExpertSetting<&T::window>(
           "lens.window", FromTo(3, 100), "keyframes",
           "Consecutive keyframes examined together for undeclared distortion."),
-      ExpertSetting<&T::least_window>(
-          "lens.least_window", FromTo(3, 100), "keyframes",
-          "The same where there are too few for min_windows windows."),
+      ExpertSetting<&T::least_window>("lens.least_window", FromTo(3, 100), "keyframes",
+                                      "The same where there are too few for min_windows windows."),
       ExpertSetting<&T::min_windows>("lens.min_windows", AtLeast(2), "windows",
                                      "With fewer windows nothing is reported."),
       ExpertSetting<&T::max_windows>("lens.max_windows", AtLeast(2), "windows",

@@ -155,8 +155,8 @@ void TakeNow(const stream::Frame& told, SceneNow& now) {
   now.time = told.time();
   if (static_cast<int>(told.failure()) < kTrackFailures)  // else of a later version
     now.failure = static_cast<TrackFailure>(told.failure());
-  now.reason = told.failure() == stream::Failure::none ? TextFrom(told.reason())
-                                                       : ReasonText(now.failure);
+  now.reason =
+      told.failure() == stream::Failure::none ? TextFrom(told.reason()) : ReasonText(now.failure);
   now.map = {told.map()};
   if (told.state() == stream::State::tracking)
     now.T_world_camera = PoseFrom(told.t_world_camera(), "a frame");

@@ -68,13 +68,13 @@ struct SceneEvent {
 // The last frame, as it was when processed.
 struct SceneNow {
   int number = 0;
-  int state = 0;    // TrackState
-  double time = 0;  // seconds
+  int state = 0;                               // TrackState
+  double time = 0;                             // seconds
   TrackFailure failure = TrackFailure::kNone;  // why there is no pose
   std::string reason;                          // in words; of old streams that have nothing else
-  MapId map;                          // invalid: no pose
-  std::optional<Se3> T_world_camera;  // when tracked
-  std::optional<Se3> T_world_guess;   // when recently lost: the pose predicted by the last motion
+  MapId map;                                   // invalid: no pose
+  std::optional<Se3> T_world_camera;           // when tracked
+  std::optional<Se3> T_world_guess;  // when recently lost: the pose predicted by the last motion
   uint32_t keyframes = 0, landmarks = 0, matches = 0, maps = 0;
   std::vector<float> ms;  // milliseconds of stream.fbs' stages; negative: did not run
   int picture_width = 0, picture_height = 0;

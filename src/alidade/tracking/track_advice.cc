@@ -45,25 +45,24 @@ const char* AdviceText(TrackFailure failure) {
 }
 
 const char* FailureName(TrackFailure failure) {
-  constexpr std::array<const char*, kTrackFailures> kNames = {
-      "",
-      "first_view",
-      "few_corners",
-      "few_matches",
-      "little_motion",
-      "no_motion_model",
-      "low_parallax",
-      "pure_rotation",
-      "two_motions",
-      "still_camera",
-      "not_confirmed",
-      "moving_start",
-      "few_depths",
-      "few_near_depths",
-      "few_landmarks",
-      "not_recognized",
-      "unknown_scale",
-      "mapping_stopped"};
+  constexpr std::array<const char*, kTrackFailures> kNames = {"",
+                                                              "first_view",
+                                                              "few_corners",
+                                                              "few_matches",
+                                                              "little_motion",
+                                                              "no_motion_model",
+                                                              "low_parallax",
+                                                              "pure_rotation",
+                                                              "two_motions",
+                                                              "still_camera",
+                                                              "not_confirmed",
+                                                              "moving_start",
+                                                              "few_depths",
+                                                              "few_near_depths",
+                                                              "few_landmarks",
+                                                              "not_recognized",
+                                                              "unknown_scale",
+                                                              "mapping_stopped"};
   const auto index = static_cast<size_t>(failure);
   return index < kNames.size() ? kNames[index] : "";
 }
