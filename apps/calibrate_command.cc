@@ -165,9 +165,7 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
   command->add_option("--last", options->run.last, "Last frame, included")->type_name("N");
   command->add_option("--set", options->run.settings, "One setting; may be given many times")
       ->type_name("NAME=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   command
       ->add_option("--threads", options->run.threads, "Threads for parallel loops; 0 = all cores")
       ->type_name("N");

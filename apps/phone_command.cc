@@ -123,7 +123,8 @@ void AddPhoneCommand(CLI::App& app, Action& action) {
           "for five minutes or the program ends")
       ->type_name("FOLDER");
   command->add_option("--set", arguments->set, "With --connected: a setting, as for run")
-      ->type_name("NAME=VALUE");
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false);
   command->footer(
       "\nExamples:\n"
       "  alidade phone                                  on this machine: http://127.0.0.1:8090/\n"

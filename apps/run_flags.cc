@@ -57,9 +57,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--config", options.config, "YAML file of settings")->type_name("FILE");
   command.add_option("--set", options.settings, "One setting; may be given many times")
       ->type_name("NAME=VALUE")
-      ->take_all()
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+      ->allow_extra_args(false);
   command
       .add_option("--schedule", options.schedule,
                   "inline (same result every time) or threaded (live); default: inline for "

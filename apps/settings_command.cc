@@ -11,6 +11,7 @@
 #include "alidade/base/nearest_name.h"
 #include "alidade/run/setup/options.h"
 #include "alidade/run/setup/setting_list.h"
+#include "alidade/system/setting_old_names.h"
 #include "commands.h"
 
 namespace alidade {
@@ -32,13 +33,17 @@ std::vector<SettingInfo> Chosen(const std::vector<SettingInfo>& all,
     const auto fits = [&](const std::string& name) {
       return name == options.name || name.starts_with(options.name + ".");
     };
-    names.push_back(info.name);
+    names.push_back(bare);  // nearer to what people type than the full name
     if (options.name.empty() ? options.all || info.is_public : fits(info.name) || fits(bare))
       chosen.push_back(info);
   }
-  if (chosen.empty())
+  if (chosen.empty()) {
+    const OldName old = FindOldName(options.name);
+    if (old.dropped) ThrowUsage("setting " + options.name + " has no name any more");
     ThrowUsage("no setting or group is called '" + options.name + "'" +
-               DidYouMean(options.name, names));
+               (old.now.empty() ? DidYouMean(options.name, names)
+                                : "; it is now called '" + old.now + "'"));
+  }
   return chosen;
 }
 
@@ -92,7 +97,6 @@ void AddSettingsCommand(CLI::App& app, Action& action) {
   CLI::App* command =
       app.add_subcommand("settings", "What can be set, with value, range, unit and meaning");
   const auto options = std::make_shared<SettingsOptions>();
-  options->run.source = "-";
   command->add_option("NAME", options->name, "A setting, or a group such as tracker")
       ->type_name("NAME");
   command->add_flag("--all", options->all, "Expert settings as well");
@@ -103,8 +107,7 @@ void AddSettingsCommand(CLI::App& app, Action& action) {
       ->type_name("FILE");
   command->add_option("--set", options->run.settings, "Values with one setting changed; repeatable")
       ->type_name("NAME=VALUE")
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->expected(1);
+      ->allow_extra_args(false);  // one value each, so that NAME may follow
   command->add_flag("--markdown", options->markdown, "Print docs/reference/settings.md")->group("");
   command->footer(
       "\nPublic settings are stable. Those that begin with `expert.` may change in any version.\n"

@@ -37,6 +37,15 @@ TEST(CommandLine, WhatIsMissingIsNamed) {
   ExpectUsageError({"evaluate", "ate", "truth.txt"}, "EST");
 }
 
+// CLI11 gives an option that may be repeated all words that follow, unless it is told not to.
+TEST(CommandLine, ASettingTakesOneWord) {
+  for (const std::string command : {"run", "calibrate"}) {
+    const ProgramResult result = RunAlidade({command, "--set", "seed=2", "/nowhere"});
+    EXPECT_EQ(result.status, 3) << command;
+    EXPECT_THAT(result.err, HasSubstr("/nowhere")) << command;
+  }
+}
+
 TEST(CommandLine, HelpTeachesWithExamples) {
   for (const std::vector<std::string>& command :
        {std::vector<std::string>{}, {"evaluate", "ate"}, {"evaluate", "rpe"}}) {

@@ -50,12 +50,16 @@ TEST(SettingsCommand, ShowsValuesInForce) {
   const json one = Listed({"loop.min_found", "--set", "loop.min_found=50"});
   EXPECT_EQ(one[0]["value"], "50");
   EXPECT_EQ(one[0]["default"], "45");
+  EXPECT_EQ(Listed({"--set", "loop.min_found=50", "--set", "seed=2", "loop.min_found"}), one);
 }
 
 TEST(SettingsCommand, AnUnknownNameIsAUsageErrorThatSuggestsOne) {
   const ProgramResult result = RunAlidade({"settings", "loop.min_fond"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("did you mean 'loop.min_found'"));
+  EXPECT_THAT(RunAlidade({"settings", "tracker.torn_share"}).err,
+              HasSubstr("it is now called 'tracker.cut_inlier_share'"));
+  EXPECT_THAT(RunAlidade({"settings", "places.rounds"}).err, HasSubstr("has no name any more"));
 }
 
 TEST(SettingsCommand, ThePageInTheDocumentationIsWhatItPrints) {

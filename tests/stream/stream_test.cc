@@ -282,49 +282,6 @@ TEST(Stream, DamagedMessagesAreRefused) {
 
 // Features matched to a landmark of the last keyframes are marked as new, also when the keyframe
 // made the landmark from features that the tracker had not matched.
-std::string FrameOfVersion01(const char* reason) {
-  flatbuffers::FlatBufferBuilder builder;
-  const auto words = builder.CreateString(reason);
-  stream::FrameBuilder frame(builder);
-  frame.add_state(stream::State::lost);
-  frame.add_reason(words);
-  builder.Finish(stream::CreateMessage(builder, stream::Body::Frame, frame.Finish().Union()),
-                 stream::MessageIdentifier());
-  return {reinterpret_cast<const char*>(builder.GetBufferPointer()), builder.GetSize()};
-}
-
-TEST(Stream, OfVersion01HasWordsInsteadOfAFailure) {
-  StreamScene scene;
-  scene.Take(FrameOfVersion01("the camera hardly moves"));
-  EXPECT_EQ(scene.now.reason, "the camera hardly moves");
-  EXPECT_EQ(scene.now.failure, TrackFailure::kNone);
-}
-
-TEST(Stream, NamesFailuresAsTheLibraryDoes) {
-  EXPECT_EQ(static_cast<int>(stream::Failure::MAX) + 1, kTrackFailures);
-  for (int i = 1; i < kTrackFailures; ++i) {
-    EXPECT_STREQ(stream::EnumNameFailure(static_cast<stream::Failure>(i)),
-                 FailureName(static_cast<TrackFailure>(i)));
-  }
-}
-
-TEST(Stream, TellsWhyAFrameHasNoPose) {
-  SlamSettings settings;
-  settings.sensor = Sensor::kMono;
-  Slam slam(Room().camera(), settings);
-  StreamEncoder encoder({"test", "room", "mono", "map units", -1, false, slam.camera(), {}});
-  StreamScene scene;
-  scene.Take(encoder.Hello());
-  StreamFrame told;
-  const cv::Mat black = cv::Mat::zeros(Room().camera().height, Room().camera().width, CV_8U);
-  told.result = slam.Track({0, black, {}, {}});
-  ASSERT_EQ(told.result.failure, TrackFailure::kFewCorners);
-  told.map = slam.Snapshot();
-  for (const std::string& message : encoder.Add(told)) scene.Take(message);
-  EXPECT_EQ(scene.now.failure, TrackFailure::kFewCorners);
-  EXPECT_EQ(scene.now.reason, told.result.reason());
-}
-
 TEST(Stream, TellsWhatBecameOfFeatures) {
   constexpr int kNew = 2;  // keyframes
   Streamed run(Phone(false));

@@ -51,8 +51,8 @@ constexpr struct {
     {"tracker.unproven_seconds", "tracker.max_motion_age"},
 };
 
-// They are constants now; separated and surrounded by spaces. Not in alidade.wasm, whose size is
-// limited: no page has ever set them.
+// They have no name any more; separated and surrounded by spaces. Not in alidade.wasm, whose size
+// is limited: no page has ever set them.
 #ifndef __EMSCRIPTEN__
 constexpr std::string_view kDropped =
     " "

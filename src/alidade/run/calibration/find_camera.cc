@@ -146,9 +146,8 @@ using Watcher = std::function<bool(const CalibrateProgress&)>;
 
 // How far two cameras may be apart and still agree, in standard deviations of the focal length.
 constexpr double kAgreement = 3;
-// Passes that must agree. A map supports the camera it was made with, and the matches of two maps
-// of one recording differ by chance: estimates of single passes differ by up to 2 %, those of two
-// that agree by half as much (docs/development/decisions/0005-offline-self-calibration.md).
+// Passes that must agree: a map supports the camera it was made with, and the matches of two maps
+// of one recording differ by chance (docs/development/decisions/0005-offline-self-calibration.md).
 constexpr size_t kAgreeingPasses = 2;
 
 // A pass whose answer is the camera it began with, up to its standard deviation.
@@ -208,8 +207,9 @@ PassEnd Play(Pass& pass, const Camera& start, const CalibrateSettings& calibrate
   return PassEnd::kRecordingEnded;
 }
 
-// Passes, each beginning with the camera found so far, until kAgreeingPasses agree. The first one,
-// with `camera`, plays `first` if that is open. `found` goes on counting; `stopped`: go_on said so,
+// Passes, each beginning with the camera found so far, until kAgreeingPasses agree or an answer is
+// neither usable nor points to another camera. The first one, with `camera`, plays `first` if that
+// is open. `found` goes on counting; `stopped`: go_on said so,
 // and nothing is known.
 void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camera,
             const SlamSettings& settings, const CalibrateSettings& calibrate, const Watcher& go_on,
@@ -237,12 +237,15 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
     found.estimate = last;
     found.windows = pass.windows();
     found.windows_camera = pass.used();
-    const bool useful = last.keyframes >= calibrate.first_keyframes &&
-                        last.focal_sigma <= calibrate.max_retry_sigma;
-    if (end != PassEnd::kBetterCamera && !useful) break;
-    if (end != PassEnd::kBetterCamera && last.focal_sigma <= calibrate.max_restart_sigma &&
-        Apart(last.camera, camera) <= kAgreement * last.focal_sigma)
-      agreeing.push_back({last, pass.windows(), pass.used()});
+    if (end != PassEnd::kBetterCamera) {
+      const double off = Apart(last.camera, camera), sigma = last.focal_sigma;
+      const bool usable = sigma <= calibrate.max_restart_sigma;
+      const bool points_away =
+          sigma <= calibrate.max_retry_sigma && off > calibrate.max_off && off > 2 * sigma;
+      if (last.keyframes < calibrate.first_keyframes || !(usable || points_away)) break;
+      if (usable && off <= kAgreement * sigma)
+        agreeing.push_back({last, pass.windows(), pass.used()});
+    }
     camera = last.camera;
   }
   if (!agreeing.empty()) found.estimate = Together(agreeing, settings.mapper.noise, calibrate);

@@ -23,7 +23,6 @@ std::string GroupOf(const SettingInfo& info) {
   return dot == std::string::npos ? "general" : bare.substr(0, dot);
 }
 
-// Long lists of classes get a line of their own.
 std::string InTable(const std::string& text) { return text.empty() ? "" : "`" + text + "`"; }
 
 std::string TableOf(const std::vector<SettingInfo>& settings, bool is_public) {
