@@ -14,8 +14,8 @@ constexpr char kExamples[] =
     "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
     "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   these topics\n"
     "  alidade run my_recording --viewer            watch it in a browser\n"
-    "  alidade run my_recording --record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag "
-    "play\n"
+    "  alidade run my_recording --record-to run.mcap   for Foxglove, Lichtblick, Rerun and "
+    "ros2 bag play\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
     "  alidade run my_recording --semidense         the shape of the place as well\n"
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
@@ -72,20 +72,18 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores")
       ->type_name("N");
   command.add_option("--seed", options.seed, "Seed of every random choice")->type_name("N");
+  command.add_flag("--record", options.record,
+                   "Record the run as run.stream among the results, for `alidade view RESULT`");
   command
-      .add_option("--record", options.record,
-                  "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
-                  "among the results, or FILE); FILE.mcap is for Foxglove, Rerun and ros2 instead")
-      ->type_name("FILE")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--record-to", options.record_to,
+                  "Record the run to FILE instead; FILE.mcap is for Foxglove, Rerun and ros2")
+      ->type_name("FILE");
+  command.add_flag("--viewer", options.viewer,
+                   "Show the run in a browser while it goes on; prints the address");
   command
-      .add_option("--viewer", options.viewer,
-                  "Show the run in a browser while it goes on; prints the address (PORT: 8090, or "
-                  "the next that is free)")
-      ->type_name("PORT")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--port", options.port,
+                  "Port the viewer listens on (8090, or the next that is free)")
+      ->type_name("PORT");
   command
       .add_option("--host", options.host,
                   "Address the viewer listens on (127.0.0.1: this machine only)")
