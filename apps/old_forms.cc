@@ -72,7 +72,7 @@ std::vector<Behind> OldValues(const CLI::App& command, const std::vector<std::st
     }
     if (word.size() > 1 && word[0] == '-') {
       const CLI::Option* option = command.get_option_no_throw(word);
-      if (option != nullptr && option->get_type_size() != 0) ++i;  // the next is its value
+      if (option != nullptr && option->get_items_expected_max() > 0) ++i;  // the next is its value
       continue;
     }
     ++positional;
