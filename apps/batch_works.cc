@@ -3,23 +3,27 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/folder/earlier_result.h"
 #include "alidade/run/play/loop.h"
 #include "batch_arguments.h"
+#include "old_forms.h"
 #include "program/arguments.h"
 #include "run_flags.h"
 
 namespace alidade {
 namespace {
 
-// A line's words as `alidade run` reads them. Throws Error (usage) for what it would refuse.
-RunOptions OptionsOf(const BatchItem& item) {
+// A line's words as `alidade run` reads them; old forms among them become new ones. Throws Error
+// (usage) for what it would refuse.
+RunOptions OptionsOf(BatchItem& item) {
   RunOptions options;
   CLI::App run("", "alidade run");
   AddRunOptions(run, options);
+  item.words = WithoutOldForms(run, std::move(item.words));
   CheckNames(run, item.words);
   std::vector<std::string> words(item.words.rbegin(), item.words.rend());
   try {
