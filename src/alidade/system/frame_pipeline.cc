@@ -12,7 +12,7 @@
 #include "alidade/map/map_file.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
-#include "alidade/system/unknown_scale.h"
+#include "alidade/system/start/unknown_scale.h"
 
 namespace alidade {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "alidade/calibration/camera_estimate.h"
 #include "alidade/io/frame_source.h"
-#include "alidade/map/camera_estimate.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {
