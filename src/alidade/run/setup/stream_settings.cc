@@ -1,4 +1,4 @@
-#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/run/setup/stream_settings.h"
 
 #include "alidade/base/settings_table.h"
 
