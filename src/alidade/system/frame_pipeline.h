@@ -73,9 +73,6 @@ class FramePipeline {
                             const MapSnapshot& map);
   bool FollowsMovingObject(bool young);
   TrackResult Place(TrackEstimate estimate, PresentFrame& now, const MapSnapshot& map);
-  bool MayStartMap(const PresentFrame& now);
-  void LeaveMap();
-  TrackResult StartMap(PresentFrame& now);
   TrackResult WithoutPose(TrackFailure failure, double time, const MapSnapshot& map);
   void KeepForLater(PresentFrame& now, const TrackResult& result);
   void Publish(const PresentFrame& now);

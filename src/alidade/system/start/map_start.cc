@@ -2,8 +2,13 @@
 
 #include <utility>
 
+#include "alidade/features/subset.h"
+#include "alidade/system/movers.h"
+
 namespace alidade {
 namespace {
+
+constexpr int kInformative = 100;  // keypoints of an image that shows something, of 1000
 
 TrackResult Refused(TrackFailure failure) {
   TrackResult result;
@@ -26,7 +31,44 @@ TrackResult Started(int matches, const Se3& T_world_camera) {
 
 }  // namespace
 
+bool MapStart::MayStart(const PresentFrame& now, double steady, int first_number) {
+  Session& session = parts_.session;
+  if (session.state() == SessionState::kSeeking) return true;
+  const SlamSettings& settings = parts_.settings;
+  const double informative = kInformative * settings.tracker.match_scale;
+  if (static_cast<double>(now.frame->keypoints.size()) >= informative)
+    session.CountInformativeFrame();
+  const bool long_lost = steady - session.lost_since() >= settings.new_map_seconds &&
+                         session.informative_frames() >= settings.new_map_frames;
+  const bool may_start = !settings.localise && !parts_.workers.mapping_stopped();
+  if (long_lost && may_start) {
+    LeaveMap(first_number);
+    return true;
+  }
+  // If another map starts later, it may show this place, too.
+  if (settings.sensor == Sensor::kMono && may_start) parts_.early.Wait(*now.frame, now.index);
+  return false;
+}
+
+// A map of few keyframes is dropped: it would be mistaken for other places. A loaded one is kept.
+void MapStart::LeaveMap(int first_number) {
+  parts_.session.Apply(SessionEvent::kLostForLong);
+  const MapSnapshot map = parts_.workers.map().Snapshot();
+  const MapId left = map.MapOf(parts_.tracker.reference());
+  if (!left.valid()) return;
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
+  const bool loaded = map.Find(keyframes.front())->frame->number < first_number;
+  if (!loaded && static_cast<int>(keyframes.size()) < parts_.settings.min_map_keyframes)
+    parts_.workers.Drop(left);
+}
+
 TrackResult MapStart::Start(PresentFrame& now, const Camera& camera) {
+  if (parts_.movers.on()) {
+    now.placed.frame = std::make_shared<Frame>(*now.frame);
+    const cv::Mat glance = now.frame->glance;
+    *now.frame = KeypointSubset(*now.frame, MappableKeypoints(*now.frame), camera);
+    now.frame->glance = glance;
+  }
   if (parts_.workers.mapping_stopped()) return Refused(TrackFailure::kMappingStopped);
   return parts_.settings.sensor == Sensor::kMono ? StartWithMotion(now, camera)
                                                  : StartWithDepth(now, camera);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "alidade/system/frame_placer.h"
+#include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
 #include "alidade/system/revisit/early_frames.h"
 #include "alidade/system/revisit/kept_frames.h"
@@ -22,6 +23,7 @@ struct MapStartParts {
   EarlyFrames& early;
   KeptFrames& kept;
   Tracker& tracker;
+  MoverWatch& movers;
   FramePlacer& placer;
 };
 
@@ -29,11 +31,17 @@ class MapStart {
  public:
   explicit MapStart(const MapStartParts& parts) : parts_(parts) {}
 
+  // Whether a map may start with the present frame, in which no known place was recognized: at once
+  // while seeking, after settings.new_map_seconds and new_map_frames informative frames when lost.
+  // `steady`: the frame's time on the steady clock, seconds. `first_number`: Frame::number of the
+  // first frame, larger than those of a loaded map.
+  bool MayStart(const PresentFrame& now, double steady, int first_number);
   // Starts a map with the present frame if that is possible: result.failure says why not. `camera`:
-  // the frame's. The frame's features are those that may enter a map.
+  // the frame's. Features on moving objects do not enter it.
   TrackResult Start(PresentFrame& now, const Camera& camera);
 
  private:
+  void LeaveMap(int first_number);
   TrackResult StartWithDepth(PresentFrame& now, const Camera& camera);
   TrackResult StartWithMotion(PresentFrame& now, const Camera& camera);
 
