@@ -92,7 +92,7 @@ TEST(SizesRules, SeeFilesAndFoldersThatAreTooLarge) {
   Write(root / "web/page.ts", kMostLines + 1);
   Write(root / "web/whole.ts", kMostLines);
   Write(root / "web/generated/made.ts", kMostLines + 1);
-  Write(root / "docs/page.md", kMostLines + 1);
+  Write(root / "src/a/README.md", kMostLines + 1);
   for (int i = 0; i <= kMostFiles; ++i) Write(root / "tests/b" / (std::to_string(i) + ".cc"), 1);
   for (int i = 0; i < kMostFiles; ++i) Write(root / "tests/c" / (std::to_string(i) + ".cc"), 1);
   EXPECT_EQ(TooLarge(root),
