@@ -20,6 +20,7 @@
 #include "alidade/dynamics/dynamic_filter.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/health.h"
+#include "alidade/system/settings.h"
 #include "alidade/system/types.h"
 #include "alidade/system/workers/detection_feed.h"
 #include "alidade/tracking/tracker.h"
