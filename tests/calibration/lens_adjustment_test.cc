@@ -1,6 +1,7 @@
 #include "alidade/calibration/lens_adjustment.h"
 
 #include <ceres/ceres.h>
+#include <ceres/rotation.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
