@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/datasets/stamped_list.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
-#include "alidade/io/files/stamped_list.h"
 #include "alidade/io/text.h"
 #include "alidade/run/folder/output_folder.h"
 

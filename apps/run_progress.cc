@@ -45,17 +45,16 @@ std::string InShell(const std::string& path) {
 
 }  // namespace
 
-void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
+void RunProgress::Begin(const WatchedRun& run, const std::string& folder) {
   (void)folder;
-  slam_ = &slam;
-  record_ = &record;
+  run_.emplace(run);
   shown_at_ = -1e9;  // of finding the camera
-  const bool camera_found = record.camera.found && record.camera.found->usable;
-  if (quiet_ || (!camera_found && record.source.told.empty())) return;
+  const bool camera_found = run.camera.found && run.camera.found->usable;
+  if (quiet_ || (!camera_found && run.setup.source.told.empty())) return;
   terminal_.SetProgress("");
-  if (!record.source.told.empty()) std::printf("%s\n", record.source.told.c_str());
+  if (!run.setup.source.told.empty()) std::printf("%s\n", run.setup.source.told.c_str());
   if (camera_found)
-    std::printf("Camera estimated: %s\n", CameraInWords(record.camera.found->estimate).c_str());
+    std::printf("Camera estimated: %s\n", CameraInWords(run.camera.found->estimate).c_str());
   std::fflush(stdout);
 }
 
@@ -75,14 +74,14 @@ void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
   if (!terminal_.shows_progress()) return;
   const double now = clock_.Milliseconds();
   if (now - shown_at_ < kInterval) return;
-  const int frames = record_->frames, total = record_->source.frames;  // -1: unknown
+  const int frames = run_->log.frames, total = run_->setup.source.frames;  // -1: unknown
   if (shown_at_ >= 0) {
     const double fps = 1e3 * (frames - shown_frames_) / (now - shown_at_);
     fps_ = fps_ == 0 ? fps : 0.8 * fps_ + 0.2 * fps;
   }
   shown_at_ = now;
   shown_frames_ = frames;
-  const MapSnapshot map = slam_->Snapshot();
+  const MapSnapshot map = run_->slam.Snapshot();
   std::string line = "frame " + std::to_string(frames);
   if (total > 0) line += "/" + std::to_string(total);
   char rate[32];
@@ -96,23 +95,23 @@ void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
 
 void RunProgress::Finishing() {
   if (!terminal_.shows_progress()) return;
-  terminal_.SetProgress("finishing: " + std::to_string(slam_->Snapshot().keyframe_count()) +
+  terminal_.SetProgress("finishing: " + std::to_string(run_->slam.Snapshot().keyframe_count()) +
                         " keyframes in the final adjustment");
 }
 
 void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   if (quiet_) return;
-  const RunRecord& record = *record_;
+  const SlamSettings& settings = run_->setup.settings.slam;
   std::string shape;
   if (summary.shape_points > 0) {
     shape = ", " + std::to_string(summary.shape_points) + " semi-dense points";
-  } else if (record.settings.semidense.enabled && !record.settings.localise) {
+  } else if (settings.semidense.enabled && !settings.localise) {
     shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
   // Where it began and what went wrong, when it is not all of the recording.
   std::string tracked;
-  if (summary.first_tracked && !record.numbers.empty() &&
-      *summary.first_tracked != record.numbers.front())
+  if (summary.first_tracked && !run_->log.numbers.empty() &&
+      *summary.first_tracked != run_->log.numbers.front())
     tracked += " from frame " + std::to_string(*summary.first_tracked) + " on";
   if (!summary.lost_spans.empty()) tracked += ", lost " + LostInAll(summary.lost_spans);
   const std::string maps =
@@ -122,11 +121,11 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       "%s in %s\n",
       summary.tracked, summary.frames, tracked.c_str(), summary.keyframes, summary.landmarks,
       maps.c_str(), shape.c_str(), summary.path_length,
-      record.settings.sensor == Sensor::kMono ? "map units" : "m",
+      settings.sensor == Sensor::kMono ? "map units" : "m",
       summary.maps > 1 ? " in the largest" : "",
-      record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+      run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
   // A localization leaves no map to show.
-  const std::string view = record.settings.localise ? "" : ", or: alidade view " + InShell(folder);
+  const std::string view = settings.localise ? "" : ", or: alidade view " + InShell(folder);
   std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
 }
 

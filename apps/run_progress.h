@@ -2,6 +2,8 @@
 // out.
 #pragma once
 
+#include <optional>
+
 #include "alidade/base/timing.h"
 #include "alidade/run/play/watcher.h"
 #include "program/terminal.h"
@@ -12,7 +14,7 @@ class RunProgress : public RunWatcher {
  public:
   explicit RunProgress(bool quiet) : terminal_(quiet), quiet_(quiet) {}
 
-  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
+  void Begin(const WatchedRun& run, const std::string& folder) override;
   void Calibrating(const CalibrateProgress& progress) override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
   void Finishing() override;
@@ -23,8 +25,7 @@ class RunProgress : public RunWatcher {
  private:
   Terminal terminal_;
   const bool quiet_;
-  const Slam* slam_ = nullptr;
-  const RunRecord* record_ = nullptr;
+  std::optional<WatchedRun> run_;
   Stopwatch clock_;
   double shown_at_ = -1e9;  // ms
   int shown_frames_ = 0;

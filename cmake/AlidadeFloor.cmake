@@ -1,9 +1,11 @@
-# alidade_floor(NAME LINKS ... APART ...): the folder src/alidade/NAME as the static library alidade_NAME. Files are
-# compiled several at a time (see AlidadeFlags), except those listed in APART: long files, and files whose names clash
-# with others'. LINKS is the floor plan of docs/development/architecture.md; tests/architecture_test checks the includes against it.
+# alidade_floor(NAME FOLDERS ... LINKS ... APART ...): the folder src/alidade/NAME, with its folders FOLDERS, as the
+# static library alidade_NAME. Files are compiled several at a time (see AlidadeFlags), except those listed in APART:
+# long files, and files whose names clash with others'. LINKS is the floor plan of docs/development/architecture.md;
+# tests/architecture_test checks the includes against it.
 function(alidade_floor NAME)
-  cmake_parse_arguments(ARG "" "" "LINKS;APART" ${ARGN})
-  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc)
+  cmake_parse_arguments(ARG "" "" "FOLDERS;LINKS;APART" ${ARGN})
+  list(TRANSFORM ARG_FOLDERS REPLACE "(.+)" "${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/\\1/*.cc")
+  file(GLOB SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${NAME}/*.cc ${ARG_FOLDERS})
   if(NOT SOURCES)
     return()
   endif()

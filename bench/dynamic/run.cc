@@ -1,8 +1,8 @@
 #include "bench/dynamic/run.h"
 
 #include "alidade/base/error.h"
-#include "alidade/run/play/loop.h"
 #include "alidade/run/results/run_results.h"
+#include "alidade/run/sources/frame_input.h"
 
 namespace alidade::bench {
 DynamicErrors EvaluateErrors(const DynamicScene& scene, Sensor sensor, const Trajectory& estimate) {
@@ -36,15 +36,13 @@ DynamicRun RunDynamic(const DynamicScene& scene, const SlamSettings& settings,
                       const FrameVisitor& visit) {
   const bool full = settings.dynamics.mode == DynamicsMode::kFull;
   Slam slam(scene.info.camera, settings, full ? detector : nullptr);
-  RunRecord record;
-  record.source = scene.info;
-  record.settings = settings;
+  RunLog log;
   DynamicRun run;
   for (size_t i = 0; i < scene.frames.size(); ++i) {
     const SourceFrame& frame = scene.frames[i];
     slam.Track(InputOf(frame));
-    record.stamps.push_back(frame.stamp);
-    record.numbers.push_back(frame.number);
+    log.stamps.push_back(frame.stamp);
+    log.numbers.push_back(frame.number);
     if (scene.has_masks()) {
       const std::vector<cv::Rect> none;
       AddFrame(scene.masks[i], detected.empty() ? none : detected[i], scene.people[i],
@@ -53,12 +51,11 @@ DynamicRun RunDynamic(const DynamicScene& scene, const SlamSettings& settings,
     if (visit) visit(i, slam);
   }
   slam.Finish();
-  record.frames = static_cast<int>(scene.frames.size());
-  const RunResults results = ResultsOf(slam, record);
+  const RunResults results = ResultsOf(slam, log, scene.info.R_camera_rectified);
   if (scene.has_masks()) AddMap(results.map, slam.camera(), scene.masks, run.masks);
   run.trajectory = results.maps.front().trajectory;
   run.errors = EvaluateErrors(scene, settings.sensor, run.trajectory);
-  run.frames = record.frames;
+  run.frames = static_cast<int>(scene.frames.size());
   run.tracked = results.tracked;
   run.start = results.initialised_at.value_or(-1);
   run.lost = static_cast<int>(results.lost_spans.size());

@@ -7,9 +7,9 @@
 
 #include "alidade/base/error.h"
 #include "alidade/evaluation/association.h"
+#include "alidade/io/files/datasets/stamped_list.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
-#include "alidade/io/files/stamped_list.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/text.h"
 #include "alidade/run/sources/any_source.h"

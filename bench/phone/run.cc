@@ -43,24 +43,22 @@ PhoneRecording LoadPhoneRecording(const std::string& source, int count) {
 PhoneRun RunNative(const PhoneRecording& from, const PhoneVariant& variant) {
   const Recording& recording = from.recording;
   SetThreadCount(variant.threads);
-  RunRecord record;
-  record.source = recording.info;
-  record.settings = variant.settings;
+  RunLog log;
   Slam slam(recording.info.camera, variant.settings);
   const double cpu_start = ProcessCpuSeconds();
   const Stopwatch clock;
   for (const SourceFrame& frame : recording.frames) {
-    record.stamps.push_back(frame.stamp);
-    record.numbers.push_back(frame.number);
-    ++record.frames;
+    log.stamps.push_back(frame.stamp);
+    log.numbers.push_back(frame.number);
+    ++log.frames;
     const double due = variant.settings.threaded ? frame.time - recording.frames.front().time : 0;
     const double ahead = due - clock.Milliseconds() * 1e-3;
     if (ahead > 0) std::this_thread::sleep_for(std::chrono::duration<double>(ahead));
     slam.Track({frame.time, frame.image, {}, {}});
   }
-  const double cpu = (ProcessCpuSeconds() - cpu_start) * 1e3 / record.frames;
+  const double cpu = (ProcessCpuSeconds() - cpu_start) * 1e3 / log.frames;
   slam.Finish();
-  const RunResults results = ResultsOf(slam, record);
+  const RunResults results = ResultsOf(slam, log, recording.info.R_camera_rectified);
   return {results.times.frame,
           results.times.extract,
           results.times.track,

@@ -9,9 +9,9 @@
 #include "alidade/base/timing.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
-#include "alidade/run/play/loop.h"
 #include "alidade/run/setup/options.h"
 #include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/frame_input.h"
 #include "alidade/slam.h"
 #include "bench/measure/recording.h"
 

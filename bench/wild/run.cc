@@ -10,9 +10,9 @@
 #include "alidade/evaluation/false_poses.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/run/calibration/unknown_camera.h"
-#include "alidade/run/play/loop.h"
 #include "alidade/run/results/run_results.h"
 #include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/frame_input.h"
 #include "alidade/slam.h"
 
 namespace alidade::bench {
@@ -78,7 +78,7 @@ class UsableMotion {
   int frame_ = -1;
 };
 
-void Judge(const WildCase& of, const RunRecord& record, const RunResults& results, WildRun& run) {
+void Judge(const WildCase& of, const RunLog& log, const RunResults& results, WildRun& run) {
   for (size_t i = 0; i < results.maps.size(); ++i) {
     const MapResults& map = results.maps[i];
     if (map.trajectory.empty()) continue;
@@ -90,7 +90,7 @@ void Judge(const WildCase& of, const RunRecord& record, const RunResults& result
       run.false_poses += static_cast<int>(map.trajectory.size());
       continue;
     }
-    const FalsePoses found = FindFalsePoses(record.truth, map.trajectory, Alignment::kSim3);
+    const FalsePoses found = FindFalsePoses(log.truth, map.trajectory, Alignment::kSim3);
     run.false_poses += static_cast<int>(found.wrong.size());
     if (i > 0 || found.pairs.size() < 3) continue;
     run.ate_cm = 100 * found.metres.rmse;
@@ -108,19 +108,18 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   options.last = frames - 1;  // -1: to the end
   const std::string source_name = of.source + "&seed=" + std::to_string(seed);
   ReadAhead source(OpenAnySource(source_name, options));
-  RunRecord record;
-  record.source = source.Info();
-  if (record.source.camera_guessed) {  // as `alidade run` does
+  RunLog log;
+  SourceInfo info = source.Info();
+  if (info.camera_guessed) {  // as `alidade run` does
     settings.WaryOfTurns();
     const CameraFound found = FindCamera([&] { return OpenAnySource(source_name, options); },
                                          settings, {}, [](const auto&) { return true; });
     if (found.usable) {
-      record.source.camera = found.estimate.camera;
+      info.camera = found.estimate.camera;
       settings.start.two_view.lens_uncertainty = 3 * found.estimate.focal_sigma;
     }
   }
-  record.settings = settings;
-  Slam slam(record.source.camera, settings);
+  Slam slam(info.camera, settings);
   WildRun run;
   run.seed = seed;
   UsableMotion usable;
@@ -129,24 +128,24 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   double milliseconds = 0;
   while (const auto frame = source.Next()) {
     usable.Add(*frame);
-    record.truth.push_back({frame->time, *frame->T_world_camera, frame->stamp});
-    record.stamps.push_back(frame->stamp);
-    record.numbers.push_back(frame->number);
+    log.truth.push_back({frame->time, *frame->T_world_camera, frame->stamp});
+    log.stamps.push_back(frame->stamp);
+    log.numbers.push_back(frame->number);
     clock = Stopwatch();
     const TrackResult result = slam.Track(InputOf(*frame));
     milliseconds += clock.Milliseconds();
     if (result.state != TrackState::kTracking) ++reasons[result.reason()];
-    progress(++record.frames);
+    progress(++log.frames);
   }
   slam.Finish();
-  const RunResults results = ResultsOf(slam, record);
-  run.frames = record.frames;
+  const RunResults results = ResultsOf(slam, log, info.R_camera_rectified);
+  run.frames = log.frames;
   run.usable = usable.frame();
   run.start = results.initialised_at.value_or(-1);
   run.tracked = results.tracked;
   run.milliseconds = milliseconds / std::max(1, run.frames);
   if (run.usable >= 0) {
-    const int from = run.usable + static_cast<int>(std::ceil(record.source.camera.fps));
+    const int from = run.usable + static_cast<int>(std::ceil(info.camera.fps));
     int tracked = 0;
     for (const FramePose& pose : results.frames) tracked += pose.tracked && pose.index >= from;
     if (from < run.frames) run.coverage = static_cast<double>(tracked) / (run.frames - from);
@@ -155,7 +154,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
       std::max_element(reasons.begin(), reasons.end(),
                        [](const auto& a, const auto& b) { return a.second < b.second; });
   if (most != reasons.end()) run.reason = most->first;
-  Judge(of, record, results, run);
+  Judge(of, log, results, run);
   return run;
 }
 

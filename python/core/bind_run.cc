@@ -35,10 +35,10 @@ class Onlooker : public RunWatcher {
     stage_ = "calibrating";
     frames_ = progress.frames;
   }
-  void Begin(const Slam& slam, const RunRecord& record, const std::string&) override {
+  void Begin(const WatchedRun& run, const std::string&) override {
     const std::lock_guard<std::mutex> lock(mutex_);
-    slam_ = &slam;
-    total_ = record.source.frames;
+    slam_ = &run.slam;
+    total_ = run.setup.source.frames;
     frames_ = 0;
     stage_ = "running";
   }

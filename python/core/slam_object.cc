@@ -52,10 +52,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   if (calibrate) settings.FindCamera();
   std::shared_ptr<Detector> detector = wanted.own_detector;
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
-  held_ = std::shared_ptr<Held>(new Held(given, settings, std::move(detector)), without_gil);
-  held_->record.settings = settings;
-  held_->record.source.camera = given;
-  held_->record.source.R_camera_rectified = R;
+  held_ = std::shared_ptr<Held>(new Held(given, R, settings, std::move(detector)), without_gil);
 }
 
 std::shared_ptr<SlamObject::Held> SlamObject::Get() const {
@@ -72,16 +69,16 @@ TrackedFrame SlamObject::Track(double time, const py::object& image, const py::o
   const py::gil_scoped_release release;
   const std::lock_guard<std::mutex> lock(held->turn);
   const int number = held->slam.frames();
-  RunRecord& record = held->record;
-  record.stamps.push_back(stamp);
-  record.numbers.push_back(number);
+  RunLog& log = held->log;
+  log.stamps.push_back(stamp);
+  log.numbers.push_back(number);
   try {
     return {held->slam.Track({time, seen.image, beside.image, far.image, colored.image}), number,
             time};
   } catch (...) {
     // Drop those of the rejected frame.
-    record.stamps.resize(static_cast<size_t>(held->slam.frames()));
-    record.numbers.resize(record.stamps.size());
+    log.stamps.resize(static_cast<size_t>(held->slam.frames()));
+    log.numbers.resize(log.stamps.size());
     throw;
   }
 }
@@ -112,7 +109,7 @@ py::object SlamObject::focal_sigma() const {
 
 py::dict SlamObject::settings() const {
   py::dict all;
-  for (const auto& [name, value] : Get()->record.settings.All()) all[py::str(name)] = value;
+  for (const auto& [name, value] : Get()->settings.All()) all[py::str(name)] = value;
   return all;
 }
 
@@ -122,7 +119,7 @@ MapResults SlamObject::ResultsOfMap(size_t number) const {
   const std::shared_ptr<Held> held = Get();
   const py::gil_scoped_release release;
   const std::lock_guard<std::mutex> lock(held->turn);
-  RunResults results = ResultsOf(held->slam, held->record);
+  RunResults results = ResultsOf(held->slam, held->log, held->R_camera_rectified);
   if (number >= results.maps.size())
     ThrowUsage("map " + std::to_string(number) + ": maps are numbered from 0, and here are " +
                std::to_string(results.maps.size()));

@@ -5,7 +5,7 @@
 #include <mutex>
 #include <string>
 
-#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_log.h"
 #include "alidade/run/results/run_results.h"
 #include "alidade/system/slam.h"
 #include "arrays.h"
@@ -54,10 +54,15 @@ class SlamObject {
  private:
   // Destroyed without the GIL, because a detector's thread may wait for it.
   struct Held {
-    Held(const Camera& camera, const SlamSettings& settings, std::shared_ptr<Detector> detector)
-        : slam(camera, settings, std::move(detector)) {}
-    std::mutex turn;   // serializes Track(), so that stamps and frames correspond
-    RunRecord record;  // stamps, numbers and mounting, for ResultsOf()
+    Held(const Camera& camera, const Eigen::Matrix3d& R_rectified, const SlamSettings& used,
+         std::shared_ptr<Detector> detector)
+        : R_camera_rectified(R_rectified),
+          settings(used),
+          slam(camera, used, std::move(detector)) {}
+    std::mutex turn;  // serializes Track(), so that stamps and frames correspond
+    RunLog log;       // stamps and numbers, for ResultsOf()
+    const Eigen::Matrix3d R_camera_rectified;
+    const SlamSettings settings;
     Slam slam;
   };
   std::shared_ptr<Held> Get() const;  // throws Error (usage) after Close()

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
-#include "alidade/io/files/recording.h"
-#include "alidade/io/files/stamped_list.h"
+#include "alidade/io/files/datasets/recording.h"
+#include "alidade/io/files/datasets/stamped_list.h"
 #include "fuzz/targets.h"
 
 namespace alidade::fuzz {

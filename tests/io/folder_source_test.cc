@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "alidade/io/files/image_list.h"
+#include "alidade/io/files/datasets/image_list.h"
 #include "alidade/io/files/open_source.h"
 #include "support/expect_error.h"
 #include "support/tiny_recording.h"

@@ -10,8 +10,8 @@
 #include <cstring>
 
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/datasets/image_list.h"
 #include "alidade/io/files/file.h"
-#include "alidade/io/files/image_list.h"
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/files/yaml_check.h"

@@ -61,8 +61,8 @@ TEST(StreamFeed, TellsWhatTheDetectorFoundAndHowLongAgo) {
   small.width = 320;
   small.height = 240;
   const SynthRecording room(small);
-  RunRecord record;
-  SlamSettings& settings = record.settings;
+  RunSetup setup;
+  SlamSettings& settings = setup.settings.slam;
   settings.ApplyProfile("phone");
   settings.sensor = Sensor::kRgbd;
   settings.dynamics.mode = DynamicsMode::kFull;
@@ -79,7 +79,9 @@ TEST(StreamFeed, TellsWhatTheDetectorFoundAndHowLongAgo) {
   StreamFeed feed("test", "");  // with a file every frame is told
   std::vector<std::string> messages;
   feed.Join([&](const std::shared_ptr<const std::string>& m) { messages.push_back(*m); });
-  feed.Begin(slam, record, folder.path());
+  const CameraFinding camera;
+  const RunLog log;
+  feed.Begin({slam, setup, camera, log}, folder.path());
   for (int i = 0; i < kFrames; ++i) {
     const RenderedFrame rendered = room.Render(2 * i);
     SourceFrame frame;

@@ -1,5 +1,5 @@
 // Every scene has the intended difficulty and length for several seeds.
-#include "alidade/synth/scenes.h"
+#include "alidade/synth/scenes/scenes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // When results of the detector arrive, and that the tracker does not wait for them.
-#include "alidade/system/detection_feed.h"
+#include "alidade/system/workers/detection_feed.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // One worker in all schedules, and several workers that make each other rest.
-#include "alidade/system/stage.h"
+#include "alidade/system/workers/stage.h"
 
 #include <gtest/gtest.h>
 

@@ -27,8 +27,8 @@ Cloud LandmarksOf(const RunResults& results) {
 
 }  // namespace
 
-RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
-                        bool with_map, MaskWriter* masks) {
+RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& setup,
+                        const CameraFinding& camera, const RunLog& log, MaskWriter* masks) {
   RunResults results;
   Cloud shape;
   Cloud landmarks;
@@ -45,7 +45,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     }
   };
   try {
-    results = ResultsOf(slam, record);
+    results = ResultsOf(slam, log, setup.source.R_camera_rectified);
     for (size_t i = 0; i < results.maps.size(); ++i) {
       const MapResults& map = results.maps[i];
       if (i > 0 && map.trajectory.empty()) break;  // of a loaded map nothing was seen of
@@ -53,22 +53,22 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
       folder.Write(NumberedFile("keyframes", i), FormatTumTrajectory(map.keyframes));
     }
     folder.Write("trajectory_live.txt", FormatTumTrajectory(results.maps.front().live));
-    if (!record.truth.empty()) {
-      folder.Write("groundtruth.txt", FormatTumTrajectory(record.truth));
+    if (!log.truth.empty()) {
+      folder.Write("groundtruth.txt", FormatTumTrajectory(log.truth));
     }
-    folder.Write("stats.json", StatsJson(record, results));
-    if (const std::string camera = FoundCameraFile(record); !camera.empty())
-      folder.Write("camera.yaml", camera);
+    folder.Write("stats.json", StatsJson(setup, camera, log, results));
+    if (const std::string file = FoundCameraFile(camera, setup.source_path); !file.empty())
+      folder.Write("camera.yaml", file);
     attempt([&] {
-      if (with_map) folder.Write("map.alidade", slam.SaveMap());
+      if (!setup.settings.slam.localise) folder.Write("map.alidade", slam.SaveMap());
     });
     attempt([&] {
       landmarks = LandmarksOf(results);
       folder.Write("landmarks.ply", EncodePly(landmarks, CloudFormat::kAscii));
     });
     attempt([&] {
-      if (!record.settings.semidense.enabled) return;
-      const double voxel = record.settings.semidense.voxel;
+      if (!setup.settings.slam.semidense.enabled) return;
+      const double voxel = setup.settings.slam.semidense.voxel;
       shape = WriteSemiDense(folder, results, slam.camera(), voxel);
       if (!shape.points.empty())
         pictures.shape = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
@@ -79,10 +79,11 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
         pictures.shape = LandmarkViews(results, std::move(landmarks));
     });
     attempt([&] {
-      pictures.keyframes =
-          DrawKeyframes(record.album, results, slam, record.first_time.value_or(0));
+      pictures.keyframes = DrawKeyframes(log.album, results, slam, log.first_time.value_or(0));
     });
-    attempt([&] { folder.Write("report.html", ReportHtml(record, results, std::move(pictures))); });
+    attempt([&] {
+      folder.Write("report.html", ReportHtml(setup, camera, log, results, std::move(pictures)));
+    });
     attempt([&] {
       if (masks) masks->Finish();
     });
@@ -91,7 +92,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
     throw;
   }
   if (failure) std::rethrow_exception(failure);
-  return {record.frames,
+  return {log.frames,
           results.tracked,
           results.map.keyframe_count(),
           results.map.landmark_count(),

@@ -1,28 +1,18 @@
 // The folder `alidade run` leaves behind (docs/reference/run-folder.md).
 #pragma once
 
-#include <array>
-#include <optional>
-#include <vector>
-
+#include "alidade/run/calibration/camera_finding.h"
 #include "alidade/run/folder/output_folder.h"
 #include "alidade/run/results/mask_writer.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_log.h"
+#include "alidade/run/results/run_summary.h"
+#include "alidade/run/setup/run_setup.h"
 
 namespace alidade {
 
-struct RunSummary {
-  int frames = 0, tracked = 0;
-  int keyframes = 0, landmarks = 0, maps = 0;
-  std::optional<int> first_tracked;               // its number in the recording
-  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
-  size_t shape_points = 0;                        // of semidense.ply
-  double path_length = 0;  // through the largest map, metres (mono: map units)
-};
-
-// Writes everything. Throws Error (input) when a file cannot be written; what was written by then
-// is whole.
-RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
-                        bool with_map = true, MaskWriter* masks = nullptr);
+// Writes everything. `masks` may be null. Throws Error (input) when a file cannot be written; what
+// was written by then is whole.
+RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& setup,
+                        const CameraFinding& camera, const RunLog& log, MaskWriter* masks);
 
 }  // namespace alidade

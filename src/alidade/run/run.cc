@@ -12,6 +12,7 @@
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
+#include "alidade/run/calibration/lens.h"
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/results/mask_writer.h"
@@ -22,12 +23,12 @@ namespace alidade {
 namespace {
 
 // What went wrong by no fault of the recording's; empty: nothing.
-std::string BugOf(const RunRecord& record) {
+std::string BugOf(const RunLog& log) {
   std::string bugs;
-  for (const StageHealth& stage : record.health.stages) {
+  for (const StageHealth& stage : log.health.stages) {
     if (stage.bug) bugs += (bugs.empty() ? "" : "; ") + stage.name + " stopped: " + stage.failure;
   }
-  if (record.bug) bugs += (bugs.empty() ? "" : "; ") + ("a frame failed: " + WhatOf(record.bug));
+  if (log.bug) bugs += (bugs.empty() ? "" : "; ") + ("a frame failed: " + WhatOf(log.bug));
   return bugs;
 }
 
@@ -95,18 +96,18 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
 // Writes the results and puts them in their place. Throws what says that the run did not end well.
 void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
                   const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
-  const RunRecord& record = outcome.record;
+  const RunLog& log = outcome.log;
   std::exception_ptr failure;
   try {
-    outcome.summary = WriteOutputs(folder, slam, record, !record.settings.localise, masks);
+    outcome.summary = WriteOutputs(folder, slam, outcome.setup, outcome.camera, log, masks);
     for (RunWatcher* watcher : watchers) watcher->Written(folder.draft());
   } catch (...) {
     failure = std::current_exception();
   }
-  const std::string bugs = BugOf(record);
+  const std::string bugs = BugOf(log);
   const bool mapped = outcome.summary.tracked > 0;
   const PlacedResult placed =
-      folder.Place(!failure && !record.failure && bugs.empty() && !record.interrupted && mapped);
+      folder.Place(!failure && !log.failure && bugs.empty() && !log.interrupted && mapped);
   outcome.folder = placed.folder;
   if (!placed.folder.empty()) {
     for (RunWatcher* watcher : watchers) watcher->Placed(placed.folder);
@@ -114,15 +115,14 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
   const std::string problem = placed.problem.empty() ? "" : " (" + placed.problem + ")";
   if (failure) Rethrow(failure, problem);
   for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, placed.folder);
-  if (record.failure) Rethrow(record.failure, problem);
+  if (log.failure) Rethrow(log.failure, problem);
   if (!bugs.empty())
     throw RunStopped(bugs + " (what could be done without is in " + placed.folder + ")" + problem);
-  if (record.interrupted) {
+  if (log.interrupted) {
     outcome.status = kInterruptedStatus;
     if (!placed.problem.empty()) LogWarning(placed.problem);
   } else if (!mapped) {
-    throw Error(ErrorKind::kNothingMapped,
-                "nothing could be mapped: " + WhyNothing(record) + problem);
+    throw Error(ErrorKind::kNothingMapped, "nothing could be mapped: " + WhyNothing(log) + problem);
   } else if (!placed.problem.empty()) {
     ThrowInput(placed.problem);
   }
@@ -133,62 +133,63 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
 RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watchers) {
   CheckRunOptions(options);
   RunOutcome outcome;
-  RunRecord& record = outcome.record;
-  record.source_path = options.source;
-  record.profile = options.profile;
-  const RunSettings settings = SettingsFrom(options);
-  record.settings = settings.slam;
-  record.stream = settings.stream;
-  record.look = settings.look;
-  record.lens_check = settings.lens;
-  record.calibrate = settings.calibrate;
-  record.untracked.set_look(settings.look);
+  RunSetup& setup = outcome.setup;
+  CameraFinding& finding = outcome.camera;
+  RunLog& log = outcome.log;
+  setup.source_path = options.source;
+  setup.profile = options.profile;
+  setup.settings = SettingsFrom(options);
+  SlamSettings& settings = setup.settings.slam;
+  log.untracked.set_look(setup.settings.look);
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
 
   cv::setNumThreads(1);  // the loops are ours
   SetThreadCount(options.threads);
-  record.threads = ThreadCount();
+  setup.threads = ThreadCount();
   const Warnings warnings(watchers);
 
   std::optional<SavedMap> saved;
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
-  record.settings.localise = options.localise;
-  wanted.color = record.settings.WantsColor();
+  settings.localise = options.localise;
+  wanted.color = settings.WantsColor();
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);
-  record.source = source->Info();
-  record.settings.sensor = record.source.sensor;
-  record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
-  OutputFolder folder(ClaimOf(options, record.source));
+  setup.source = source->Info();
+  settings.sensor = setup.source.sensor;
+  settings.threaded = ThreadedFrom(options, setup.source.kind == "camera");
+  OutputFolder folder(ClaimOf(options, setup.source));
   outcome.folder = folder.path();
-  if (saved && saved->camera.width < record.source.camera.width)
-    record.settings.image_width = saved->camera.width;  // it was made from images scaled down
-  LearnCamera(options, wanted, saved ? &saved->camera : nullptr, watchers, record);
+  if (saved && saved->camera.width < setup.source.camera.width)
+    settings.image_width = saved->camera.width;  // it was made from images scaled down
+  const auto go_on = [&](const CalibrateProgress& progress) {
+    for (RunWatcher* watcher : watchers) watcher->Calibrating(progress);
+    return !Interrupted();
+  };
+  finding = LearnCamera(options, wanted, saved ? &saved->camera : nullptr, go_on, setup);
   std::shared_ptr<Detector> detector = options.own_detector;
-  if (options.detector)
-    detector = OpenDetector(*options.detector, record.settings.dynamics.detector);
-  Slam slam(record.source.camera, record.settings, detector);
-  SayScaledDown(record.source.camera, slam.camera(), record.settings);
+  if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
+  Slam slam(finding.camera, settings, detector);
+  SayScaledDown(finding.camera, slam.camera(), settings);
   if (saved) slam.Load(*saved);
 
   std::optional<MaskWriter> masks;
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
-  for (RunWatcher* watcher : watchers) watcher->Begin(slam, record, folder.draft());
-  RunFrames(frames, RateFrom(options, record.settings.threaded), slam, watchers, record,
+  for (RunWatcher* watcher : watchers) watcher->Begin({slam, setup, finding, log}, folder.draft());
+  RunFrames(frames, RateFrom(options, settings.threaded), settings, slam, watchers, log,
             masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
-  TakeRefinedCamera(slam, record);
-  record.camera.readout = slam.camera().readout;
-  record.camera.readout_sigma = slam.readout_sigma();
-  record.lens = CheckLens(slam, record.settings, record.lens_check);
-  if (const std::string bent = LensInWords(record.lens, slam.camera()); !bent.empty())
+  TakeRefinedCamera(slam, setup, log.frames, finding);
+  finding.readout = slam.camera().readout;
+  finding.readout_sigma = slam.readout_sigma();
+  finding.lens = CheckLens(slam, settings, setup.settings.lens);
+  if (const std::string bent = LensInWords(finding.lens, slam.camera()); !bent.empty())
     LogWarning(bent);
-  record.warnings = warnings.all();
-  if (record.failure && record.frames == 0) std::rethrow_exception(record.failure);
+  log.warnings = warnings.all();
+  if (log.failure && log.frames == 0) std::rethrow_exception(log.failure);
   LeaveResults(folder, slam, masks ? &*masks : nullptr, watchers, outcome);
   return outcome;
 }

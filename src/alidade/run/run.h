@@ -13,7 +13,9 @@ namespace alidade {
 
 struct RunOutcome {
   RunSummary summary;
-  RunRecord record;
+  RunSetup setup;
+  CameraFinding camera;
+  RunLog log;
   std::string folder;  // where the results are
   // Exit status of a program that ends with it: 0, or 130 when it was interrupted. All else is
   // thrown.

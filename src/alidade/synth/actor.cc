@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "alidade/synth/paint.h"
+#include "alidade/synth/paint/paint.h"
 
 namespace alidade {
 

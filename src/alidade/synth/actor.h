@@ -6,7 +6,7 @@
 
 #include "alidade/synth/camera_path.h"
 #include "alidade/synth/scene.h"
-#include "alidade/synth/scenes.h"
+#include "alidade/synth/scenes/scenes.h"
 
 namespace alidade {
 

@@ -9,7 +9,7 @@
 #include "alidade/base/random.h"
 #include "alidade/synth/actor.h"
 #include "alidade/synth/renderer.h"
-#include "alidade/synth/scenes.h"
+#include "alidade/synth/scenes/scenes.h"
 #include "alidade/synth/sensor.h"
 #include "alidade/synth/thing.h"
 

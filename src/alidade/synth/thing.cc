@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "alidade/base/random.h"
-#include "alidade/synth/paint.h"
+#include "alidade/synth/paint/paint.h"
 
 namespace alidade {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "alidade/synth/scene.h"
-#include "alidade/synth/scenes.h"
+#include "alidade/synth/scenes/scenes.h"
 
 namespace alidade {
 

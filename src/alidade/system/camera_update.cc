@@ -3,8 +3,8 @@
 #include <memory>
 #include <new>
 
+#include "alidade/calibration/camera_estimate.h"
 #include "alidade/features/undistort.h"
-#include "alidade/map/camera_estimate.h"
 
 namespace alidade {
 namespace {

@@ -4,16 +4,16 @@
 
 #include <functional>
 
-#include "alidade/system/early_frames.h"
-#include "alidade/system/kept_frames.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
 #include "alidade/system/published.h"
+#include "alidade/system/revisit/early_frames.h"
+#include "alidade/system/revisit/kept_frames.h"
 #include "alidade/system/session.h"
 #include "alidade/system/settings.h"
+#include "alidade/system/start/young_map.h"
 #include "alidade/system/types.h"
-#include "alidade/system/workers.h"
-#include "alidade/system/young_map.h"
+#include "alidade/system/workers/workers.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {

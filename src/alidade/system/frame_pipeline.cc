@@ -8,18 +8,16 @@
 
 #include "alidade/base/error.h"
 #include "alidade/features/glance.h"
-#include "alidade/features/subset.h"
 #include "alidade/map/map_file.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
-#include "alidade/system/unknown_scale.h"
+#include "alidade/system/start/unknown_scale.h"
 
 namespace alidade {
 namespace {
 
 constexpr int kLastCameraQueries = 3;  // in Finish(): each change makes the next one smaller
 constexpr int kReanchorFrames = 300;   // period of Reanchor(): 10 s at 30 frames per second
-constexpr int kInformative = 100;      // keypoints of an image that shows something, of 1000
 
 TrackState PublicState(SessionState state) {
   switch (state) {
@@ -61,7 +59,7 @@ FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
       session_({young_, early_, kept_, tracker_, movers_}),
       placer_(workers_, tracker_, movers_, log_),
       relocalizer_(settings, workers_, tracker_, log_),
-      start_({settings, workers_, session_, young_, early_, kept_, tracker_, placer_}),
+      start_({settings, workers_, session_, young_, early_, kept_, tracker_, movers_, placer_}),
       camera_update_({settings, camera_, camera_shown_, workers_, session_, young_, early_, kept_,
                       tracker_, movers_},
                      [this](PresentFrame& now) { return Localize(now); }) {
@@ -99,7 +97,7 @@ TrackResult FramePipeline::Localize(PresentFrame& now) {
   } else {
     TrackEstimate estimate = FindPlace(now, map);
     if (estimate.tracked) return Place(std::move(estimate), now, map);
-    if (MayStartMap(now)) return StartMap(now);
+    if (start_.MayStart(now, steady_, first_number_)) return start_.Start(now, camera_);
   }
   return WithoutPose(failure, now.frame->time, map);
 }
@@ -269,47 +267,6 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   result.matches = estimate.placed.inliers;
   result.T_world_camera = estimate.placed.T_camera_world.Inverse();
   return result;
-}
-
-// A new map starts only when no known place is recognized: at once while seeking, after
-// settings.new_map_seconds and new_map_frames informative frames when lost.
-bool FramePipeline::MayStartMap(const PresentFrame& now) {
-  if (session_.state() == SessionState::kSeeking) return true;
-  const double informative = kInformative * settings_.tracker.match_scale;
-  if (static_cast<double>(now.frame->keypoints.size()) >= informative)
-    session_.CountInformativeFrame();
-  const bool long_lost = steady_ - session_.lost_since() >= settings_.new_map_seconds &&
-                         session_.informative_frames() >= settings_.new_map_frames;
-  const bool may_start = !settings_.localise && !workers_.mapping_stopped();
-  if (long_lost && may_start) {
-    LeaveMap();
-    return true;
-  }
-  // If another map starts later, it may show this place, too.
-  if (settings_.sensor == Sensor::kMono && may_start) early_.Wait(*now.frame, now.index);
-  return false;
-}
-
-// A map of few keyframes is dropped: it would be mistaken for other places. A loaded one is kept.
-void FramePipeline::LeaveMap() {
-  session_.Apply(SessionEvent::kLostForLong);
-  const MapSnapshot map = workers_.map().Snapshot();
-  const MapId left = map.MapOf(tracker_.reference());
-  if (!left.valid()) return;
-  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(left);
-  const bool loaded = map.Find(keyframes.front())->frame->number < first_number_;
-  if (!loaded && static_cast<int>(keyframes.size()) < settings_.min_map_keyframes)
-    workers_.Drop(left);
-}
-
-TrackResult FramePipeline::StartMap(PresentFrame& now) {
-  if (movers_.on()) {
-    now.placed.frame = std::make_shared<Frame>(*now.frame);
-    const cv::Mat glance = now.frame->glance;
-    *now.frame = KeypointSubset(*now.frame, MappableKeypoints(*now.frame), camera_);
-    now.frame->glance = glance;
-  }
-  return start_.Start(now, camera_);
 }
 
 TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const MapSnapshot& map) {

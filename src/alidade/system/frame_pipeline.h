@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "alidade/system/camera_update.h"
-#include "alidade/system/early_frames.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
-#include "alidade/system/kept_frames.h"
-#include "alidade/system/map_start.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
 #include "alidade/system/published.h"
-#include "alidade/system/relocalizer.h"
+#include "alidade/system/revisit/early_frames.h"
+#include "alidade/system/revisit/kept_frames.h"
+#include "alidade/system/revisit/relocalizer.h"
 #include "alidade/system/session.h"
-#include "alidade/system/workers.h"
-#include "alidade/system/young_map.h"
+#include "alidade/system/start/map_start.h"
+#include "alidade/system/start/young_map.h"
+#include "alidade/system/workers/workers.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {
@@ -73,9 +73,6 @@ class FramePipeline {
                             const MapSnapshot& map);
   bool FollowsMovingObject(bool young);
   TrackResult Place(TrackEstimate estimate, PresentFrame& now, const MapSnapshot& map);
-  bool MayStartMap(const PresentFrame& now);
-  void LeaveMap();
-  TrackResult StartMap(PresentFrame& now);
   TrackResult WithoutPose(TrackFailure failure, double time, const MapSnapshot& map);
   void KeepForLater(PresentFrame& now, const TrackResult& result);
   void Publish(const PresentFrame& now);

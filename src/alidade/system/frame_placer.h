@@ -5,7 +5,7 @@
 #include "alidade/system/frame_log.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
-#include "alidade/system/workers.h"
+#include "alidade/system/workers/workers.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {

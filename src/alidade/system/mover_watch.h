@@ -19,9 +19,10 @@
 #include "alidade/detect/detector.h"
 #include "alidade/dynamics/dynamic_filter.h"
 #include "alidade/map/map_store.h"
-#include "alidade/system/detection_feed.h"
 #include "alidade/system/health.h"
+#include "alidade/system/settings.h"
 #include "alidade/system/types.h"
+#include "alidade/system/workers/detection_feed.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {

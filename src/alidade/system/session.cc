@@ -2,10 +2,10 @@
 
 #include <limits>
 
-#include "alidade/system/early_frames.h"
-#include "alidade/system/kept_frames.h"
 #include "alidade/system/mover_watch.h"
-#include "alidade/system/young_map.h"
+#include "alidade/system/revisit/early_frames.h"
+#include "alidade/system/revisit/kept_frames.h"
+#include "alidade/system/start/young_map.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {

@@ -8,6 +8,8 @@
 
 #include "alidade/base/api.h"
 #include "alidade/base/settings_table.h"
+#include "alidade/calibration/lens_watch.h"
+#include "alidade/calibration/readout_watch.h"
 #include "alidade/dynamics/settings.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/looping/settings.h"
@@ -15,8 +17,6 @@
 #include "alidade/place/settings.h"
 #include "alidade/semidense/settings.h"
 #include "alidade/system/camera_clock.h"
-#include "alidade/system/lens_watch.h"
-#include "alidade/system/readout_watch.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 

@@ -4,40 +4,15 @@
 
 #include <functional>
 #include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "alidade/calibration/camera_estimate.h"
 #include "alidade/io/frame_source.h"
-#include "alidade/map/camera_estimate.h"
+#include "alidade/run/setup/calibrate_settings.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {
-
-// Range, unit and meaning: Table() in find_camera.cc, and that of CameraEstimateSettings.
-struct CalibrateSettings : CameraEstimateSettings {
-  // A rolling shutter distorts images as a wrong lens does: both are estimated at once. Phones and
-  // webcams take 10 to 30 ms, others none.
-  CalibrateSettings() { readout_sigma = 0.02; }
-
-  bool enabled = true;
-  // A map made with a wrong camera is distorted the more the longer it gets.
-  double max_off = 0.06;
-  double max_restart_sigma = 0.02;
-  // A map made with a very wrong camera says little, but points in the right direction.
-  double max_retry_sigma = 0.1;
-  double retry_bend = -0.13;
-  double enough_sigma = 0.004;
-  int max_passes = 6;
-  int first_keyframes = 10;
-  double growth = 1.3;
-  // Sensors are cropped for video and for stabilization.
-  double told_sigma = 0.1;
-  double max_seconds = 120;
-
-  static std::span<const Setting> Table();
-  void Check() const;  // throws Error (usage) naming the invalid setting
-};
 
 struct CameraFound {
   CameraEstimate estimate;  // of the recording's images; the camera is the guess where not `usable`

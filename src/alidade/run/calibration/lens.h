@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "alidade/map/lens_check.h"
+#include "alidade/calibration/lens_check.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {

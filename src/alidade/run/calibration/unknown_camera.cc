@@ -6,7 +6,6 @@
 #include "alidade/base/log.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/camera_file.h"
-#include "alidade/run/play/loop.h"
 #include "alidade/run/sources/any_source.h"
 
 namespace alidade {
@@ -14,10 +13,10 @@ namespace {
 
 constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal one, say better)";
 
-std::string AssumedInWords(const SourceInfo& source) {
+std::string AssumedInWords(const SourceInfo& source, const Camera& camera) {
   char text[80];
   std::snprintf(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
-                FovDegrees(source.camera));
+                FovDegrees(camera));
   return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
 }
 
@@ -29,100 +28,102 @@ void WarnOfDoubt(CameraEstimate estimate, const Camera& taken) {
 
 }  // namespace
 
-void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const Camera* saved,
-                 const std::vector<RunWatcher*>& watchers, RunRecord& record) {
-  SourceInfo& source = record.source;
-  CameraRecord& camera = record.camera;
+CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted,
+                          const Camera* saved,
+                          const std::function<bool(const CalibrateProgress&)>& go_on,
+                          RunSetup& setup) {
+  const SourceInfo& source = setup.source;
+  SlamSettings& settings = setup.settings.slam;
+  CalibrateSettings& calibrate = setup.settings.calibrate;
+  CameraFinding finding;
+  finding.camera = source.camera;
   if (!source.camera_guessed) {
-    camera.known = options.camera_file || options.fov ? "given" : "file";
-    return;
+    finding.known = options.camera_file || options.fov ? "given" : "file";
+    return finding;
   }
-  camera.known = "assumed";
-  if (!source.lens_told.empty()) record.calibrate.adjust.focal_sigma = record.calibrate.told_sigma;
-  camera.focal_sigma = record.calibrate.adjust.focal_sigma;
-  double& wary = record.settings.start.two_view.lens_uncertainty;
+  finding.known = "assumed";
+  if (!source.lens_told.empty()) calibrate.adjust.focal_sigma = calibrate.told_sigma;
+  finding.focal_sigma = calibrate.adjust.focal_sigma;
+  double& wary = settings.start.two_view.lens_uncertainty;
   const bool told_wary = wary != 0;
-  record.settings.WaryOfTurns();
+  settings.WaryOfTurns();
   if (saved) {
-    source.camera = CameraOfSize(*saved, source.camera);
-    source.camera.distortion = saved->distortion;
-    camera.known = "file";
-    camera.focal_sigma = 0;
+    finding.camera = CameraOfSize(*saved, source.camera);
+    finding.camera.distortion = saved->distortion;
+    finding.known = "file";
+    finding.focal_sigma = 0;
     if (!told_wary) wary = 0;
-    return;
+    return finding;
   }
-  const bool looked_for = source.sensor == Sensor::kMono && record.calibrate.enabled;
-  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // on the way
-    record.settings.FindCamera();
-    record.settings.refine.focal_sigma = camera.focal_sigma;
-    return;
+  const bool looked_for = source.sensor == Sensor::kMono && calibrate.enabled;
+  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // during the run
+    settings.FindCamera();
+    settings.refine.focal_sigma = finding.focal_sigma;
+    return finding;
   }
   if (!looked_for) {
-    record.settings.readout.enabled = false;  // a wrong lens may be taken for it
-    LogWarning("nothing is known of the camera: " + AssumedInWords(source) + kBetter);
-    return;
+    settings.readout.enabled = false;  // a wrong lens may be taken for it
+    LogWarning("nothing is known of the camera: " + AssumedInWords(source, finding.camera) +
+               kBetter);
+    return finding;
   }
   const double cpu = ProcessCpuSeconds();
   const Stopwatch clock;
-  CameraFound found = FindCamera([&] { return OpenAnySource(options.source, wanted); },
-                                 record.settings, record.calibrate,
-                                 [&](const CalibrateProgress& progress) {
-                                   for (RunWatcher* watcher : watchers)
-                                     watcher->Calibrating(progress);
-                                   return !Interrupted();
-                                 });
+  CameraFound found =
+      FindCamera([&] { return OpenAnySource(options.source, wanted); }, settings, calibrate, go_on);
   found.windows.clear();
-  camera.cpu_s = ProcessCpuSeconds() - cpu;
-  camera.wall_s = clock.Milliseconds() * 1e-3;
-  camera.found = found;
+  finding.cpu_s = ProcessCpuSeconds() - cpu;
+  finding.wall_s = clock.Milliseconds() * 1e-3;
+  finding.found = found;
   if (found.usable) {
-    source.camera = found.estimate.camera;
-    camera.focal_sigma = found.estimate.focal_sigma;
-    if (!told_wary) wary = 3 * camera.focal_sigma;
+    finding.camera = found.estimate.camera;
+    finding.focal_sigma = found.estimate.focal_sigma;
+    if (!told_wary) wary = 3 * finding.focal_sigma;
   }
-  if (!found.estimate.known)
-    record.settings.readout.enabled = false;  // the lens may be taken for it
+  if (!found.estimate.known) settings.readout.enabled = false;  // the lens may be taken for it
   if (found.estimate.known) {
-    camera.known = "estimated";
+    finding.known = "estimated";
   } else if (found.usable) {
     WarnOfDoubt(found.estimate, found.estimate.camera);
   } else {
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " + AssumedInWords(source) +
-               kBetter);
+    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
+               AssumedInWords(source, finding.camera) + kBetter);
   }
+  return finding;
 }
 
-void TakeRefinedCamera(const Slam& slam, RunRecord& record) {
-  if (!record.settings.refine.enabled) return;
+void TakeRefinedCamera(const Slam& slam, const RunSetup& setup, int frames,
+                       CameraFinding& finding) {
+  if (!setup.settings.slam.refine.enabled) return;
   CameraFound found;
   found.passes = 1;
-  found.frames = record.frames;
-  Camera& camera = record.source.camera;
+  found.frames = frames;
+  Camera& camera = finding.camera;
   if (const auto estimate = slam.camera_found()) {
     found.estimate = *estimate;
     found.usable = true;
     camera = CameraOfSize(slam.camera(), camera);
-    record.camera.focal_sigma = estimate->focal_sigma;
+    finding.focal_sigma = estimate->focal_sigma;
     if (estimate->known) {
-      record.camera.known = "estimated";
+      finding.known = "estimated";
     } else {
       WarnOfDoubt(found.estimate, camera);
     }
   } else {
     found.why_not = "the camera turns and moves too little for its focal length to tell";
     LogWarning("the camera stays unknown, as " + found.why_not + ": " +
-               AssumedInWords(record.source) + kBetter);
+               AssumedInWords(setup.source, camera) + kBetter);
   }
   found.estimate.camera = camera;
-  record.camera.found = std::move(found);
+  finding.found = std::move(found);
 }
 
-std::string FoundCameraFile(const RunRecord& record) {
-  if (!record.camera.found || !record.camera.found->usable) return {};
-  const CameraFound& found = *record.camera.found;
+std::string FoundCameraFile(const CameraFinding& finding, const std::string& source) {
+  if (!finding.found || !finding.found->usable) return {};
+  const CameraFound& found = *finding.found;
   return FormatCameraFile(found.estimate.camera,
                           "Found by alidade from " + std::to_string(found.estimate.keyframes) +
-                              " keyframes of\n" + record.source_path + "\nfield of view " +
+                              " keyframes of\n" + source + "\nfield of view " +
                               CameraInWords(found.estimate) +
                               (found.estimate.known ? "" : "\nnot known for certain"));
 }

@@ -1,29 +1,31 @@
-// What a run does about its camera: takes it as told, or finds it first.
+// What a run does about its camera: takes it as given, or finds it first.
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <string>
-#include <vector>
 
-#include "alidade/run/play/watcher.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/calibration/camera_finding.h"
 #include "alidade/run/setup/options.h"
+#include "alidade/run/setup/run_setup.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
 
-// Fills in record.camera, and record.source.camera where a better one than the source's is found:
-// a loaded map's when nothing is known, else by FindCamera(), for recordings of one camera; of
-// live ones, and where nothing is to be played beforehand, it is found on the way.
-// `saved`: null when no map is loaded. Warns of a camera that stays unknown.
-void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const Camera* saved,
-                 const std::vector<RunWatcher*>& watchers, RunRecord& record);
+// The camera of the run: the source's, or a better one where that is a guess: a loaded map's
+// (`saved`, may be null), else that of FindCamera() for recordings of one camera. Live cameras, and
+// recordings without passes beforehand, are calibrated during the run; `setup.settings` are changed
+// accordingly. Warns of a camera that stays unknown. `go_on`: see FindCamera().
+CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted,
+                          const Camera* saved,
+                          const std::function<bool(const CalibrateProgress&)>& go_on,
+                          RunSetup& setup);
 
-// The run is over: what its map told of a camera that was refined on the way
-// (SlamSettings::refine). Warns of one that stays unknown.
-void TakeRefinedCamera(const Slam& slam, RunRecord& record);
+// At the end: the camera after `frames` frames of online self-calibration (SlamSettings::refine).
+// Warns of one that stays unknown.
+void TakeRefinedCamera(const Slam& slam, const RunSetup& setup, int frames, CameraFinding& finding);
 
-// camera.yaml for the next recording with the same camera; empty where nothing was found out.
-std::string FoundCameraFile(const RunRecord& record);
+// camera.yaml for the next recording with the same camera; empty where nothing was found.
+// `source`: as typed.
+std::string FoundCameraFile(const CameraFinding& finding, const std::string& source);
 
 }  // namespace alidade

@@ -15,6 +15,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/base/timing.h"
+#include "alidade/run/sources/frame_input.h"
 
 namespace alidade {
 namespace {
@@ -94,75 +95,75 @@ class CpuMeter {
   double start_;
 };
 
-void Drop(const SourceFrame& frame, const std::string& problem, RunRecord& record) {
-  if (record.dropped == 0) record.first_problem = problem;
-  if (++record.dropped <= kWarnedFrames) {
+void Drop(const SourceFrame& frame, const std::string& problem, RunLog& log) {
+  if (log.dropped == 0) log.first_problem = problem;
+  if (++log.dropped <= kWarnedFrames) {
     LogWarning("frame " + std::to_string(frame.number) + " skipped: " + problem);
   }
 }
 
 // Once for each part; a detector that fails says so itself.
-void TellWhatStopped(const TrackResult& result, const Slam& slam, RunRecord& record) {
+void TellWhatStopped(const TrackResult& result, const Slam& slam, RunLog& log) {
   if (result.warning.empty()) return;
   SlamHealth health = slam.Health();
   for (const StageHealth& stage : health.stages) {
-    const auto told = std::find_if(record.health.stages.begin(), record.health.stages.end(),
+    const auto told = std::find_if(log.health.stages.begin(), log.health.stages.end(),
                                    [&](const StageHealth& s) { return s.name == stage.name; });
     if (stage.running || stage.name == "detector") continue;
-    if (told != record.health.stages.end() && !told->running) continue;
+    if (told != log.health.stages.end() && !told->running) continue;
     LogWarning(stage.name + " stopped (" + stage.failure + "); going on without it");
   }
-  record.health = std::move(health);
+  log.health = std::move(health);
 }
 
-void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& watchers,
-          RunRecord& record, MaskWriter* masks) {
-  ++record.frames;
+void Feed(const SourceFrame& frame, const SlamSettings& settings, Slam& slam,
+          const std::vector<RunWatcher*>& watchers, RunLog& log, MaskWriter* masks) {
+  ++log.frames;
   if (std::isfinite(frame.time)) {
-    if (!record.first_time) record.first_time = frame.time;
-    record.last_time = frame.time;
+    if (!log.first_time) log.first_time = frame.time;
+    log.last_time = frame.time;
   }
   if (frame.T_world_camera) {
-    record.truth.push_back({frame.time, *frame.T_world_camera, frame.stamp});
+    log.truth.push_back({frame.time, *frame.T_world_camera, frame.stamp});
   }
   if (!frame.problem.empty()) {
-    Drop(frame, frame.problem, record);
+    Drop(frame, frame.problem, log);
     return;
   }
   TrackResult result;
   const int counted = slam.frames();
-  record.stamps.push_back(frame.stamp);
-  record.numbers.push_back(frame.number);
+  log.stamps.push_back(frame.stamp);
+  log.numbers.push_back(frame.number);
   try {
     result = slam.Track(InputOf(frame));
   } catch (...) {
     const std::exception_ptr failure = std::current_exception();
     const std::string what = WhatOf(failure);
     if (slam.frames() == counted) {
-      record.stamps.pop_back();
-      record.numbers.pop_back();
-      Drop(frame, what, record);
+      log.stamps.pop_back();
+      log.numbers.pop_back();
+      Drop(frame, what, log);
       return;
     }
     // The frame counts, without a pose; the next will do better.
-    if (!record.bug) record.bug = failure;
-    ++record.untracked_reasons[what];
+    if (!log.bug) log.bug = failure;
+    ++log.untracked_reasons[what];
     LogWarning("frame " + std::to_string(frame.number) + " failed: " + what);
     return;
   }
-  TellWhatStopped(result, slam, record);
+  TellWhatStopped(result, slam, log);
   if (masks) masks->Write(frame, slam.MoverMask());
   if (result.state != TrackState::kTracking) {
-    ++record.untracked_reasons[result.reason()];
-    record.untracked.Add(
+    ++log.untracked_reasons[result.reason()];
+    log.untracked.Add(
         frame.time, result.reason(), frame.image,
-        static_cast<double>(slam.Features().size()) / record.settings.tracker.extractor.features);
-    record.dark += cv::mean(frame.image)[0] < kBlack;
+        static_cast<double>(slam.Features().size()) / settings.tracker.extractor.features);
+    log.dark += cv::mean(frame.image)[0] < kBlack;
   } else if (result.keyframe) {
-    record.untracked.AddKeyFrame(frame.image);
-    record.album.Add(static_cast<int>(record.stamps.size()) - 1, frame, slam);
+    log.untracked.AddKeyFrame(frame.image);
+    log.album.Add(static_cast<int>(log.stamps.size()) - 1, frame, slam);
   } else {
-    record.untracked.Tracked();
+    log.untracked.Tracked();
   }
   for (RunWatcher* watcher : watchers) watcher->Frame(frame, result);
 }
@@ -182,12 +183,12 @@ void ForgetInterrupts() { g_interrupted = 0; }
 
 bool Interrupted() { return g_interrupted != 0; }
 
-void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
-               const std::vector<RunWatcher*>& watchers, RunRecord& record, MaskWriter* masks) {
+void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings, Slam& slam,
+               const std::vector<RunWatcher*>& watchers, RunLog& log, MaskWriter* masks) {
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
-  const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
+  const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
       const std::optional<SourceFrame> frame = source.Next();
@@ -198,41 +199,27 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
       }
       for (RunWatcher* watcher : watchers) watcher->Wait(Interrupted);
       const double late = pacer.WaitFor(frame->time);
-      if (may_drop && late > record.settings.time.max_latency && source.ready()) {
-        ++record.late;
+      if (may_drop && late > settings.time.max_latency && source.ready()) {
+        ++log.late;
         continue;
       }
-      Feed(*frame, slam, watchers, record, masks);
+      Feed(*frame, settings, slam, watchers, log, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept
-    record.failure = std::current_exception();
+    log.failure = std::current_exception();
   }
   for (RunWatcher* watcher : watchers) watcher->Finishing();
   {
     const Finisher finisher(slam);
     slam.Finish();
   }
-  record.health = slam.Health();
-  if (cpu) record.cpu_s = cpu->Seconds();
-  if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
-  record.interrupted = Interrupted();
-  if (record.dropped > kWarnedFrames) {
-    LogWarning(std::to_string(record.dropped) + " frames were skipped in all");
+  log.health = slam.Health();
+  if (cpu) log.cpu_s = cpu->Seconds();
+  if (wall) log.wall_s = wall->Milliseconds() * 1e-3;
+  log.interrupted = Interrupted();
+  if (log.dropped > kWarnedFrames) {
+    LogWarning(std::to_string(log.dropped) + " frames were skipped in all");
   }
-}
-
-std::string WhyNothing(const RunRecord& record) {
-  if (record.frames == 0) return "there was no frame";
-  if (record.dropped == record.frames) {
-    return "none of the " + std::to_string(record.frames) + " frames could be used (" +
-           record.first_problem + ")";
-  }
-  const int used = record.frames - record.dropped;
-  if (2 * record.dark > used) return "the images are black";
-  const auto most =
-      std::max_element(record.untracked_reasons.begin(), record.untracked_reasons.end(),
-                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  return most == record.untracked_reasons.end() ? "no frame was tracked" : most->first;
 }
 
 }  // namespace alidade

@@ -6,15 +6,10 @@
 #include "alidade/io/read_ahead.h"
 #include "alidade/run/play/watcher.h"
 #include "alidade/run/results/mask_writer.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_log.h"
 #include "alidade/run/setup/options.h"
 
 namespace alidade {
-
-// What Slam::Track() is given of a frame.
-inline FrameInput InputOf(const SourceFrame& frame) {
-  return {frame.time, frame.image, frame.right, frame.depth, frame.color};
-}
 
 // From now on Ctrl-C (or a TERM signal) lets RunFrames() return, once the workers are done; a
 // second one does not wait for them, a third ends the program.
@@ -29,8 +24,8 @@ inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
 // that cannot be used are warned about, counted and left out. In the threaded schedule a frame that
 // is late by more than settings.time.max_latency gives way to a newer one that is there already.
-// `masks` may be null.
-void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
-               const std::vector<RunWatcher*>& watchers, RunRecord& record, MaskWriter* masks);
+// `settings`: of `slam`. `masks` may be null.
+void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings, Slam& slam,
+               const std::vector<RunWatcher*>& watchers, RunLog& log, MaskWriter* masks);
 
 }  // namespace alidade

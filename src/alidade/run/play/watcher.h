@@ -5,12 +5,21 @@
 #include <string>
 
 #include "alidade/io/frame_source.h"
-#include "alidade/run/calibration/find_camera.h"
-#include "alidade/run/outputs.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/calibration/camera_finding.h"
+#include "alidade/run/results/run_log.h"
+#include "alidade/run/results/run_summary.h"
+#include "alidade/run/setup/run_setup.h"
 #include "alidade/system/slam.h"
 
 namespace alidade {
+
+// A run as its watchers see it: all of it lives until End() has returned, or Run() throws.
+struct WatchedRun {
+  const Slam& slam;
+  const RunSetup& setup;
+  const CameraFinding& camera;
+  const RunLog& log;
+};
 
 // Calls come from the thread that plays the frames, but for Warn().
 class RunWatcher {
@@ -18,12 +27,9 @@ class RunWatcher {
   virtual ~RunWatcher() = default;
   // Before all else, while the camera is looked for: after each frame of a pass.
   virtual void Calibrating(const CalibrateProgress& progress) { (void)progress; }
-  // Before the first frame. What `slam` and `record` are references to lives until End() has
-  // returned, or Run() throws. Files are gathered in `folder`, which is there; a watcher may write
-  // its own into it until Written() has returned.
-  virtual void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
-    (void)slam, (void)record, (void)folder;
-  }
+  // Before the first frame. Files are gathered in `folder`, which is there; a watcher may write its
+  // own into it until Written() has returned.
+  virtual void Begin(const WatchedRun& run, const std::string& folder) { (void)run, (void)folder; }
   // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
   // it must not any more.
   virtual void Wait(bool (*interrupted)()) { (void)interrupted; }

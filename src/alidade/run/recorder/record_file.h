@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/run/setup/stream_settings.h"
 
 namespace alidade {
 

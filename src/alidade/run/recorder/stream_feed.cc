@@ -21,17 +21,17 @@ std::vector<StreamTruth> TruthOf(const Trajectory& trajectory) {
   return truth;
 }
 
-StreamSource SourceOf(const std::string& program, const Slam& slam, const RunRecord& record) {
+StreamSource SourceOf(const std::string& program, const Slam& slam, const RunSetup& setup) {
   StreamSource source;
   source.program = program;
-  source.source = record.source_path;
-  source.sensor = NameOf(record.settings.sensor);
-  source.unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
-  source.frames = record.source.frames;
-  source.live = record.source.kind == "camera";
+  source.source = setup.source_path;
+  source.sensor = NameOf(setup.settings.slam.sensor);
+  source.unit = setup.settings.slam.sensor == Sensor::kMono ? "map units" : "m";
+  source.frames = setup.source.frames;
+  source.live = setup.source.kind == "camera";
   source.camera = slam.camera();
-  source.R_camera_rectified = record.source.R_camera_rectified;
-  source.truth = TruthOf(TruthBeside(record.source_path));
+  source.R_camera_rectified = setup.source.R_camera_rectified;
+  source.truth = TruthOf(TruthBeside(setup.source_path));
   return source;
 }
 
@@ -52,14 +52,15 @@ StreamFeed::~StreamFeed() {
   if (thread_.joinable()) thread_.join();
 }
 
-void StreamFeed::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
-  slam_ = &slam;
-  record_ = &record;
+void StreamFeed::Begin(const WatchedRun& run, const std::string& folder) {
+  slam_ = &run.slam;
+  log_ = &run.log;
   folder_ = folder;
   {
     const std::lock_guard<std::mutex> lock(encoder_mutex_);
-    encoder_ = std::make_unique<StreamEncoder>(SourceOf(program_, slam, record), settings_.stream);
-    playback_.may_pause = record.source.kind != "camera";
+    encoder_ =
+        std::make_unique<StreamEncoder>(SourceOf(program_, run.slam, run.setup), settings_.stream);
+    playback_.may_pause = run.setup.source.kind != "camera";
     if (file_path_) {
       file_ = MakeRecordFile(file_path_->empty() ? folder + "/run.stream" : *file_path_, program_,
                              settings_);
@@ -198,8 +199,8 @@ void StreamFeed::TellEnd() {
   }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
-  if (!record_->truth.empty()) {  // of a rendered source, which tells it frame by frame
-    encoder_->SetTruth(TruthOf(record_->truth));
+  if (!log_->truth.empty()) {  // of a rendered source, which tells it frame by frame
+    encoder_->SetTruth(TruthOf(log_->truth));
     Tell({encoder_->Hello()});
   }
   playback_.finished = true;

@@ -16,7 +16,7 @@
 
 #include "alidade/run/play/watcher.h"
 #include "alidade/run/recorder/record_file.h"
-#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/run/setup/stream_settings.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/stream/stream_hub.h"
 
@@ -31,7 +31,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   ~StreamFeed() override;
 
   // The run's.
-  void Begin(const Slam& slam, const RunRecord& record, const std::string& folder) override;
+  void Begin(const WatchedRun& run, const std::string& folder) override;
   void Wait(bool (*interrupted)()) override;
   void Frame(const SourceFrame& frame, const TrackResult& result) override;
   void Finished() override;
@@ -63,7 +63,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   const std::optional<std::string> file_path_;
   const StreamFeedSettings settings_;
   const Slam* slam_ = nullptr;
-  const RunRecord* record_ = nullptr;
+  const RunLog* log_ = nullptr;
   std::string folder_;
   LatestTimes latest_;                                  // as of the frame before
   double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording

@@ -12,7 +12,7 @@
 
 #include "alidade/ros/ros_log.h"
 #include "alidade/run/folder/final_state.h"
-#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/run/setup/stream_settings.h"
 #include "alidade/stream/stream_scene.h"
 
 namespace alidade {

@@ -4,7 +4,6 @@
 
 #include "alidade/base/timing.h"
 #include "alidade/run/report/stats.h"
-#include "alidade/run/setup/run_settings.h"
 #include "alidade/run/sources/truth.h"
 
 namespace alidade {
@@ -59,51 +58,52 @@ int CountWithDepth(const MapSnapshot& map) {
 }
 
 // "12 (0.40 s after the start: too little parallax)".
-std::string FirstTracked(const RunRecord& record, const RunResults& results) {
+std::string FirstTracked(const RunLog& log, const RunResults& results) {
   if (!results.initialised_at) return "none";
   std::string words = std::to_string(*results.initialised_at);
   const auto first = std::find_if(results.frames.begin(), results.frames.end(),
                                   [](const FramePose& frame) { return frame.tracked; });
   if (first == results.frames.end() || first == results.frames.begin()) return words;
   const double start = results.frames.front().time, waited = first->time - start;
-  const std::string why = StartInWords(record.untracked.all(), start, waited);
+  const std::string why = StartInWords(log.untracked.all(), start, waited);
   return words + Format(", %.2f s after the start", waited) + (why.empty() ? "" : ": " + why);
 }
 
-std::string CameraFact(const RunRecord& record) {
-  const CameraRecord& camera = record.camera;
+std::string CameraFact(const CameraFinding& camera) {
   if (camera.found && camera.found->usable) {
     return CameraInWords(camera.found->estimate) + ", found from the recording" +
            (camera.found->estimate.known ? "" : ", not for certain");
   }
-  const std::string fov = Format("%.1f degrees", FovDegrees(record.source.camera));
+  const std::string fov = Format("%.1f degrees", FovDegrees(camera.camera));
   if (camera.known == "given") return fov + ", as given";
   return fov + (camera.known == "file" ? ", by its calibration" : ", assumed");
 }
 
-std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
+std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
+                                                         const CameraFinding& camera,
+                                                         const RunLog& log,
                                                          const RunResults& results,
                                                          const std::string& unit) {
   const int tracked = results.tracked;
-  const double share = record.frames > 0 ? 100.0 * tracked / record.frames : 0;
+  const double share = log.frames > 0 ? 100.0 * tracked / log.frames : 0;
   std::vector<std::pair<std::string, std::string>> facts = {
-      {"source", record.source_path},
-      {"sensor", NameOf(record.settings.sensor)},
-      {"camera", CameraFact(record)},
-      {"frames tracked", std::to_string(tracked) + " of " + std::to_string(record.frames) +
-                             Format(" (%.1f %%)", share)},
-      {"first tracked frame", FirstTracked(record, results)},
+      {"source", setup.source_path},
+      {"sensor", NameOf(setup.settings.slam.sensor)},
+      {"camera", CameraFact(camera)},
+      {"frames tracked",
+       std::to_string(tracked) + " of " + std::to_string(log.frames) + Format(" (%.1f %%)", share)},
+      {"first tracked frame", FirstTracked(log, results)},
       {"lost", tracked == 0                 ? "never had a pose"
                : results.lost_spans.empty() ? "never"
                                             : LostInAll(results.lost_spans)},
       {"keyframes", std::to_string(results.map.keyframe_count())},
       {"landmarks", std::to_string(results.map.landmark_count())}};
-  if (record.settings.semidense.enabled && !record.settings.localise)
+  if (setup.settings.slam.semidense.enabled && !setup.settings.slam.localise)
     facts.push_back({"keyframes with depth", std::to_string(CountWithDepth(results.map))});
   facts.insert(facts.end(),
                {{"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
-                {"wall time", Format("%.2f s", record.wall_s)},
-                {"CPU time", Format("%.2f s", record.cpu_s)},
+                {"wall time", Format("%.2f s", log.wall_s)},
+                {"CPU time", Format("%.2f s", log.cpu_s)},
                 {"peak memory", Format("%.0f MB", PeakMegabytes())}});
   const SlamCounts& counts = results.counts;
   facts.push_back({"loops closed", std::to_string(counts.loops)});
@@ -115,24 +115,25 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
                                           ", which have no place in common; the first has most "
                                           "frames, and the path's length is its"});
   }
-  if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(record)});
-  if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
-  if (record.interrupted) facts.push_back({"interrupted", "results as far as it got"});
+  if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(log)});
+  if (log.dropped > 0) facts.push_back({"frames skipped", std::to_string(log.dropped)});
+  if (log.interrupted) facts.push_back({"interrupted", "results as far as it got"});
   return facts;
 }
 
 // How far the paths are from the truth, where it is known; each map is laid on it by itself.
-void AddErrors(const RunRecord& record, const RunResults& results, RunReport& report) {
-  if (!record.first_time) return;
-  const Trajectory truth = record.truth.empty() ? TruthBeside(record.source_path) : record.truth;
+void AddErrors(const RunSetup& setup, const RunLog& log, const RunResults& results,
+               RunReport& report) {
+  if (!log.first_time) return;
+  const Trajectory truth = log.truth.empty() ? TruthBeside(setup.source_path) : log.truth;
   if (truth.empty()) return;
-  const bool mono = record.settings.sensor == Sensor::kMono;
+  const bool mono = setup.settings.slam.sensor == Sensor::kMono;
   for (size_t i = 0; i < results.maps.size(); ++i) {
     const Trajectory& estimate = results.maps[i].trajectory;
     if (estimate.empty()) continue;
     std::string problem;
-    const auto errors = ErrorsAgainst(truth, estimate, mono,
-                                      TimeSpan{*record.first_time, *record.last_time}, &problem);
+    const auto errors =
+        ErrorsAgainst(truth, estimate, mono, TimeSpan{*log.first_time, *log.last_time}, &problem);
     if (!errors) continue;
     const std::string of = i == 0 ? "" : " of map " + std::to_string(i + 1);
     report.facts.push_back(
@@ -144,16 +145,16 @@ void AddErrors(const RunRecord& record, const RunResults& results, RunReport& re
     }
     report.maps[i].place.truth = PathOf(Between(truth, estimate.front().time, estimate.back().time),
                                         errors->ate.T_truth_estimate.Inverse());
-    const Curve curve = ErrorCurve(*errors, estimate, *record.first_time);
+    const Curve curve = ErrorCurve(*errors, estimate, *log.first_time);
     report.error.insert(report.error.end(), curve.begin(), curve.end());
   }
-  report.seconds = *record.last_time - *record.first_time;
+  report.seconds = *log.last_time - *log.first_time;
 }
 
-std::vector<ReportMap> MapsOf(const RunRecord& record, const RunResults& results,
+std::vector<ReportMap> MapsOf(const RunLog& log, const RunResults& results,
                               const std::string& unit) {
   std::vector<ReportMap> maps;
-  const double start = record.first_time.value_or(0);
+  const double start = log.first_time.value_or(0);
   for (size_t i = 0; i < results.maps.size(); ++i) {
     const MapResults& map = results.maps[i];
     std::string caption = std::to_string(map.trajectory.size()) + " frames";
@@ -170,13 +171,13 @@ std::vector<ReportMap> MapsOf(const RunRecord& record, const RunResults& results
 
 }  // namespace
 
-std::string ReportHtml(const RunRecord& record, const RunResults& results,
-                       ReportPictures pictures) {
-  const std::string unit = record.settings.sensor == Sensor::kMono ? "map units" : "m";
+std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
+                       const RunResults& results, ReportPictures pictures) {
+  const std::string unit = setup.settings.slam.sensor == Sensor::kMono ? "map units" : "m";
   RunReport report;
-  report.title = record.source.name;
-  report.facts = FactsOf(record, results, unit);
-  report.maps = MapsOf(record, results, unit);
+  report.title = setup.source.name;
+  report.facts = FactsOf(setup, camera, log, results, unit);
+  report.maps = MapsOf(log, results, unit);
   report.cloud = std::move(pictures.shape.scene);
   report.shape = std::move(pictures.shape.pictures);
   if (!report.shape.empty()) {
@@ -189,16 +190,13 @@ std::string ReportHtml(const RunRecord& record, const RunResults& results,
                          {"track", results.times.track}, {"map", results.times.map},
                          {"loop", results.times.loop},   {"semidense", results.times.semidense}};
   report.lost_spans =
-      LostInWords(results.lost_spans, record.untracked.all(), record.first_time.value_or(0));
-  AddErrors(record, results, report);
-  report.warnings = record.warnings;
-  report.settings = {{"profile", record.profile},
-                     {"schedule", record.settings.threaded ? "threaded" : "inline"},
-                     {"threads", std::to_string(record.threads)}};
-  for (const auto& setting :
-       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
-           .All())
-    report.settings.push_back(setting);
+      LostInWords(results.lost_spans, log.untracked.all(), log.first_time.value_or(0));
+  AddErrors(setup, log, results, report);
+  report.warnings = log.warnings;
+  report.settings = {{"profile", setup.profile},
+                     {"schedule", setup.settings.slam.threaded ? "threaded" : "inline"},
+                     {"threads", std::to_string(setup.threads)}};
+  for (const auto& setting : setup.settings.All()) report.settings.push_back(setting);
   return RenderReport(report);
 }
 

@@ -4,7 +4,6 @@
 
 #include "alidade/base/timing.h"
 #include "alidade/run/folder/output_folder.h"
-#include "alidade/run/setup/run_settings.h"
 
 namespace alidade {
 namespace {
@@ -20,13 +19,11 @@ ordered_json ToJson(const std::vector<double>& samples) {
       {"median", s.median}, {"mean", s.mean}, {"p95", s.p95}, {"max", s.max}, {"count", s.count}};
 }
 
-ordered_json SettingsJson(const RunRecord& record) {
-  ordered_json settings = {{"profile", record.profile},
-                           {"schedule", record.settings.threaded ? "threaded" : "inline"},
-                           {"threads", record.threads}};
-  for (const auto& [name, value] :
-       RunSettings{record.settings, record.stream, record.look, record.lens_check, record.calibrate}
-           .All()) {
+ordered_json SettingsJson(const RunSetup& setup) {
+  ordered_json settings = {{"profile", setup.profile},
+                           {"schedule", setup.settings.slam.threaded ? "threaded" : "inline"},
+                           {"threads", setup.threads}};
+  for (const auto& [name, value] : setup.settings.All()) {
     const ordered_json parsed = ordered_json::parse(value, nullptr, false);
     settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
   }
@@ -34,8 +31,8 @@ ordered_json SettingsJson(const RunRecord& record) {
 }
 
 // What semi-dense mapping did; null when it was not asked for.
-ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& report) {
-  if (!record.settings.semidense.enabled || record.settings.localise) return nullptr;
+ordered_json SemiDenseJson(const SlamSettings& settings, const SemiDenseReport& report) {
+  if (!settings.semidense.enabled || settings.localise) return nullptr;
   const auto mean = [](int64_t sum, int64_t count) {
     return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
   };
@@ -56,30 +53,28 @@ ordered_json LensJson(const LensCheck& lens) {
           {"strong", lens.strong}};
 }
 
-// The camera of the recording's images (stereo, fisheye: as rectified).
-ordered_json CameraJson(const RunRecord& record) {
-  const Camera& camera = record.source.camera;
-  const double sigma = record.camera.focal_sigma;
-  return {
-      {"width", camera.width},
-      {"height", camera.height},
-      {"fx", camera.fx},
-      {"fy", camera.fy},
-      {"cx", camera.cx},
-      {"cy", camera.cy},
-      {"distortion", camera.distortion},
-      {"readout", record.camera.readout},
-      {"readout_sigma", record.camera.readout_sigma > 0 ? ordered_json(record.camera.readout_sigma)
-                                                        : ordered_json(nullptr)},
-      {"fov", FovDegrees(camera)},
-      {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
-      {"known", record.camera.known}};
+ordered_json CameraJson(const CameraFinding& finding) {
+  const Camera& camera = finding.camera;
+  const double sigma = finding.focal_sigma;
+  return {{"width", camera.width},
+          {"height", camera.height},
+          {"fx", camera.fx},
+          {"fy", camera.fy},
+          {"cx", camera.cx},
+          {"cy", camera.cy},
+          {"distortion", camera.distortion},
+          {"readout", finding.readout},
+          {"readout_sigma",
+           finding.readout_sigma > 0 ? ordered_json(finding.readout_sigma) : ordered_json(nullptr)},
+          {"fov", FovDegrees(camera)},
+          {"fx_sigma", sigma > 0 ? ordered_json(sigma * camera.fx) : ordered_json(nullptr)},
+          {"known", finding.known}};
 }
 
 // How it was found; null: it was not looked for.
-ordered_json CalibrationJson(const RunRecord& record) {
-  if (!record.camera.found) return nullptr;
-  const CameraFound& found = *record.camera.found;
+ordered_json CalibrationJson(const CameraFinding& finding) {
+  if (!finding.found) return nullptr;
+  const CameraFound& found = *finding.found;
   return {{"passes", found.passes},
           {"frames", found.frames},
           {"keyframes", found.estimate.keyframes},
@@ -88,8 +83,8 @@ ordered_json CalibrationJson(const RunRecord& record) {
           {"k2_sigma", found.estimate.k2_sigma},
           {"noise", found.estimate.noise},
           {"why_not", found.why_not},
-          {"cpu_s", record.camera.cpu_s},
-          {"wall_s", record.camera.wall_s}};
+          {"cpu_s", finding.cpu_s},
+          {"wall_s", finding.wall_s}};
 }
 
 // Parts that failed and did nothing from then on.
@@ -118,25 +113,26 @@ ordered_json MapFiles(const RunResults& results) {
 
 }  // namespace
 
-std::string StatsJson(const RunRecord& record, const RunResults& results) {
+std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
+                      const RunResults& results) {
   const int tracked = results.tracked;
   const auto optional = [](const std::optional<int>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
   };
   const ordered_json stats = {
       {"version", kStatsVersion},
-      {"source", record.source_path},
-      {"sensor", NameOf(record.settings.sensor)},
-      {"settings", SettingsJson(record)},
-      {"camera", CameraJson(record)},
-      {"calibration", CalibrationJson(record)},
-      {"frames", record.frames},
+      {"source", setup.source_path},
+      {"sensor", NameOf(setup.settings.slam.sensor)},
+      {"settings", SettingsJson(setup)},
+      {"camera", CameraJson(camera)},
+      {"calibration", CalibrationJson(camera)},
+      {"frames", log.frames},
       {"tracked", tracked},
-      {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
+      {"coverage", log.frames > 0 ? static_cast<double>(tracked) / log.frames : 0.0},
       {"initialised_at", optional(results.initialised_at)},
       {"lost_spans", results.lost_spans},
-      {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
-                                 : ordered_json(nullptr)},
+      {"span",
+       log.first_time ? ordered_json({*log.first_time, *log.last_time}) : ordered_json(nullptr)},
       {"relocalisations", results.counts.relocalisations},
       {"predicted", results.counts.predicted},
       {"loops", results.counts.loops},
@@ -155,15 +151,15 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
         {"detect", ToJson(results.times.detect)},
         {"dynamics", ToJson(results.times.dynamics)},
         {"semidense", ToJson(results.times.semidense)}}},
-      {"semidense", SemiDenseJson(record, results.semidense)},
-      {"lens", LensJson(record.lens)},
-      {"cpu_s", record.cpu_s},
-      {"wall_s", record.wall_s},
+      {"semidense", SemiDenseJson(setup.settings.slam, results.semidense)},
+      {"lens", LensJson(camera.lens)},
+      {"cpu_s", log.cpu_s},
+      {"wall_s", log.wall_s},
       {"peak_mb", PeakMegabytes()},
-      {"dropped_frames", record.dropped},
-      {"late_frames", record.late},
-      {"warnings", record.warnings},
-      {"stopped", StoppedJson(record.health)}};
+      {"dropped_frames", log.dropped},
+      {"late_frames", log.late},
+      {"warnings", log.warnings},
+      {"stopped", StoppedJson(log.health)}};
   // A path may be in any encoding.
   return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }

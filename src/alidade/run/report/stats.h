@@ -4,9 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "alidade/run/calibration/camera_finding.h"
 #include "alidade/run/report/shape_views.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_log.h"
 #include "alidade/run/results/run_results.h"
+#include "alidade/run/setup/run_setup.h"
 #include "alidade/view/report.h"
 
 namespace alidade {
@@ -18,7 +20,9 @@ struct ReportPictures {
 };
 
 // Both as the bytes of the file. Fields and units: docs/reference/stats.md.
-std::string StatsJson(const RunRecord& record, const RunResults& results);
-std::string ReportHtml(const RunRecord& record, const RunResults& results, ReportPictures pictures);
+std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
+                      const RunResults& results);
+std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
+                       const RunResults& results, ReportPictures pictures);
 
 }  // namespace alidade

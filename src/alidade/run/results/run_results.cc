@@ -31,7 +31,8 @@ std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frame
 
 }  // namespace
 
-RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
+RunResults ResultsOf(const Slam& slam, const RunLog& log,
+                     const Eigen::Matrix3d& R_camera_rectified) {
   RunResults results;
   results.frames = slam.Trajectory();
   results.map = slam.Snapshot();
@@ -40,7 +41,7 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
   results.semidense = slam.SemiDense();
   results.tracked = results.counts.let_go.tracked;
   results.lost_spans = LostSpans(results.frames);
-  const Eigen::Matrix3d& turn = results.R_camera_rectified = record.source.R_camera_rectified;
+  const Eigen::Matrix3d& turn = results.R_camera_rectified = R_camera_rectified;
   for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}, {}});
   if (results.maps.empty()) results.maps.push_back({});
   const auto in = [&](MapId id) -> MapResults& {
@@ -51,8 +52,8 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
     if (!frame.tracked) continue;
     ++results.tracked;
     const auto index = static_cast<size_t>(frame.index);
-    if (!results.initialised_at) results.initialised_at = record.numbers[index];
-    const std::string& stamp = record.stamps[index];
+    if (!results.initialised_at) results.initialised_at = log.numbers[index];
+    const std::string& stamp = log.stamps[index];
     MapResults& map = in(frame.map);
     map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});
     if (!frame.late)
@@ -63,9 +64,9 @@ RunResults ResultsOf(const Slam& slam, const RunRecord& record) {
     const int index = keyframe->frame->number - slam.first_number();
     MapResults& map = in(keyframe->map);
     map.keyframe_ids.push_back(id);
-    map.keyframes.push_back(
-        {keyframe->frame->time, Mounted(keyframe->T_camera_world.Inverse(), turn),
-         index < 0 ? std::string() : record.stamps[static_cast<size_t>(index)]});
+    map.keyframes.push_back({keyframe->frame->time,
+                             Mounted(keyframe->T_camera_world.Inverse(), turn),
+                             index < 0 ? std::string() : log.stamps[static_cast<size_t>(index)]});
   }
   std::stable_sort(results.maps.begin(), results.maps.end(),
                    [](const MapResults& a, const MapResults& b) {

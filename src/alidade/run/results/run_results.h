@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "alidade/map/map_store.h"
-#include "alidade/run/results/record.h"
+#include "alidade/run/results/run_log.h"
 #include "alidade/semidense/semidense_mapper.h"
+#include "alidade/system/slam.h"
 
 namespace alidade {
 
@@ -34,7 +35,9 @@ struct RunResults {
   Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world
 };
 
-RunResults ResultsOf(const Slam& slam, const RunRecord& record);
+// `R_camera_rectified`: SourceInfo's.
+RunResults ResultsOf(const Slam& slam, const RunLog& log,
+                     const Eigen::Matrix3d& R_camera_rectified);
 
 // The way of the camera through one of the maps: T_world_camera, one list for each stretch without
 // a gap.

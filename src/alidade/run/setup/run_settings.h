@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "alidade/run/calibration/find_camera.h"
-#include "alidade/run/calibration/lens.h"
-#include "alidade/run/recorder/stream_settings.h"
+#include "alidade/calibration/lens_check.h"
 #include "alidade/run/results/image_condition.h"
+#include "alidade/run/setup/calibrate_settings.h"
+#include "alidade/run/setup/stream_settings.h"
 #include "alidade/system/settings.h"
 
 namespace alidade {

@@ -9,8 +9,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/module/load_module.h"
+#include "alidade/io/files/datasets/image_list.h"
 #include "alidade/io/files/file.h"
-#include "alidade/io/files/image_list.h"
 #include "alidade/io/text.h"
 
 namespace alidade {

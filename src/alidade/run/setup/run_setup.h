@@ -1,0 +1,19 @@
+// What a run was asked to do, and with what.
+#pragma once
+
+#include <string>
+
+#include "alidade/io/frame_source.h"
+#include "alidade/run/setup/run_settings.h"
+
+namespace alidade {
+
+struct RunSetup {
+  std::string source_path;  // as typed
+  SourceInfo source;        // as opened: its camera may be a guess, see CameraFinding
+  RunSettings settings;     // as used
+  std::string profile;
+  int threads = 0;
+};
+
+}  // namespace alidade
