@@ -136,7 +136,7 @@ int EvaluateAteCommand(const EvaluateOptions& options) {
               estimate.size(), 100 * result.coverage);
   PrintAlignment(chosen, result.T_truth_estimate.s, truth, estimate, options);
   PrintHead();
-  PrintRow("metres", result.error);
+  PrintRow("meters", result.error);
   return 0;
 }
 
@@ -178,7 +178,7 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
               options.pairs == "all" ? "overlapping" : "consecutive", 100 * result.coverage);
   PrintAlignment(chosen, result.scale, truth, estimate, options);
   PrintHead();
-  PrintRow("metres", result.trans);
+  PrintRow("meters", result.trans);
   PrintRow("degrees", result.rot);
   return 0;
 }
@@ -227,7 +227,7 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       "\nExamples:\n"
       "  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n"
       "  alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n"
-      "\nJSON: n, rmse, mean, median, std, min, max (metres), scale, coverage, align, align_why.");
+      "\nJSON: n, rmse, mean, median, std, min, max (meters), scale, coverage, align, align_why.");
   ate->callback(
       [options, &action] { action = [options] { return EvaluateAteCommand(*options); }; });
 
@@ -245,7 +245,7 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       "\nExamples:\n"
       "  alidade evaluate rpe groundtruth.txt trajectory.txt\n"
       "  alidade evaluate rpe groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n"
-      "\nJSON: trans (metres) and rot (degrees), each as `evaluate ate` prints it.");
+      "\nJSON: trans (meters) and rot (degrees), each as `evaluate ate` prints it.");
   rpe->callback(
       [options, &action] { action = [options] { return EvaluateRpeCommand(*options); }; });
 

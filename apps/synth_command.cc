@@ -146,12 +146,12 @@ void AddSynthCommand(CLI::App& app, Action& action) {
       ->type_name("walk|turn|turn-walk|still");
   command->add_option("--speed", settings.speed, "Times the scene's own (1)");
   command->add_option("--arm", settings.arm,
-                      "Metres from the axis to the camera, with --path turn (0)");
+                      "Meters from the axis to the camera, with --path turn (0)");
   command->add_option("--actors", settings.actors, "People walking about (0)");
   command->add_option("--things", settings.things,
                       "Cups moved about by hand, in scenes with a table: room, desk (0)");
   command->add_option("--noise", settings.noise,
-                      "Standard deviation of the image noise, grey levels (4)");
+                      "Standard deviation of the image noise, gray levels (4)");
   command->add_option("--light", settings.light,
                       "Share of daylight: below 0.25 pictures are dark; noise shows more (1)");
   command->add_flag("--blur{20}", settings.blur,

@@ -5,11 +5,11 @@ from __future__ import annotations
 import dataclasses
 import os
 import tempfile
-import warnings
 from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Union
 
 from . import _core
 from ._log import tell_warnings
+from ._renamed import warn
 from .camera import Camera, PathLike
 from .maps import Map
 from .results import Result
@@ -104,7 +104,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
     return _run(dict(
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localise=True,
+        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
 
@@ -113,10 +113,10 @@ def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Opti
              host: Optional[str]) -> Dict[str, Any]:
     """Options of recorder and viewer. Accepts what version 0.1 took, a path as `record` and a port as `viewer`."""
     if record is not None and not isinstance(record, bool):
-        warnings.warn("record=PATH is now record_to=PATH", DeprecationWarning, stacklevel=3)
+        warn("record=PATH", "record_to=PATH", 4)
         record, record_to = False, record
     if viewer is not None and not isinstance(viewer, bool):
-        warnings.warn("viewer=PORT is now viewer=True, port=PORT", DeprecationWarning, stacklevel=3)
+        warn("viewer=PORT", "viewer=True, port=PORT", 4)
         viewer, port = True, viewer
     return dict(record=record, record_to=None if record_to is None else os.fspath(record_to), viewer=viewer, port=port,
                 host=host)

@@ -44,7 +44,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   };
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localise)
-    ThrowUsage("semidense adds depth to a map that grows: localise leaves the map as it is");
+    ThrowUsage("semidense adds depth to a map that grows: localize leaves the map as it is");
   SlamSettings settings = SettingsFrom(wanted).slam;
   settings.localise = wanted.localise;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
@@ -173,7 +173,7 @@ py::object SlamObject::Health() const {
 
 py::dict SlamObject::Counts() const {
   const SlamCounts counts = Get()->slam.Counts();
-  return py::dict("relocalisations"_a = counts.relocalisations, "loops"_a = counts.loops,
+  return py::dict("relocalizations"_a = counts.relocalisations, "loops"_a = counts.loops,
                   "merges"_a = counts.merges, "cuts"_a = counts.cuts,
                   "predicted"_a = counts.predicted);
 }

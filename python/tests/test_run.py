@@ -202,6 +202,17 @@ def test_the_port_and_the_file_as_version_0_1_had_them_are_accepted_with_a_warni
         alidade.run(DESK, sensor="rgbd", last=3, viewer=70000)
 
 
+def test_keys_of_stats_have_their_new_name_and_are_found_under_the_old_one(tmp_path):
+    result = alidade.run(DESK, sensor="rgbd", last=3, out=tmp_path / "new")
+    assert result.stats["initialized_at"] == 0 and "initialised_at" not in result.stats
+    with pytest.warns(DeprecationWarning, match="initialized_at"):
+        assert result.stats["initialised_at"] == 0
+    old = tmp_path / "old"
+    old.mkdir()
+    (old / "stats.json").write_text('{"initialised_at": 7, "relocalisations": 2}')
+    assert alidade.Result(old).stats["initialized_at"] == 7 and alidade.Result(old).stats["relocalizations"] == 2
+
+
 def test_a_port_without_a_viewer_is_refused():
     with pytest.raises(alidade.Error, match="--port"):
         alidade.run(DESK, sensor="rgbd", last=3, port=8090)

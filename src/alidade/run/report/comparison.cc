@@ -121,7 +121,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
           {"keyframes", Figure("%.0f", result.keyframes)},
           {"landmarks", Figure("%.0f", result.landmarks)},
           {"loops", Figure("%.0f", result.loops)},
-          {"relocalisations", Figure("%.0f", result.relocalisations)},
+          {"relocalizations", Figure("%.0f", result.relocalisations)},
           {"maps", Figure("%.0f", result.maps)},
           {"path", result.trajectory.empty() ? kNone : length},
           {"ATE RMSE", errors ? Figure("%.6f m", errors->ate.error.rmse) : kNone},

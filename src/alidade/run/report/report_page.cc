@@ -108,7 +108,7 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   const SlamCounts& counts = results.counts;
   facts.push_back({"loops closed", std::to_string(counts.loops)});
   if (counts.relocalisations > 0)
-    facts.push_back({"relocalisations", std::to_string(counts.relocalisations)});
+    facts.push_back({"relocalizations", std::to_string(counts.relocalisations)});
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +

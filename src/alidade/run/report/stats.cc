@@ -133,11 +133,11 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"frames", record.frames},
       {"tracked", tracked},
       {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
-      {"initialised_at", optional(results.initialised_at)},
+      {"initialized_at", optional(results.initialised_at)},
       {"lost_spans", results.lost_spans},
       {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
                                  : ordered_json(nullptr)},
-      {"relocalisations", results.counts.relocalisations},
+      {"relocalizations", results.counts.relocalisations},
       {"predicted", results.counts.predicted},
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},
