@@ -91,7 +91,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "--out", options.out,
-          options.localise
+          options.localize
               ? "Folder for the results (alidade-out/NAME-localized, or -2, -3, … where that "
                 "is another source's)"
               : "Folder for the results (alidade-out/NAME, or NAME-2, NAME-3, … where that "
@@ -120,7 +120,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
-  options.localise = true;
+  options.localize = true;
   AddSharedOptions(command, options);
   command.add_option("--map", options.load, "Map to find poses in (map.alidade); stays as it is")
       ->required()

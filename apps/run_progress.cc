@@ -98,7 +98,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   std::string shape;
   if (summary.shape_points > 0) {
     shape = ", " + std::to_string(summary.shape_points) + " points of shape";
-  } else if (record.settings.semidense.enabled && !record.settings.localise) {
+  } else if (record.settings.semidense.enabled && !record.settings.localize) {
     shape = ", no shape (too little was seen from new keyframes)";
   }
   // Where it began and what went wrong, when it is not all of the recording.

@@ -96,7 +96,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord&
           results.map.keyframe_count(),
           results.map.landmark_count(),
           static_cast<int>(results.map.Maps().size()),
-          results.initialised_at,
+          results.initialized_at,
           results.lost_spans,
           shape.points.size(),
           PathLength(results.maps.front().trajectory)};

@@ -70,9 +70,9 @@ class Warnings {
 // The folder of the results, locked, before the work begins.
 OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   OutputClaim claim;
-  claim.owner = OwnerOf(options.source, options.localise);
+  claim.owner = OwnerOf(options.source, options.localize);
   claim.overwrite = options.overwrite;
-  const std::string usual = "alidade-out/" + source.name + (options.localise ? "-localized" : "");
+  const std::string usual = "alidade-out/" + source.name + (options.localize ? "-localized" : "");
   claim.path = options.out         ? *options.out
                : options.overwrite ? usual
                                    : FreeFolder(usual, claim.owner);
@@ -98,7 +98,7 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
   const RunRecord& record = outcome.record;
   std::exception_ptr failure;
   try {
-    outcome.summary = WriteOutputs(folder, slam, record, !record.settings.localise, masks);
+    outcome.summary = WriteOutputs(folder, slam, record, !record.settings.localize, masks);
     for (RunWatcher* watcher : watchers) watcher->Written(folder.draft());
   } catch (...) {
     failure = std::current_exception();
@@ -155,7 +155,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
-  record.settings.localise = options.localise;
+  record.settings.localize = options.localize;
   wanted.color = record.settings.WantsColor();
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);

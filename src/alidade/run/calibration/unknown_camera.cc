@@ -53,7 +53,7 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   }
   const bool looked_for = source.sensor == Sensor::kMono && record.calibrate.enabled;
   if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // on the way
-    record.settings.FindCamera();
+    record.settings.EnableSelfCalibration();
     record.settings.refine.focal_sigma = camera.focal_sigma;
     return;
   }

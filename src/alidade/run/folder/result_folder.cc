@@ -90,11 +90,11 @@ ResultFolder ReadResultFolder(const std::string& path) {
   result.frames = NumberIn(stats, "frames");
   result.tracked = NumberIn(stats, "tracked");
   result.coverage = NumberIn(stats, "coverage");
-  result.initialised_at = RenamedNumberIn(stats, "initialized_at", "initialised_at");
+  result.initialized_at = RenamedNumberIn(stats, "initialized_at", "initialised_at");
   result.keyframes = NumberIn(stats, "keyframes");
   result.landmarks = NumberIn(stats, "landmarks");
   result.loops = NumberIn(stats, "loops");
-  result.relocalisations = RenamedNumberIn(stats, "relocalizations", "relocalisations");
+  result.relocalizations = RenamedNumberIn(stats, "relocalizations", "relocalisations");
   result.maps = NumberIn(stats, "maps");
   result.cpu_s = NumberIn(stats, "cpu_s");
   result.peak_mb = NumberIn(stats, "peak_mb");

@@ -35,7 +35,7 @@ ordered_json SettingsJson(const RunRecord& record) {
 
 // What semi-dense mapping did; null when it was not asked for.
 ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& report) {
-  if (!record.settings.semidense.enabled || record.settings.localise) return nullptr;
+  if (!record.settings.semidense.enabled || record.settings.localize) return nullptr;
   const auto mean = [](int64_t sum, int64_t count) {
     return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
   };
@@ -133,11 +133,11 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"frames", record.frames},
       {"tracked", tracked},
       {"coverage", record.frames > 0 ? static_cast<double>(tracked) / record.frames : 0.0},
-      {"initialized_at", optional(results.initialised_at)},
+      {"initialized_at", optional(results.initialized_at)},
       {"lost_spans", results.lost_spans},
       {"span", record.first_time ? ordered_json({*record.first_time, *record.last_time})
                                  : ordered_json(nullptr)},
-      {"relocalizations", results.counts.relocalisations},
+      {"relocalizations", results.counts.relocalizations},
       {"predicted", results.counts.predicted},
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},
