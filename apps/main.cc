@@ -51,5 +51,5 @@ void Describe(CLI::App& app, alidade::Action& action) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return return alidade::RunProgram(argc, argv, Describe, alidade::WithoutOldForms);
+  return alidade::RunProgram(argc, argv, Describe, alidade::WithoutOldForms);
 }

@@ -31,6 +31,13 @@ const OldFlag* FindFlag(const CLI::App& command, const std::string& word) {
   return nullptr;
 }
 
+const CLI::App* FindSubcommand(const CLI::App& command, const std::string& name) {
+  const auto all = command.get_subcommands([](const CLI::App*) { return true; });
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const CLI::App* sub) { return sub->check_name(name); });
+  return found == all.end() ? nullptr : *found;
+}
+
 bool CanBeValue(const OldFlag& flag, const std::string& word) {
   return !flag.number || std::all_of(word.begin(), word.end(),
                                      [](unsigned char c) { return c >= '0' && c <= '9'; });
@@ -65,7 +72,7 @@ std::vector<Behind> OldValues(const CLI::App& command, const std::vector<std::st
     }
     if (word.size() > 1 && word[0] == '-') {
       const CLI::Option* option = command.get_option_no_throw(word);
-      if (option != nullptr && option->get_type_size() != 0) ++i;  // the next is its value
+      if (option != nullptr && option->get_items_expected_max() > 0) ++i;  // the next is its value
       continue;
     }
     ++positional;
@@ -80,12 +87,9 @@ std::vector<Behind> OldValues(const CLI::App& command, const std::vector<std::st
 }  // namespace
 
 std::vector<std::string> WithoutOldForms(const CLI::App& command, std::vector<std::string> words) {
-  const CLI::App* sub = &command;
-  size_t first = 0;
-  if (!words.empty() && command.get_subcommand_no_throw(words[0]) != nullptr) {
-    sub = command.get_subcommand_no_throw(words[0]);
-    first = 1;
-  }
+  const CLI::App* sub = words.empty() ? nullptr : FindSubcommand(command, words[0]);
+  const size_t first = sub != nullptr ? 1 : 0;
+  if (sub == nullptr) sub = &command;
   const std::vector<Behind> values = OldValues(*sub, words, first);
   const auto value_at = [&](size_t i) {
     return std::find_if(values.begin(), values.end(),

@@ -110,8 +110,8 @@ TEST_F(OldForms, APortNeedsAViewerAndIsANumber) {
 }
 
 TEST_F(OldForms, LinesOfABatchMayHaveThem) {
-  const std::string list = at_ / "list.txt";
-  WriteLines(list, {recording_.path() + " --last 3 --record " + (at_ / "old.stream")});
+  const std::string list = at_.Write(
+      "list.txt", recording_.path() + " --last 3 --record " + (at_ / "old.stream") + "\n");
   const ProgramResult result = RunAlidade({"batch", list, "--out", at_ / "all"});
   EXPECT_EQ(result.status, 0) << result.out << result.err;
   EXPECT_THAT(result.err, HasSubstr(kNewRecord));
