@@ -227,9 +227,10 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       ->type_name("tum|evo")
       ->capture_default_str();
   ate->footer(
-      "\nExamples:\n  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n  "
-      "alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n\nJSON: n, rmse, mean, "
-      "median, std, min, max (meters), scale, coverage, align, align_why.");
+      "\nExamples:\n"
+      "  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n"
+      "  alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n"
+      "\nJSON: n, rmse, mean, median, std, min, max (meters), scale, coverage, align, align_why.");
   ate->callback(
       [options, &action] { action = [options] { return EvaluateAteCommand(*options); }; });
 
@@ -245,9 +246,10 @@ void AddEvaluateCommand(CLI::App& app, Action& action) {
       ->type_name("all|consecutive")
       ->capture_default_str();
   rpe->footer(
-      "\nExamples:\n  alidade evaluate rpe groundtruth.txt trajectory.txt\n  alidade evaluate rpe "
-      "groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n\nJSON: trans (meters) and "
-      "rot (degrees), each with the same keys as `evaluate ate`.");
+      "\nExamples:\n"
+      "  alidade evaluate rpe groundtruth.txt trajectory.txt\n"
+      "  alidade evaluate rpe groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n"
+      "\nJSON: trans (meters) and rot (degrees), each as `evaluate ate` prints it.");
   rpe->callback(
       [options, &action] { action = [options] { return EvaluateRpeCommand(*options); }; });
 

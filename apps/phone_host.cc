@@ -165,7 +165,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
       const DecodedImage decoded = DecodeJpeg(frame.jpeg, ImageUse::kGray);
       if (!decoded.problem.empty()) return {Skipped(frame.number, decoded.problem)};
       const cv::Mat image = decoded.image.isContinuous() ? decoded.image : decoded.image.clone();
-      const PhoneFrame result = slam_.Track(image.data, 1, frame.time);
+      const PhoneFrame result = slam_.Track(frame.time, image.data, 1);
       std::vector<FrameMessage> messages = Binary(slam_.TakeMessages());
       messages.push_back(Text(Answer(frame.number, result)));
       return messages;

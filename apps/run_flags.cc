@@ -98,7 +98,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
       ->type_name("ADDRESS");
   command
       .add_option("--out", options.out,
-                  options.localise
+                  options.localize
                       ? "Folder for the results; default: alidade-out/NAME-localized, or "
                         "NAME-localized-2, … if that holds results of another source"
                       : "Folder for the results; default: alidade-out/NAME, or NAME-2, NAME-3, … "
@@ -130,7 +130,7 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
 }  // namespace
 
 void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
-  options.localise = true;
+  options.localize = true;
   AddSharedOptions(command, options);
   command.add_option("--map", options.load, "Map to localize in (map.alidade); it is not changed")
       ->required()

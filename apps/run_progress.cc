@@ -105,7 +105,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   std::string shape;
   if (summary.shape_points > 0) {
     shape = ", " + std::to_string(summary.shape_points) + " semi-dense points";
-  } else if (settings.semidense.enabled && !settings.localise) {
+  } else if (settings.semidense.enabled && !settings.localize) {
     shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
   // Where it began and what went wrong, when it is not all of the recording.
@@ -125,7 +125,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       summary.maps > 1 ? " in the largest" : "",
       run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
   // A localization leaves no map to show.
-  const std::string view = settings.localise ? "" : ", or: alidade view " + InShell(folder);
+  const std::string view = settings.localize ? "" : ", or: alidade view " + InShell(folder);
   std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
 }
 

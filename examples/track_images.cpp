@@ -20,7 +20,7 @@ int main(int count, char** arguments) try {
   alidade::SlamSettings settings;
   settings.sensor = info.sensor;  // mono, stereo or rgbd
   if (info.camera_guessed && info.sensor == alidade::Sensor::kMono)
-    settings.FindCamera();  // no calibration: estimate it on the way
+    settings.EnableSelfCalibration();  // no calibration: estimate it on the way
   alidade::Slam slam(info.camera, settings);
 
   while (const auto frame = source->Next()) {
@@ -34,9 +34,8 @@ int main(int count, char** arguments) try {
       std::printf("%s no pose: %s\n", frame->stamp.c_str(), result.reason());
     }
   }
-  slam.Finish();  // last adjustment; without it the final poses and the map are not complete
-  int tracked = 0;
-  for (const alidade::FramePose& pose : slam.Trajectory()) tracked += pose.tracked;
+  int tracked = 0;  // Finish(): last adjustment; without it poses and map are not complete
+  for (const alidade::FramePose& pose : slam.Finish()) tracked += pose.tracked;
   std::fprintf(stderr, "%d of %d frames have a pose\n", tracked, slam.frames());
   alidade::AtomicWriteFile(arguments[2], slam.SaveMap());
   return 0;

@@ -123,7 +123,7 @@ EMSCRIPTEN_KEEPALIVE const FrameNumbers* alidade_track(Session* session, int cha
                                                        double time) {
   return Guarded(
       [&]() -> const FrameNumbers* {
-        const PhoneFrame frame = session->slam->Track(session->pixels.data(), channels, time);
+        const PhoneFrame frame = session->slam->Track(time, session->pixels.data(), channels);
         const alidade::TrackResult& result = frame.result;
         const alidade::Se3 pose = result.predicted.value_or(result.T_world_camera);
         const Eigen::Quaterniond q(pose.R);

@@ -144,7 +144,7 @@ void CameraSession::WorkOn(double time, bool cut) {
     {
       const std::lock_guard lock(slam_mutex_);
       if (cut) slam_->slam().Reset();
-      frame = slam_->Track(working_.data(), 1, time);
+      frame = slam_->Track(time, working_.data(), 1);
       if (wanted) messages = slam_->TakeMessages();
     }
     const std::lock_guard lock(mutex_);

@@ -57,7 +57,7 @@ DynamicRun RunDynamic(const DynamicScene& scene, const SlamSettings& settings,
   run.errors = EvaluateErrors(scene, settings.sensor, run.trajectory);
   run.frames = static_cast<int>(scene.frames.size());
   run.tracked = results.tracked;
-  run.start = results.initialised_at.value_or(-1);
+  run.start = results.initialized_at.value_or(-1);
   run.lost = static_cast<int>(results.lost_spans.size());
   run.maps = static_cast<int>(results.map.Maps().size());
   run.times = results.times;

@@ -44,7 +44,7 @@ double Localised(const std::string& source, const std::string& sensor, const std
   const auto frames = Open(source, sensor);
   SlamSettings settings;
   settings.sensor = frames->Info().sensor;
-  settings.localise = true;
+  settings.localize = true;
   Slam slam(frames->Info().camera, settings);
   slam.Load(DecodeMap(bytes));
   int seen = 0, tracked = 0;

@@ -141,7 +141,7 @@ WildRun RunWild(const WildCase& of, uint64_t seed, int frames, SlamSettings sett
   const RunResults results = ResultsOf(slam, log, info.R_camera_rectified);
   run.frames = log.frames;
   run.usable = usable.frame();
-  run.start = results.initialised_at.value_or(-1);
+  run.start = results.initialized_at.value_or(-1);
   run.tracked = results.tracked;
   run.milliseconds = milliseconds / std::max(1, run.frames);
   if (run.usable >= 0) {

@@ -104,7 +104,7 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
     return _run(dict(
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localise=True,
+        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
 

@@ -129,7 +129,7 @@ class Slam:
             localize = more_settings.pop("localise")
         options = dict(
             sensor=sensor, semidense=semidense, dynamics=dynamics, profile=profile, schedule=schedule, seed=seed,
-            localise=localize, settings={**(settings or {}), **more_settings},
+            localize=localize, settings={**(settings or {}), **more_settings},
             detector=detector if detector is None or callable(detector) else os.fspath(detector),
             config=None if config is None else os.fspath(config))
         if not isinstance(camera, Camera):

@@ -71,7 +71,7 @@ WrappedImage WrapDepth(const py::handle& value, const std::string& name) {
   const bool whole = py::isinstance<py::array_t<uint16_t>>(array);
   if (array.ndim() != 2 || !(whole || py::isinstance<py::array_t<float>>(array))) {
     ThrowInput(name +
-               " must be (height, width) of float32 (metres) or uint16 (depth_factor per metre), "
+               " must be (height, width) of float32 (meters) or uint16 (depth_factor per meter), "
                "not " +
                ShapeOf(array));
   }

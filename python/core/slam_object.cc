@@ -43,13 +43,13 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
     }
   };
   const py::gil_scoped_release release;
-  if (wanted.semidense && wanted.localise)
-    ThrowUsage("semidense adds depth to a map that grows: localise leaves the map as it is");
+  if (wanted.semidense && wanted.localize)
+    ThrowUsage("semidense adds depth to a map that grows: localize leaves the map as it is");
   SlamSettings settings = SettingsFrom(wanted).slam;
-  settings.localise = wanted.localise;
+  settings.localize = wanted.localize;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
   settings.threaded = ThreadedFrom(wanted, false);
-  if (calibrate) settings.FindCamera();
+  if (calibrate) settings.EnableSelfCalibration();
   std::shared_ptr<Detector> detector = wanted.own_detector;
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
   held_ = std::shared_ptr<Held>(new Held(given, R, settings, std::move(detector)), without_gil);
@@ -170,7 +170,7 @@ py::object SlamObject::Health() const {
 
 py::dict SlamObject::Counts() const {
   const SlamCounts counts = Get()->slam.Counts();
-  return py::dict("relocalisations"_a = counts.relocalisations, "loops"_a = counts.loops,
+  return py::dict("relocalizations"_a = counts.relocalizations, "loops"_a = counts.loops,
                   "merges"_a = counts.merges, "cuts"_a = counts.cuts,
                   "predicted"_a = counts.predicted);
 }

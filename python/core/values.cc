@@ -39,7 +39,7 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"dynamics", &options.dynamics}, {"record_to", &options.record_to},
       {"port", &options.port},         {"host", &options.host}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
-                                                 {"localise", &options.localise},
+                                                 {"localize", &options.localize},
                                                  {"overwrite", &options.overwrite},
                                                  {"record", &options.record},
                                                  {"viewer", &options.viewer},

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     alidade::PhoneFrame last;
     int tracked = 0;
     for (const alidade::GreyFrame& frame : file.frames) {
-      last = slam.Track(frame.pixels.data(), 1, frame.time);
+      last = slam.Track(frame.time, frame.pixels.data(), 1);
       if (last.result.state == alidade::TrackState::kTracking) ++tracked;
     }
     slam.Finish();

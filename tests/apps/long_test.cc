@@ -34,7 +34,7 @@ class LongRecording : public testing::Test {
     EXPECT_EQ(run.status, 0) << run.err;
     if (run.status != 0) return 1e9;
     const json stats = json::parse(ReadText(out + "/stats.json"));
-    EXPECT_EQ(stats["tracked"].get<int>() + stats["initialised_at"].get<int>(), stats["frames"]);
+    EXPECT_EQ(stats["tracked"].get<int>() + stats["initialized_at"].get<int>(), stats["frames"]);
     const ProgramResult ate = RunAlidade({"evaluate", "ate", recording, out, "--json", "--align",
                                           sensor == "mono" ? "sim3" : "se3"});
     EXPECT_EQ(ate.status, 0) << ate.err;

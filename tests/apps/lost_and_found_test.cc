@@ -80,7 +80,7 @@ TEST_P(LostAndFound, SeesAgainSoonAfterTheDark) {
   const double lost_until = stats["lost_spans"][0][1];
   EXPECT_LT(lost_until, 1000 + 291 / 30.0 + 15 / 30.0);
   EXPECT_EQ(stats["maps"], 1);
-  EXPECT_GE(stats["relocalisations"], 1);
+  EXPECT_GE(stats["relocalizations"], 1);
   EXPECT_LE(Rmse(out), 1.3 * Unharmed());
 }
 

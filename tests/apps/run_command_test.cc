@@ -53,7 +53,7 @@ TEST_F(RunCommand, LeavesWhatTheDocumentsSay) {
   const json stats = Stats(out);
   for (const char* name :
        {"version", "source",   "sensor",         "settings",       "frames",
-        "tracked", "coverage", "initialised_at", "lost_spans",     "relocalisations",
+        "tracked", "coverage", "initialized_at", "lost_spans",     "relocalizations",
         "loops",   "maps",     "keyframes",      "landmarks",      "ms",
         "cpu_s",   "wall_s",   "peak_mb",        "dropped_frames", "warnings"}) {
     EXPECT_TRUE(stats.contains(name)) << name;
@@ -110,7 +110,7 @@ TEST_F(RunCommand, PlaysThePartThatWasAskedFor) {
   const std::string out = Run(Room(), {"--first", "10", "--last", "29"});
   const json stats = Stats(out);
   EXPECT_EQ(stats["frames"], 20);
-  EXPECT_EQ(stats["initialised_at"], 10);
+  EXPECT_EQ(stats["initialized_at"], 10);
   EXPECT_EQ(Ate(Room() + "/groundtruth.txt", out, "se3")["coverage"], 1);
 }
 
@@ -159,8 +159,8 @@ TEST_F(RealRecording, KitchenWithOneCamera) {
   const std::string kitchen = Recording("kitchen");
   const std::string out = Run(kitchen, {"--sensor", "mono"});
   const json stats = Stats(out);
-  EXPECT_LE(stats["initialised_at"], 35);
-  EXPECT_EQ(stats["tracked"].get<int>() + stats["initialised_at"].get<int>(), 600);
+  EXPECT_LE(stats["initialized_at"], 35);
+  EXPECT_EQ(stats["tracked"].get<int>() + stats["initialized_at"].get<int>(), 600);
   EXPECT_LE(Rmse(kitchen, out, "sim3"), 0.038);  // its truth is good to 3-4 cm; 3.6 cm measured
 }
 
@@ -192,7 +192,7 @@ TEST_F(RealRecording, PhoneProfileKeepsUpWithTheDesktopsCoverage) {
   const std::string kitchen = Recording("kitchen");
   const std::string out = Run(kitchen, {"--sensor", "mono", "--profile", "phone"});
   const json stats = Stats(out);
-  EXPECT_EQ(stats["tracked"].get<int>() + stats["initialised_at"].get<int>(), 600);
+  EXPECT_EQ(stats["tracked"].get<int>() + stats["initialized_at"].get<int>(), 600);
   EXPECT_LE(Rmse(kitchen, out, "sim3"), 1.3 * 0.034);
 }
 

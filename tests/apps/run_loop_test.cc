@@ -65,7 +65,7 @@ TEST_F(RunLoop, BlackImagesMapNothingAndStillGiveResults) {
   EXPECT_THAT(result.err, HasSubstr("nothing could be mapped: the images are black"));
   EXPECT_EQ(LineCount(result.err), 1) << result.err;
   EXPECT_EQ(Stats()["tracked"], 0);
-  EXPECT_TRUE(Stats()["initialised_at"].is_null());
+  EXPECT_TRUE(Stats()["initialized_at"].is_null());
   EXPECT_TRUE(fs::exists(out_ + "/report.html"));
 }
 

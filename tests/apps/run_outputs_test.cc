@@ -77,7 +77,7 @@ TEST_F(RunOutputs, StatsCountThePartThatWasPlayed) {
   EXPECT_EQ(stats["frames"], 8);
   EXPECT_EQ(stats["tracked"], 8);
   EXPECT_EQ(stats["coverage"], 1.0);
-  EXPECT_EQ(stats["initialised_at"], 2);  // numbers are the recording's
+  EXPECT_EQ(stats["initialized_at"], 2);  // numbers are the recording's
   EXPECT_EQ(stats["dropped_frames"], 0);
   EXPECT_GT(stats["cpu_s"], 0.0);
   EXPECT_GT(stats["peak_mb"], 5.0);

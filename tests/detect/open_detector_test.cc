@@ -338,8 +338,8 @@ TEST_F(OpenDetectorTest, SaysWhichInputsItTakes) {
   };
   EXPECT_THAT(complaint({1, 3, 100, 32}), HasSubstr("32x100: sides must be multiples of 32"));
   EXPECT_THAT(complaint({1, 3, 32, 1 << 20}), HasSubstr("at most 4096"));
-  EXPECT_THAT(complaint({1, 1, 32, 32}), HasSubstr("no colour picture"));
-  EXPECT_THAT(complaint({1, 3, 32}), HasSubstr("no colour picture"));
+  EXPECT_THAT(complaint({1, 1, 32, 32}), HasSubstr("no color picture"));
+  EXPECT_THAT(complaint({1, 3, 32}), HasSubstr("no color picture"));
   EXPECT_THAT(complaint({8, 3, 32, 32}), HasSubstr("batch of 1"));
   OnnxFile bytes = WithOneThing().File();
   EXPECT_THAT(Complaint(bytes.Input("more", {1}).Bytes()), HasSubstr("has 2 inputs"));

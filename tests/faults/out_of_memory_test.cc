@@ -95,7 +95,10 @@ Outcome Play(Sensor sensor, bool threaded, long after, long failures) {
       uncounted += slam.frames() == before;
     }
   }
-  slam.Finish();
+  try {
+    slam.Finish();
+  } catch (const std::bad_alloc&) {  // for the trajectory that it returns
+  }
   outcome.failed = StopFailing();
   outcome.allocations = AllocationCount() - allocations_before;
   slam.Finish();  // with memory again: what could not be written down is
@@ -123,10 +126,10 @@ Outcome Play(Sensor sensor, bool threaded, long after, long failures) {
   slam.Finish();
   // And one's way is found in the map.
   if (map.keyframe_count() > 0) {
-    SlamSettings localise = Everything(sensor, false);
-    localise.dynamics.mode = DynamicsMode::kOff;
-    localise.localise = true;
-    Slam finder(camera, localise);
+    SlamSettings localize = Everything(sensor, false);
+    localize.dynamics.mode = DynamicsMode::kOff;
+    localize.localize = true;
+    Slam finder(camera, localize);
     finder.Load(saved);
     finder.Track({0, frame.image, frame.right, frame.depth});
   }

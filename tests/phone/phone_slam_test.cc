@@ -20,7 +20,7 @@ using ::testing::StartsWith;
 PhoneFrame Walk(PhoneSlam& slam, const WalkedRoom& room, std::vector<std::string>* messages) {
   PhoneFrame last;
   for (size_t i = 0; i < room.frames.size(); ++i) {
-    last = slam.Track(room.frames[i].image.data, 1, static_cast<double>(i) / 30);
+    last = slam.Track(static_cast<double>(i) / 30, room.frames[i].image.data, 1);
     if (!messages) continue;
     for (std::string& message : slam.TakeMessages()) messages->push_back(std::move(message));
   }
@@ -63,7 +63,7 @@ TEST(PhoneSlam, AnUnknownCameraIsAssumedAndSaidToBe) {
   EXPECT_GT(last.fov_sigma, 10);
   PhoneSlam upright(300, 400, 0, PhoneSettings::Default(false));
   const std::vector<uint8_t> grey(300 * 400, 90);
-  EXPECT_NEAR(upright.Track(grey.data(), 1, 0).fov, 52, 1);  // 66 along the longer side
+  EXPECT_NEAR(upright.Track(0, grey.data(), 1).fov, 52, 1);  // 66 along the longer side
 }
 
 // Number of features of the last image in its middle, and of excluded ones.
@@ -76,7 +76,7 @@ LeftOut WalkPast(PhoneSlam& slam, const WalkedRoom& room, bool person) {
   const cv::Rect2f middle(110, 60, 100, 140);
   for (int i = 0; i < static_cast<int>(room.frames.size()); ++i) {
     const PhoneFrame frame =
-        slam.Track(room.frames[static_cast<size_t>(i)].image.data, 1, i / 30.0);
+        slam.Track(i / 30.0, room.frames[static_cast<size_t>(i)].image.data, 1);
     EXPECT_EQ(frame.number, i);
     if (i >= 12 && i % 10 == 2)
       slam.Detected(i - 12,
@@ -115,25 +115,25 @@ TEST(PhoneSlam, DetectionsThatCannotBeAreRefusedAndThoseWithoutADetectorIgnored)
   const std::vector<uint8_t> grey(64 * 48, 90);
   PhoneSettings settings = PhoneSettings::Default(false);
   PhoneSlam none(64, 48, 60, settings);
-  none.Track(grey.data(), 1, 0);
+  none.Track(0, grey.data(), 1);
   none.Detected(0, {{7, 1, {0, 0, 9, 9}}});
   settings.detector_classes = {"person"};
   PhoneSlam slam(64, 48, 60, settings);
-  slam.Track(grey.data(), 1, 0);
+  slam.Track(0, grey.data(), 1);
   EXPECT_THAT(MessageOf(ErrorKind::kInput,
                         [&] {
                           slam.Detected(0, {{7, 1, {0, 0, 9, 9}}});
                         }),
               HasSubstr("class 7 of 1"));
   slam.Detected(99, {{0, 1, {0, 0, 9, 9}}});  // a future image
-  slam.Track(grey.data(), 1, 0.1);
+  slam.Track(0.1, grey.data(), 1);
   EXPECT_FALSE(slam.slam().Detections().has_value());
 }
 
 TEST(PhoneSlam, ColoursAreTurnedToGrey) {
   PhoneSlam slam(64, 48, 60, PhoneSettings::Default(false));
   const std::vector<uint8_t> pixels(size_t{64} * 48 * 4, 90);
-  EXPECT_EQ(slam.Track(pixels.data(), 4, 0).result.state, TrackState::kInitializing);
+  EXPECT_EQ(slam.Track(0, pixels.data(), 4).result.state, TrackState::kInitializing);
 }
 
 TEST(PhoneSettings, AreSetByLines) {
@@ -151,7 +151,7 @@ TEST(PhoneSlam, WhatCannotBeIsRefused) {
               HasSubstr("field of view"));
   PhoneSlam slam(64, 48, 60, settings);
   const std::vector<uint8_t> grey(64 * 48, 90);
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { slam.Track(grey.data(), 1, NAN); }),
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { slam.Track(NAN, grey.data(), 1); }),
               HasSubstr("time"));
 }
 

@@ -72,7 +72,7 @@ TEST(Lost, IsFoundAgainWhenSightReturns) {
     EXPECT_EQ(player.results[i].state, TrackState::kLost);
   player.Play(Steps(9, 45, 3));  // another place than where the camera was lost
   EXPECT_EQ(player.results[16 + 12].state, TrackState::kTracking);
-  EXPECT_EQ(player.slam.Counts().relocalisations, 1);
+  EXPECT_EQ(player.slam.Counts().relocalizations, 1);
   EXPECT_EQ(player.slam.Snapshot().Maps().size(), 1u);
   const auto worst = player.WorstOf(MapId{0}, 0);
   EXPECT_EQ(worst.second, 16 + 13);
@@ -197,7 +197,7 @@ TEST(SavedMaps, WhereNothingIsKnownAMapStartsAtOnceAndLeavesTheOld) {
 
 TEST(SavedMaps, LocalisingLeavesThemAsTheyAre) {
   SlamSettings settings = Phone();
-  settings.localise = true;
+  settings.localize = true;
   Player player(settings);
   player.slam.Load(DecodeMap(SavedRoom()));
   player.Play(Steps(0, 48, 3));

@@ -22,7 +22,7 @@ constexpr int kFrames = 180;
 SlamSettings Unknown() {
   SlamSettings settings;
   settings.ApplyProfile("phone");
-  settings.readout.enabled = false;  // as SlamSettings::FindCamera()
+  settings.readout.enabled = false;  // as SlamSettings::EnableSelfCalibration()
   settings.refine.enabled = true;
   return settings;
 }

@@ -117,7 +117,7 @@ TEST_F(Time, AfterAGapTheCameraIsFoundWhereItIs) {
   EXPECT_TRUE(Show(12, 600));  // the camera was carried back meanwhile
   EXPECT_STREQ(result_.cut, "after a gap in time");
   EXPECT_EQ(result_.state, TrackState::kTracking);
-  EXPECT_EQ(slam_.Counts().relocalisations, 1);
+  EXPECT_EQ(slam_.Counts().relocalizations, 1);
   EXPECT_EQ(ShowAll(13, 20, 600.1), 8);
   ExpectTracked(0);
 }

@@ -29,7 +29,7 @@ TEST(UnknownScale, AFrameBetweenTwoThatStayIsNotLostWithItsKeyframe) {
     slam.Track({frame.time, frame.image, {}, {}});
   }
   // Each time the newest keyframe is dropped, the next frame is relocalized.
-  ASSERT_GT(slam.Counts().relocalisations, 1);
+  ASSERT_GT(slam.Counts().relocalizations, 1);
   const std::vector<FramePose> poses = slam.Trajectory();
   int tracked = 0;
   for (size_t i = 1; i + 1 < poses.size(); ++i) {

@@ -84,7 +84,7 @@ std::span<const Setting> CameraEstimateSettings::Table() {
       ExpertSetting<&T::k2_corner_sigma>("calibrate.k2_corner_sigma", kNotNegative, "",
                                          "The same for k2."),
       ExpertSetting<&T::centre_sigma>(
-          "calibrate.centre_sigma", kNotNegative, "",
+          "calibrate.center_sigma", kNotNegative, "",
           "Prior standard deviation of the principal point, as a share of the longer image side."),
       ExpertSetting<&T::adjust, &A::inflation>(
           "calibrate.inflation", AtLeast(1), "",

@@ -26,7 +26,7 @@ cv::Size InputSize(const OnnxModel& model) {
     ThrowInput("takes no floating point numbers as input: export it with a float32 input");
   if (shape.empty()) return {kOpenSize, kOpenSize};
   if (shape.size() != 4 || (shape[1] != 3 && shape[1] > 0))
-    ThrowInput("takes no colour picture: its input should be 1 x 3 x height x width");
+    ThrowInput("takes no color picture: its input should be 1 x 3 x height x width");
   if (shape[0] > 1) ThrowInput("takes several pictures at once: export it for a batch of 1");
   const auto side = [](int64_t length) -> int64_t { return length > 0 ? length : kOpenSize; };
   const int64_t width = side(shape[3]), height = side(shape[2]);

@@ -39,7 +39,7 @@ void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, doubl
     ThrowInput("depth image: must have one channel of 16 bit integers or 32 bit floats");
   }
   if (depth.size() != frame.image.size()) {
-    ThrowInput("depth image: its size differs from the colour image's");
+    ThrowInput("depth image: its size differs from the color image's");
   }
   if (integers && !(camera.depth_factor > 0)) {
     ThrowInput("depth image: the camera's depth_factor must be positive");

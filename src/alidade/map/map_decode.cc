@@ -142,7 +142,7 @@ class Decoder {
     for (const Neighbour& neighbour : keyframe.covisible) {
       const KeyFrame* other = keyframes_.Find(neighbour.id.value);
       Require(other && other != &keyframe && neighbour.shared > 0,
-              "a keyframe's neighbour is not there");
+              "a keyframe's neighbor is not there");
     }
     for (KeyFrameId id : keyframe.loops) {
       const KeyFrame* other = keyframes_.Find(id.value);

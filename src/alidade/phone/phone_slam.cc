@@ -51,7 +51,7 @@ void PhoneSettings::SetLines(const std::string& lines) {
 
 PhoneSlam::PhoneSlam(int width, int height, double fov, PhoneSettings settings)
     : settings_(std::move(settings)), camera_(AssumedCamera(width, height, fov)), known_(fov > 0) {
-  if (!known_) settings_.slam.FindCamera();
+  if (!known_) settings_.slam.EnableSelfCalibration();
   Begin();
 }
 
@@ -76,7 +76,7 @@ void PhoneSlam::Begin() {
   source_.live = true;
 }
 
-PhoneFrame PhoneSlam::Track(const uint8_t* pixels, int channels, double time) {
+PhoneFrame PhoneSlam::Track(double time, const uint8_t* pixels, int channels) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   const cv::Mat image(camera_.height, camera_.width, channels == 1 ? CV_8UC1 : CV_8UC4,

@@ -51,7 +51,7 @@ class PhoneSlam {
 
   // Processes one image: 1 (gray) or 4 (red green blue alpha) bytes per pixel, rows without
   // padding. `time` in seconds. Throws Error as Slam::Track() does.
-  PhoneFrame Track(const uint8_t* pixels, int channels, double time);
+  PhoneFrame Track(double time, const uint8_t* pixels, int channels);
   void Finish();
   // Passes the detections in an earlier image (PhoneFrame::number), in its pixels. They may be many
   // images late. Throws Error (input) for a class that is not in PhoneSettings::detector_classes.

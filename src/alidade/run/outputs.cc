@@ -60,7 +60,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
     if (const std::string file = FoundCameraFile(camera, setup.source_path); !file.empty())
       folder.Write("camera.yaml", file);
     attempt([&] {
-      if (!setup.settings.slam.localise) folder.Write("map.alidade", slam.SaveMap());
+      if (!setup.settings.slam.localize) folder.Write("map.alidade", slam.SaveMap());
     });
     attempt([&] {
       landmarks = LandmarksOf(results);
@@ -97,7 +97,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
           results.map.keyframe_count(),
           results.map.landmark_count(),
           static_cast<int>(results.map.Maps().size()),
-          results.initialised_at,
+          results.initialized_at,
           results.lost_spans,
           shape.points.size(),
           PathLength(results.maps.front().trajectory)};

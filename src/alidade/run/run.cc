@@ -71,9 +71,9 @@ class Warnings {
 // The folder of the results, locked, before the work begins.
 OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   OutputClaim claim;
-  claim.owner = OwnerOf(options.source, options.localise);
+  claim.owner = OwnerOf(options.source, options.localize);
   claim.overwrite = options.overwrite;
-  const std::string usual = "alidade-out/" + source.name + (options.localise ? "-localized" : "");
+  const std::string usual = "alidade-out/" + source.name + (options.localize ? "-localized" : "");
   claim.path = options.out         ? *options.out
                : options.overwrite ? usual
                                    : FreeFolder(usual, claim.owner);
@@ -153,7 +153,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
-  settings.localise = options.localise;
+  settings.localize = options.localize;
   wanted.color = settings.WantsColor();
   std::unique_ptr<FrameSource> source =
       Repeat(OpenAnySource(options.source, wanted), options.repeat);

@@ -55,7 +55,7 @@ void SynthSettings::Check() const {
   require(std::find(paths.begin(), paths.end(), path) != paths.end(),
           "path must be walk, turn, turn-walk or still");
   require(speed > 0 && speed <= 100, "speed must be above 0 and at most 100");
-  require(arm >= 0 && arm <= 2, "arm must be between 0 and 2 metres");
+  require(arm >= 0 && arm <= 2, "arm must be between 0 and 2 meters");
   require(arm == 0 || path == "turn", "arm is of the path \"turn\" alone");
   require(things >= 0 && things <= 5, "things must be between 0 and 5");
   require(fov == 0 || (fov >= 10 && fov <= 150), "fov must be between 10 and 150 degrees");
@@ -69,7 +69,7 @@ void SynthSettings::Check() const {
   require(k1 >= -1 && k1 <= 1, "k1 must be between -1 and 1");
   require(actors >= 0 && actors <= 20, "actors must be between 0 and 20");
   require(std::isfinite(noise) && noise >= 0 && noise <= 100,
-          "noise must be between 0 and 100 grey levels");
+          "noise must be between 0 and 100 gray levels");
   require(width >= 64 && width <= 4096, "width must be between 64 and 4096 pixels");
   require(height >= 48 && height <= 4096, "height must be between 48 and 4096 pixels");
   require(held >= 0 && held <= 0.5, "held must be between 0 and 0.5");

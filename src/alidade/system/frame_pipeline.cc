@@ -48,7 +48,7 @@ FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
                              const std::shared_ptr<Detector>& detector)
     : settings_(settings),
       camera_(camera),
-      dense_(settings.semidense.enabled && !settings.localise),
+      dense_(settings.semidense.enabled && !settings.localize),
       workers_(camera, settings),
       tracker_(camera, settings.tracker),
       movers_(camera, settings, detector),
@@ -249,9 +249,9 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   // keyframes, so more may queue.
   const int max_backlog = settings_.sensor == Sensor::kMono ? 1 : 2;
   result.keyframe = estimate.wants_keyframe && session_.state() != SessionState::kConfirming &&
-                    workers_.backlog() <= max_backlog && !settings_.localise &&
+                    workers_.backlog() <= max_backlog && !settings_.localize &&
                     !workers_.mapping_stopped() && HoldsWithoutMovers(estimate.placed);
-  if (!settings_.localise) {
+  if (!settings_.localize) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);
     workers_.mapper().Doubt(news.evidence);
     workers_.mapper().Count(news.sightings);

@@ -8,6 +8,7 @@ namespace {
 constexpr struct {
   std::string_view before, now;
 } kRenamed[] = {
+    {"calibrate.centre_sigma", "calibrate.center_sigma"},
     {"calibrate.first_keyframes", "camera.first_keyframes"},
     {"calibrate.focal_sigma", "camera.focal_sigma"},
     {"calibrate.growth", "camera.growth"},

@@ -58,7 +58,7 @@ void SlamSettings::WaryOfTurns() {
   if (wary == 0) wary = kAssumedLens;
 }
 
-void SlamSettings::FindCamera() {
+void SlamSettings::EnableSelfCalibration() {
   WaryOfTurns();
   readout.enabled = false;
   refine.enabled = true;

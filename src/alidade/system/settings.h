@@ -68,7 +68,10 @@ struct SlamSettings {
   DynamicsSettings dynamics;
   TrajectorySettings trajectory;
   ClockSettings time;
-  bool localise = false;  // only find poses in the map that was loaded, and leave it as it is
+  union {
+    bool localize = false;  // only find poses in the map that was loaded, and leave it as it is
+    bool localise [[deprecated("use localize")]];
+  };
   // With depth a new map could start at once, always sooner than a place is recognized.
   double new_map_seconds = 1.0;
   int new_map_frames = 15;
@@ -80,14 +83,16 @@ struct SlamSettings {
   // The camera is only assumed (66 degrees along the longer side): no map is begun on what a turn
   // with another lens explains, unless the settings say how much to allow for.
   void WaryOfTurns();
-  // That, and one camera's lens is found while the map grows. A rolling shutter is looked for with
-  // the lens, not on its own: a wrong lens may be taken for it.
-  void FindCamera();
+  // That, and online self-calibration of one camera: focal length, distortion and rolling-shutter
+  // readout are estimated together while the map grows. The readout alone is not estimated then: a
+  // wrong lens can look like it.
+  void EnableSelfCalibration();
+  [[deprecated("use EnableSelfCalibration()")]] void FindCamera() { EnableSelfCalibration(); }
   static std::span<const Setting> Table();  // of its own fields; Parts() has those of all structs
   void Check() const;                       // throws Error (usage) naming the invalid setting
-  // Whether the colours of images are of use.
+  // Whether the colors of images are of use.
   bool WantsColor() const {
-    return (semidense.enabled && !localise) || dynamics.mode == DynamicsMode::kFull;
+    return (semidense.enabled && !localize) || dynamics.mode == DynamicsMode::kFull;
   }
 
   // Every struct with its table.

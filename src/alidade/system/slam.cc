@@ -132,7 +132,10 @@ Slam::~Slam() = default;
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Reset() { impl_->Reset(); }
-void Slam::Finish(double limit) { impl_->Finish(limit); }
+std::vector<FramePose> Slam::Finish(double limit) {
+  impl_->Finish(limit);
+  return Trajectory();
+}
 void Slam::CutFinishShort() { impl_->pipeline().workers().CutShort(); }
 
 }  // namespace alidade

@@ -1,5 +1,4 @@
-// Visual SLAM in one class: images in, poses and a map out. Call Finish() after the last frame:
-// without it the last adjustment and the poses of deferred localization are missing.
+// Visual SLAM in one class: images in, poses and a map out.
 #pragma once
 
 #include <limits>
@@ -20,6 +19,9 @@
 
 namespace ALIDADE_API alidade {
 
+// Visual SLAM. Call Finish() after the last frame: without it the last adjustment and the poses of
+// deferred localization are missing.
+//
 // Threads. Load, Track, Reset and Finish are driving calls. They may come from any thread; each
 // waits until the one before it has returned. All other calls are queries: any thread may make them
 // at any time, also during a driving call. A query delays Track() by no more than the copying of a
@@ -61,8 +63,9 @@ class Slam {
   // Waits until the workers have finished (a part that has failed does no more work), at most
   // `limit` seconds plus the time to end the current step. The map is consistent then. The next
   // Finish() does the remaining work, except for mapping the keyframes that were waiting: they stay
-  // as inserted.
-  void Finish(double limit = std::numeric_limits<double>::infinity());
+  // as inserted. Returns Trajectory(), or throws std::bad_alloc if there is no memory for it. More
+  // frames may follow.
+  std::vector<FramePose> Finish(double limit = std::numeric_limits<double>::infinity());
   // As if the limit of the running Finish(), or else of the next one, had passed. Any thread, also
   // during a driving call.
   void CutFinishShort();

@@ -22,6 +22,7 @@ enum class TrackState {
   kInitialising [[deprecated("use kInitializing")]] = kInitializing
 };
 
+// In the order that track() has in every language.
 struct FrameInput {
   double time = 0;  // seconds
   cv::Mat image;    // 8-bit gray or BGR, of the camera's size
@@ -120,7 +121,11 @@ struct LetGoFrames {
 };
 
 struct SlamCounts {
-  int relocalisations = 0, loops = 0, merges = 0;
+  union {
+    int relocalizations = 0;
+    int relocalisations [[deprecated("use relocalizations")]];
+  };
+  int loops = 0, merges = 0;
   int cuts = 0;       // gaps and backward jumps of the time stamps, and calls of Reset()
   int predicted = 0;  // frames with TrackResult::predicted
   LetGoFrames let_go;

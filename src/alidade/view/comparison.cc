@@ -81,7 +81,7 @@ std::string Times(const RunComparison& comparison) {
   std::string more;
   for (size_t stage = 1; stage < comparison.stages.size(); ++stage)
     more += Stage(comparison, stage);
-  return "<h2>Milliseconds</h2>\n<p class=\"soft\">Full colour: to the median; lighter: to the "
+  return "<h2>Milliseconds</h2>\n<p class=\"soft\">Full color: to the median; lighter: to the "
          "95th "
          "percentile. Each part has a scale of its own.</p>\n" +
          Stage(comparison, 0) + "<details>\n<summary>Parts</summary>\n" + more + "</details>\n";

@@ -65,7 +65,7 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use) {
     decoded.image.convertTo(decoded.image, CV_16U);
   if (use == ImageUse::kDepth && decoded.image.type() != CV_16UC1 &&
       decoded.image.type() != CV_32FC1) {
-    return {{}, "is a colour image: depth has one channel"};
+    return {{}, "is a color image: depth has one channel"};
   }
   return decoded;
 }

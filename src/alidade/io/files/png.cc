@@ -152,7 +152,7 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   const int channels = png_get_channels(decoder.png, decoder.info);
   const int depth = png_get_bit_depth(decoder.png, decoder.info) == 16 ? CV_16U : CV_8U;
   if (use == ImageUse::kDepth && channels != 1)
-    return {{}, "is a colour image: depth has one channel"};
+    return {{}, "is a color image: depth has one channel"};
   cv::Mat image(static_cast<int>(png_get_image_height(decoder.png, decoder.info)),
                 static_cast<int>(png_get_image_width(decoder.png, decoder.info)),
                 CV_MAKETYPE(depth, channels));

@@ -271,7 +271,7 @@ std::string CameraInWords(const CameraEstimate& estimate) {
   char text[160];
   std::snprintf(text, sizeof(text),
                 " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
-                "centre %.1f, %.1f ± %.1f",
+                "center %.1f, %.1f ± %.1f",
                 camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0],
                 estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
                 estimate.centre_sigma.maxCoeff());

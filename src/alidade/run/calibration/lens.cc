@@ -8,7 +8,7 @@
 
 namespace alidade {
 LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckSettings& settings) {
-  if (used.localise) return {};
+  if (used.localize) return {};
   try {
     const MapSnapshot map = slam.Snapshot();
     const MapId largest = LargestMap(map);

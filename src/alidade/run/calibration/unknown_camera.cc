@@ -57,7 +57,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   }
   const bool looked_for = source.sensor == Sensor::kMono && calibrate.enabled;
   if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // during the run
-    settings.FindCamera();
+    settings.EnableSelfCalibration();
     settings.refine.focal_sigma = finding.focal_sigma;
     return finding;
   }

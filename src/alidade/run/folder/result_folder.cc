@@ -32,6 +32,12 @@ std::optional<std::array<double, 2>> PairIn(const json& list) {
   return std::array<double, 2>{list[0].get<double>(), list[1].get<double>()};
 }
 
+// Version 0.1 wrote the second name.
+std::optional<double> RenamedNumberIn(const json& stats, const char* name, const char* before) {
+  const std::optional<double> number = NumberIn(stats, name);
+  return number ? number : NumberIn(stats, before);
+}
+
 MedianBar BarIn(const json& stats, const char* stage) {
   if (!stats.contains("ms") || !stats["ms"].is_object() || !stats["ms"].contains(stage)) return {};
   const json& ms = stats["ms"][stage];
@@ -84,11 +90,11 @@ ResultFolder ReadResultFolder(const std::string& path) {
   result.frames = NumberIn(stats, "frames");
   result.tracked = NumberIn(stats, "tracked");
   result.coverage = NumberIn(stats, "coverage");
-  result.initialised_at = NumberIn(stats, "initialised_at");
+  result.initialized_at = RenamedNumberIn(stats, "initialized_at", "initialised_at");
   result.keyframes = NumberIn(stats, "keyframes");
   result.landmarks = NumberIn(stats, "landmarks");
   result.loops = NumberIn(stats, "loops");
-  result.relocalisations = NumberIn(stats, "relocalisations");
+  result.relocalizations = RenamedNumberIn(stats, "relocalizations", "relocalisations");
   result.maps = NumberIn(stats, "maps");
   result.cpu_s = NumberIn(stats, "cpu_s");
   result.peak_mb = NumberIn(stats, "peak_mb");

@@ -16,8 +16,8 @@ struct ResultFolder {
   std::string path;
   std::string source, sensor;
   // Of stats.json; what it does not say, or older versions did not, is empty.
-  std::optional<double> frames, tracked, coverage, initialised_at, keyframes, landmarks, loops,
-      relocalisations, maps, cpu_s, peak_mb;
+  std::optional<double> frames, tracked, coverage, initialized_at, keyframes, landmarks, loops,
+      relocalizations, maps, cpu_s, peak_mb;
   std::vector<MedianBar> milliseconds;  // one for each of kResultStages
   std::optional<Camera> camera;         // of the recording's images (stereo, fisheye: as rectified)
   TimeSpan span;                        // of the recording, seconds

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <new>
 #include <optional>
 #include <string>
 #include <thread>
@@ -211,7 +212,10 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   for (RunWatcher* watcher : watchers) watcher->Finishing();
   {
     const Finisher finisher(slam);
-    slam.Finish();
+    try {
+      slam.Finish();
+    } catch (const std::bad_alloc&) {  // for the trajectory, which the results ask for again
+    }
   }
   log.health = slam.Health();
   if (cpu) log.cpu_s = cpu->Seconds();

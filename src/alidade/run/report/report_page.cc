@@ -59,8 +59,8 @@ int CountWithDepth(const MapSnapshot& map) {
 
 // "12 (0.40 s after the start: too little parallax)".
 std::string FirstTracked(const RunLog& log, const RunResults& results) {
-  if (!results.initialised_at) return "none";
-  std::string words = std::to_string(*results.initialised_at);
+  if (!results.initialized_at) return "none";
+  std::string words = std::to_string(*results.initialized_at);
   const auto first = std::find_if(results.frames.begin(), results.frames.end(),
                                   [](const FramePose& frame) { return frame.tracked; });
   if (first == results.frames.end() || first == results.frames.begin()) return words;
@@ -98,7 +98,7 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
                                             : LostInAll(results.lost_spans)},
       {"keyframes", std::to_string(results.map.keyframe_count())},
       {"landmarks", std::to_string(results.map.landmark_count())}};
-  if (setup.settings.slam.semidense.enabled && !setup.settings.slam.localise)
+  if (setup.settings.slam.semidense.enabled && !setup.settings.slam.localize)
     facts.push_back({"keyframes with depth", std::to_string(CountWithDepth(results.map))});
   facts.insert(facts.end(),
                {{"path", Format("%.2f ", PathLength(results.maps.front().trajectory)) + unit},
@@ -107,8 +107,8 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
                 {"peak memory", Format("%.0f MB", PeakMegabytes())}});
   const SlamCounts& counts = results.counts;
   facts.push_back({"loops closed", std::to_string(counts.loops)});
-  if (counts.relocalisations > 0)
-    facts.push_back({"relocalisations", std::to_string(counts.relocalisations)});
+  if (counts.relocalizations > 0)
+    facts.push_back({"relocalizations", std::to_string(counts.relocalizations)});
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +

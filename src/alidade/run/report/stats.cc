@@ -32,7 +32,7 @@ ordered_json SettingsJson(const RunSetup& setup) {
 
 // What semi-dense mapping did; null when it was not asked for.
 ordered_json SemiDenseJson(const SlamSettings& settings, const SemiDenseReport& report) {
-  if (!settings.semidense.enabled || settings.localise) return nullptr;
+  if (!settings.semidense.enabled || settings.localize) return nullptr;
   const auto mean = [](int64_t sum, int64_t count) {
     return count > 0 ? static_cast<double>(sum) / static_cast<double>(count) : 0.0;
   };
@@ -129,11 +129,11 @@ std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const 
       {"frames", log.frames},
       {"tracked", tracked},
       {"coverage", log.frames > 0 ? static_cast<double>(tracked) / log.frames : 0.0},
-      {"initialised_at", optional(results.initialised_at)},
+      {"initialized_at", optional(results.initialized_at)},
       {"lost_spans", results.lost_spans},
       {"span",
        log.first_time ? ordered_json({*log.first_time, *log.last_time}) : ordered_json(nullptr)},
-      {"relocalisations", results.counts.relocalisations},
+      {"relocalizations", results.counts.relocalizations},
       {"predicted", results.counts.predicted},
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},

@@ -52,7 +52,7 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
     if (!frame.tracked) continue;
     ++results.tracked;
     const auto index = static_cast<size_t>(frame.index);
-    if (!results.initialised_at) results.initialised_at = log.numbers[index];
+    if (!results.initialized_at) results.initialized_at = log.numbers[index];
     const std::string& stamp = log.stamps[index];
     MapResults& map = in(frame.map);
     map.trajectory.push_back({frame.time, Mounted(frame.T_world_camera, turn), stamp});

@@ -29,7 +29,7 @@ struct RunResults {
   SemiDenseReport semidense;
   int tracked = 0;  // frames, in all maps
 
-  std::optional<int> initialised_at;              // number of the first tracked frame
+  std::optional<int> initialized_at;              // number of the first tracked frame
   std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
   std::vector<MapResults> maps;                   // most frames first; at least one, perhaps empty
   Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world

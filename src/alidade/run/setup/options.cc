@@ -14,7 +14,7 @@ void CheckThreads(int threads) {
 }
 
 void CheckRunOptions(const RunOptions& options) {
-  if (options.semidense && options.localise) {
+  if (options.semidense && options.localize) {
     ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
   }
   if (options.host && !options.viewer)

@@ -24,7 +24,7 @@ struct RunOptions {
   int threads = 0;  // 0: all cores
   int first = 0, last = -1, repeat = 0;
   bool quiet = false;
-  bool localise = false;  // only find poses in the loaded map
+  bool localize = false;  // only find poses in the loaded map
   bool semidense = false;
   std::optional<std::string> dynamics, detector;
   std::shared_ptr<Detector> own_detector;  // instead of a file's: the caller's own

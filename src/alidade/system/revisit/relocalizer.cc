@@ -51,7 +51,7 @@ bool Relocalizer::CanBeThere(const TrackEstimate& found, const MapSnapshot& map)
   }
   if (last.valid() && last != in) return share >= settings.elsewhere_share;
   const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(in);
-  const double gone = settings_.localise ? 0 : WayBetween(map, keyframes.back(), found.reference);
+  const double gone = settings_.localize ? 0 : WayBetween(map, keyframes.back(), found.reference);
   const TimedPlace here{found.placed.frame->time, found.placed.T_camera_world.Inverse().t};
   const double depth = MedianDepth(map, *map.Find(found.reference)).value_or(0);
   return share >= settings.plain_share * DoubtOf(trajectory, here, depth, gone, settings);

@@ -40,7 +40,7 @@ bool MapStart::MayStart(const PresentFrame& now, double steady, int first_number
     session.CountInformativeFrame();
   const bool long_lost = steady - session.lost_since() >= settings.new_map_seconds &&
                          session.informative_frames() >= settings.new_map_frames;
-  const bool may_start = !settings.localise && !parts_.workers.mapping_stopped();
+  const bool may_start = !settings.localize && !parts_.workers.mapping_stopped();
   if (long_lost && may_start) {
     LeaveMap(first_number);
     return true;

@@ -54,7 +54,7 @@ Workers::Workers(const Camera& camera, const SlamSettings& settings)
       lens_watch_(camera, settings.mapper.noise, settings.refine),
       loop_closer_(map_, places_, camera, settings.loop),
       semidense_mapper_(map_, camera, settings.semidense),
-      dense_(settings.semidense.enabled && !settings.localise),
+      dense_(settings.semidense.enabled && !settings.localize),
       adjusting_([this](KeyFrameId id, const std::atomic<bool>* stop) { AdjustAll(id, stop); },
                  Behind(settings)),
       looping_([this](KeyFrameId id, const std::atomic<bool>*) { Loop(id); }, Behind(settings)),

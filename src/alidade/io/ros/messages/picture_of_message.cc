@@ -95,7 +95,7 @@ cv::Mat Converted(const cv::Mat& raw, int code) try {
   cv::cvtColor(raw, image, code);
   return image;
 } catch (const cv::Exception&) {  // for example an image too small for a Bayer pattern
-  ThrowInput("cannot be converted to grey");
+  ThrowInput("cannot be converted to gray");
 }
 
 DecodedImage RawPictureOf(const RosPicture& picture, ImageUse use) {
