@@ -15,7 +15,7 @@
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/results/mask_writer.h"
-#include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/inspect.h"
 #include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
@@ -157,9 +157,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
   record.settings.localise = options.localise;
   wanted.color = record.settings.WantsColor();
-  std::unique_ptr<FrameSource> source =
-      Repeat(OpenAnySource(options.source, wanted), options.repeat);
+  InspectedSource inspected = OpenInspected(options.source, wanted);
+  std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
   record.source = source->Info();
+  record.source.told = inspected.told;
   record.settings.sensor = record.source.sensor;
   record.settings.threaded = ThreadedFrom(options, record.source.kind == "camera");
   OutputFolder folder(ClaimOf(options, record.source));

@@ -37,6 +37,7 @@ class Pass {
       if (frame->time - *first_time_ > calibrate_.max_seconds) return false;
     }
     ++count_;
+    if (frame->part != std::exchange(part_, frame->part)) slam_.Reset();
     if (!frame->problem.empty()) return true;
     try {
       slam_.Track(InputOf(*frame));
@@ -79,6 +80,7 @@ class Pass {
   std::vector<LensWindow> windows_;
   std::optional<double> first_time_;
   int count_ = 0, ask_at_;
+  int part_ = 0;  // of the newest frame
 };
 
 }  // namespace

@@ -129,6 +129,8 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
     Drop(frame, frame.problem, record);
     return;
   }
+  if (!frame.incomplete.empty() && ++record.incomplete <= kWarnedFrames)
+    LogWarning("frame " + std::to_string(frame.number) + ": " + frame.incomplete);
   TrackResult result;
   const int counted = slam.frames();
   record.stamps.push_back(frame.stamp);
@@ -187,6 +189,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
+  std::optional<int> part;  // of the frame before
   const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
@@ -202,6 +205,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
         ++record.late;
         continue;
       }
+      if (frame->part != std::exchange(part, frame->part).value_or(frame->part)) slam.Reset();
       Feed(*frame, slam, watchers, record, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept
@@ -216,8 +220,11 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
   if (cpu) record.cpu_s = cpu->Seconds();
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
   record.interrupted = Interrupted();
-  if (record.dropped > kWarnedFrames) {
+  if (record.dropped > kWarnedFrames)
     LogWarning(std::to_string(record.dropped) + " frames were skipped in all");
+  if (record.incomplete > kWarnedFrames) {
+    LogWarning(std::to_string(record.incomplete) +
+               " frames had a depth or right image that could not be read");
   }
 }
 

@@ -65,6 +65,7 @@ struct RunRecord {
   int frames = 0;   // all that came, bad ones included
   int late = 0;     // that gave way to newer ones: not counted in `frames`
   int dropped = 0;  // bad ones
+  int incomplete = 0;  // whose depth or right image could not be read
   int dark = 0;     // black ones among those that were not tracked
   bool interrupted = false;
 };
