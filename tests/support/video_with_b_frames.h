@@ -43,6 +43,7 @@ inline void WriteVideoWithBFrames(const std::string& path, const std::vector<cv:
     while (avcodec_receive_packet(codec, packet) == 0) {
       av_packet_rescale_ts(packet, codec->time_base, stream->time_base);
       packet->stream_index = stream->index;
+      packet->duration = stream->time_base.den / 30;  // or the edit list ends before the last frame
       av_interleaved_write_frame(format, packet);
     }
   };

@@ -117,7 +117,10 @@ class VideoFile : public MediaStream {
     return Upright(gray);
   }
 
-  cv::Mat Color() override { return color_.empty() ? cv::Mat() : Upright(color_); }
+  cv::Mat Color() override {
+    if (color_.empty()) return {};
+    return turns_ == 0 ? color_.clone() : Upright(color_);
+  }
 
   bool SeekNear(double time) override {
     const auto target = static_cast<int64_t>(std::floor(time / av_q2d(stream_->time_base)));
@@ -166,7 +169,9 @@ class VideoFile : public MediaStream {
                                        frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC,
                                        nullptr, nullptr, nullptr));
     if (!scaler_) return {};
-    cv::Mat color(frame.height, frame.width, CV_8UC3);
+    // The scaler writes whole vectors: rows are as long as a multiple of 32 pixels, and one more.
+    cv::Mat padded(frame.height + 1, (frame.width + 31) / 32 * 32, CV_8UC3);
+    cv::Mat color = padded(cv::Rect(0, 0, frame.width, frame.height));
     uint8_t* const planes[] = {color.data, nullptr, nullptr, nullptr};
     const int strides[] = {static_cast<int>(color.step), 0, 0, 0};
     const int rows = sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes,
