@@ -21,8 +21,7 @@ constexpr int kFrames = 40;
 class LyingInput : public testing::Test {
  protected:
   std::string Room() {
-    return CopyOf(
-        Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "9"}), folder_);
+    return CopyOf(Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "9"}), folder_);
   }
   std::string Pair() {
     return CopyOf(Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "9", "--stereo",
@@ -93,7 +92,8 @@ TEST_F(LyingInput, KittiTimesInMicrosecondsAreReadAsSuch) {
 
 TEST_F(LyingInput, ASecondRecordingInOneListIsACut) {
   const std::string room = Room();
-  std::vector<std::string> rgb = DataLines(room + "/rgb.txt"), depth = DataLines(room + "/depth.txt");
+  std::vector<std::string> rgb = DataLines(room + "/rgb.txt"),
+                           depth = DataLines(room + "/depth.txt");
   // The first recording begins at 100 s, the second one at 0 with the same images.
   for (std::vector<std::string>* lines : {&rgb, &depth}) {
     const std::vector<std::string> second = *lines;
@@ -113,8 +113,8 @@ TEST_F(LyingInput, ASecondRecordingInOneListIsACut) {
 TEST_F(LyingInput, GrayOfTenBitsAndThermalImagesAreTracked) {
   for (const auto& [scale, offset] : {std::pair{4.0, 0.0}, {8.0, 28500.0}}) {
     const TempFolder folder;
-    const std::string room = CopyOf(
-        Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "9"}), folder);
+    const std::string room =
+        CopyOf(Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "9"}), folder);
     ChangeImages(room + "/rgb", ReadImageGray, [by = scale, from = offset](const cv::Mat& image) {
       cv::Mat wide;
       image.convertTo(wide, CV_16U, by, from);
@@ -178,7 +178,8 @@ TEST_F(LyingInput, SwappedAndLatePairsAreToldAndOneCameraIsUsed) {
   fs::rename(pair + "/image_2", pair + "/image_1");
   const ProgramResult result = Run(pair);
   EXPECT_THAT(result.err, HasSubstr("left and right images are swapped: one camera alone is used"));
-  EXPECT_EQ(json::parse(ReadText(out_ + "/stats.json"), nullptr, false).value("sensor", ""), "mono");
+  EXPECT_EQ(json::parse(ReadText(out_ + "/stats.json"), nullptr, false).value("sensor", ""),
+            "mono");
   const ProgramResult refused = Run(pair, {"--sensor", "stereo"});
   EXPECT_EQ(refused.status, 3);
   EXPECT_THAT(refused.err, HasSubstr("--sensor stereo: the left and right images are swapped"));

@@ -44,8 +44,7 @@ TEST(StampUnit, SlowAndFastRecordingsKeepTheUnitOfTheirFormat) {
 }
 
 TEST(StampUnit, TextIsConvertedDigitByDigit) {
-  EXPECT_EQ(StampInSeconds("1403715273262142976", StampUnit::kNanoseconds),
-            "1403715273.262142976");
+  EXPECT_EQ(StampInSeconds("1403715273262142976", StampUnit::kNanoseconds), "1403715273.262142976");
   EXPECT_EQ(StampInSeconds("5", StampUnit::kNanoseconds), "0.000000005");
   EXPECT_EQ(StampInSeconds("1000000000", StampUnit::kNanoseconds), "1.000000000");
   EXPECT_EQ(StampInSeconds("20500.25", StampUnit::kMilliseconds), "20.50025");
@@ -64,10 +63,9 @@ TEST(StampUnit, OfAListIsToldWhenItIsNotThatOfTheFormat) {
   EXPECT_THAT(warnings.text(), HasSubstr("rgb.txt: the time stamps are read as nanoseconds, one "
                                          "image every 0.033 s"));
   WarningCatcher quiet;
-  EXPECT_EQ(ParseStampedList("0.5 a.png\n0.6 b.png\n", "rgb.txt", StampUnit::kSeconds, true)
-                .at(1)
-                .stamp,
-            "0.6");
+  EXPECT_EQ(
+      ParseStampedList("0.5 a.png\n0.6 b.png\n", "rgb.txt", StampUnit::kSeconds, true).at(1).stamp,
+      "0.6");
   EXPECT_EQ(quiet.text(), "");
 }
 

@@ -80,7 +80,8 @@ TEST(TimeOrder, AListWithoutOrderIsSortedAsAWhole) {
   for (int i = 0; i < 40; ++i) times.push_back(static_cast<double>(i * 17 % 40) * 2);
   const TimeOrder order = OrderOf(ListOf(times));
   EXPECT_EQ(order.parts(), 1);
-  for (size_t i = 0; i < times.size(); ++i) EXPECT_EQ(times[order.order[i]], 2.0 * static_cast<double>(i));
+  for (size_t i = 0; i < times.size(); ++i)
+    EXPECT_EQ(times[order.order[i]], 2.0 * static_cast<double>(i));
 }
 
 }  // namespace

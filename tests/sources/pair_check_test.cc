@@ -40,9 +40,7 @@ class Pairs : public FrameSource {
     disturb_(*this, frame);
     return frame;
   }
-  cv::Mat Right(int number) {
-    return frames_.Frame(std::clamp(number, 0, info_.frames - 1)).right;
-  }
+  cv::Mat Right(int number) { return frames_.Frame(std::clamp(number, 0, info_.frames - 1)).right; }
 
  private:
   RenderedFrames& frames_;

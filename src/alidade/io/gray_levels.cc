@@ -9,11 +9,11 @@ namespace alidade {
 namespace {
 
 constexpr double kLearnSeconds = 1;
-constexpr double kTail = 0.005;         // share of the pixels outside either percentile
-constexpr double kMargin = 0.1;         // of the distance of the percentiles
+constexpr double kTail = 0.005;  // share of the pixels outside either percentile
+constexpr double kMargin = 0.1;  // of the distance of the percentiles
 constexpr double kLevels = 65535;
 constexpr double kFullRange = kLevels / 4;
-constexpr double kLeastRange = 64;      // fewer levels are noise
+constexpr double kLeastRange = 64;  // fewer levels are noise
 
 }  // namespace
 

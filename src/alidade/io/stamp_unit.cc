@@ -13,7 +13,7 @@ namespace {
 constexpr double kUsualPeriod = 1.0 / 30;  // seconds
 // Standard deviation of its decimal logarithm: slow recordings are less rare than fast cameras.
 constexpr double kSlowerDecades = 0.75, kFasterDecades = 0.5;
-constexpr double kLastTime = 4.1e9;        // seconds; the year 2100
+constexpr double kLastTime = 4.1e9;  // seconds; the year 2100
 constexpr double kDeclaredOdds = 100;
 
 int Digits(StampUnit unit) { return 3 * static_cast<int>(unit); }
@@ -59,8 +59,8 @@ StampUnit ProbableUnit(std::span<const double> stamps, StampUnit declared) {
     if (!CanBe(candidate, stamps)) continue;
     const double decades = std::log10(*step / PerSecond(candidate) / kUsualPeriod);
     const double sigma = decades > 0 ? kSlowerDecades : kFasterDecades;
-    const double score = -0.5 * std::pow(decades / sigma, 2) +
-                         (candidate == declared ? std::log(kDeclaredOdds) : 0);
+    const double score =
+        -0.5 * std::pow(decades / sigma, 2) + (candidate == declared ? std::log(kDeclaredOdds) : 0);
     if (!best || score > *best) {
       best = score;
       unit = candidate;

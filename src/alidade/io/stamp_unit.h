@@ -10,7 +10,7 @@ namespace alidade {
 
 enum class StampUnit { kSeconds, kMilliseconds, kMicroseconds, kNanoseconds };
 
-double PerSecond(StampUnit unit);     // 1, 1e3, 1e6, 1e9
+double PerSecond(StampUnit unit);    // 1, 1e3, 1e6, 1e9
 const char* NameOf(StampUnit unit);  // "seconds", …
 
 // Whether a clock that began in 1970 or later can show `stamps` in this unit before the year 2100.
@@ -20,10 +20,9 @@ bool CanBe(StampUnit unit, std::span<const double> stamps);
 std::optional<double> MedianStep(std::span<const double> stamps);
 
 // The most probable unit of `stamps`, the times of a camera's images as written, in any order.
-// Model: the image period is log-normal about 1/30 s, with a standard deviation of .75 decades above
-// and .5 below; the clock can show the stamps (CanBe()); the format's own unit is
-// `declared`, which holds in 100 of 101 lists. Two stamps are needed; otherwise the result is
-// `declared`.
+// Model: the image period is log-normal about 1/30 s, with a standard deviation of .75 decades
+// above and .5 below; the clock can show the stamps (CanBe()); the format's own unit is `declared`,
+// which holds in 100 of 101 lists. Two stamps are needed; otherwise the result is `declared`.
 StampUnit ProbableUnit(std::span<const double> stamps, StampUnit declared);
 
 // A stamp's text in seconds: "1403715273262142976" (ns) -> "1403715273.262142976",

@@ -64,8 +64,7 @@ GrayAndColor ReadImageGrayAndColor(const std::string& path) {
 }
 
 GrayAndColor ReadImageAsStored(const std::string& path, bool color) {
-  const DecodedImage decoded =
-      ReadDecoded(path, color ? ImageUse::kGrayAndColor : ImageUse::kGray);
+  const DecodedImage decoded = ReadDecoded(path, color ? ImageUse::kGrayAndColor : ImageUse::kGray);
   return {decoded.image, decoded.color};
 }
 

@@ -12,8 +12,8 @@ namespace ALIDADE_API alidade {
 
 // Detect the format by the file's first bytes. All throw Error (input) with the file's name and the
 // reason: truncated, empty, not an image. A damaged image is an error; it is never decoded in part.
-// ReadImageGray() returns CV_8UC1: the BT.601 luma, which for JPEG is the luma as stored; of 16 bits
-// the upper 8.
+// ReadImageGray() returns CV_8UC1: the BT.601 luma, which for JPEG is the luma as stored; of 16
+// bits the upper 8.
 cv::Mat ReadImageGray(const std::string& path);
 cv::Mat ReadImageColor(const std::string& path);  // CV_8UC3, blue green red
 cv::Mat ReadDepth(const std::string& path);       // CV_16UC1 or CV_32FC1, values as stored

@@ -76,9 +76,8 @@ double LensToldBy(const Recording& recording, const SourceOptions& options) {
 
 // What is done about depth images of another size than the images; empty: nothing.
 std::string DepthSizeTold(const Recording& recording, cv::Size size) {
-  const auto first =
-      std::find_if(recording.frames.begin(), recording.frames.end(),
-                   [](const RecordedFrame& frame) { return !frame.depth.empty(); });
+  const auto first = std::find_if(recording.frames.begin(), recording.frames.end(),
+                                  [](const RecordedFrame& frame) { return !frame.depth.empty(); });
   if (first == recording.frames.end()) return {};
   try {
     const cv::Size depth = ReadImageSize(first->depth);

@@ -89,8 +89,8 @@ bool SetUp(Decoder& decoder, ImageUse use) {
   if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
   if (color == PNG_COLOR_TYPE_GRAY && bits < 8) png_set_expand_gray_1_2_4_to_8(png);
   png_set_strip_alpha(png);  // also the transparency chunk of palettes
-  const bool keep_16 = use == ImageUse::kDepth ||
-                       (use != ImageUse::kColor && (color & PNG_COLOR_MASK_COLOR) == 0);
+  const bool keep_16 =
+      use == ImageUse::kDepth || (use != ImageUse::kColor && (color & PNG_COLOR_MASK_COLOR) == 0);
   if (bits == 16 && !keep_16) png_set_scale_16(png);
   if (bits == 16 && keep_16 && std::endian::native == std::endian::little) png_set_swap(png);
   if (color & PNG_COLOR_MASK_COLOR) png_set_bgr(png);

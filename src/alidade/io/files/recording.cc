@@ -143,7 +143,12 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
   std::vector<RecordedFrame> frames;
   for (const size_t i : order.order) {
     const StampedName& item = list[i];
-    frames.push_back({order.times[i], item.stamp, folder + "/" + item.name, {}, {}, item.problem,
+    frames.push_back({order.times[i],
+                      item.stamp,
+                      folder + "/" + item.name,
+                      {},
+                      {},
+                      item.problem,
                       order.part[i]});
   }
   const RecordedFrame* before = nullptr;

@@ -24,7 +24,7 @@ struct RecordedFrame {
 };
 
 struct Recording {
-  std::string name, kind;  // see SourceInfo
+  std::string name, kind;       // see SourceInfo
   std::string lens_told, told;  // see SourceInfo
   std::vector<RecordedFrame> frames;
   bool has_right = false, has_depth = false;

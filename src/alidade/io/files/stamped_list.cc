@@ -1,10 +1,10 @@
 #include "alidade/io/files/stamped_list.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/text.h"
 
@@ -15,7 +15,7 @@ namespace {
 // "33333.3 s", "1.2e+09 s".
 std::string Seconds(double seconds) {
   char text[32];
-  std::snprintf(text, sizeof(text), "%.3g s", seconds);
+  PrintTo(text, sizeof(text), "%.3g s", seconds);
   return text;
 }
 

@@ -6,7 +6,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kMaxDisorder = 1;       // seconds
+constexpr double kMaxDisorder = 1;          // seconds
 constexpr double kMaxStepsBack = 1 / 10.0;  // share of items, in a list of joined recordings
 
 }  // namespace

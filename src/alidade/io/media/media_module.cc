@@ -18,9 +18,7 @@ namespace alidade {
 namespace {
 
 // Suppresses OpenCV's messages, because Alidade reports each problem in one line.
-void SilenceLibraries() {
-  cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-}
+void SilenceLibraries() { cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT); }
 
 // A live camera, by OpenCV's videoio. Times are those of its grabbing, from the first frame on.
 class LiveCamera : public MediaStream {

@@ -7,8 +7,9 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
+#include <cstring>
 #include <opencv2/imgproc.hpp>
 #include <thread>
 
@@ -31,7 +32,8 @@ using Owned = std::unique_ptr<T, Close>;
 
 double Millimetres(const AVDictionary* metadata) {
   const AVDictionaryEntry* entry = av_dict_get(metadata, kFocalLengthKey, nullptr, 0);
-  const double value = entry ? std::strtod(entry->value, nullptr) : 0;
+  double value = 0;  // not by strtod, which depends on the locale
+  if (entry) std::from_chars(entry->value, entry->value + std::strlen(entry->value), value);
   return std::isfinite(value) && value > 0 ? value : 0;
 }
 
@@ -40,8 +42,8 @@ int QuarterTurns(const AVStream& stream) {
   const uint8_t* matrix = nullptr;
 #if LIBAVFORMAT_VERSION_MAJOR >= 61
   const AVPacketSideData* side =
-      av_packet_side_data_get(stream.codecpar->coded_side_data,
-                              stream.codecpar->nb_coded_side_data, AV_PKT_DATA_DISPLAYMATRIX);
+      av_packet_side_data_get(stream.codecpar->coded_side_data, stream.codecpar->nb_coded_side_data,
+                              AV_PKT_DATA_DISPLAYMATRIX);
   if (side) matrix = side->data;
 #else
   matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
@@ -128,6 +130,7 @@ class VideoFile : public MediaStream {
       return false;
     avcodec_flush_buffers(codec_.get());
     ended_ = false;
+    last_ = AV_NOPTS_VALUE;
     return true;
   }
 
@@ -152,8 +155,12 @@ class VideoFile : public MediaStream {
     return true;
   }
 
+  // The frame's own time if it is later than the last one's, else what FFmpeg makes of it.
   bool TakeTime() {
-    const int64_t stamp = frame_->best_effort_timestamp;
+    const bool own =
+        frame_->pts != AV_NOPTS_VALUE && (last_ == AV_NOPTS_VALUE || frame_->pts > last_);
+    const int64_t stamp = own ? frame_->pts : frame_->best_effort_timestamp;
+    if (own) last_ = stamp;
     time_ = stamp == AV_NOPTS_VALUE
                 ? 0
                 : static_cast<double>(stamp - Start()) * av_q2d(stream_->time_base);
@@ -174,8 +181,8 @@ class VideoFile : public MediaStream {
     cv::Mat color = padded(cv::Rect(0, 0, frame.width, frame.height));
     uint8_t* const planes[] = {color.data, nullptr, nullptr, nullptr};
     const int strides[] = {static_cast<int>(color.step), 0, 0, 0};
-    const int rows = sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes,
-                               strides);
+    const int rows =
+        sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes, strides);
     return rows == frame.height ? color : cv::Mat();
   }
 
@@ -196,8 +203,9 @@ class VideoFile : public MediaStream {
   AVStream* stream_ = nullptr;  // of format_
   cv::Mat color_;               // of the image that Gray() returned last
   int turns_ = 0;
-  double time_ = 0;     // of the grabbed frame, seconds
-  bool ended_ = false;  // the decoder knows that no packet follows
+  int64_t last_ = AV_NOPTS_VALUE;  // latest time of a frame since the last seek
+  double time_ = 0;                // of the grabbed frame, seconds
+  bool ended_ = false;             // the decoder knows that no packet follows
 };
 
 }  // namespace

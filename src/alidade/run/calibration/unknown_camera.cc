@@ -1,9 +1,9 @@
 #include "alidade/run/calibration/unknown_camera.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/run/play/loop.h"
@@ -16,8 +16,8 @@ constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal o
 
 std::string AssumedInWords(const SourceInfo& source) {
   char text[80];
-  std::snprintf(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
-                FovDegrees(source.camera));
+  PrintTo(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
+          FovDegrees(source.camera));
   return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
 }
 

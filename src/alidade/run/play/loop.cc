@@ -189,7 +189,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
-  std::optional<int> part;  // of the frame before
+  std::optional<int> part;                         // of the frame before
   const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/run/sources/any_source.h"
 #include "alidade/run/sources/pair_check.h"
 
@@ -14,15 +14,15 @@ namespace alidade {
 namespace {
 
 constexpr int kDepthImages = 10;
-constexpr double kTail = 0.05;              // of the depths, outside the range that is told
+constexpr double kTail = 0.05;                      // of the depths, outside the range that is told
 constexpr double kNearest = 0.05, kFarthest = 100;  // meters: depth cameras measure in between
-constexpr double kWidestPair = 3;           // meters: stereo cameras have a smaller baseline
-constexpr double kMostOffCenter = 0.08;     // of the image's side; lenses are centered to 5 %
-constexpr double kMostStretched = 1.05;     // fx / fy; pixels are square
+constexpr double kWidestPair = 3;        // meters: stereo cameras have a smaller baseline
+constexpr double kMostOffCenter = 0.08;  // of the image's side; lenses are centered to 5 %
+constexpr double kMostStretched = 1.05;  // fx / fy; pixels are square
 
 std::string Metres(double metres) {
   char text[32];
-  std::snprintf(text, sizeof(text), metres < 10 ? "%.2g" : "%.0f", metres);
+  PrintTo(text, sizeof(text), metres < 10 ? "%.2g" : "%.0f", metres);
   return text;
 }
 
@@ -30,8 +30,8 @@ std::string Metres(double metres) {
 void AddDepths(const cv::Mat& depth, double factor, std::vector<double>& depths) {
   for (int y = 2; y < depth.rows; y += 4) {
     for (int x = 2; x < depth.cols; x += 4) {
-      const double z = depth.type() == CV_16UC1 ? depth.at<uint16_t>(y, x) / factor
-                                                : depth.at<float>(y, x);
+      const double z =
+          depth.type() == CV_16UC1 ? depth.at<uint16_t>(y, x) / factor : depth.at<float>(y, x);
       if (std::isfinite(z) && z > 0) depths.push_back(z);
     }
   }
@@ -67,8 +67,8 @@ void InspectDepth(FrameSource& source, SourceFindings& findings) {
   findings.told = "Depth from " + Metres(at(kTail)) + " to " + Metres(at(1 - kTail)) + " m";
   char factor[80] = "";
   if (stored) {
-    std::snprintf(factor, sizeof(factor), ", %g units per meter%s", info.camera.depth_factor,
-                  info.depth_assumed ? " assumed (`depth_factor` in the camera file)" : "");
+    PrintTo(factor, sizeof(factor), ", %g units per meter%s", info.camera.depth_factor,
+            info.depth_assumed ? " assumed (`depth_factor` in the camera file)" : "");
     findings.told += factor;
   }
   if (at(0.5) < kNearest || at(0.5) > kFarthest) {
@@ -89,18 +89,18 @@ void InspectCamera(const SourceInfo& info) {
   const double off = std::abs(off_x) > std::abs(off_y) ? off_x : off_y;
   char text[160];
   if (info.sensor != Sensor::kStereo && std::abs(off) > kMostOffCenter) {
-    std::snprintf(text, sizeof(text),
-                  "the principal point lies %.0f %% of the image's side off its center: is the "
-                  "calibration of a cropped image, or of another one?",
-                  100 * std::abs(off));
+    PrintTo(text, sizeof(text),
+            "the principal point lies %.0f %% of the image's side off its center: is the "
+            "calibration of a cropped image, or of another one?",
+            100 * std::abs(off));
     LogWarning(text);
   }
   const double stretched = std::max(camera.fx / camera.fy, camera.fy / camera.fx);
   if (stretched > kMostStretched) {
-    std::snprintf(text, sizeof(text),
-                  "the focal lengths fx and fy differ by %.0f %%: is the calibration of these "
-                  "images?",
-                  100 * (stretched - 1));
+    PrintTo(text, sizeof(text),
+            "the focal lengths fx and fy differ by %.0f %%: is the calibration of these "
+            "images?",
+            100 * (stretched - 1));
     LogWarning(text);
   }
 }

@@ -26,7 +26,7 @@ struct PairMatches {
   int in_row = 0;                   // corresponding rows agree
   int forwards = 0, backwards = 0;  // of these: the right camera's lies to the left, or the right
   int in_column = 0;                // columns agree, rows do not
-  std::vector<double> rows;  // right minus left, pixels
+  std::vector<double> rows;         // right minus left, pixels
   int sound() const { return in_row - backwards; }
   bool usual() const { return in_row >= kUsualShare * count && backwards <= kMostWrong * in_row; }
 };

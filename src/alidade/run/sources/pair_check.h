@@ -1,4 +1,5 @@
-// Whether the two images of a stereo recording are of one moment, in the right order, and rectified.
+// Whether the two images of a stereo recording are of one moment, in the right order, and
+// rectified.
 #pragma once
 
 #include <functional>
@@ -19,9 +20,9 @@ enum class PairFault {
 
 struct PairVerdict {
   PairFault fault = PairFault::kNone;
-  int delay = 0;      // kDelayed: frames by which the right images are late
-  double rows = 0;    // kRowsOff: median distance of corresponding rows, pixels
-  int pairs = 0;      // that were compared
+  int delay = 0;    // kDelayed: frames by which the right images are late
+  double rows = 0;  // kRowsOff: median distance of corresponding rows, pixels
+  int pairs = 0;    // that were compared
 };
 
 // Compares keypoints of up to 16 pairs spread over the recording: matched over the whole image

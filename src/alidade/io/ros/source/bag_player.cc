@@ -68,8 +68,8 @@ cv::Mat BagPlayer::Partner(std::optional<PartnerFinder>& finder, const PictureTo
   try {
     return Read(topic, stamps.message(*partner), use).image;
   } catch (const Error& error) {
-    frame.incomplete = path_ + ": message " + std::to_string(*partner) + " of " + topic.name +
-                       " " + error.what();
+    frame.incomplete =
+        path_ + ": message " + std::to_string(*partner) + " of " + topic.name + " " + error.what();
     return {};
   }
 }
@@ -94,11 +94,13 @@ std::optional<SourceFrame> BagPlayer::Next() {
   }
   // A frame whose right or depth image is bad is still used as a monocular frame.
   if (info_.sensor == Sensor::kStereo) {
-    const cv::Mat right = Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray, frame);
+    const cv::Mat right =
+        Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray, frame);
     if (!right.empty()) frame.right = preparation_->Right(levels_.To8Bit(right, frame.time));
   }
   if (info_.sensor == Sensor::kRgbd) {
-    const cv::Mat depth = Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth, frame);
+    const cv::Mat depth =
+        Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth, frame);
     if (!depth.empty()) frame.depth = preparation_->Depth(depth);
   }
   return frame;
