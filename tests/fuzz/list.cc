@@ -15,7 +15,9 @@ void Use(const std::vector<StampedName>& list) {
   size_t good = 0;
   for (size_t i = 0; i < frames.size(); ++i) {
     Expect(std::isfinite(frames[i].time), "a frame's time is not finite");
-    Expect(i == 0 || frames[i - 1].time <= frames[i].time, "frames are not in the order of time");
+    Expect(i == 0 || frames[i - 1].part <= frames[i].part, "parts are not in order");
+    Expect(i == 0 || frames[i - 1].part < frames[i].part || frames[i - 1].time <= frames[i].time,
+           "frames are not in the order of time");
     good += frames[i].problem.empty() ? 1 : 0;
   }
   const int found = AttachByTime(frames, &RecordedFrame::depth, list, "depth", 0.02);

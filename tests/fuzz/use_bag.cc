@@ -42,7 +42,9 @@ void UsePicture(std::string_view message, Serialization serialization, bool comp
     try {
       const DecodedImage decoded = PictureOf(picture, use);
       Expect(!decoded.image.empty(), "an empty picture");
-      Expect((decoded.image.type() == CV_8UC1) == (use != ImageUse::kDepth), "of another type");
+      const int type = decoded.image.type();
+      Expect(type == CV_16UC1 || type == (use == ImageUse::kDepth ? CV_32FC1 : CV_8UC1),
+             "of another type");
       any = true;
     } catch (const Error& error) {
       problem = error.what();

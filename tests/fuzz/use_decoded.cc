@@ -16,7 +16,7 @@ bool IsType(const cv::Mat& image, ImageUse use) {
     case ImageUse::kDepth:
       return image.type() == CV_16UC1;
     default:
-      return image.type() == CV_8UC1;
+      return image.type() == CV_8UC1 || image.type() == CV_16UC1;
   }
 }
 

@@ -53,11 +53,11 @@ TEST(Trajectory, BadLinesAreNamedWithFileAndLine) {
   EXPECT_THAT(message("1 0 0 0x 0 0 0 1\n"), HasSubstr("`0x`"));
 }
 
-TEST(Trajectory, NanosecondsGetAPointNineDigitsFromTheRight) {
-  EXPECT_EQ(StampFromNanoseconds("1403715273262142976"), "1403715273.262142976");
-  EXPECT_EQ(StampFromNanoseconds("5"), "0.000000005");
-  EXPECT_EQ(StampFromNanoseconds("1000000000"), "1.000000000");
-  EXPECT_EQ(StampFromNanoseconds("nan"), "nan");
+TEST(Trajectory, TumStampsThatCannotBeSecondsAreConverted) {
+  const Trajectory poses = ParseTumTrajectory(
+      "1403715273262142976 1 2 3 0 0 0 1\n1403715273312143104 1 2 3 0 0 0 1\n", "truth.txt");
+  EXPECT_EQ(poses.at(0).stamp, "1403715273.262142976");
+  EXPECT_NEAR(poses.at(1).time, 1403715273.312143, 1e-6);
 }
 
 TEST(Trajectory, OfResultsIsTheEstimateEvenWhereTheTruthLiesBesideIt) {

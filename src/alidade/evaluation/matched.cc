@@ -2,18 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 #include <set>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 
 namespace alidade {
 namespace {
 
 std::string Seconds(double time) {
   char text[64];
-  std::snprintf(text, sizeof(text), "%.6f", time);
+  PrintTo(text, sizeof(text), "%.6f", time);
   return text;
 }
 

@@ -24,6 +24,9 @@ struct SourceFrame {
   int number = 0;     // index in the recording, from 0; skipped frames keep their number
   cv::Mat image;      // 8-bit gray, rectified where the source rectifies
   cv::Mat right;      // stereo only; empty when missing for this frame
+  // Counts the recordings that were joined into this one. A frame of another part than the one
+  // before does not continue it (Slam::Reset()), and its time may be earlier.
+  int part = 0;
   // RGB-D only: CV_16U as stored or CV_32F in meters; empty when missing for this frame.
   cv::Mat depth;
   // `image` in color (CV_8UC3, blue green red), when color was requested and the recording has it.
@@ -31,6 +34,9 @@ struct SourceFrame {
   // Why this frame could not be read; its images are empty then. The consumer warns and counts.
   // Empty: no problem.
   std::string problem;
+  // Why `right` or `depth` could not be read; the frame is still of use as that of one camera. The
+  // consumer warns. Empty: no problem.
+  std::string incomplete = {};
   // True pose in the scene's world frame; set by rendered recordings only.
   std::optional<Se3> T_world_camera = {};
   // True depth of each pixel of `image`: CV_32F, meters along z, 0 = no surface. Rendered
@@ -45,6 +51,8 @@ struct SourceInfo {
   Sensor sensor = Sensor::kMono;
   Camera camera;                // after any rectification
   bool camera_guessed = false;  // no calibration: the field of view is assumed
+  bool depth_assumed = false;   // the camera's depth_factor is that of the format
+  bool fps_assumed = false;     // nothing tells the times of the images
   // The recording's own description of its lens, when the assumed field of view comes from it ("26
   // mm in 35 mm equivalents"); otherwise empty.
   std::string lens_told;

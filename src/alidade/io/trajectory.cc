@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "alidade/base/error.h"
+#include "alidade/io/stamp_unit.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
@@ -41,6 +42,18 @@ Se3 PoseOf(const std::string& name, const TextLine& line, const Eigen::Vector3d&
   return Se3::FromQuaternion(q, t);
 }
 
+// Converts stamps that cannot be seconds.
+void StampsToSeconds(Trajectory& trajectory) {
+  std::vector<double> times;
+  for (const StampedPose& pose : trajectory) times.push_back(pose.time);
+  if (CanBe(StampUnit::kSeconds, times)) return;
+  const StampUnit unit = ProbableUnit(times, StampUnit::kSeconds);
+  for (StampedPose& pose : trajectory) {
+    pose.stamp = StampInSeconds(pose.stamp, unit);
+    pose.time = ParseNumber(pose.stamp).value_or(pose.time);
+  }
+}
+
 }  // namespace
 
 Trajectory ParseTumTrajectory(std::string_view text, const std::string& name) {
@@ -50,6 +63,7 @@ Trajectory ParseTumTrajectory(std::string_view text, const std::string& name) {
     trajectory.push_back({v[0], PoseOf(name, line, {v[1], v[2], v[3]}, {v[7], v[4], v[5], v[6]}),
                           std::string(Fields(line.text)[0])});
   }
+  StampsToSeconds(trajectory);
   return trajectory;
 }
 
@@ -59,7 +73,7 @@ Trajectory ParseEurocTrajectory(std::string_view text, const std::string& name,
   for (const TextLine& line : ContentLines(text)) {
     const auto v = Numbers(name, line, 8, "timestamp [ns], px, py, pz, qw, qx, qy, qz");
     const Se3 T_world_body = PoseOf(name, line, {v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]});
-    const std::string stamp = StampFromNanoseconds(Fields(line.text)[0]);
+    const std::string stamp = StampInSeconds(Fields(line.text)[0], StampUnit::kNanoseconds);
     const auto time = ParseNumber(stamp);
     if (!time) Fail(name, line, "the time stamp is not a whole number of nanoseconds");
     trajectory.push_back({*time, T_world_body * T_body_camera, stamp});
@@ -87,13 +101,6 @@ Trajectory ParseKittiTrajectory(std::string_view poses, const std::string& poses
     trajectory.push_back({time, pose, std::string(Fields(time_lines[i].text)[0])});
   }
   return trajectory;
-}
-
-std::string StampFromNanoseconds(std::string_view nanoseconds) {
-  std::string digits(nanoseconds);
-  if (digits.find_first_not_of("0123456789") != std::string::npos || digits.empty()) return digits;
-  if (digits.size() < 10) digits.insert(0, 10 - digits.size(), '0');
-  return digits.insert(digits.size() - 9, 1, '.');
 }
 
 std::string FormatTime(double seconds) {

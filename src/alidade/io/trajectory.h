@@ -22,7 +22,8 @@ using Trajectory = std::vector<StampedPose>;
 // finite, a quaternion whose length is not 1 (within 5 %), or a matrix that is not a rotation.
 // Poses keep the file's order.
 
-// TUM format: `timestamp tx ty tz qx qy qz qw`, with # comments.
+// TUM format: `timestamp tx ty tz qx qy qz qw`, with # comments. Stamps too large to be seconds are
+// read in the unit that ProbableUnit() finds.
 Trajectory ParseTumTrajectory(std::string_view text, const std::string& name);
 std::string FormatTumTrajectory(const Trajectory& trajectory);
 
@@ -35,10 +36,6 @@ Trajectory ParseEurocTrajectory(std::string_view text, const std::string& name,
 // in `times`.
 Trajectory ParseKittiTrajectory(std::string_view poses, const std::string& poses_name,
                                 std::string_view times, const std::string& times_name);
-
-// "1403715273262142976" -> "1403715273.262142976". Text that is not all digits is returned
-// unchanged.
-std::string StampFromNanoseconds(std::string_view nanoseconds);
 
 std::string FormatTime(double seconds);  // 9 decimals
 

@@ -16,7 +16,7 @@
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/results/mask_writer.h"
-#include "alidade/run/sources/any_source.h"
+#include "alidade/run/sources/inspect.h"
 #include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
@@ -155,9 +155,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
   settings.localize = options.localize;
   wanted.color = settings.WantsColor();
-  std::unique_ptr<FrameSource> source =
-      Repeat(OpenAnySource(options.source, wanted), options.repeat);
+  InspectedSource inspected = OpenInspected(options.source, wanted);
+  std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
   setup.source = source->Info();
+  setup.source.told = inspected.told;
   settings.sensor = setup.source.sensor;
   settings.threaded = ThreadedFrom(options, setup.source.kind == "camera");
   OutputFolder folder(ClaimOf(options, setup.source));

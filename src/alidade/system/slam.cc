@@ -3,11 +3,11 @@
 #include "alidade/system/slam.h"
 
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
 #include "alidade/system/slam_impl.h"
@@ -27,9 +27,9 @@ SlamSettings InUse(SlamSettings settings) {
 
 void WarnOfJump(double seconds) {
   char text[100];
-  std::snprintf(text, sizeof(text),
-                "the time jumps %s by %.1f s: taken as a cut (further ones are not told)",
-                seconds < 0 ? "back" : "ahead", std::abs(seconds));
+  PrintTo(text, sizeof(text),
+          "the time jumps %s by %.1f s: taken as a cut (further ones are not told)",
+          seconds < 0 ? "back" : "ahead", std::abs(seconds));
   LogWarning(text);
 }
 

@@ -1,9 +1,9 @@
 #include "alidade/view/histogram.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/view/svg.h"
 
@@ -54,7 +54,7 @@ std::string DrawHistogram(const std::vector<double>& values, const std::string& 
   for (int i = 0; i * step <= top && i < 9; ++i) {
     const double at = x(i * step);
     char text[40];
-    std::snprintf(text, sizeof(text), "%.3g", i * step);
+    PrintTo(text, sizeof(text), "%.3g", i * step);
     svg += SvgText(at, kTall - 6,
                    i == 0            ? "start"
                    : at > kWide - 30 ? "end"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "alidade/base/print.h"
 #include "alidade/view/svg.h"
 #include "alidade/view/upright.h"
 
@@ -112,7 +112,7 @@ std::string PlacePage::ScaleBar(const std::string& unit) const {
   const double length = RoundStep(kPictureWidth / 8 / scale_);
   const double left = 16, right = left + length * scale_, y = height_ - 14;
   char label[64];
-  std::snprintf(label, sizeof(label), "%g %s", length, unit.c_str());
+  PrintTo(label, sizeof(label), "%g %s", length, unit.c_str());
   return "<path class=\"scale\" d=\"M" + SvgNumber(left) + " " + SvgNumber(y) + "H" +
          SvgNumber(right) + "\"/>\n" + SvgText(left, y - 6, "start", label);
 }

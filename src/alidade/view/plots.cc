@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "alidade/base/print.h"
 #include "alidade/view/svg.h"
 
 namespace alidade {
@@ -24,7 +24,7 @@ std::string Bar(double left, double right, double y, const std::string& name) {
 
 std::string Short(double value, const std::string& unit) {
   char text[64];
-  std::snprintf(text, sizeof(text), "%.4g", value);
+  PrintTo(text, sizeof(text), "%.4g", value);
   return unit.empty() ? text : text + (" " + unit);
 }
 

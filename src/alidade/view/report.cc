@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 
+#include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/view/histogram.h"
 #include "alidade/view/page.h"
@@ -15,7 +15,7 @@ namespace {
 
 std::string Milliseconds(double value) {
   char text[32];
-  std::snprintf(text, sizeof(text), "%.2f", value);
+  PrintTo(text, sizeof(text), "%.2f", value);
   return text;
 }
 

@@ -1,13 +1,14 @@
 #include "alidade/view/svg.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "alidade/base/print.h"
 
 namespace alidade {
 
 std::string SvgNumber(double value, int digits) {
   char text[40];
-  std::snprintf(text, sizeof(text), "%.*f", digits, value);
+  PrintTo(text, sizeof(text), "%.*f", digits, value);
   return text;
 }
 

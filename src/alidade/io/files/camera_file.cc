@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/yaml.h"
 
@@ -115,7 +115,7 @@ std::string FormatCameraFile(const Camera& camera, const std::string& comment) {
   }
   const auto exact = [](double value) {
     char digits[40];
-    std::snprintf(digits, sizeof(digits), "%.17g", value);
+    PrintTo(digits, sizeof(digits), "%.17g", value);
     return std::string(digits);
   };
   text += "model: pinhole\nwidth: " + std::to_string(camera.width) +

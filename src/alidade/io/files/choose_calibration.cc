@@ -1,11 +1,11 @@
 #include "alidade/io/files/choose_calibration.h"
 
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/io/files/camera_file.h"
 
 namespace alidade {
@@ -50,7 +50,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
   if (!options.fov_degrees && focal_length_35 >= kShortest35 && focal_length_35 <= kLongest35) {
     assumed = FovOfFocalLength35(focal_length_35, size);
     char text[60];
-    std::snprintf(text, sizeof(text), "%g mm in 35 mm equivalents", focal_length_35);
+    PrintTo(text, sizeof(text), "%g mm in 35 mm equivalents", focal_length_35);
     chosen.lens_told = text;
   }
   chosen.calibration =

@@ -10,12 +10,16 @@ namespace alidade {
 enum class ImageUse { kGray, kColor, kDepth, kGrayAndColor };
 
 struct DecodedImage {
-  cv::Mat image;        // CV_8UC1, CV_8UC3 or, for depth, the type stored
+  // kGray, kGrayAndColor: CV_8UC1, or CV_16UC1 of a gray image with 16 bits. kColor: CV_8UC3.
+  // kDepth: CV_16UC1 or CV_32FC1.
+  cv::Mat image;
   std::string problem;  // why there is no image; empty: no problem
   // Only with kGrayAndColor, when `image` is the gray one: CV_8UC3, blue green red; empty for a
   // gray file.
   cv::Mat color = {};
 };
+
+inline constexpr char kDepthOf8Bits[] = "has 8 bits: depth needs 16, or floating point";
 
 // Detects the format by the first bytes: JPEG, PNG, or a format of the media module.
 DecodedImage DecodeImageBytes(std::string_view bytes, ImageUse use);

@@ -44,14 +44,27 @@ DecodedImage ReadDecoded(const std::string& path, ImageUse use) {
 
 cv::Mat Read(const std::string& path, ImageUse use) { return ReadDecoded(path, use).image; }
 
+// 65535 becomes 255, as in cv_bridge and libpng.
+cv::Mat Of8Bits(const cv::Mat& gray) {
+  if (gray.depth() != CV_16U) return gray;
+  cv::Mat image;
+  gray.convertTo(image, CV_8U, 1 / 257.0);
+  return image;
+}
+
 }  // namespace
 
-cv::Mat ReadImageGray(const std::string& path) { return Read(path, ImageUse::kGray); }
+cv::Mat ReadImageGray(const std::string& path) { return Of8Bits(Read(path, ImageUse::kGray)); }
 cv::Mat ReadImageColor(const std::string& path) { return Read(path, ImageUse::kColor); }
 cv::Mat ReadDepth(const std::string& path) { return Read(path, ImageUse::kDepth); }
 
 GrayAndColor ReadImageGrayAndColor(const std::string& path) {
   const DecodedImage decoded = ReadDecoded(path, ImageUse::kGrayAndColor);
+  return {Of8Bits(decoded.image), decoded.color};
+}
+
+GrayAndColor ReadImageAsStored(const std::string& path, bool color) {
+  const DecodedImage decoded = ReadDecoded(path, color ? ImageUse::kGrayAndColor : ImageUse::kGray);
   return {decoded.image, decoded.color};
 }
 

@@ -61,8 +61,7 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use) {
   if (!module.decode(bytes.data(), bytes.size(), static_cast<int>(use), &decoded.image)) {
     return {{}, "is no image, or a damaged one"};
   }
-  if (use == ImageUse::kDepth && decoded.image.type() == CV_8UC1)
-    decoded.image.convertTo(decoded.image, CV_16U);
+  if (use == ImageUse::kDepth && decoded.image.type() == CV_8UC1) return {{}, kDepthOf8Bits};
   if (use == ImageUse::kDepth && decoded.image.type() != CV_16UC1 &&
       decoded.image.type() != CV_32FC1) {
     return {{}, "is a color image: depth has one channel"};

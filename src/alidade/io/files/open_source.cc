@@ -1,5 +1,6 @@
 #include "alidade/io/files/open_source.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "alidade/io/files/datasets/recording.h"
 #include "alidade/io/files/datasets/tum_recording.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/image_file.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/files/video_source.h"
 #include "alidade/io/ros/source/bag_file.h"
@@ -72,6 +74,20 @@ double LensToldBy(const Recording& recording, const SourceOptions& options) {
   }
 }
 
+// What is done about depth images of another size than the images; empty: nothing.
+std::string DepthSizeTold(const Recording& recording, cv::Size size) {
+  const auto first = std::find_if(recording.frames.begin(), recording.frames.end(),
+                                  [](const RecordedFrame& frame) { return !frame.depth.empty(); });
+  if (first == recording.frames.end()) return {};
+  try {
+    const cv::Size depth = ReadImageSize(first->depth);
+    if (!IsWholeFraction(depth, size)) return {};
+    return "Depth images of " + SizeText(depth) + " are scaled up to " + SizeText(size);
+  } catch (const Error&) {  // reported when the image is read with its frame
+    return {};
+  }
+}
+
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   recording.name = NameAsTyped(path);
@@ -79,7 +95,8 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   const cv::Size size = SizeOfImages(recording);
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(recording.calibration, size, options, LensToldBy(recording, options));
-  if (!calibration.depth_factor) calibration.depth_factor = recording.default_depth_factor;
+  recording.depth_assumed = !calibration.depth_factor;
+  if (recording.depth_assumed) calibration.depth_factor = recording.default_depth_factor;
   // A factor of 0 disables depth even when the folder has depth images.
   recording.has_depth = recording.has_depth && *calibration.depth_factor > 0;
   const Sensor sensor = ChooseSensor(recording, path, options);
@@ -89,6 +106,7 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
                "--sensor mono)");
   }
   ImagePreparation preparation(calibration, sensor);
+  if (sensor == Sensor::kRgbd) recording.told = DepthSizeTold(recording, size);
   recording.lens_told = std::move(lens_told);
   return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
 }

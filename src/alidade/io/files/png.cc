@@ -89,9 +89,10 @@ bool SetUp(Decoder& decoder, ImageUse use) {
   if (color == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
   if (color == PNG_COLOR_TYPE_GRAY && bits < 8) png_set_expand_gray_1_2_4_to_8(png);
   png_set_strip_alpha(png);  // also the transparency chunk of palettes
-  if (bits == 16 && use != ImageUse::kDepth) png_set_scale_16(png);
-  if (bits == 16 && use == ImageUse::kDepth && std::endian::native == std::endian::little)
-    png_set_swap(png);
+  const bool keep_16 =
+      use == ImageUse::kDepth || (use != ImageUse::kColor && (color & PNG_COLOR_MASK_COLOR) == 0);
+  if (bits == 16 && !keep_16) png_set_scale_16(png);
+  if (bits == 16 && keep_16 && std::endian::native == std::endian::little) png_set_swap(png);
   if (color & PNG_COLOR_MASK_COLOR) png_set_bgr(png);
   png_set_interlace_handling(png);
   png_read_update_info(png, decoder.info);
@@ -160,7 +161,7 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   if (!ReadRows(decoder, rows.data())) return failed();
   if (use == ImageUse::kGray && channels == 3) cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
   if (use == ImageUse::kColor && channels == 1) cv::cvtColor(image, image, cv::COLOR_GRAY2BGR);
-  if (use == ImageUse::kDepth && depth == CV_8U) image.convertTo(image, CV_16U);
+  if (use == ImageUse::kDepth && depth == CV_8U) return {{}, kDepthOf8Bits};
   if (use == ImageUse::kGrayAndColor && channels == 3) {
     DecodedImage both{{}, {}, image};
     cv::cvtColor(image, both.image, cv::COLOR_BGR2GRAY);

@@ -20,6 +20,9 @@ namespace {
 // which phones and screen recorders make; after more, the stream's clock is considered stopped or
 // restarted.
 constexpr int kMostRepeated = 2;
+// Share of a frame's period: a smaller step is no step. Encoders write steps of one tick for frames
+// whose times they do not know.
+constexpr double kLeastStep = 0.1;
 
 class VideoSource : public FrameSource {
  public:
@@ -85,7 +88,7 @@ class VideoSource : public FrameSource {
   double TimeOfNewest() {
     const double told = stream_times_.back() + offset_;
     if (times_.empty()) return told;
-    if (told > times_.back()) {
+    if (told > times_.back() + kLeastStep / info_.camera.fps) {
       expected_ = told + 1 / info_.camera.fps;
       repeated_ = 0;
       return told;

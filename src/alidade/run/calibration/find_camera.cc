@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/map/view.h"
 #include "alidade/run/sources/frame_input.h"
@@ -36,6 +36,7 @@ class Pass {
       if (frame->time - *first_time_ > calibrate_.max_seconds) return false;
     }
     ++count_;
+    if (frame->part != std::exchange(part_, frame->part)) slam_.Reset();
     if (!frame->problem.empty()) return true;
     try {
       slam_.Track(InputOf(*frame));
@@ -78,6 +79,7 @@ class Pass {
   std::vector<LensWindow> windows_;
   std::optional<double> first_time_;
   int count_ = 0, ask_at_;
+  int part_ = 0;  // of the newest frame
 };
 
 }  // namespace
@@ -262,25 +264,25 @@ std::string FovInWords(const CameraEstimate& estimate) {
   const double sigma =
       180 / std::numbers::pi * estimate.focal_sigma * std::sin(fov * std::numbers::pi / 180);
   char text[60];
-  std::snprintf(text, sizeof(text), "%.1f ± %.1f degrees", fov, sigma);
+  PrintTo(text, sizeof(text), "%.1f ± %.1f degrees", fov, sigma);
   return text;
 }
 
 std::string CameraInWords(const CameraEstimate& estimate) {
   const Camera& camera = estimate.camera;
   char text[160];
-  std::snprintf(text, sizeof(text),
-                " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
-                "center %.1f, %.1f ± %.1f",
-                camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0],
-                estimate.k1_sigma, camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
-                estimate.centre_sigma.maxCoeff());
+  PrintTo(text, sizeof(text),
+          " (f %.1f ± %.1f px, k1 %.3f ± %.3f, k2 %.3f ± %.3f, "
+          "center %.1f, %.1f ± %.1f",
+          camera.fx, estimate.focal_sigma * camera.fx, camera.distortion[0], estimate.k1_sigma,
+          camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
+          estimate.centre_sigma.maxCoeff());
   std::string words = FovInWords(estimate) + text;
   // By rows, or by columns where the picture was taken upright; negative: from the far side.
   const double readout = camera.readout[0] + camera.readout[1];
   if (readout != 0) {
-    std::snprintf(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
-                  1e3 * estimate.readout_sigma.maxCoeff());
+    PrintTo(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
+            1e3 * estimate.readout_sigma.maxCoeff());
     words += text;
   }
   return words + ")";

@@ -1,9 +1,9 @@
 #include "alidade/run/calibration/lens.h"
 
 #include <cmath>
-#include <cstdio>
 #include <new>
 
+#include "alidade/base/print.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
@@ -23,8 +23,8 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckS
 std::string LensInWords(const LensCheck& check, const Camera& camera) {
   if (!check.strong) return "";
   char how[80];
-  std::snprintf(how, sizeof(how), " (k1 near %.2f, by %.0f %% at the picture's corners)", check.k1,
-                100 * std::abs(check.bend));
+  PrintTo(how, sizeof(how), " (k1 near %.2f, by %.0f %% at the picture's corners)", check.k1,
+          100 * std::abs(check.bend));
   const std::string than =
       camera.HasDistortion() ? " more strongly than its calibration says" : " strongly";
   return "this camera's lens bends lines" + than + how +

@@ -1,9 +1,9 @@
 #include "alidade/run/calibration/unknown_camera.h"
 
 #include <cmath>
-#include <cstdio>
 
 #include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/run/sources/any_source.h"
@@ -15,8 +15,8 @@ constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal o
 
 std::string AssumedInWords(const SourceInfo& source, const Camera& camera) {
   char text[80];
-  std::snprintf(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
-                FovDegrees(camera));
+  PrintTo(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
+          FovDegrees(camera));
   return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
 }
 

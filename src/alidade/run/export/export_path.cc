@@ -1,9 +1,9 @@
 #include "alidade/run/export/export_path.h"
 
-#include <cstdio>
 #include <filesystem>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/run/export/mcap_export.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/sources/saved_map.h"
@@ -14,7 +14,7 @@ namespace {
 
 std::string InWords(const McapCounts& counts, const char* frames) {
   char megabytes[32];
-  std::snprintf(megabytes, sizeof megabytes, "%.1f MB", 1e-6 * static_cast<double>(counts.bytes));
+  PrintTo(megabytes, sizeof megabytes, "%.1f MB", 1e-6 * static_cast<double>(counts.bytes));
   const std::string shape =
       counts.shape > 0 ? std::to_string(counts.shape) + " points of shape, " : "";
   return std::to_string(counts.frames) + " " + frames + ", " + std::to_string(counts.landmarks) +

@@ -1,11 +1,13 @@
 #include "alidade/run/export/map_models.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <optional>
 #include <set>
+
+#include "alidade/base/print.h"
+#include "alidade/io/text.h"
 
 namespace alidade {
 namespace {
@@ -33,9 +35,9 @@ std::string ShortTime(double seconds) {
   std::string text;
   for (int digits = 6; digits <= 9; ++digits) {
     char buffer[400];  // holds any double
-    std::snprintf(buffer, sizeof(buffer), "%.*f", digits, seconds);
+    PrintTo(buffer, sizeof(buffer), "%.*f", digits, seconds);
     text = buffer;
-    if (std::strtod(buffer, nullptr) == seconds) break;
+    if (ParseNumber(text) == seconds) break;
   }
   return text;
 }

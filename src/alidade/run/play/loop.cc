@@ -131,6 +131,8 @@ void Feed(const SourceFrame& frame, const SlamSettings& settings, Slam& slam,
     Drop(frame, frame.problem, log);
     return;
   }
+  if (!frame.incomplete.empty() && ++log.incomplete <= kWarnedFrames)
+    LogWarning("frame " + std::to_string(frame.number) + ": " + frame.incomplete);
   TrackResult result;
   const int counted = slam.frames();
   log.stamps.push_back(frame.stamp);
@@ -189,6 +191,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
+  std::optional<int> part;                  // of the frame before
   const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
@@ -204,6 +207,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
         ++log.late;
         continue;
       }
+      if (frame->part != std::exchange(part, frame->part).value_or(frame->part)) slam.Reset();
       Feed(*frame, settings, slam, watchers, log, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept
@@ -221,8 +225,11 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   if (cpu) log.cpu_s = cpu->Seconds();
   if (wall) log.wall_s = wall->Milliseconds() * 1e-3;
   log.interrupted = Interrupted();
-  if (log.dropped > kWarnedFrames) {
+  if (log.dropped > kWarnedFrames)
     LogWarning(std::to_string(log.dropped) + " frames were skipped in all");
+  if (log.incomplete > kWarnedFrames) {
+    LogWarning(std::to_string(log.incomplete) +
+               " frames had a depth or right image that could not be read");
   }
 }
 

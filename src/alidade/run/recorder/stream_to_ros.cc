@@ -1,9 +1,9 @@
 #include "alidade/run/recorder/stream_to_ros.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
+#include "alidade/base/print.h"
 #include "alidade/run/folder/result_folder.h"
 #include "alidade/system/slam.h"
 
@@ -12,7 +12,7 @@ namespace {
 
 std::string TwoDigits(double value) {
   char text[64];
-  std::snprintf(text, sizeof text, "%.2f", value);
+  PrintTo(text, sizeof text, "%.2f", value);
   return text;
 }
 

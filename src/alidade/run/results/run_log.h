@@ -32,10 +32,11 @@ struct RunLog {
   SlamHealth health;           // at the end
 
   // Small ones side by side, which saves the gaps between larger ones.
-  int frames = 0;   // all that came, bad ones included
-  int late = 0;     // skipped for newer ones, not counted in `frames`
-  int dropped = 0;  // bad ones
-  int dark = 0;     // black ones among those that were not tracked
+  int frames = 0;      // all that came, bad ones included
+  int late = 0;        // skipped for newer ones, not counted in `frames`
+  int dropped = 0;     // bad ones
+  int incomplete = 0;  // whose depth or right image could not be read
+  int dark = 0;        // black ones among those that were not tracked
   bool interrupted = false;
 };
 

@@ -1,7 +1,8 @@
 #include "alidade/run/results/run_results.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include "alidade/base/print.h"
 
 namespace alidade {
 namespace {
@@ -96,7 +97,7 @@ std::string LostInAll(const std::vector<std::array<double, 2>>& spans) {
   for (const auto& [from, to] : spans) seconds += to - from;
   const size_t times = spans.size();
   char text[64];
-  std::snprintf(text, sizeof(text), ", %.2f s in all", seconds);
+  PrintTo(text, sizeof(text), ", %.2f s in all", seconds);
   return (times == 1 ? "once" : times == 2 ? "twice" : std::to_string(times) + " times") + text;
 }
 

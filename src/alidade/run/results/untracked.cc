@@ -1,9 +1,9 @@
 #include "alidade/run/results/untracked.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <map>
 
+#include "alidade/base/print.h"
 #include "alidade/tracking/track_failure.h"
 
 namespace alidade {
@@ -30,7 +30,7 @@ const char* WordsFor(Look look) {
 
 std::string Seconds(double value) {
   char text[32];
-  std::snprintf(text, sizeof(text), "%.2f s", value);
+  PrintTo(text, sizeof(text), "%.2f s", value);
   return text;
 }
 

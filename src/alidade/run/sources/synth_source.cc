@@ -1,7 +1,6 @@
 #include "alidade/run/sources/synth_source.h"
 
 #include <cstdint>
-#include <cstdio>
 #include <functional>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/nearest_name.h"
+#include "alidade/base/print.h"
 #include "alidade/io/calibration.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
@@ -213,7 +213,7 @@ class SynthSource : public ActorSource {
 
 std::string SynthStamp(double seconds) {
   char text[40];
-  std::snprintf(text, sizeof(text), "%.6f", seconds);
+  PrintTo(text, sizeof(text), "%.6f", seconds);
   return text;
 }
 

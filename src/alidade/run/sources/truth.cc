@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "alidade/base/choice.h"
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/frame_source.h"
@@ -73,7 +73,7 @@ std::string InWords(const ChosenAlignment& chosen, double scale, const Trajector
   if (chosen.align == Alignment::kNone) return "not aligned";
   const auto in_digits = [](double value) {
     char digits[32];
-    std::snprintf(digits, sizeof(digits), "%.6f", value);
+    PrintTo(digits, sizeof(digits), "%.6f", value);
     return std::string(digits);
   };
   if (chosen.align == Alignment::kSim3)

@@ -14,6 +14,7 @@ Recording ReadFolderRecording(const std::string& folder, std::optional<double> f
   recording.kind = "images";
   const std::string camera = folder + "/camera.yaml";
   if (IsThere(camera)) recording.calibration = ReadCameraFile(camera);
+  recording.fps_assumed = !fps && !recording.calibration;
   const double rate = fps ? *fps : recording.calibration ? recording.calibration->fps : 30;
   const auto images = ImagesIn(folder);
   for (size_t i = 0; i < images.size(); ++i) {

@@ -2,19 +2,28 @@
 
 #include <algorithm>
 #include <limits>
+#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/association.h"
+#include "alidade/io/files/datasets/time_order.h"
 #include "alidade/io/files/image_file.h"
+#include "alidade/io/gray_levels.h"
 
 namespace alidade {
-namespace {
 
 std::string SizeText(cv::Size size) {
   return std::to_string(size.width) + "x" + std::to_string(size.height);
 }
+
+bool IsWholeFraction(cv::Size small, cv::Size size) {
+  const int times = size.width / std::max(1, small.width);
+  return times >= 2 && small * times == size;
+}
+
+namespace {
 
 class RecordingSource : public FrameSource {
  public:
@@ -29,7 +38,10 @@ class RecordingSource : public FrameSource {
     info_.sensor = sensor;
     info_.camera = preparation_.camera();
     info_.camera_guessed = camera_guessed;
+    info_.depth_assumed = recording.depth_assumed;
+    info_.fps_assumed = recording.fps_assumed;
     info_.lens_told = std::move(recording.lens_told);
+    info_.told = std::move(recording.told);
     info_.R_camera_rectified = preparation_.R_camera_rectified();
     info_.frames = static_cast<int>(frames_.size());
   }
@@ -48,26 +60,28 @@ class RecordingSource : public FrameSource {
     frame.time = recorded.time;
     frame.stamp = recorded.stamp;
     frame.number = static_cast<int>(next_++);
+    frame.part = recorded.part;
     frame.problem = recorded.problem;
     if (!frame.problem.empty()) return frame;
     try {
-      const GrayAndColor read = color_ ? ReadImageGrayAndColor(recorded.image)
-                                       : GrayAndColor{ReadImageGray(recorded.image), {}};
-      frame.image = preparation_.Left(Checked(read.gray, recorded.image));
+      const GrayAndColor read = ReadImageAsStored(recorded.image, color_);
+      const cv::Mat gray = levels_.To8Bit(read.gray, frame.time);
+      frame.image = preparation_.Left(Checked(gray, recorded.image));
       if (!read.color.empty()) frame.color = preparation_.Left(read.color);
     } catch (const Error& error) {
       frame.problem = error.what();
       return frame;
     }
-    // A frame whose right or depth image is bad is still used as a monocular frame.
     if (info_.sensor == Sensor::kStereo && !recorded.right.empty()) {
-      frame.right = OrWarn([&] {
-        return preparation_.Right(Checked(ReadImageGray(recorded.right), recorded.right));
+      frame.right = OrIncomplete(frame, [&] {
+        const cv::Mat right = ReadImageAsStored(recorded.right, false).gray;
+        return preparation_.Right(Checked(levels_.To8Bit(right, frame.time), recorded.right));
       });
     }
     if (info_.sensor == Sensor::kRgbd && !recorded.depth.empty()) {
-      frame.depth = OrWarn(
-          [&] { return preparation_.Depth(Checked(ReadDepth(recorded.depth), recorded.depth)); });
+      frame.depth = OrIncomplete(frame, [&] {
+        return preparation_.Depth(Checked(Enlarged(ReadDepth(recorded.depth)), recorded.depth));
+      });
     }
     return frame;
   }
@@ -81,12 +95,20 @@ class RecordingSource : public FrameSource {
     return image;
   }
 
+  // A depth image whose size is a whole fraction of the images' is scaled up without interpolation.
+  cv::Mat Enlarged(const cv::Mat& depth) const {
+    if (!IsWholeFraction(depth.size(), raw_size_)) return depth;
+    cv::Mat enlarged;
+    cv::resize(depth, enlarged, raw_size_, 0, 0, cv::INTER_NEAREST);
+    return enlarged;
+  }
+
   template <typename Read>
-  static cv::Mat OrWarn(const Read& read) {
+  static cv::Mat OrIncomplete(SourceFrame& frame, const Read& read) {
     try {
       return read();
     } catch (const Error& error) {
-      LogWarning(error.what());
+      frame.incomplete = error.what();
       return {};
     }
   }
@@ -96,6 +118,7 @@ class RecordingSource : public FrameSource {
   bool color_;
   ImagePreparation preparation_;
   cv::Size raw_size_;
+  GrayLevels levels_;
   size_t next_ = 0;
 };
 
@@ -103,29 +126,35 @@ class RecordingSource : public FrameSource {
 
 std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
                                     const std::string& folder) {
-  std::vector<RecordedFrame> frames;
   const auto first_good = std::find_if(
       list.begin(), list.end(), [](const StampedName& item) { return item.problem.empty(); });
   if (first_good == list.end())
     ThrowInput(list.front().problem + " (and so it is with every line)");
-  // Unusable lines get the time of the line before, to keep their place.
-  double time = first_good->time;
-  for (const StampedName& item : list) {
-    if (item.problem.empty()) time = item.time;
-    frames.push_back({time, item.stamp, folder + "/" + item.name, {}, {}, item.problem});
+  const TimeOrder order = OrderOf(list);
+  if (order.parts() > 1) {
+    LogWarning("the time stamps of " + folder + " go back " + std::to_string(order.parts() - 1) +
+               (order.parts() == 2 ? " time" : " times") +
+               " by more than a second: each is treated as a cut to another recording");
   }
-  const auto earlier = [](const RecordedFrame& a, const RecordedFrame& b) {
-    return a.time < b.time;
-  };
-  if (!std::is_sorted(frames.begin(), frames.end(), earlier)) {
+  if (order.sorted) {
     LogWarning("the time stamps of " + folder +
                " are not in order: the frames were sorted by time");
-    std::stable_sort(frames.begin(), frames.end(), earlier);
+  }
+  std::vector<RecordedFrame> frames;
+  for (const size_t i : order.order) {
+    const StampedName& item = list[i];
+    frames.push_back({order.times[i],
+                      item.stamp,
+                      folder + "/" + item.name,
+                      {},
+                      {},
+                      item.problem,
+                      order.part[i]});
   }
   const RecordedFrame* before = nullptr;
   for (RecordedFrame& frame : frames) {
     if (!frame.problem.empty()) continue;
-    if (before && frame.time <= before->time) {
+    if (before && frame.part == before->part && frame.time <= before->time) {
       frame.problem =
           frame.image + " has the time stamp of the frame before it (" + frame.stamp + ")";
     } else {
@@ -137,20 +166,33 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
 
 int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
                  const std::vector<StampedName>& list, const std::string& folder, double max_dt) {
-  std::vector<double> frame_times, list_times;
-  // AssociateByTime() never pairs a NaN.
-  const double never = std::numeric_limits<double>::quiet_NaN();
-  for (const RecordedFrame& frame : frames)
-    frame_times.push_back(frame.problem.empty() ? frame.time : never);
   for (const StampedName& item : list) {
     if (!item.problem.empty()) LogWarning(item.problem + "; this line is left out");
-    list_times.push_back(item.problem.empty() ? item.time : never);
   }
-  const auto pairs = AssociateByTime(frame_times, list_times, max_dt);
-  for (const auto& [frame, item] : pairs) {
-    frames[static_cast<size_t>(frame)].*which = folder + "/" + list[static_cast<size_t>(item)].name;
+  const TimeOrder order = OrderOf(list);
+  const int parts = frames.empty() ? 0 : frames.back().part + 1;
+  const bool by_part = parts == order.parts();
+  // AssociateByTime() never pairs a NaN.
+  const double never = std::numeric_limits<double>::quiet_NaN();
+  int found = 0;
+  for (int part = 0; part < (by_part ? parts : 1); ++part) {
+    std::vector<double> frame_times, list_times;
+    for (const RecordedFrame& frame : frames) {
+      const bool use = frame.problem.empty() && (!by_part || frame.part == part);
+      frame_times.push_back(use ? frame.time : never);
+    }
+    for (size_t i = 0; i < list.size(); ++i) {
+      const bool use = list[i].problem.empty() && (!by_part || order.part[i] == part);
+      list_times.push_back(use ? list[i].time : never);
+    }
+    const auto pairs = AssociateByTime(frame_times, list_times, max_dt);
+    for (const auto& [frame, item] : pairs) {
+      frames[static_cast<size_t>(frame)].*which =
+          folder + "/" + list[static_cast<size_t>(item)].name;
+    }
+    found += static_cast<int>(pairs.size());
   }
-  return static_cast<int>(pairs.size());
+  return found;
 }
 
 cv::Size SizeOfImages(const Recording& recording) {

@@ -3,11 +3,32 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/base/print.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/text.h"
-#include "alidade/io/trajectory.h"
 
 namespace alidade {
+
+namespace {
+
+// "33333.3 s", "1.2e+09 s".
+std::string Seconds(double seconds) {
+  char text[32];
+  PrintTo(text, sizeof(text), "%.3g s", seconds);
+  return text;
+}
+
+// The list's times are in another unit than its format says.
+void SayUnit(const std::string& name, std::span<const double> stamps, StampUnit declared,
+             StampUnit unit) {
+  const double step = MedianStep(stamps).value_or(0);
+  LogWarning(name + ": the time stamps are read as " + NameOf(unit) + ", one image every " +
+             Seconds(step / PerSecond(unit)) + "; as " + NameOf(declared) + " it would be every " +
+             Seconds(step / PerSecond(declared)));
+}
+
+}  // namespace
 
 std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names) {
   return ParseStampedList(ReadFile(path), path, unit, with_names);
@@ -17,6 +38,7 @@ std::vector<StampedName> ParseStampedList(std::string_view text, const std::stri
                                           StampUnit unit, bool with_names) {
   CheckIsText(text, name);
   std::vector<StampedName> list;
+  std::vector<double> written;
   for (const TextLine& line : ContentLines(text)) {
     StampedName item;
     const size_t end = line.text.find_first_of(" \t,");
@@ -26,18 +48,23 @@ std::vector<StampedName> ParseStampedList(std::string_view text, const std::stri
         end == std::string_view::npos ? end : line.text.find_first_not_of(" \t,", end);
     if (begin != std::string_view::npos) item.name = line.text.substr(begin);
     const std::string where = name + ":" + std::to_string(line.number) + ": ";
-    const std::string written = item.stamp;
-    if (unit == StampUnit::kNanoseconds) item.stamp = StampFromNanoseconds(item.stamp);
     const auto time = ParseNumber(item.stamp);
     if (!time || !std::isfinite(*time)) {
-      item.problem = where + "`" + written + "` is not a time stamp";
+      item.problem = where + "`" + item.stamp + "` is not a time stamp";
     } else if (with_names && item.name.empty()) {
       item.problem = where + "there is no file name after the time stamp";
     }
-    item.time = time.value_or(0);
+    if (item.problem.empty()) written.push_back(*time);
     list.push_back(std::move(item));
   }
   if (list.empty()) ThrowInput(name + " lists nothing");
+  const StampUnit in = ProbableUnit(written, unit);
+  if (in != unit) SayUnit(name, written, unit, in);
+  for (StampedName& item : list) {
+    if (!item.problem.empty()) continue;
+    item.stamp = StampInSeconds(item.stamp, in);
+    item.time = ParseNumber(item.stamp).value_or(0);
+  }
   return list;
 }
 

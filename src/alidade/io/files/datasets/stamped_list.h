@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "alidade/io/stamp_unit.h"
+
 namespace alidade {
 
 struct StampedName {
@@ -14,10 +16,10 @@ struct StampedName {
   std::string problem;  // why the line cannot be used (file:line); empty: no problem
 };
 
-enum class StampUnit { kSeconds, kNanoseconds };
-
 // Returns the lines in the file's order. A line whose stamp is not a finite number, or that lacks a
-// required name, gets a problem. Throws Error (input) when the file cannot be read or has no lines.
+// required name, gets a problem. `unit` is that of the format; a list that is more probably in
+// another one (ProbableUnit()) is read in that, with a warning. Throws Error (input) when the file
+// cannot be read or has no lines.
 std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names);
 // The same for a file's text; `name` appears in errors.
 std::vector<StampedName> ParseStampedList(std::string_view text, const std::string& name,

@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/geometry/picture_size.h"
 
 namespace alidade {
@@ -58,10 +58,10 @@ std::array<double, 5> BrownOfRational(const RosCameraInfo& info, const RawCamera
   const double misfit = (A * k - b).cwiseAbs().maxCoeff() * std::max(camera.fx, camera.fy);
   if (!(misfit <= kMostMisfit)) {
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "has a rational_polynomial lens that five coefficients miss by %.2g pixels: "
-                  "undistort the pictures first (image_proc)",
-                  misfit);
+    PrintTo(text, sizeof text,
+            "has a rational_polynomial lens that five coefficients miss by %.2g pixels: "
+            "undistort the pictures first (image_proc)",
+            misfit);
     ThrowInput(text);
   }
   return {k(0), k(1), info.D[2], info.D[3], k(2)};
@@ -75,10 +75,9 @@ void SetLens(const RosCameraInfo& info, RawCamera& camera) {
     for (size_t i = 0; i < 4; ++i) camera.distortion[i] = Coefficient(info, i);
   } else if (none) {
     return;  // no distortion, whatever the model
-  } else if (model == "plumb_bob" || model == "radtan" || model == "radial-tangential" ||
-             (model.empty() && info.D.size() <= 5)) {
-    for (size_t i = 0; i < 5; ++i) camera.distortion[i] = Coefficient(info, i);
-  } else if (model == "rational_polynomial") {
+  } else if (model.empty() || model == "plumb_bob" || model == "radtan" ||
+             model == "radial-tangential" || model == "rational_polynomial") {
+    // Drivers write plumb_bob above eight coefficients: their number says what they are.
     const auto zero_from = [&](size_t first) {
       return std::all_of(
           info.D.begin() + static_cast<std::ptrdiff_t>(std::min(first, info.D.size())),
@@ -91,8 +90,8 @@ void SetLens(const RosCameraInfo& info, RawCamera& camera) {
     } else if (info.D.size() >= 8) {
       camera.distortion = BrownOfRational(info, camera);
     } else {
-      ThrowInput("has a rational_polynomial lens of " + std::to_string(info.D.size()) +
-                 " coefficients, which has 8" + kAdvice);
+      ThrowInput("has a `" + model + "` lens of " + std::to_string(info.D.size()) +
+                 " coefficients; known are 4, 5 and 8" + kAdvice);
     }
   } else {
     ThrowInput("has the distortion_model `" + model.substr(0, 40) +

@@ -112,11 +112,8 @@ DecodedImage RawPictureOf(const RosPicture& picture, ImageUse use) {
     return decoded;
   }
   if (encoding.to_gray == kNone) ThrowInput("is depth, not a picture");
-  if (encoding.type == CV_16UC1) {  // 65535 becomes 255, as in cv_bridge and libpng
-    InNativeOrder(raw, picture.big_endian).convertTo(decoded.image, CV_8U, 1 / 257.0);
-  } else {
-    decoded.image = Converted(raw, encoding.to_gray);
-  }
+  decoded.image = encoding.type == CV_16UC1 ? InNativeOrder(raw, picture.big_endian)
+                                            : Converted(raw, encoding.to_gray);
   if (use == ImageUse::kGrayAndColor && encoding.to_color != kNone)
     decoded.color = Converted(raw, encoding.to_color);
   return decoded;

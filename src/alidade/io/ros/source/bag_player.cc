@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "alidade/base/error.h"
-#include "alidade/base/log.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/text.h"
 
@@ -63,14 +62,14 @@ DecodedImage BagPlayer::Read(const PictureTopic& topic, const BagMessage& messag
 }
 
 cv::Mat BagPlayer::Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
-                           TopicStamps& stamps, size_t frame, ImageUse use) {
-  const std::optional<size_t> partner = finder->PartnerOf(frame);
+                           TopicStamps& stamps, size_t i, ImageUse use, SourceFrame& frame) {
+  const std::optional<size_t> partner = finder->PartnerOf(i);
   if (!partner) return {};
   try {
     return Read(topic, stamps.message(*partner), use).image;
   } catch (const Error& error) {
-    LogWarning(path_ + ": message " + std::to_string(*partner) + " of " + topic.name + " " +
-               error.what());
+    frame.incomplete =
+        path_ + ": message " + std::to_string(*partner) + " of " + topic.name + " " + error.what();
     return {};
   }
 }
@@ -86,7 +85,7 @@ std::optional<SourceFrame> BagPlayer::Next() {
   try {
     const DecodedImage read =
         Read(image_, frames_.message(i), color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
-    frame.image = preparation_->Left(read.image);
+    frame.image = preparation_->Left(levels_.To8Bit(read.image, frame.time));
     if (!read.color.empty()) frame.color = preparation_->Left(read.color);
   } catch (const Error& error) {
     frame.problem = path_ + ": message " + std::to_string(frame.number) + " of " + image_.name +
@@ -95,11 +94,13 @@ std::optional<SourceFrame> BagPlayer::Next() {
   }
   // A frame whose right or depth image is bad is still used as a monocular frame.
   if (info_.sensor == Sensor::kStereo) {
-    const cv::Mat right = Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray);
-    if (!right.empty()) frame.right = preparation_->Right(right);
+    const cv::Mat right =
+        Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray, frame);
+    if (!right.empty()) frame.right = preparation_->Right(levels_.To8Bit(right, frame.time));
   }
   if (info_.sensor == Sensor::kRgbd) {
-    const cv::Mat depth = Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth);
+    const cv::Mat depth =
+        Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth, frame);
     if (!depth.empty()) frame.depth = preparation_->Depth(depth);
   }
   return frame;

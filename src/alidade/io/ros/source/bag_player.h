@@ -8,6 +8,7 @@
 #include "alidade/io/calibration.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/io/frame_source.h"
+#include "alidade/io/gray_levels.h"
 #include "alidade/io/ros/source/choose_topics.h"
 #include "alidade/io/ros/source/topic_stamps.h"
 
@@ -30,9 +31,10 @@ class BagPlayer : public FrameSource {
 
  private:
   DecodedImage Read(const PictureTopic& topic, const BagMessage& message, ImageUse use);
-  // The associated right or depth image; empty when there is none. Warns when it cannot be read.
+  // The right or depth image of `frame`, whose index is `i`; empty when there is none. One that
+  // cannot be read sets SourceFrame::incomplete.
   cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
-                  TopicStamps& stamps, size_t frame, ImageUse use);
+                  TopicStamps& stamps, size_t i, ImageUse use, SourceFrame& frame);
 
   std::unique_ptr<BagFile> bag_;
   std::string path_;
@@ -43,6 +45,7 @@ class BagPlayer : public FrameSource {
   std::optional<PartnerFinder> right_finder_, depth_finder_;
   std::optional<ImagePreparation> preparation_;
   SourceInfo info_;
+  GrayLevels levels_;
   bool color_ = false;
   int next_ = 0;
 };

@@ -1,0 +1,218 @@
+#include "alidade/io/media/video_file.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/display.h>
+#include <libswscale/swscale.h>
+}
+
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+#include <thread>
+
+namespace alidade {
+namespace {
+
+// QuickTime metadata key that Apple phones write for the file or for a track.
+constexpr char kFocalLengthKey[] = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
+constexpr int kMostDamaged = 4096;  // consecutive packets that cannot be decoded
+
+struct Close {
+  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
+  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+template <typename T>
+using Owned = std::unique_ptr<T, Close>;
+
+double Millimetres(const AVDictionary* metadata) {
+  const AVDictionaryEntry* entry = av_dict_get(metadata, kFocalLengthKey, nullptr, 0);
+  double value = 0;  // not by strtod, which depends on the locale
+  if (entry) std::from_chars(entry->value, entry->value + std::strlen(entry->value), value);
+  return std::isfinite(value) && value > 0 ? value : 0;
+}
+
+// Clockwise quarter turns that make the images upright.
+int QuarterTurns(const AVStream& stream) {
+  const uint8_t* matrix = nullptr;
+#if LIBAVFORMAT_VERSION_MAJOR >= 61
+  const AVPacketSideData* side =
+      av_packet_side_data_get(stream.codecpar->coded_side_data, stream.codecpar->nb_coded_side_data,
+                              AV_PKT_DATA_DISPLAYMATRIX);
+  if (side) matrix = side->data;
+#else
+  matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+#endif
+  if (!matrix) return 0;
+  // av_display_rotation_get() returns the counterclockwise angle of the display.
+  const double degrees = -av_display_rotation_get(reinterpret_cast<const int32_t*>(matrix));
+  return std::isfinite(degrees) ? ((static_cast<int>(std::lround(degrees / 90)) % 4) + 4) % 4 : 0;
+}
+
+class VideoFile : public MediaStream {
+ public:
+  bool Open(const char* path) {
+    av_log_set_level(AV_LOG_QUIET);
+    AVFormatContext* format = nullptr;
+    if (avformat_open_input(&format, path, nullptr, nullptr) != 0) return false;
+    format_.reset(format);
+    if (avformat_find_stream_info(format, nullptr) < 0) return false;
+    const AVCodec* decoder = nullptr;
+    const int index = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+    if (index < 0 || !decoder) return false;
+    stream_ = format->streams[index];
+    codec_.reset(avcodec_alloc_context3(decoder));
+    if (!codec_ || avcodec_parameters_to_context(codec_.get(), stream_->codecpar) < 0) return false;
+    codec_->pkt_timebase = stream_->time_base;
+    codec_->thread_count = static_cast<int>(std::thread::hardware_concurrency());
+    if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) return false;
+    frame_.reset(av_frame_alloc());
+    packet_.reset(av_packet_alloc());
+    turns_ = QuarterTurns(*stream_);
+    return frame_ && packet_;
+  }
+
+  int FrameCount() const override {
+    if (stream_->nb_frames > 0) return static_cast<int>(stream_->nb_frames);
+    const double seconds = static_cast<double>(format_->duration) / AV_TIME_BASE;
+    return seconds > 0 ? static_cast<int>(std::floor(seconds * FramesPerSecond() + 0.5)) : 0;
+  }
+
+  double FramesPerSecond() const override {
+    AVRational rate = av_guess_frame_rate(format_.get(), stream_, nullptr);
+    if (rate.num <= 0 || rate.den <= 0) rate = stream_->avg_frame_rate;
+    return rate.num > 0 && rate.den > 0 ? av_q2d(rate) : 0;
+  }
+
+  double FocalLength35() const override {
+    double focal = Millimetres(format_->metadata);
+    for (unsigned i = 0; focal == 0 && i < format_->nb_streams; ++i)
+      focal = Millimetres(format_->streams[i]->metadata);
+    return focal;
+  }
+
+  bool Grab() override {
+    for (int damaged = 0; damaged < kMostDamaged;) {
+      const int received = avcodec_receive_frame(codec_.get(), frame_.get());
+      if (received == 0) return TakeTime();
+      if (received != AVERROR(EAGAIN)) {
+        if (ended_ || received == AVERROR_EOF) return false;
+        ++damaged;  // the decoder goes on with the next packet
+      }
+      if (!Send()) ++damaged;
+    }
+    return false;
+  }
+
+  double Time() const override { return time_; }
+
+  cv::Mat Gray() override {
+    color_ = Converted();
+    if (color_.empty()) return {};
+    cv::Mat gray;
+    cv::cvtColor(color_, gray, cv::COLOR_BGR2GRAY);
+    return Upright(gray);
+  }
+
+  cv::Mat Color() override {
+    if (color_.empty()) return {};
+    return turns_ == 0 ? color_.clone() : Upright(color_);
+  }
+
+  bool SeekNear(double time) override {
+    const auto target = static_cast<int64_t>(std::floor(time / av_q2d(stream_->time_base)));
+    if (av_seek_frame(format_.get(), stream_->index, target + Start(), AVSEEK_FLAG_BACKWARD) < 0)
+      return false;
+    avcodec_flush_buffers(codec_.get());
+    ended_ = false;
+    last_ = AV_NOPTS_VALUE;
+    return true;
+  }
+
+ private:
+  int64_t Start() const { return stream_->start_time == AV_NOPTS_VALUE ? 0 : stream_->start_time; }
+
+  // Gives the decoder the next packet of the stream, or tells it of the end; false when the packet
+  // is damaged.
+  bool Send() {
+    while (!ended_) {
+      const int read = av_read_frame(format_.get(), packet_.get());
+      if (read == AVERROR(EAGAIN)) continue;
+      if (read < 0) {
+        ended_ = true;
+        return avcodec_send_packet(codec_.get(), nullptr) == 0;
+      }
+      const bool of_stream = packet_->stream_index == stream_->index;
+      const int sent = of_stream ? avcodec_send_packet(codec_.get(), packet_.get()) : 0;
+      av_packet_unref(packet_.get());
+      if (of_stream) return sent == 0;
+    }
+    return true;
+  }
+
+  // The frame's own time if it is later than the last one's, else what FFmpeg makes of it.
+  bool TakeTime() {
+    const bool own =
+        frame_->pts != AV_NOPTS_VALUE && (last_ == AV_NOPTS_VALUE || frame_->pts > last_);
+    const int64_t stamp = own ? frame_->pts : frame_->best_effort_timestamp;
+    if (own) last_ = stamp;
+    time_ = stamp == AV_NOPTS_VALUE
+                ? 0
+                : static_cast<double>(stamp - Start()) * av_q2d(stream_->time_base);
+    return true;
+  }
+
+  // The grabbed frame as blue green red; empty when its pixels cannot be converted.
+  cv::Mat Converted() {
+    const AVFrame& frame = *frame_;
+    if (frame.width <= 0 || frame.height <= 0) return {};
+    const auto format = static_cast<AVPixelFormat>(frame.format);
+    scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format,
+                                       frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC,
+                                       nullptr, nullptr, nullptr));
+    if (!scaler_) return {};
+    // The scaler writes whole vectors: rows are as long as a multiple of 32 pixels, and one more.
+    cv::Mat padded(frame.height + 1, (frame.width + 31) / 32 * 32, CV_8UC3);
+    cv::Mat color = padded(cv::Rect(0, 0, frame.width, frame.height));
+    uint8_t* const planes[] = {color.data, nullptr, nullptr, nullptr};
+    const int strides[] = {static_cast<int>(color.step), 0, 0, 0};
+    const int rows =
+        sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes, strides);
+    return rows == frame.height ? color : cv::Mat();
+  }
+
+  cv::Mat Upright(const cv::Mat& image) const {
+    constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
+                                          cv::ROTATE_90_COUNTERCLOCKWISE};
+    if (turns_ == 0) return image;
+    cv::Mat turned;
+    cv::rotate(image, turned, kTurns[turns_ - 1]);
+    return turned;
+  }
+
+  Owned<AVFormatContext> format_;
+  Owned<AVCodecContext> codec_;
+  Owned<AVFrame> frame_;
+  Owned<AVPacket> packet_;
+  Owned<SwsContext> scaler_;
+  AVStream* stream_ = nullptr;  // of format_
+  cv::Mat color_;               // of the image that Gray() returned last
+  int turns_ = 0;
+  int64_t last_ = AV_NOPTS_VALUE;  // latest time of a frame since the last seek
+  double time_ = 0;                // of the grabbed frame, seconds
+  bool ended_ = false;             // the decoder knows that no packet follows
+};
+
+}  // namespace
+
+std::unique_ptr<MediaStream> OpenVideoFile(const char* path) {
+  auto video = std::make_unique<VideoFile>();
+  return video->Open(path) ? std::move(video) : nullptr;
+}
+
+}  // namespace alidade
