@@ -27,9 +27,9 @@ RunOptions OptionsOf(const BatchItem& item) {
   } catch (const CLI::ParseError& error) {
     ThrowUsage(error.what());
   }
-  if (options.source != SourceOf(item)) ThrowUsage("a line begins with its source");
-  if (options.out) ThrowUsage("--out is for one line: all would have the same folder");
-  if (options.viewer) ThrowUsage("--viewer shows one run; a batch is of many");
+  if (options.source != SourceOf(item)) ThrowUsage("each line must begin with a source");
+  if (options.out) ThrowUsage("--out cannot be given for all lines, which would share the folder");
+  if (options.viewer) ThrowUsage("--viewer shows a single run and cannot be used in a batch");
   CheckRunOptions(options);
   SourceOptionsFrom(options);
   RateFrom(options, ThreadedFrom(options, false));
@@ -78,7 +78,7 @@ bool IsDone(const BatchFolder& folder, const BatchWork& work) {
 std::string OwnProgram() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) ThrowInput("this program does not find itself: " + error.message());
+  if (error) ThrowInput("cannot find the path of this program: " + error.message());
   // As the system calls one that was replaced meanwhile, by its successor's name or not.
   const std::string name = path.string(), gone = " (deleted)";
   const bool replaced = name.size() > gone.size() && name.ends_with(gone);

@@ -6,6 +6,7 @@
 
 #include "alidade/run/calibration/find_camera.h"
 #include "alidade/run/results/run_results.h"
+#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {
@@ -35,6 +36,13 @@ std::string Clock(double seconds) {
   return text;
 }
 
+// As typed in a shell: in quotes only if needed.
+std::string InShell(const std::string& path) {
+  constexpr char kPlain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+=:,@%";
+  return path.find_first_not_of(kPlain) == std::string::npos ? path : ShellQuoted(path);
+}
+
 }  // namespace
 
 void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::string& folder) {
@@ -47,7 +55,7 @@ void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::st
   terminal_.SetProgress("");
   if (!record.source.told.empty()) std::printf("%s\n", record.source.told.c_str());
   if (camera_found)
-    std::printf("Camera found: %s\n", CameraInWords(record.camera.found->estimate).c_str());
+    std::printf("Camera estimated: %s\n", CameraInWords(record.camera.found->estimate).c_str());
   std::fflush(stdout);
 }
 
@@ -56,7 +64,7 @@ void RunProgress::Calibrating(const CalibrateProgress& progress) {
   const double now = clock_.Milliseconds();
   if (now - shown_at_ < kInterval) return;
   shown_at_ = now;
-  std::string line = "finding the camera: pass " + std::to_string(progress.pass) + ", frame " +
+  std::string line = "calibrating the camera: pass " + std::to_string(progress.pass) + ", frame " +
                      std::to_string(progress.frames);
   if (progress.estimate.observations > 0) line += ", " + FovInWords(progress.estimate);
   terminal_.SetProgress(line);
@@ -89,7 +97,7 @@ void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
 void RunProgress::Finishing() {
   if (!terminal_.shows_progress()) return;
   terminal_.SetProgress("finishing: " + std::to_string(slam_->Snapshot().keyframe_count()) +
-                        " keyframes are adjusted as a whole");
+                        " keyframes in the final adjustment");
 }
 
 void RunProgress::End(const RunSummary& summary, const std::string& folder) {
@@ -97,9 +105,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   const RunRecord& record = *record_;
   std::string shape;
   if (summary.shape_points > 0) {
-    shape = ", " + std::to_string(summary.shape_points) + " points of shape";
+    shape = ", " + std::to_string(summary.shape_points) + " semi-dense points";
   } else if (record.settings.semidense.enabled && !record.settings.localise) {
-    shape = ", no shape (too little was seen from new keyframes)";
+    shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
   // Where it began and what went wrong, when it is not all of the recording.
   std::string tracked;
@@ -117,6 +125,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       record.settings.sensor == Sensor::kMono ? "map units" : "m",
       summary.maps > 1 ? " in the largest" : "",
       record.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+  // A localization leaves no map to show.
+  const std::string view = record.settings.localise ? "" : ", or: alidade view " + InShell(folder);
+  std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
 }
 
 }  // namespace alidade

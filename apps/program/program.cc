@@ -72,10 +72,10 @@ int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action
   } catch (const std::bad_alloc&) {
     return Complain(app, "out of memory", kBugStatus);
   } catch (const std::exception& error) {
-    return Complain(app, std::string("a bug of ours, please report it: ") + error.what(),
+    return Complain(app, std::string("internal error (a bug, please report it): ") + error.what(),
                     kBugStatus);
   } catch (...) {
-    return Complain(app, "a bug of ours, please report it: unknown exception", kBugStatus);
+    return Complain(app, "internal error (a bug, please report it): unknown exception", kBugStatus);
   }
 }
 

@@ -44,7 +44,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   };
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localise)
-    ThrowUsage("semidense adds depth to a map that grows: localise leaves the map as it is");
+    ThrowUsage("semidense extends the map, which localise must not change: use one of them");
   SlamSettings settings = SettingsFrom(wanted).slam;
   settings.localise = wanted.localise;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
@@ -124,7 +124,8 @@ MapResults SlamObject::ResultsOfMap(size_t number) const {
   const std::lock_guard<std::mutex> lock(held->turn);
   RunResults results = ResultsOf(held->slam, held->record);
   if (number >= results.maps.size())
-    ThrowUsage("map " + std::to_string(number) + ": maps are numbered from 0, and here are " +
+    ThrowUsage("map " + std::to_string(number) +
+               " does not exist: maps are numbered from 0, and their number is " +
                std::to_string(results.maps.size()));
   return std::move(results.maps[number]);
 }

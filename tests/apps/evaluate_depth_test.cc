@@ -209,7 +209,7 @@ TEST_F(EvaluateDepth, TableIsForPeople) {
 TEST_F(EvaluateDepth, InputThatCannotBeIsOneLineAndStatusThree) {
   WriteTinyTum(folder_);
   const std::string sequence = folder_.path();
-  EXPECT_THAT(Complaint(sequence, folder_ / "nowhere"), HasSubstr("holds no depth.txt"));
+  EXPECT_THAT(Complaint(sequence, folder_ / "nowhere"), HasSubstr("contains no depth.txt"));
   WriteResult(folder_, "rgbd", {{TinyStamp(1), Plain(1)}});
   EXPECT_THAT(Complaint(folder_ / "nowhere", result_), HasSubstr("nowhere"));
 

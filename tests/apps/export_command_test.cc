@@ -189,7 +189,7 @@ TEST_F(SavedMapCommand, ColmapFolderIsReplacedOnlyWhenItIsOurs) {
   ExpectRefused({"export", result, "--to", "colmap", foreign}, 3, "foreign");
   EXPECT_EQ(ReadText(foreign + "/images.txt"), "months of work");
   folder_.Write("deep/model/notes.txt", "dear diary");
-  ExpectRefused({"export", result, "--to", "colmap", out}, 3, "other things");
+  ExpectRefused({"export", result, "--to", "colmap", out}, 3, "other files");
   ExpectRefused({"export", result, "--to", "colmap", foreign + "/images.txt"}, 3, "file");
   ExpectRefused({"export", result, "--to", "colmap", "/proc/model"}, 3, "/proc/model");
   EXPECT_EQ(NamesIn(folder_.path()).size(), 3u);  // no drafts

@@ -40,7 +40,7 @@ class SemiDenseRun : public testing::Test {
 TEST_F(SemiDenseRun, LeavesDepthOfKeyFramesACloudAndPicturesOfIt) {
   const ProgramResult result = Run("out");
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr(" points of shape"));
+  EXPECT_THAT(result.out, HasSubstr(" semi-dense points"));
   // Each picture listed is there, named after a keyframe, and no other.
   std::set<std::string> keyframes, listed, found;
   std::istringstream lines(Text("out/keyframes.txt")), list(Text("out/depth.txt"));
@@ -72,8 +72,8 @@ TEST_F(SemiDenseRun, ReportShowsItAndStillNeedsNothingElse) {
   ASSERT_EQ(Run("out").status, 0);
   const std::string report = Text("out/report.html");
   EXPECT_THAT(report, HasSubstr("<h2>Shape</h2>"));
-  for (const char* view : {"from behind the first camera", "as the first camera looked",
-                           "from its right", "from above"})
+  for (const char* view : {"from behind the first camera", "in the direction of the first camera",
+                           "from the right", "from above"})
     EXPECT_EQ(CountOf(report, std::string("<img alt=\"") + view + "\""), 1) << view;
   EXPECT_EQ(CountOf(report, "src="),
             CountOf(report, "src=\"data:image/jpeg;base64,/9j/"));  // how a JPEG begins
@@ -107,7 +107,7 @@ TEST_F(SemiDenseRun, OneWithoutRemovesWhatItLeft) {
 TEST_F(SemiDenseRun, SaysWhenThereIsNoShape) {
   const ProgramResult result = Run("out", {"--semidense", "--last", "1"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr(", no shape"));
+  EXPECT_THAT(result.out, HasSubstr(", no semi-dense depth"));
   EXPECT_FALSE(fs::exists(results_ / "out/depth"));
   EXPECT_FALSE(fs::exists(results_ / "out/semidense.ply"));
 }

@@ -59,7 +59,7 @@ TEST(SettingsCommand, AnUnknownNameIsAUsageErrorThatSuggestsOne) {
   EXPECT_THAT(result.err, HasSubstr("did you mean 'loop.min_found'"));
   EXPECT_THAT(RunAlidade({"settings", "tracker.torn_share"}).err,
               HasSubstr("it is now called 'tracker.cut_inlier_share'"));
-  EXPECT_THAT(RunAlidade({"settings", "places.rounds"}).err, HasSubstr("has no name any more"));
+  EXPECT_THAT(RunAlidade({"settings", "places.rounds"}).err, HasSubstr("no longer exists"));
 }
 
 TEST(SettingsCommand, ThePageInTheDocumentationIsWhatItPrints) {

@@ -107,7 +107,7 @@ TEST(TumSource, BadImagesAreSkippedAndTheRestGoesOn) {
   WarningCatcher warnings;
   const auto frames = AllFrames(*OpenSource(folder.path()));
   ASSERT_EQ(frames.size(), 7u);
-  const std::string expected[] = {"", "cut short", "is empty", "32x24", "No such file", "", ""};
+  const std::string expected[] = {"", "truncated", "is empty", "32x24", "No such file", "", ""};
   for (int i = 0; i < 7; ++i) {
     const SourceFrame& frame = frames[static_cast<size_t>(i)];
     EXPECT_EQ(frame.number, i);

@@ -48,8 +48,8 @@ TEST(LostInWords, SaysWhatBeganItAndWhatHelpsToComeBack) {
   const auto lines = LostInWords({{100, 106.1}}, untracked, 90);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("10.00 s to 16.10 s: the picture was blurred."));
-  EXPECT_THAT(lines[0], HasSubstr("going back to where the camera has been"));
-  EXPECT_THAT(LostInWords({{100, 101}}, {}, 90)[0], HasSubstr("given up"));
+  EXPECT_THAT(lines[0], HasSubstr("return to a place"));
+  EXPECT_THAT(LostInWords({{100, 101}}, {}, 90)[0], HasSubstr("dropped"));
 }
 
 }  // namespace

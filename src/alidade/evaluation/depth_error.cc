@@ -21,7 +21,7 @@ std::string SizeText(const cv::Mat& image) {
 void CheckFrame(const DepthFrame& frame) {
   const auto& [estimate, truth, image, map] = frame;
   if (estimate.type() != CV_32F || truth.type() != CV_32F || image.type() != CV_8U)
-    ThrowInput("depth must be 32 bit float and the image 8 bit grey");
+    ThrowInput("depth must be 32-bit float and the image 8-bit gray");
   if (estimate.empty() || truth.empty()) ThrowInput("a depth image is empty");
   if (truth.size() != image.size())
     ThrowInput("true depth of " + SizeText(truth) + " for an image of " + SizeText(image));
@@ -88,7 +88,7 @@ double Share(int64_t part, int64_t whole) {
 }  // namespace
 
 void DepthErrorSettings::Check() const {
-  if (!(min_gradient >= 0)) ThrowUsage("min_gradient cannot be negative (grey levels per pixel)");
+  if (!(min_gradient >= 0)) ThrowUsage("min_gradient cannot be negative (gray levels per pixel)");
   if (!(continuity > 0 && continuity < 1)) ThrowUsage("continuity must be a share between 0 and 1");
   if (continuity_window < 1 || continuity_window % 2 == 0)
     ThrowUsage("continuity_window must be an odd number of pixels");

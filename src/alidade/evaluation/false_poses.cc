@@ -71,7 +71,7 @@ void FalsePoseSettings::Check() const {
   };
   require(share_of_path > 0 && std::isfinite(share_of_path), "the share of the path must be > 0");
   require(degrees > 0 && degrees <= 180, "degrees must be between 0 and 180");
-  require(step > 0 && std::isfinite(step), "the step must be a positive number of metres");
+  require(step > 0 && std::isfinite(step), "the step must be a positive number of meters");
   require(max_dt > 0, "max_dt must be a positive number of seconds");
 }
 

@@ -91,10 +91,10 @@ std::span<const Setting> ExtractorSettings::Table() {
       PublicSetting<&T::features>("tracker.extractor.features", FromTo(1, 100000), "",
                                   "Keypoints wanted per image."),
       PublicSetting<&T::fast_threshold>(
-          "tracker.extractor.fast_threshold", FromTo(1, 255), "grey levels",
+          "tracker.extractor.fast_threshold", FromTo(1, 255), "gray levels",
           "Contrast of a FAST corner; less finds corners in dim or blurred images."),
       ExpertSetting<&T::min_fast_threshold>(
-          "tracker.extractor.min_fast_threshold", FromTo(1, 255), "grey levels",
+          "tracker.extractor.min_fast_threshold", FromTo(1, 255), "gray levels",
           "The same in the second attempt, in cells where the first found none."),
       ExpertSetting<&T::cell>("tracker.extractor.cell", FromTo(8, 10000), "px",
                               "Side of a detection cell on every level."),
@@ -157,7 +157,7 @@ std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& ban
 
 Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number,
                          const cv::Mat& avoid) {
-  if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8 bit grey");
+  if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8-bit gray");
   if (image.cols != camera.width || image.rows != camera.height) {
     ThrowUsage("extractor: the image is " + std::to_string(image.cols) + "x" +
                std::to_string(image.rows) + ", the camera " + std::to_string(camera.width) + "x" +

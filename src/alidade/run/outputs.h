@@ -1,4 +1,4 @@
-// The folder `alidade run` leaves behind (docs/reference/run-folder.md).
+// Writes the result folder of `alidade run` (docs/reference/run-folder.md).
 #pragma once
 
 #include <array>
@@ -15,13 +15,13 @@ struct RunSummary {
   int frames = 0, tracked = 0;
   int keyframes = 0, landmarks = 0, maps = 0;
   std::optional<int> first_tracked;               // its number in the recording
-  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
-  size_t shape_points = 0;                        // of semidense.ply
-  double path_length = 0;  // through the largest map, metres (mono: map units)
+  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the first pose
+  size_t shape_points = 0;                        // points in semidense.ply
+  double path_length = 0;  // through the largest map, meters (monocular: map units)
 };
 
-// Writes everything. Throws Error (input) when a file cannot be written; what was written by then
-// is whole.
+// Writes all files. Throws Error (input) if a file cannot be written; files written before are
+// complete.
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunRecord& record,
                         bool with_map = true, MaskWriter* masks = nullptr);
 

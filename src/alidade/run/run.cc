@@ -38,9 +38,8 @@ std::string SizeOf(const Camera& camera) {
 // Where the settings did not ask for it.
 void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& settings) {
   if (settings.image_width != 0 || used.width == given.width) return;
-  LogWarning("pictures of " + SizeOf(given) + " are scaled down to " + SizeOf(used) +
-             ": larger ones take longer and tell no more (--set max_image_side=0 takes them as "
-             "they are)");
+  LogWarning("images of " + SizeOf(given) + " are downscaled to " + SizeOf(used) +
+             ": larger ones take longer without gain (--set max_image_side=0 keeps their size)");
 }
 
 // Takes the library's warnings while it lives.
@@ -116,7 +115,8 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
   for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, placed.folder);
   if (record.failure) Rethrow(record.failure, problem);
   if (!bugs.empty())
-    throw RunStopped(bugs + " (what could be done without is in " + placed.folder + ")" + problem);
+    throw RunStopped(bugs + " (the results obtained without it are in " + placed.folder + ")" +
+                     problem);
   if (record.interrupted) {
     outcome.status = kInterruptedStatus;
     if (!placed.problem.empty()) LogWarning(placed.problem);
@@ -154,7 +154,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<SavedMap> saved;
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
-  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
+  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the sensor of the map", saved->sensor);
   record.settings.localise = options.localise;
   wanted.color = record.settings.WantsColor();
   std::unique_ptr<FrameSource> source =

@@ -14,7 +14,7 @@ std::span<const Setting> SemiDenseSettings::Table() {
                                  "Compute semi-dense depth of the keyframes."),
       PublicSetting<&T::keyframes>("semidense.keyframes", kPositive, "keyframes",
                                    "Best covisible keyframes searched for each pixel."),
-      PublicSetting<&T::min_gradient>("semidense.min_gradient", kPositive, "grey levels/px",
+      PublicSetting<&T::min_gradient>("semidense.min_gradient", kPositive, "gray levels/px",
                                       "Pixels with a smaller gradient get no depth."),
       PublicSetting<&T::min_compatible>(
           "semidense.min_compatible", kPositive, "keyframes",
@@ -33,10 +33,10 @@ std::span<const Setting> SemiDenseSettings::Table() {
       ExpertSetting<&T::max_turn>("semidense.max_turn", {.min = 0, .max = 180, .open_min = true},
                                   "degrees",
                                   "Largest difference between the gradient directions of a match."),
-      ExpertSetting<&T::intensity_sigma>("semidense.intensity_sigma", kPositive, "grey levels",
+      ExpertSetting<&T::intensity_sigma>("semidense.intensity_sigma", kPositive, "gray levels",
                                          "Standard deviation of the intensities of a match."),
       ExpertSetting<&T::max_residual>(
-          "semidense.max_residual", kPositive, "grey levels",
+          "semidense.max_residual", kPositive, "gray levels",
           "Largest root mean square difference between the surroundings of a match."),
       ExpertSetting<&T::max_landmark_difference>("semidense.max_landmark_difference", kPositive, "",
                                                  "A keyframe's depth is kept when three quarters "

@@ -109,7 +109,9 @@ export class AlidadeError extends Error {
   override name = 'AlidadeError';
 }
 
+/** A session: images of one moving camera in, its pose and a map out. */
 export class Slam {
+  /** Size of the images, pixels. */
   readonly width: number;
   readonly height: number;
   #core: Core;
@@ -211,7 +213,7 @@ export class Slam {
     return Array.from({ length: count }, (_, i) => ({ x: numbers[3 * i]!, y: numbers[3 * i + 1]!, matched: numbers[3 * i + 2] === 1 }));
   }
 
-  /** The viewer's messages since the previous call: src/alidade/stream, decoded and drawn by web/scene. */
+  /** The messages for the viewer since the previous call, as in run.stream. */
   messages(): Uint8Array[] {
     const all = this.#bytes(Bytes.Messages);
     const view = new DataView(all.buffer, all.byteOffset, all.byteLength);

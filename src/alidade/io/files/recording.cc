@@ -75,7 +75,7 @@ class RecordingSource : public FrameSource {
  private:
   cv::Mat Checked(cv::Mat image, const std::string& path) const {
     if (image.size() != raw_size_) {
-      ThrowInput(path + " is " + SizeText(image.size()) + ", the recording is " +
+      ThrowInput(path + " is " + SizeText(image.size()) + ", but the recording has " +
                  SizeText(raw_size_));
     }
     return image;
@@ -106,8 +106,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
   std::vector<RecordedFrame> frames;
   const auto first_good = std::find_if(
       list.begin(), list.end(), [](const StampedName& item) { return item.problem.empty(); });
-  if (first_good == list.end())
-    ThrowInput(list.front().problem + " (and so it is with every line)");
+  if (first_good == list.end()) ThrowInput(list.front().problem + " (and so are all other lines)");
   // Unusable lines get the time of the line before, to keep their place.
   double time = first_good->time;
   for (const StampedName& item : list) {
@@ -119,7 +118,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
   };
   if (!std::is_sorted(frames.begin(), frames.end(), earlier)) {
     LogWarning("the time stamps of " + folder +
-               " are not in order: the frames were sorted by time");
+               " are not in order; the frames were sorted by time");
     std::stable_sort(frames.begin(), frames.end(), earlier);
   }
   const RecordedFrame* before = nullptr;
@@ -127,7 +126,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
     if (!frame.problem.empty()) continue;
     if (before && frame.time <= before->time) {
       frame.problem =
-          frame.image + " has the time stamp of the frame before it (" + frame.stamp + ")";
+          frame.image + " has the time stamp of the previous frame (" + frame.stamp + ")";
     } else {
       before = &frame;
     }
@@ -143,7 +142,7 @@ int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::
   for (const RecordedFrame& frame : frames)
     frame_times.push_back(frame.problem.empty() ? frame.time : never);
   for (const StampedName& item : list) {
-    if (!item.problem.empty()) LogWarning(item.problem + "; this line is left out");
+    if (!item.problem.empty()) LogWarning(item.problem + "; this line is ignored");
     list_times.push_back(item.problem.empty() ? item.time : never);
   }
   const auto pairs = AssociateByTime(frame_times, list_times, max_dt);
@@ -163,7 +162,7 @@ cv::Size SizeOfImages(const Recording& recording) {
       if (problem.empty()) problem = error.what();
     }
   }
-  ThrowInput("not one image can be read: " + problem);
+  ThrowInput("no image can be read: " + problem);
 }
 
 std::unique_ptr<FrameSource> PlayRecording(Recording recording, Sensor sensor,

@@ -62,9 +62,9 @@ bool IsBatchsOwn(const std::string& name) {
 
 void CheckFolderName(const std::string& name) {
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
-    ThrowUsage("--out " + name + ": here it is the name of a folder within the batch's --out");
+    ThrowUsage("--out " + name + " must be the name of a folder within the batch's --out");
   if (IsBatchsOwn(name))
-    ThrowUsage("--out " + name + ": the batch has a file of its own of that name");
+    ThrowUsage("--out " + name + ": the batch itself writes a file of that name");
 }
 
 // Takes --out NAME or --out=NAME out of the words.
@@ -150,11 +150,11 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
       if (item.words.empty()) continue;
       item.line = number;
       if (item.words.front().rfind("--", 0) == 0)
-        ThrowUsage("a line begins with its source, and options follow");
+        ThrowUsage("a line must begin with its source; options follow");
       if (const auto out = TakeOut(item.words)) {
         CheckFolderName(*out);
         if (!taken.insert(*out).second)
-          ThrowUsage("--out " + *out + ": another line has that name");
+          ThrowUsage("--out " + *out + ": another line has the same name");
         item.name = *out;
       }
       item.words.insert(item.words.end(), more.begin(), more.end());
@@ -163,7 +163,7 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
       ThrowUsage(name + ":" + std::to_string(number) + ": " + error.what());
     }
   }
-  if (items.empty()) ThrowUsage(name + ": there is no recording in the list");
+  if (items.empty()) ThrowUsage(name + ": the list contains no recording");
   for (BatchItem& item : items) {  // given names first: others give way to them
     if (!item.name.empty()) continue;
     const std::string own = FolderNameOf(SourceOf(item));

@@ -64,7 +64,7 @@ pid_t Launch(const ProcessTask& task) {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(log);
   if (nothing >= 0) close(nothing);
-  if (child < 0) ThrowInput(std::string("no process can be started: ") + std::strerror(why));
+  if (child < 0) ThrowInput(std::string("cannot start a process: ") + std::strerror(why));
   return child;
 }
 

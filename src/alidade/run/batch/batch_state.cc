@@ -119,10 +119,10 @@ BatchFolder::BatchFolder(const std::string& path) : path_(path) {
   if (path.empty()) ThrowUsage("--out must not be empty");
   std::error_code error;
   if (IsFolder(path) && !fs::is_empty(path, error) && !IsFolder(path + "/done"))
-    ThrowInput(path + " holds something else than a batch: give another --out");
+    ThrowInput(path + " contains other files than those of a batch: choose another --out");
   for (const char* part : {"/log", "/done"}) {
     fs::create_directories(path + part, error);
-    if (error) ThrowInput(path + part + ": cannot be made: " + error.message());
+    if (error) ThrowInput(path + part + ": cannot be created: " + error.message());
   }
 }
 

@@ -89,9 +89,9 @@ std::span<const Setting> CalibrateSettings::Table() {
       SameSetting<&T::first_keyframes>("camera.first_keyframes", AtLeast(6)),
       SameSetting<&T::growth>("camera.growth", MoreThan(1)),
       PublicSetting<&T::enabled>("calibrate.enabled", kOnOff, "",
-                                 "One camera: calibrate it first when nothing is known of it."),
+                                 "One camera: calibrate an unknown camera before the run."),
       ExpertSetting<&T::max_seconds>("calibrate.max_seconds", kPositive, "s",
-                                     "Length of the recording's part that is used."),
+                                     "Length of the part of the recording that is used."),
       ExpertSetting<&T::max_passes>("calibrate.max_passes", AtLeast(1), "",
                                     "Most passes over the recording."),
       ExpertSetting<&T::max_off>("calibrate.max_off", kPositive, "",
@@ -227,7 +227,7 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
       stopped = true;
       found.estimate = last;
       found.estimate.known = false;
-      found.why_not = "the search was stopped";
+      found.why_not = "the calibration was stopped";
       return;
     }
     if (end == PassEnd::kRecordingEnded) {
@@ -262,8 +262,8 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
                   : last.keyframes < calibrate.first_keyframes
                       ? "only " + std::to_string(last.keyframes) + " keyframes were mapped"
                   : found.usable && !agreed
-                      ? "estimates differ from pass to pass"
-                      : "the camera turns and moves too little for its focal length to tell";
+                      ? "the estimates of the passes differ"
+                      : "the camera moves and rotates too little to determine its focal length";
 }
 
 }  // namespace
@@ -325,7 +325,7 @@ std::string CameraInWords(const CameraEstimate& estimate) {
   // By rows, or by columns where the picture was taken upright; negative: from the far side.
   const double readout = camera.readout[0] + camera.readout[1];
   if (readout != 0) {
-    std::snprintf(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
+    std::snprintf(text, sizeof(text), ", readout time %.1f ± %.1f ms", 1e3 * std::abs(readout),
                   1e3 * estimate.readout_sigma.maxCoeff());
     words += text;
   }

@@ -23,13 +23,13 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckS
 std::string LensInWords(const LensCheck& check, const Camera& camera) {
   if (!check.strong) return "";
   char how[80];
-  std::snprintf(how, sizeof(how), " (k1 near %.2f, by %.0f %% at the picture's corners)", check.k1,
-                100 * std::abs(check.bend));
+  std::snprintf(how, sizeof(how), " (k1 near %.2f, a shift of %.0f %% at the image corners)",
+                check.k1, 100 * std::abs(check.bend));
   const std::string than =
       camera.HasDistortion() ? " more strongly than its calibration says" : " strongly";
-  return "this camera's lens bends lines" + than + how +
-         ": the path and the map are bent with it. Give its calibration, distortion included, with "
-         "--camera (docs/reference/camera.md)";
+  return "this camera has radial distortion" + than + how +
+         " that is not corrected, so trajectory and map are distorted. Use a calibration with "
+         "distortion: --camera (docs/reference/camera.md)";
 }
 
 }  // namespace alidade

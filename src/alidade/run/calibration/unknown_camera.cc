@@ -12,19 +12,19 @@
 namespace alidade {
 namespace {
 
-constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal one, say better)";
+constexpr const char* kBetter = " (--camera or --fov gives a better value)";
 
 std::string AssumedInWords(const SourceInfo& source) {
   char text[80];
   std::snprintf(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
                 FovDegrees(source.camera));
-  return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
+  return source.lens_told.empty() ? text : text + (", from its metadata: " + source.lens_told);
 }
 
 void WarnOfDoubt(CameraEstimate estimate, const Camera& taken) {
   estimate.camera = taken;
-  LogWarning("the camera is not known for certain: a field of view of " + CameraInWords(estimate) +
-             " was found and is taken" + kBetter);
+  LogWarning("the camera is uncertain: the estimated field of view of " + CameraInWords(estimate) +
+             " is used" + kBetter);
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   }
   if (!looked_for) {
     record.settings.readout.enabled = false;  // a wrong lens may be taken for it
-    LogWarning("nothing is known of the camera: " + AssumedInWords(source) + kBetter);
+    LogWarning("the camera is unknown: " + AssumedInWords(source) + kBetter);
     return;
   }
   const double cpu = ProcessCpuSeconds();
@@ -87,8 +87,8 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
   } else if (found.usable) {
     WarnOfDoubt(found.estimate, found.estimate.camera);
   } else {
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " + AssumedInWords(source) +
-               kBetter);
+    LogWarning("the camera could not be calibrated: " + found.why_not + "; " +
+               AssumedInWords(source) + kBetter);
   }
 }
 
@@ -109,8 +109,8 @@ void TakeRefinedCamera(const Slam& slam, RunRecord& record) {
       WarnOfDoubt(found.estimate, camera);
     }
   } else {
-    found.why_not = "the camera turns and moves too little for its focal length to tell";
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
+    found.why_not = "the camera moves and rotates too little to determine its focal length";
+    LogWarning("the camera could not be calibrated: " + found.why_not + "; " +
                AssumedInWords(record.source) + kBetter);
   }
   found.estimate.camera = camera;

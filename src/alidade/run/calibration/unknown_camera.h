@@ -1,4 +1,4 @@
-// What a run does about its camera: takes it as told, or finds it first.
+// Chooses the camera of a run: given, estimated before the run, or estimated during it.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,18 @@
 
 namespace alidade {
 
-// Fills in record.camera, and record.source.camera where a better one than the source's is found:
-// a loaded map's when nothing is known, else by FindCamera(), for recordings of one camera; of
-// live ones, and where nothing is to be played beforehand, it is found on the way.
-// `saved`: null when no map is loaded. Warns of a camera that stays unknown.
+// Fills in record.camera, and replaces record.source.camera if a better one is available: that of
+// the loaded map if there is no calibration, else the result of FindCamera() for recordings of one
+// camera. For live cameras, and without options.calibrate_first, the camera is estimated during the
+// run. `saved`: null if no map is loaded. Warns if the camera remains unknown.
 void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const Camera* saved,
                  const std::vector<RunWatcher*>& watchers, RunRecord& record);
 
-// The run is over: what its map told of a camera that was refined on the way
-// (SlamSettings::refine). Warns of one that stays unknown.
+// After the run: the camera estimated during it (SlamSettings::refine). Warns if it remains
+// unknown.
 void TakeRefinedCamera(const Slam& slam, RunRecord& record);
 
-// camera.yaml for the next recording with the same camera; empty where nothing was found out.
+// camera.yaml for further recordings with the same camera; empty if nothing was estimated.
 std::string FoundCameraFile(const RunRecord& record);
 
 }  // namespace alidade

@@ -39,13 +39,12 @@ bool HoldsOurMarker(const fs::path& folder) {
 void CheckFree(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return;
-  if (!fs::is_directory(path, error)) ThrowInput(path.string() + ": there is a file of that name");
+  if (!fs::is_directory(path, error)) ThrowInput(path.string() + " is a file, not a folder");
   const bool empty = fs::is_empty(path, error);
   if (error) ThrowInput(path.string() + ": " + error.message());
   if (!empty && !(HoldsOurMarker(path) && HoldsOnlyOurs(path))) {
     ThrowInput(path.string() +
-               ": the folder exists and holds other things than an earlier export; "
-               "name another");
+               ": the folder contains other files than an earlier export; choose another");
   }
 }
 

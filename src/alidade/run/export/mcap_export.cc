@@ -58,7 +58,7 @@ McapCounts TellKnown(const Trajectory& frames, const FinalState& state,
 }
 
 std::string CountText(const std::optional<double>& number) {
-  return number ? std::to_string(static_cast<long>(*number)) : "not known";
+  return number ? std::to_string(static_cast<long>(*number)) : "unknown";
 }
 
 std::vector<RosStatus> StatusOf(const ResultFolder& result) {
@@ -95,7 +95,7 @@ McapCounts ExportStream(const std::string& stream, const std::string& out,
   } catch (const Error& error) {
     throw Error(error.kind(), stream + ": " + error.what());
   }
-  if (ros.scene().frames == 0) ThrowInput(stream + ": no frame was recorded");
+  if (ros.scene().frames == 0) ThrowInput(stream + " contains no recorded frame");
   const std::string folder = fs::path(stream).parent_path().string();
   FinalState state;
   if (IsFile(fs::path(folder) / "stats.json")) state = FinalStateIn(folder.empty() ? "." : folder);
@@ -110,7 +110,7 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
                          const std::string& program) {
   const ResultFolder result = ReadResultFolder(folder);
   const FinalState state = FinalStateIn(folder);
-  if (state.trajectory.empty()) ThrowInput(folder + ": nothing was mapped there");
+  if (state.trajectory.empty()) ThrowInput(folder + " contains no map");
   const std::string live = folder + "/trajectory_live.txt";
   const Trajectory frames = IsFile(live) ? ReadTrajectory(live) : state.trajectory;
   return TellKnown(frames, state, result.camera, StatusOf(result), out, program);

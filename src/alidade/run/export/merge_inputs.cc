@@ -135,7 +135,7 @@ Se3 Blend(const Se3& a, const Se3& b, double share) {
 }  // namespace
 
 std::vector<MergeInput> ReadMergeInputs(const std::vector<std::string>& paths) {
-  if (paths.size() < 2) ThrowUsage("there is nothing to merge: give two maps or more");
+  if (paths.size() < 2) ThrowUsage("nothing to merge: give at least two maps");
   std::vector<MergeInput> inputs;
   std::set<std::string> names;
   for (const std::string& path : paths) {
@@ -144,7 +144,7 @@ std::vector<MergeInput> ReadMergeInputs(const std::vector<std::string>& paths) {
     input.path = path;
     input.saved = ReadSavedMap(path);
     if (input.saved.map.keyframe_count() == 0)
-      ThrowInput(SavedMapPath(path) + ": there is nothing in the map");
+      ThrowInput(SavedMapPath(path) + ": the map is empty");
     ReadPaths(input);
     inputs.push_back(std::move(input));
   }

@@ -66,7 +66,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
 void MakeFolder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) ThrowInput(path + ": cannot be made: " + error.message());
+  if (error) ThrowInput(path + ": cannot be created: " + error.message());
 }
 
 }  // namespace
@@ -103,10 +103,11 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
   std::error_code error;
   for (const MergeInput& input : inputs) {
     if (std::filesystem::equivalent(places.map, SavedMapPath(input.path), error))
-      ThrowUsage("--out would replace " + places.map + ", which is one of the maps to be merged");
+      ThrowUsage("--out would replace " + places.map + ", which is one of the maps to merge");
   }
   if (IsFile(places.folder + "/stats.json"))
-    ThrowUsage("--out " + places.folder + " holds what `alidade run` left: give another folder");
+    ThrowUsage("--out " + places.folder +
+               " contains results of `alidade run`: choose another folder");
   if (overwrite) return;
   const EarlierMerge earlier = ReadEarlierMerge(places.folder);
   std::set<std::string> now;
@@ -115,13 +116,13 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
       std::includes(now.begin(), now.end(), earlier.inputs.begin(), earlier.inputs.end());
   if (IsThere(places.map) && (earlier.inputs.empty() || !of_these)) {
     ThrowUsage("--out would replace " + places.map +
-               ", which was not made of these maps: name another, or give --overwrite");
+               ", which was not made from these maps: choose another file, or use --overwrite");
   }
   for (const MergeInput& input : inputs) {
     const std::string name = NumberedFile(input.name, 0);
     if (IsThere(places.folder + "/" + name) && earlier.files.count(name) == 0) {
       ThrowUsage("--out would replace " + places.folder + "/" + name +
-                 ", which is not of an earlier merge: name another, or give --overwrite");
+                 ", which is not from an earlier merge: choose another file, or use --overwrite");
     }
   }
 }

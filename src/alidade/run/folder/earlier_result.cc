@@ -92,7 +92,7 @@ std::string FreeFolder(const std::string& folder, const ResultOwner& owner) {
     free = folder + "-" + std::to_string(i);
   }
   if (taken) {
-    LogWarning(folder + " holds the results of " + taken->owner.InWords() + ": those of " +
+    LogWarning(folder + " contains the results of " + taken->owner.InWords() + "; the results of " +
                owner.InWords() + " go to " + free);
   }
   return free;

@@ -49,7 +49,8 @@ FolderLock::FolderLock(const std::string& file, const std::string& where) : file
     if (!Occupy(fd_) && errno == EWOULDBLOCK) {
       const std::string holder = LineIn(fd_);
       ::close(fd_);
-      ThrowInput(where + holder + " is writing there; wait until it ends, or name another folder");
+      ThrowInput(where + holder +
+                 " is writing to this folder; wait until it ends, or choose another folder");
     }
     if (IsAt(fd_, file)) break;
     ::close(fd_);

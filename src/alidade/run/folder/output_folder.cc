@@ -30,9 +30,9 @@ bool HoldsOtherThings(const fs::path& folder) {
 void CheckOwner(const OutputClaim& claim) {
   const auto earlier = ResultIn(claim.path);
   if (claim.overwrite || !IsTakenFrom(earlier, claim.owner)) return;
-  ThrowInput(Opening(claim) + "the folder holds the results of " + earlier->owner.InWords() +
-             ", and this is " + claim.owner.InWords() +
-             ": name another, or give --overwrite to replace them");
+  ThrowInput(Opening(claim) + "the folder contains the results of " + earlier->owner.InWords() +
+             ", but the source is " + claim.owner.InWords() +
+             ": choose another folder, or replace them with --overwrite");
 }
 
 // Why the new results are elsewhere.
@@ -42,8 +42,8 @@ std::string Complaint(const OutputClaim& claim, const EarlierResult& earlier,
     return std::to_string(static_cast<long long>(result.frames)) + " frames";
   };
   return claim.path + " keeps the results of an earlier run (" + frames(earlier) +
-         ", this one had " + frames(now) + "), and this run's are in " + place +
-         "; --overwrite replaces the earlier ones";
+         "; this run: " + frames(now) + "). The results of this run are in " + place +
+         "; --overwrite replaces the earlier results";
 }
 
 // What ReadEarlierResult() reads.
@@ -70,16 +70,16 @@ OutputFolder::MadeFolder::MadeFolder(const OutputClaim& claim) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(claim.path, error))) {
     if (!fs::is_directory(claim.path, error))
-      ThrowInput(Opening(claim) + "there is a file of that name");
+      ThrowInput(Opening(claim) + "it is a file, not a folder");
     if (HoldsOtherThings(claim.path)) {
       ThrowInput(Opening(claim) +
-                 "the folder exists and holds no earlier run (no stats.json of ours); name "
+                 "the folder exists and contains no earlier run (no stats.json of alidade); choose "
                  "another");
     }
     return;
   }
   fs::create_directories(claim.path, error);
-  if (error) ThrowInput(Opening(claim) + "cannot be made: " + error.message());
+  if (error) ThrowInput(Opening(claim) + "cannot be created: " + error.message());
   path = claim.path;
 }
 
@@ -95,7 +95,8 @@ OutputFolder::OutputFolder(OutputClaim claim)
   FinishPlacing(claim_.path, claim_.inputs);
   const fs::path done = fs::path(claim_.path) / kRunDone;
   if (IsThere(done.string()))
-    ThrowInput(Opening(claim_) + "there is " + done.string() + ", which is not ours: name another");
+    ThrowInput(Opening(claim_) + "there is " + done.string() +
+               ", which was not written by alidade: choose another folder");
   CheckOwner(claim_);
   std::error_code error;
   for (const fs::path& left : LeftoversIn(claim_.path)) fs::remove_all(left, error);
@@ -109,7 +110,7 @@ void OutputFolder::Write(const std::string& name, const std::string& bytes, Sync
   std::error_code error;
   if (fs::path(name).has_parent_path() && !fs::create_directories(path.parent_path(), error) &&
       error) {
-    ThrowInput("cannot make " + path.parent_path().string() + ": " + error.message());
+    ThrowInput("cannot create " + path.parent_path().string() + ": " + error.message());
   }
   AtomicWriteFile(path.string(), bytes, sync);
 }

@@ -135,7 +135,8 @@ void CheckIsNoResult(const std::string& path) {
   for (const fs::path& own : OwnFilesIn(folder, *result)) {
     std::error_code error;
     if (fs::equivalent(own, path, error))
-      ThrowUsage(path + " is of the results of " + result->owner.InWords() + ": name another file");
+      ThrowUsage(path + " belongs to the results of " + result->owner.InWords() +
+                 ": choose another file");
   }
 }
 

@@ -100,7 +100,7 @@ void LeaveFilesOfOthers(const fs::path& draft, const fs::path& folder,
     } else if (!is_others(in_the_way)) {
       continue;
     }
-    LogWarning(in_the_way.string() + " is not of an earlier run, and stays: this run's " + name +
+    LogWarning(in_the_way.string() + " is not from an earlier run and is kept: the new " + name +
                " is not written");
     LeaveOut(draft, name);
   }

@@ -69,13 +69,13 @@ std::optional<Camera> CameraIn(const json& stats) {
 
 ResultFolder ReadResultFolder(const std::string& path) {
   const std::string file = path + "/stats.json";
-  if (!IsFolder(path)) ThrowInput(path + " is not a folder that `alidade run` left");
+  if (!IsFolder(path)) ThrowInput(path + " is not a result folder of `alidade run`");
   if (!IsThere(file))
     ThrowInput("there is no stats.json in " + path +
-               ": it is not a folder that `alidade run` left");
+               ": it is not a result folder of `alidade run`");
   const json stats = json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
   if (!stats.is_object() || !NumberIn(stats, "frames") || !NumberIn(stats, "tracked"))
-    ThrowInput(file + " is not one that `alidade run` wrote");
+    ThrowInput(file + " was not written by `alidade run`");
   ResultFolder result;
   result.path = path;
   result.camera = CameraIn(stats);

@@ -110,7 +110,7 @@ void TellWhatStopped(const TrackResult& result, const Slam& slam, RunRecord& rec
                                    [&](const StageHealth& s) { return s.name == stage.name; });
     if (stage.running || stage.name == "detector") continue;
     if (told != record.health.stages.end() && !told->running) continue;
-    LogWarning(stage.name + " stopped (" + stage.failure + "); going on without it");
+    LogWarning(stage.name + " stopped (" + stage.failure + "); the run continues without it");
   }
   record.health = std::move(health);
 }
@@ -217,12 +217,12 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
   if (wall) record.wall_s = wall->Milliseconds() * 1e-3;
   record.interrupted = Interrupted();
   if (record.dropped > kWarnedFrames) {
-    LogWarning(std::to_string(record.dropped) + " frames were skipped in all");
+    LogWarning(std::to_string(record.dropped) + " frames were skipped in total");
   }
 }
 
 std::string WhyNothing(const RunRecord& record) {
-  if (record.frames == 0) return "there was no frame";
+  if (record.frames == 0) return "the source has no frame";
   if (record.dropped == record.frames) {
     return "none of the " + std::to_string(record.frames) + " frames could be used (" +
            record.first_problem + ")";

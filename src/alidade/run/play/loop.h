@@ -1,4 +1,4 @@
-// Feeds a source to a Slam, frame by frame.
+// Plays a source into a Slam frame by frame.
 #pragma once
 
 #include <vector>
@@ -11,25 +11,24 @@
 
 namespace alidade {
 
-// What Slam::Track() is given of a frame.
+// The input of Slam::Track() for a frame.
 inline FrameInput InputOf(const SourceFrame& frame) {
   return {frame.time, frame.image, frame.right, frame.depth, frame.color};
 }
 
-// From now on Ctrl-C (or a TERM signal) lets RunFrames() return, once the workers are done; a
-// second one does not wait for them, a third ends the program.
+// From now on Ctrl-C (or SIGTERM) makes RunFrames() return after the workers have finished. A
+// second signal skips that wait, a third one ends the program.
 void CatchInterrupts();
 bool Interrupted();
-// The same for who has signal handlers of his own (Python): any thread may ask, once to end the run
-// and write its results, twice to wait for no worker. Forget it before the next run.
+// The same for programs with their own signal handlers (Python): the first request ends the run and
+// writes its results, the second one does not wait for workers. Reset before the next run.
 void RequestInterrupt();
 void ForgetInterrupts();
-inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
+inline constexpr int kInterruptedStatus = 130;  // exit status of an interrupted run
 
-// Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
-// that cannot be used are warned about, counted and left out. In the threaded schedule a frame that
-// is late by more than settings.time.max_latency gives way to a newer one that is there already.
-// `masks` may be null.
+// Plays `source` into `slam` to the end or until interrupted, and waits for the workers. Unusable
+// frames are counted, reported and skipped. In the threaded schedule a frame that is late by more
+// than settings.time.max_latency is skipped if a newer one is available. `masks` may be null.
 void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
                const std::vector<RunWatcher*>& watchers, RunRecord& record, MaskWriter* masks);
 

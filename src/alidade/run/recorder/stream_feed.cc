@@ -137,8 +137,8 @@ void StreamFeed::Fail() noexcept {
   }
   changed_.notify_all();
   try {
-    LogWarning("the stream stopped (" + WhatOf(std::current_exception()) +
-               "); the run goes on without it");
+    LogWarning("recording the stream stopped (" + WhatOf(std::current_exception()) +
+               "); the run continues without it");
   } catch (...) {  // no memory even for that
   }
 }

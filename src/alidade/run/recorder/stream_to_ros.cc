@@ -48,7 +48,7 @@ RosStatus MillisecondsStatus(const std::vector<float>& ms) {
   for (size_t i = 0; i < std::min(ms.size(), kResultStages.size()); ++i) {
     if (ms[i] >= 0) status.values.push_back({kResultStages[i], TwoDigits(ms[i])});
   }
-  status.message = status.values.empty() ? "not known" : status.values.front().second + " ms";
+  status.message = status.values.empty() ? "unknown" : status.values.front().second + " ms";
   return status;
 }
 

@@ -82,7 +82,7 @@ class Layout {
     if (&run == &first_) return first;
     if (errors_ && errors) return errors->ate.T_truth_estimate;
     if (first_.trajectory.empty()) {
-      *problem = "its path cannot be laid on the first one's, which has none";
+      *problem = "its trajectory cannot be aligned with that of the first run, which has none";
       return std::nullopt;
     }
     AteSettings settings;
@@ -90,7 +90,8 @@ class Layout {
     try {
       return first * EvaluateAte(first_.trajectory, run.trajectory, settings).T_truth_estimate;
     } catch (const Error& error) {
-      *problem = std::string("its path cannot be laid on the first one's: ") + error.what();
+      *problem = std::string("its trajectory cannot be aligned with that of the first run: ") +
+                 error.what();
       return std::nullopt;
     }
   }
@@ -130,7 +131,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
                              ? "Sim(3), scale " + Figure("%.4f", errors->ate.T_truth_estimate.s)
                              : "SE(3)"},
           {"RPE RMSE in 1 s", rpe ? Figure("%.6f m", rpe->trans.rmse) : kNone},
-          {"the same, turning", rpe ? Figure("%.4f°", rpe->rot.rmse) : kNone},
+          {"RPE rotation RMSE in 1 s", rpe ? Figure("%.4f°", rpe->rot.rmse) : kNone},
           {"ms per frame, median", timed ? Figure("%.2f", frame.median) : kNone},
           {"ms per frame, p95", timed ? Figure("%.2f", frame.p95) : kNone},
           {"CPU time", result.cpu_s ? Figure("%.2f s", result.cpu_s) : kNone},
@@ -140,7 +141,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
 }  // namespace
 
 std::string CompareResults(const std::vector<ComparedFolder>& folders) {
-  if (folders.size() < 2) ThrowUsage("there is nothing to compare: give two results or more");
+  if (folders.size() < 2) ThrowUsage("nothing to compare: give at least two results");
   std::vector<ResultFolder> results;
   results.reserve(folders.size());
   for (const ComparedFolder& folder : folders) results.push_back(ReadResultFolder(folder.path));
@@ -156,7 +157,8 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     if (!result.truth.empty() && !result.trajectory.empty())
       errors[i] =
           ErrorsAgainst(result.truth, result.trajectory, result.mono(), result.span, &problem);
-    if (!problem.empty()) page.notes.push_back(names[i] + ": no errors to the truth: " + problem);
+    if (!problem.empty())
+      page.notes.push_back(names[i] + ": no errors against ground truth: " + problem);
   }
   const Layout layout(results.front(), errors.front());
   page.unit = layout.unit();
@@ -180,7 +182,7 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     if (!problem.empty()) page.notes.push_back(names[i] + ": " + problem);
     if (result.maps.value_or(0) > 1)
       page.notes.push_back(names[i] +
-                           ": of its maps the one with the most frames is drawn and judged");
+                           ": of its maps, the one with the most frames is shown and evaluated");
     run.fates = FatesOf(result, starts[i]);
     if (errors[i]) run.error = ErrorCurve(*errors[i], result.trajectory, starts[i]);
     run.milliseconds = result.milliseconds;

@@ -132,11 +132,11 @@ std::vector<ReportKeyframe> DrawKeyframes(const KeyframeAlbum& album, const RunR
       from = "semi-dense depth";
     } else if (!page.depth.empty() && camera.depth_factor > 0) {
       dots = DotsOf(page.depth, static_cast<float>(1 / camera.depth_factor), 1);
-      from = "the sensor's depth";
+      from = "depth of the sensor";
     } else if (keyframe) {
       dots = DotsOf(*keyframe, results.map, smaller);
       radius = 3;
-      from = "depth of its landmarks";
+      from = "depth of the landmarks";
     }
     ReportKeyframe shown;
     shown.caption =

@@ -73,12 +73,12 @@ std::string FirstTracked(const RunRecord& record, const RunResults& results) {
 std::string CameraFact(const RunRecord& record) {
   const CameraRecord& camera = record.camera;
   if (camera.found && camera.found->usable) {
-    return CameraInWords(camera.found->estimate) + ", found from the recording" +
-           (camera.found->estimate.known ? "" : ", not for certain");
+    return CameraInWords(camera.found->estimate) + ", estimated from the recording" +
+           (camera.found->estimate.known ? "" : ", uncertain");
   }
   const std::string fov = Format("%.1f degrees", FovDegrees(record.source.camera));
   if (camera.known == "given") return fov + ", as given";
-  return fov + (camera.known == "file" ? ", by its calibration" : ", assumed");
+  return fov + (camera.known == "file" ? ", from its calibration" : ", assumed");
 }
 
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record,
@@ -112,12 +112,12 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +
-                                          ", which have no place in common; the first has most "
-                                          "frames, and the path's length is its"});
+                                          ", which share no place; the first one has the most "
+                                          "frames, and the path length is that of it"});
   }
   if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(record)});
   if (record.dropped > 0) facts.push_back({"frames skipped", std::to_string(record.dropped)});
-  if (record.interrupted) facts.push_back({"interrupted", "results as far as it got"});
+  if (record.interrupted) facts.push_back({"interrupted", "results are incomplete"});
   return facts;
 }
 

@@ -17,8 +17,8 @@ constexpr int kJpegQuality = 88;  // a third of the bytes of a PNG, and the dots
 
 constexpr std::pair<CloudView, const char*> kViews[] = {
     {CloudView::kBehind, "from behind the first camera"},
-    {CloudView::kFront, "as the first camera looked"},
-    {CloudView::kSide, "from its right"},
+    {CloudView::kFront, "in the direction of the first camera"},
+    {CloudView::kSide, "from the right"},
     {CloudView::kAbove, "from above"}};
 
 // About a pixel of a picture of most of the cloud.

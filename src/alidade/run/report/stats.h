@@ -1,4 +1,4 @@
-// A run in numbers: stats.json and report.html.
+// A run as numbers: stats.json and report.html.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace alidade {
 
-// What a report shows besides drawings. What is empty is left out.
+// What a report shows besides drawings. Empty parts are omitted.
 struct ReportPictures {
   ShapeViews shape;
   std::vector<ReportKeyframe> keyframes;
 };
 
-// Both as the bytes of the file. Fields and units: docs/reference/stats.md.
+// Content of both files. Keys and units: docs/reference/stats.md.
 std::string StatsJson(const RunRecord& record, const RunResults& results);
 std::string ReportHtml(const RunRecord& record, const RunResults& results, ReportPictures pictures);
 

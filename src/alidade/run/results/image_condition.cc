@@ -37,12 +37,12 @@ struct Differences {
 std::span<const Setting> LookSettings::Table() {
   using T = LookSettings;
   static constexpr Setting kRows[] = {
-      PublicSetting<&T::min_brightness>("look.min_brightness", FromTo(0, 255), "grey levels",
+      PublicSetting<&T::min_brightness>("look.min_brightness", FromTo(0, 255), "gray levels",
                                         "Lost frames with a lower mean are reported as dark."),
       PublicSetting<&T::blur>("look.blur", kZeroToOne, "",
                               "Lost frames that lost this share of the sharpness of the others are "
                               "reported as blurred."),
-      ExpertSetting<&T::contrast>("look.contrast", FromTo(0, 255), "grey levels",
+      ExpertSetting<&T::contrast>("look.contrast", FromTo(0, 255), "gray levels",
                                   "Lost frames with less coarse contrast are reported as bare."),
       ExpertSetting<&T::corners>("look.corners", kZeroToOne, "",
                                  "Lost sharp frames with less than this share of the wanted "

@@ -19,15 +19,15 @@
 
 namespace alidade {
 
-// What is known of the camera, and how it came to be.
+// The camera of a run and where it comes from.
 struct CameraRecord {
-  // given (--camera, --fov), file (beside the recording, or the loaded map's), estimated (found
-  // from the recording itself), assumed (66 degrees, or found but not for certain).
+  // given (--camera, --fov), file (of the recording or the loaded map), estimated (from the
+  // recording itself), assumed (66 degrees, or an uncertain estimate).
   std::string known = "file";
-  double focal_sigma = 0;            // standard deviation of the focal length, relative; 0: exact
-  std::optional<CameraFound> found;  // when it was looked for
-  double cpu_s = 0, wall_s = 0;      // that looking took, seconds
-  // Of its rolling shutter, as it was at the end (see Camera); sigma 0: told, or none was found.
+  double focal_sigma = 0;            // relative standard deviation of the focal length; 0: exact
+  std::optional<CameraFound> found;  // if it was calibrated before the run
+  double cpu_s = 0, wall_s = 0;      // of that calibration, seconds
+  // Rolling-shutter readout time at the end (see Camera); sigma 0: given, or not estimated.
   std::array<double, 2> readout{};
   double readout_sigma = 0;
 };
@@ -37,39 +37,39 @@ struct RunRecord {
   SourceInfo source;
   CameraRecord camera;
   SlamSettings settings;
-  StreamFeedSettings stream;  // of who tells the run, if somebody does
-  LookSettings look;          // of frames without a pose
+  StreamFeedSettings stream;  // of the recorder or viewer, if there is one
+  LookSettings look;          // for frames without a pose
   LensCheckSettings lens_check;
-  CalibrateSettings calibrate;  // of how an unknown camera is found
+  CalibrateSettings calibrate;  // for an unknown camera
   std::string profile;
 
-  std::vector<std::string> stamps;              // one per frame that Track() took
+  std::vector<std::string> stamps;              // one per frame that Track() processed
   std::vector<int> numbers;                     // their numbers in the recording
-  std::optional<double> first_time, last_time;  // of all that came, seconds
+  std::optional<double> first_time, last_time;  // of all frames of the source, seconds
   std::map<std::string, int> untracked_reasons;
   UntrackedLog untracked;
   KeyframeAlbum album;
-  std::string first_problem;  // of a bad frame
+  std::string first_problem;  // of the first skipped frame
   Trajectory truth;           // of rendered recordings
-  LensCheck lens;             // what the map says of it, at the end
+  LensCheck lens;             // distortion found in the final map
 
-  double cpu_s = 0;   // CPU time of all threads, reading images left out, seconds
+  double cpu_s = 0;   // CPU time of all threads except for reading images, seconds
   double wall_s = 0;  // seconds
   std::vector<std::string> warnings;
-  std::exception_ptr failure;  // the source's, that ended the run early
-  std::exception_ptr bug;      // what the first frame that failed by no fault of its own threw
+  std::exception_ptr failure;  // error of the source that ended the run early
+  std::exception_ptr bug;      // exception of the first frame that failed by an internal error
   SlamHealth health;           // at the end
 
   // Small ones side by side, which saves the gaps between larger ones.
   int threads = 0;
-  int frames = 0;   // all that came, bad ones included
-  int late = 0;     // that gave way to newer ones: not counted in `frames`
-  int dropped = 0;  // bad ones
-  int dark = 0;     // black ones among those that were not tracked
+  int frames = 0;   // all frames of the source, unusable ones included
+  int late = 0;     // skipped because newer ones were available: not counted in `frames`
+  int dropped = 0;  // unusable frames
+  int dark = 0;     // black images among the frames without a pose
   bool interrupted = false;
 };
 
-// Why nothing could be mapped, to be said to the user.
+// Why nothing could be mapped, as a message to the user.
 std::string WhyNothing(const RunRecord& record);
 
 }  // namespace alidade

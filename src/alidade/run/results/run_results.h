@@ -1,4 +1,4 @@
-// A finished run as plain values, for the files made of it.
+// The results of a finished run as plain values, from which its files are written.
 #pragma once
 
 #include <array>
@@ -12,8 +12,8 @@
 
 namespace alidade {
 
-// One map and the frames placed in it. Poses are T_world_camera of the (left) camera as mounted,
-// `world` the map's first keyframe's.
+// One map and the frames located in it. Poses are T_world_camera of the (left) camera as mounted;
+// `world` is that of the map's first keyframe.
 struct MapResults {
   MapId id;
   Trajectory trajectory, live, keyframes;
@@ -21,7 +21,7 @@ struct MapResults {
 };
 
 struct RunResults {
-  std::vector<FramePose> frames;  // every one that Track() took
+  std::vector<FramePose> frames;  // all frames that Track() processed
   MapSnapshot map;
   StageTimes times;
   SlamCounts counts;
@@ -29,20 +29,20 @@ struct RunResults {
   int tracked = 0;  // frames, in all maps
 
   std::optional<int> initialised_at;              // number of the first tracked frame
-  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
-  std::vector<MapResults> maps;                   // most frames first; at least one, perhaps empty
-  Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world
+  std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the first pose
+  std::vector<MapResults> maps;        // sorted by frames, most first; at least one, possibly empty
+  Eigen::Matrix3d R_camera_rectified;  // rotation from the map's points to that world
 };
 
 RunResults ResultsOf(const Slam& slam, const RunRecord& record);
 
-// The way of the camera through one of the maps: T_world_camera, one list for each stretch without
-// a gap.
+// The trajectory of the camera in one of the maps: T_world_camera, one list for each stretch
+// without a gap.
 std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number = 0);
 
 // "twice, 1.30 s in all".
 std::string LostInAll(const std::vector<std::array<double, 2>>& spans);
 
-double PathLength(const Trajectory& trajectory);  // in the trajectory's unit
+double PathLength(const Trajectory& trajectory);  // in the unit of the trajectory
 
 }  // namespace alidade

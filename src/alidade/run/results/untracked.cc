@@ -16,12 +16,12 @@ constexpr double kLong = 2;         // seconds after which coming back needs adv
 const char* WordsFor(Look look) {
   switch (look) {
     case Look::kDark:
-      return "the picture was dark. More light helps";
+      return "the image was dark. Use more light";
     case Look::kBlurred:
-      return "the picture was blurred. More light, or moving more slowly, helps";
+      return "the image was blurred. Move more slowly, or use more light";
     case Look::kBare:
-      return "there was nothing to hold on to, as in front of a bare wall. Keeping something with "
-             "structure in view helps";
+      return "the image had no texture, as in front of a bare wall. Keep something with texture in "
+             "view";
     case Look::kOrdinary:
       break;
   }
@@ -105,13 +105,13 @@ std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& s
     const Look look = LookOf(Within(frames, from, from + kBeginning));
     std::string line = Seconds(from - start) + " to " + Seconds(to - start) + ": ";
     if (frames.empty()) {
-      line += "what was mapped meanwhile did not hold, and was given up";
+      line += "the map of this part was wrong and was dropped";
     } else if (look != Look::kOrdinary) {
       line += WordsFor(look);
     } else if (frames.front().reason == "too few landmarks found") {
       line +=
-          "too little of what was mapped was seen again: a quick turn, or something in the way. "
-          "Moving more slowly helps";
+          "too few landmarks of the map were found: a fast rotation, or an occlusion. Move more "
+          "slowly";
     } else {
       line += frames.front().reason;
       if (const std::string advice = AdviceOn(frames.front().reason); !advice.empty())
@@ -120,8 +120,8 @@ std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& s
     if (to - from > kLong && frames.size() > 1 &&
         MostFrequentReason(frames) == "the place was not recognized") {
       line +=
-          ". It stayed lost as the place was not recognized: going back to where the camera has "
-          "been, and looking the way it did, helps";
+          ". It stayed lost because the place was not recognized: return to a place and viewing "
+          "direction that the camera had before";
     }
     lines.push_back(line + ".");
   }

@@ -133,7 +133,7 @@ Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
 Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions& options) {
   const Camera& camera = recording.camera();
   const Calibration own = CalibrationOf(camera, recording.lens());
-  if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
+  if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
   Calibration chosen = own;
   if (options.fov_degrees || !recording.settings().calibrated) {
     const double assumed = AssumedFov({camera.width, camera.height});

@@ -54,7 +54,7 @@ ChosenAlignment AlignmentFor(const std::string& sensor) {
   if (sensor == NameOf(Sensor::kMono)) return {Alignment::kSim3, "one camera"};
   if (sensor == NameOf(Sensor::kStereo) || sensor == NameOf(Sensor::kRgbd))
     return {Alignment::kSe3, "depth or stereo"};
-  return {Alignment::kSe3, "sensor not known; sim3 is for one camera"};
+  return {Alignment::kSe3, "unknown sensor; sim3 is for one camera"};
 }
 
 ChosenAlignment AlignmentNamed(const std::string& option, const std::string& word,
