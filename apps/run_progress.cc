@@ -49,7 +49,7 @@ void RunProgress::Begin(const Slam& slam, const RunRecord& record, const std::st
   (void)folder;
   slam_ = &slam;
   record_ = &record;
-  shown_at_ = -1e9;  // of finding the camera
+  shown_at_ = -1e9;  // the calibration may have set it
   const bool camera_found = record.camera.found && record.camera.found->usable;
   if (quiet_ || (!camera_found && record.source.told.empty())) return;
   terminal_.SetProgress("");
@@ -109,7 +109,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   } else if (record.settings.semidense.enabled && !record.settings.localise) {
     shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
-  // Where it began and what went wrong, when it is not all of the recording.
+  // First tracked frame and losses, if not all frames were tracked.
   std::string tracked;
   if (summary.first_tracked && !record.numbers.empty() &&
       *summary.first_tracked != record.numbers.front())

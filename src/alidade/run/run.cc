@@ -21,7 +21,7 @@
 namespace alidade {
 namespace {
 
-// What went wrong by no fault of the recording's; empty: nothing.
+// Description of internal errors; empty: none.
 std::string BugOf(const RunRecord& record) {
   std::string bugs;
   for (const StageHealth& stage : record.health.stages) {
@@ -35,14 +35,14 @@ std::string SizeOf(const Camera& camera) {
   return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 }
 
-// Where the settings did not ask for it.
+// Unless it was disabled by a setting.
 void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& settings) {
   if (settings.image_width != 0 || used.width == given.width) return;
   LogWarning("images of " + SizeOf(given) + " are downscaled to " + SizeOf(used) +
              ": larger ones take longer without gain (--set max_image_side=0 keeps their size)");
 }
 
-// Takes the library's warnings while it lives.
+// Collects the warnings of the library while it exists.
 class Warnings {
  public:
   explicit Warnings(const std::vector<RunWatcher*>& watchers) {
@@ -66,7 +66,7 @@ class Warnings {
   std::vector<std::string> all_;
 };
 
-// The folder of the results, locked, before the work begins.
+// Creates and locks the result folder before the run.
 OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   OutputClaim claim;
   claim.owner = OwnerOf(options.source, options.localise);
@@ -82,7 +82,7 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   return claim;
 }
 
-// What ended the run, with `problem` (may be empty) behind it.
+// Rethrows the error that ended the run, with `problem` (may be empty) appended.
 [[noreturn]] void Rethrow(const std::exception_ptr& failure, const std::string& problem) {
   try {
     std::rethrow_exception(failure);
@@ -91,7 +91,7 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   }
 }
 
-// Writes the results and puts them in their place. Throws what says that the run did not end well.
+// Writes the results and moves them to their place. Throws the error, if any, that ended the run.
 void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
                   const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
   const RunRecord& record = outcome.record;
@@ -143,10 +143,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   record.lens_check = settings.lens;
   record.calibrate = settings.calibrate;
   record.untracked.set_look(settings.look);
-  ThreadedFrom(options, false);  // slips in words come out before anything is opened
+  ThreadedFrom(options, false);  // invalid words are reported before anything is opened
   RateFrom(options, false);
 
-  cv::setNumThreads(1);  // the loops are ours
+  cv::setNumThreads(1);  // parallel loops use our own threads
   SetThreadCount(options.threads);
   record.threads = ThreadCount();
   const Warnings warnings(watchers);
@@ -165,7 +165,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   OutputFolder folder(ClaimOf(options, record.source));
   outcome.folder = folder.path();
   if (saved && saved->camera.width < record.source.camera.width)
-    record.settings.image_width = saved->camera.width;  // it was made from images scaled down
+    record.settings.image_width = saved->camera.width;  // the map was made from downscaled images
   LearnCamera(options, wanted, saved ? &saved->camera : nullptr, watchers, record);
   std::shared_ptr<Detector> detector = options.own_detector;
   if (options.detector)

@@ -24,19 +24,19 @@ std::string FromEnvironment(const std::string& name) {
   return value;
 }
 
-// `at` is the $ in `line`; moves it to the last sign of the name.
+// `at`: position of the $ in `line`; moved to the last character of the name.
 std::string Expanded(const std::string& line, size_t& at) {
   const bool braced = at + 1 < line.size() && line[at + 1] == '{';
   size_t end = at + (braced ? 2 : 1);
   const size_t begin = end;
   while (end < line.size() && IsNameSign(line[end])) ++end;
-  if (end == begin) return "$";  // a dollar is a dollar
+  if (end == begin) return "$";  // a plain dollar sign
   if (braced && (end >= line.size() || line[end] != '}')) ThrowUsage("${ without }");
   at = braced ? end : end - 1;
   return FromEnvironment(line.substr(begin, end - begin));
 }
 
-// What the folder of a source's results is called.
+// Default name of the result folder of a source.
 std::string FolderNameOf(const std::string& source) {
   std::string name = source;
   if (const std::string path = PathOfSource(source); !path.empty()) {
@@ -52,7 +52,7 @@ std::string FolderNameOf(const std::string& source) {
   return name.empty() || name.front() == '.' ? "recording" : name;
 }
 
-// What the batch has in its folder besides those of the recordings.
+// Files of the batch itself in its folder.
 bool IsBatchsOwn(const std::string& name) {
   static const std::set<std::string> kOwn = {"log",        "done",   "batch.json",
                                              "batch.md",   "merged", "batch.log",
@@ -67,7 +67,7 @@ void CheckFolderName(const std::string& name) {
     ThrowUsage("--out " + name + ": the batch itself writes a file of that name");
 }
 
-// Takes --out NAME or --out=NAME out of the words.
+// Removes --out NAME or --out=NAME from the words.
 std::optional<std::string> TakeOut(std::vector<std::string>& words) {
   for (size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--out" && i + 1 < words.size()) {
@@ -96,7 +96,7 @@ std::string Quoted(const std::string& word) {
 std::vector<std::string> WordsOfLine(const std::string& line) {
   std::vector<std::string> words;
   std::string word;
-  bool within = false;  // a word, which may be empty: ''
+  bool within = false;  // within a word, which may be empty: ''
   char quote = 0;
   const auto end_word = [&] {
     if (within) words.push_back(word);
@@ -164,7 +164,7 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
     }
   }
   if (items.empty()) ThrowUsage(name + ": the list contains no recording");
-  for (BatchItem& item : items) {  // given names first: others give way to them
+  for (BatchItem& item : items) {  // given names have priority
     if (!item.name.empty()) continue;
     const std::string own = FolderNameOf(SourceOf(item));
     item.name = own;

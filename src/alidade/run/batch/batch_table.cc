@@ -45,12 +45,12 @@ std::vector<std::string> CellsOf(const BatchRow& row) {
           TextOf("%.0f", row.peak_mb)};
 }
 
-// What a row without figures says instead.
+// Text of a row without figures.
 std::string FateOf(const BatchRow& row) {
   return row.state + (row.message.empty() ? "" : ": " + row.message);
 }
 
-// Characters a terminal shows: bytes of UTF-8 that begin one.
+// Number of characters in UTF-8.
 size_t WidthOf(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
@@ -232,7 +232,7 @@ std::vector<std::string> WorseThan(const std::vector<BatchRow>& earlier,
                                    const WorseSettings& settings) {
   struct Figure {
     const char* name;
-    const char* format;  // in what follows
+    const char* format;  // with that format
     double factor;
     std::optional<double> BatchRow::*value;
     WorseBy by;

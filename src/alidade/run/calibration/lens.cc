@@ -15,7 +15,7 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckS
     MeasurementNoise noise = used.mapper.noise;
     noise.right_from_sensor = slam.camera().baseline <= 0;
     return largest.valid() ? CheckLens(map, largest, slam.camera(), noise, settings) : LensCheck{};
-  } catch (const std::bad_alloc&) {  // results matter more
+  } catch (const std::bad_alloc&) {  // the warning is optional
     return {};
   }
 }

@@ -52,13 +52,15 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
     return;
   }
   const bool looked_for = source.sensor == Sensor::kMono && record.calibrate.enabled;
-  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // on the way
+  // estimated during the run
+  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {
     record.settings.FindCamera();
     record.settings.refine.focal_sigma = camera.focal_sigma;
     return;
   }
   if (!looked_for) {
-    record.settings.readout.enabled = false;  // a wrong lens may be taken for it
+    // a wrong focal length may look like a rolling shutter
+    record.settings.readout.enabled = false;
     LogWarning("the camera is unknown: " + AssumedInWords(source) + kBetter);
     return;
   }
@@ -81,7 +83,8 @@ void LearnCamera(const RunOptions& options, const SourceOptions& wanted, const C
     if (!told_wary) wary = 3 * camera.focal_sigma;
   }
   if (!found.estimate.known)
-    record.settings.readout.enabled = false;  // the lens may be taken for it
+    // a wrong focal length may look like a rolling shutter
+    record.settings.readout.enabled = false;
   if (found.estimate.known) {
     camera.known = "estimated";
   } else if (found.usable) {

@@ -52,7 +52,7 @@ void CheckFree(const fs::path& path) {
 
 void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>& files) {
   fs::path path = fs::path(folder).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // written with a slash at its end
+  if (!path.has_filename()) path = path.parent_path();  // with a trailing slash
   CheckFree(path);
   for (const std::string& left : StaleTemporaries(path.string())) {
     std::error_code ignored;

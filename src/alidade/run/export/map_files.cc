@@ -23,7 +23,7 @@ struct Plan {
   Form form;
 };
 
-// What the words ask for, with `default` made definite.
+// The format with `default` resolved.
 Plan PlanOf(const ExportSettings& settings) {
   const auto target = Choice<Target>("--to", settings.to,
                                      {{"ply", Target::kPly},

@@ -24,7 +24,7 @@ std::vector<RosPose> RosPathOf(const Trajectory& trajectory) {
   return path;
 }
 
-// The whole of what is known at the end.
+// Writes the complete final state.
 void TellState(RosLog& log, double time, const FinalState& state) {
   if (!state.trajectory.empty()) log.Path(time, RosPathOf(state.trajectory));
   if (state.landmarks) log.Landmarks(time, *state.landmarks);
@@ -38,7 +38,7 @@ McapCounts CountsOf(int frames, const FinalState& state, const McapLog& file) {
   return {frames, points(state.landmarks), points(state.shape), file.bytes()};
 }
 
-// Frames one by one, and what is known at the end before them and after.
+// Writes frames individually, and the final state before and after them.
 McapCounts TellKnown(const Trajectory& frames, const FinalState& state,
                      const std::optional<Camera>& camera, const std::vector<RosStatus>& diagnostics,
                      const std::string& out, const std::string& program) {

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kMergeVersion = 1;  // of merge.json
+constexpr int kMergeVersion = 1;  // version of merge.json
 
 size_t OriginOf(const MergedMaps& merged, KeyFrameId id) {
   for (size_t i = 0; i < merged.parts.size(); ++i) {
@@ -26,14 +26,14 @@ size_t OriginOf(const MergedMaps& merged, KeyFrameId id) {
   return merged.parts.size();
 }
 
-// A map by where it is, wherever it is named.
+// The absolute path of a map, independent of how it was typed.
 std::string PlaceOfMap(const std::string& path) {
   std::error_code error;
   const auto place = std::filesystem::weakly_canonical(SavedMapPath(path), error);
   return error ? path : place.string();
 }
 
-// What an earlier merge left in a folder, as its merge.json says.
+// The files of an earlier merge in a folder, from its merge.json.
 struct EarlierMerge {
   std::set<std::string> inputs, files;
 };
@@ -43,7 +43,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
   const std::string file = folder + "/merge.json";
   if (!IsFile(file)) return earlier;
   const auto json = ordered_json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
-  // Anybody may have written it.
+  // The file may have been written by anybody.
   const auto list_in = [](const ordered_json& object, const char* name) {
     const bool there = object.is_object() && object.contains(name) && object[name].is_array();
     return there ? object[name] : ordered_json::array();
@@ -130,7 +130,7 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                 const MergedMaps& merged) {
   const std::vector<MergedWorld> worlds = WorldsOf(merged);
-  std::map<MapId, size_t> number;  // of a world
+  std::map<MapId, size_t> number;  // of each world
   ordered_json world_list = ordered_json::array();
   for (const MergedWorld& world : worlds) {
     number.emplace(world.id, number.size());

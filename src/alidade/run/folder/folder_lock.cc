@@ -29,7 +29,7 @@ std::string LineIn(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-// Still the one of that name: who held it may have removed it before its lock ended.
+// Whether the locked file still has that name: the previous holder may have removed it.
 bool IsAt(int fd, const std::string& path) {
   struct stat own {
   }, there{};
@@ -56,7 +56,7 @@ FolderLock::FolderLock(const std::string& file, const std::string& where) : file
     ::close(fd_);
   }
   const std::string line = ThisProcess() + "\n";
-  // A name that cannot be written down is only missing in a message.
+  // Without the name only a message is less precise.
   if (::ftruncate(fd_, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(fd_, line.data(), line.size(), 0);
 }

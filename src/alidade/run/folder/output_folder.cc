@@ -35,7 +35,7 @@ void CheckOwner(const OutputClaim& claim) {
              ": choose another folder, or replace them with --overwrite");
 }
 
-// Why the new results are elsewhere.
+// The message why the new results are elsewhere.
 std::string Complaint(const OutputClaim& claim, const EarlierResult& earlier,
                       const EarlierResult& now, const std::string& place) {
   const auto frames = [](const EarlierResult& result) {
@@ -46,7 +46,7 @@ std::string Complaint(const OutputClaim& claim, const EarlierResult& earlier,
          "; --overwrite replaces the earlier results";
 }
 
-// What ReadEarlierResult() reads.
+// The data read by ReadEarlierResult().
 void NoteFolder(const fs::path& draft, const ResultOwner& owner, bool complete) {
   using nlohmann::ordered_json;
   const std::string file = (draft / kStatsFile).string();
@@ -85,7 +85,7 @@ OutputFolder::MadeFolder::MadeFolder(const OutputClaim& claim) {
 
 OutputFolder::MadeFolder::~MadeFolder() {
   std::error_code error;
-  if (!path.empty()) fs::remove(path, error);  // only when it is empty
+  if (!path.empty()) fs::remove(path, error);  // succeeds only if it is empty
 }
 
 OutputFolder::OutputFolder(OutputClaim claim)
@@ -101,7 +101,7 @@ OutputFolder::OutputFolder(OutputClaim claim)
   std::error_code error;
   for (const fs::path& left : LeftoversIn(claim_.path)) fs::remove_all(left, error);
   draft_.emplace((fs::path(claim_.path) / kRunPlace).string());
-  Write(kStatsFile, std::string(65536, '\0'));  // as much as a short run leaves
+  Write(kStatsFile, std::string(65536, '\0'));  // about the size of a short run's files
   Discard(kStatsFile);
 }
 
@@ -138,7 +138,7 @@ PlacedResult OutputFolder::Place(bool complete) {
   LeaveFilesOfOthers(draft(), placed.folder, claim_.inputs);
   try {
     NoteFolder(draft(), claim_.owner, complete);
-  } catch (const Error&) {  // the disk is full: as older versions left it
+  } catch (const Error&) {  // the disk is full; older versions had no list either
   }
   PlaceFiles(draft(), placed.folder, claim_.inputs);
   draft_.reset();

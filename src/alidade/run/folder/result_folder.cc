@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Anybody may have written the file: nothing is taken to be of its type.
+// The file may have been written by anybody: types are checked.
 std::optional<double> NumberIn(const json& object, const char* name) {
   if (!object.is_object() || !object.contains(name) || !object[name].is_number())
     return std::nullopt;
@@ -108,7 +108,7 @@ ResultFolder ReadResultFolder(const std::string& path) {
   const std::string trajectory = path + "/trajectory.txt";
   if (*result.tracked > 0) result.trajectory = ReadTrajectory(trajectory);
   const std::string truth = path + "/groundtruth.txt";
-  // Since the run, the user may have gone to another folder.
+  // The working directory may have changed since the run.
   const json folder = stats.contains("folder") ? stats["folder"] : json();
   const std::string place = WordIn(folder, "source");
   result.truth =

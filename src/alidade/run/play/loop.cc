@@ -19,7 +19,7 @@
 namespace alidade {
 namespace {
 
-constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
+constexpr int kWarnedFrames = 10;  // warnings about individual frames at most
 constexpr double kBlack = 10;      // mean grey level
 
 std::atomic<int> g_interrupted{0};  // requests so far
@@ -30,7 +30,7 @@ void Interrupt(int) {
   ++g_interrupted;
 }
 
-// Waits for the workers; a second signal gives up what is left.
+// Waits for the workers; a second signal aborts the wait.
 class Finisher {
  public:
   explicit Finisher(Slam& slam)
@@ -48,10 +48,10 @@ class Finisher {
 
  private:
   std::atomic<bool> done_{false};
-  std::thread thread_;  // last: it uses the above
+  std::thread thread_;  // last, because it uses the other members
 };
 
-// Waits for the moment a frame is due.
+// Waits until a frame is due.
 class Pacer {
  public:
   explicit Pacer(const Rate& rate) : rate_(rate) {}
@@ -66,7 +66,7 @@ class Pacer {
     const double due =
         rate_.kind == Rate::Kind::kRealtime ? frame_time - first_time_ : count_ / rate_.fps;
     ++count_;
-    // In slices, so that Ctrl-C is not kept waiting.
+    // In steps, so that Ctrl-C takes effect soon.
     while (!Interrupted()) {
       const double left = due - clock_.Milliseconds() * 1e-3;
       if (left <= 0) return -left;
@@ -82,7 +82,7 @@ class Pacer {
   int count_ = 0;  // frames so far
 };
 
-// CPU time of everything but reading images, from its making on.
+// CPU time since its construction, except for reading images.
 class CpuMeter {
  public:
   explicit CpuMeter(const ReadAhead& source) : source_(source), start_(Now()) {}
@@ -101,7 +101,7 @@ void Drop(const SourceFrame& frame, const std::string& problem, RunRecord& recor
   }
 }
 
-// Once for each part; a detector that fails says so itself.
+// Warns once for each part; a failed detector warns itself.
 void TellWhatStopped(const TrackResult& result, const Slam& slam, RunRecord& record) {
   if (result.warning.empty()) return;
   SlamHealth health = slam.Health();
@@ -144,7 +144,7 @@ void Feed(const SourceFrame& frame, Slam& slam, const std::vector<RunWatcher*>& 
       Drop(frame, what, record);
       return;
     }
-    // The frame counts, without a pose; the next will do better.
+    // The frame counts as one without a pose; the run continues.
     if (!record.bug) record.bug = failure;
     ++record.untracked_reasons[what];
     LogWarning("frame " + std::to_string(frame.number) + " failed: " + what);
@@ -187,7 +187,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
-  const bool may_drop = record.settings.threaded;  // the inline schedule gives the same every time
+  const bool may_drop = record.settings.threaded;  // the inline schedule must be reproducible
   try {
     while (!Interrupted()) {
       const std::optional<SourceFrame> frame = source.Next();
@@ -204,7 +204,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, Slam& slam,
       }
       Feed(*frame, slam, watchers, record, masks);
     }
-  } catch (...) {  // whatever it was: what was done until then is kept
+  } catch (...) {  // any exception: the results so far are written
     record.failure = std::current_exception();
   }
   for (RunWatcher* watcher : watchers) watcher->Finishing();

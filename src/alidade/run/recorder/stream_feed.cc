@@ -69,7 +69,7 @@ void StreamFeed::Begin(const Slam& slam, const RunRecord& record, const std::str
   thread_ = std::thread([this] { Run(); });
 }
 
-// A viewer may hold up a recording.
+// Viewers may pause a recording.
 void StreamFeed::Wait(bool (*interrupted)()) {
   std::unique_lock<std::mutex> lock(queue_mutex_);
   while (paused_ && steps_ == 0 && !interrupted())
@@ -139,7 +139,7 @@ void StreamFeed::Fail() noexcept {
   try {
     LogWarning("recording the stream stopped (" + WhatOf(std::current_exception()) +
                "); the run continues without it");
-  } catch (...) {  // no memory even for that
+  } catch (...) {  // memory is exhausted
   }
 }
 
@@ -198,7 +198,7 @@ void StreamFeed::TellEnd() {
   }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
-  if (!record_->truth.empty()) {  // of a rendered source, which tells it frame by frame
+  if (!record_->truth.empty()) {  // of a rendered source, which provides it frame by frame
     encoder_->SetTruth(TruthOf(record_->truth));
     Tell({encoder_->Hello()});
   }

@@ -22,7 +22,7 @@ std::string Figure(const char* format, const std::optional<double>& value) {
   return text;
 }
 
-// The folders' own names, or whole paths where two have the same.
+// The names of the folders, or their paths if two are equal.
 std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
   std::vector<std::string> names;
   for (const ComparedFolder& folder : folders) {
@@ -38,7 +38,7 @@ std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
   return names;
 }
 
-// Where time is 0 on the page: one moment for recordings of the same time, else each one's start.
+// The origin of time on the page: common for recordings of the same time, else the start of each.
 std::vector<double> StartsOf(const std::vector<ResultFolder>& results) {
   double last_start = results.front().span.first, first_end = results.front().span.last;
   double start = last_start;
@@ -58,12 +58,12 @@ std::vector<FateSpan> FatesOf(const ResultFolder& result, double start) {
   if (!result.first_pose) return {{begin, end, FrameFate::kStarting}};
   std::vector<FateSpan> fates = {{begin, *result.first_pose - start, FrameFate::kStarting},
                                  {*result.first_pose - start, end, FrameFate::kTracked}};
-  for (const auto& [from, to] : result.lost_spans)  // drawn over it
+  for (const auto& [from, to] : result.lost_spans)  // drawn on top
     fates.push_back({from - start, to - start, FrameFate::kLost});
   return fates;
 }
 
-// How the first result's world is laid on the page, and then the others'.
+// Transforms from the world of the first result to the page, and then for the others.
 class Layout {
  public:
   Layout(const ResultFolder& first, const std::optional<TruthErrors>& errors)
@@ -71,7 +71,7 @@ class Layout {
 
   std::string unit() const { return first_.mono() && !errors_ ? "map units" : "m"; }
 
-  // T_page_world; nothing, and a note, when it has too little in common with the first.
+  // T_page_world; nullopt, with a note, if it has too little in common with the first.
   std::optional<Sim3> Of(const ResultFolder& run, const std::optional<TruthErrors>& errors,
                          std::string* problem) const {
     if (run.trajectory.empty()) {

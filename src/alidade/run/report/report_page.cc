@@ -16,7 +16,7 @@ std::string Format(const char* format, double value) {
   return text;
 }
 
-// Landmarks of all maps that are drawn: more do not show, but make the page large.
+// Most landmarks that are drawn, of all maps: more are not visible, but enlarge the page.
 constexpr size_t kMostLandmarks = 8000;
 
 PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
@@ -29,7 +29,7 @@ PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string
   }
   const size_t step = 1 + static_cast<size_t>(results.map.landmark_count()) / kMostLandmarks;
   size_t counted = 0;
-  for (LandmarkId id : results.map.Landmarks()) {  // of other maps they lie in other worlds
+  for (LandmarkId id : results.map.Landmarks()) {  // those of other maps have other world frames
     if (results.map.MapOf(results.map.Find(id)->reference) != map.id) continue;
     if (counted++ % step != 0) continue;
     place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
@@ -121,7 +121,7 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunRecord& record
   return facts;
 }
 
-// How far the paths are from the truth, where it is known; each map is laid on it by itself.
+// Errors against ground truth, if it is known; each map is aligned separately.
 void AddErrors(const RunRecord& record, const RunResults& results, RunReport& report) {
   if (!record.first_time) return;
   const Trajectory truth = record.truth.empty() ? TruthBeside(record.source_path) : record.truth;

@@ -33,7 +33,7 @@ ordered_json SettingsJson(const RunRecord& record) {
   return settings;
 }
 
-// What semi-dense mapping did; null when it was not asked for.
+// Counts of semi-dense mapping; null if it was disabled.
 ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& report) {
   if (!record.settings.semidense.enabled || record.settings.localise) return nullptr;
   const auto mean = [](int64_t sum, int64_t count) {
@@ -46,7 +46,7 @@ ordered_json SemiDenseJson(const RunRecord& record, const SemiDenseReport& repor
           {"most_behind", report.most_behind}};
 }
 
-// What the map says of the lens; null: too little was seen.
+// Result of the distortion check; null: too few keyframes.
 ordered_json LensJson(const LensCheck& lens) {
   if (lens.windows == 0) return nullptr;
   return {{"k1", lens.k1},
@@ -76,7 +76,7 @@ ordered_json CameraJson(const RunRecord& record) {
       {"known", record.camera.known}};
 }
 
-// How it was found; null: it was not looked for.
+// Result of offline self-calibration; null: not done.
 ordered_json CalibrationJson(const RunRecord& record) {
   if (!record.camera.found) return nullptr;
   const CameraFound& found = *record.camera.found;
@@ -92,7 +92,7 @@ ordered_json CalibrationJson(const RunRecord& record) {
           {"wall_s", record.camera.wall_s}};
 }
 
-// Parts that failed and did nothing from then on.
+// Parts that failed and stopped.
 ordered_json StoppedJson(const SlamHealth& health) {
   ordered_json stopped = ordered_json::array();
   for (const StageHealth& stage : health.stages) {
@@ -101,7 +101,7 @@ ordered_json StoppedJson(const SlamHealth& health) {
   return stopped;
 }
 
-// Which frames are in which map, and where its poses are.
+// The frames of each map, and the files with its poses.
 ordered_json MapFiles(const RunResults& results) {
   ordered_json files = ordered_json::array();
   for (size_t i = 0; i < results.maps.size(); ++i) {
@@ -164,7 +164,7 @@ std::string StatsJson(const RunRecord& record, const RunResults& results) {
       {"late_frames", record.late},
       {"warnings", record.warnings},
       {"stopped", StoppedJson(record.health)}};
-  // A path may be in any encoding.
+  // A path may have any encoding.
   return stats.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 

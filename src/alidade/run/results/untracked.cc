@@ -9,9 +9,9 @@
 namespace alidade {
 namespace {
 
-constexpr double kBeginning = 1;    // seconds of a stretch that are asked why it was lost
-constexpr double kShare = 1.0 / 3;  // of their frames must look alike to be the cause
-constexpr double kLong = 2;         // seconds after which coming back needs advice of its own
+constexpr double kBeginning = 1;    // seconds at the start of a loss that show its cause
+constexpr double kShare = 1.0 / 3;  // share of these frames that must have the same condition
+constexpr double kLong = 2;         // seconds after which advice for relocalization is added
 
 const char* WordsFor(Look look) {
   switch (look) {
@@ -34,7 +34,7 @@ std::string Seconds(double value) {
   return text;
 }
 
-// Frames on end that lie within a stretch of time, cut to it.
+// The spans of frames within a time interval, cut to it.
 std::vector<UntrackedFrames> Within(const std::vector<UntrackedFrames>& all, double from,
                                     double to) {
   std::vector<UntrackedFrames> within;
@@ -50,7 +50,7 @@ std::vector<UntrackedFrames> Within(const std::vector<UntrackedFrames>& all, dou
   return within;
 }
 
-// How most of the frames look that do not look ordinary, when they are enough.
+// The most frequent condition other than ordinary, if it is frequent enough.
 Look LookOf(const std::vector<UntrackedFrames>& frames) {
   std::map<Look, int> counts;
   int all = 0;

@@ -93,7 +93,7 @@ Rate RateFrom(const RunOptions& options, bool threaded) {
   if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
   if (*options.rate == "max") return {};
   const std::optional<double> fps = ParseNumber(*options.rate);
-  constexpr double kSlowest = 1e-3;  // a frame in 17 minutes; a slip of the keys, below
+  constexpr double kSlowest = 1e-3;  // one frame in 17 minutes; lower values are typing errors
   if (!fps || !(*fps >= kSlowest && *fps <= 1e6)) {
     ThrowUsage("--rate must be realtime, max or frames per second (0.001 to 1000000), not '" +
                *options.rate + "'");
