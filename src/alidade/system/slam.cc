@@ -26,7 +26,7 @@ SlamSettings InUse(SlamSettings settings) {
 }
 
 void WarnOfJump(double seconds) {
-  char text[100];
+  char text[120];
   std::snprintf(
       text, sizeof(text),
       "the time jumps %s by %.1f s, which is treated as a cut (further jumps are not reported)",

@@ -25,9 +25,8 @@ std::string LensInWords(const LensCheck& check, const Camera& camera) {
   char how[80];
   std::snprintf(how, sizeof(how), " (k1 near %.2f, a shift of %.0f %% at the image corners)",
                 check.k1, 100 * std::abs(check.bend));
-  const std::string than =
-      camera.HasDistortion() ? " more strongly than its calibration says" : " strongly";
-  return "this camera has radial distortion" + than + how +
+  const std::string than = camera.HasDistortion() ? " beyond its calibration" : "";
+  return "this camera has strong radial distortion" + than + how +
          " that is not corrected, so trajectory and map are distorted. Use a calibration with "
          "distortion: --camera (docs/reference/camera.md)";
 }
