@@ -125,7 +125,7 @@ TEST_F(BadFiles, YamlThatGrowsOrHoldsItselfIsRefused) {
   for (const std::string flag : {"--config", "--camera"}) {
     ExpectRefused(Run(recording, {flag, itself}), 3, "itself.yaml:1: anchors and aliases");
     ExpectRefused(Run(recording, {flag, lol}), 3, "laughs.yaml:1: anchors and aliases");
-    ExpectRefused(Run(recording, {flag, deep}), 3, "deep.yaml:1: lists or maps in one another");
+    ExpectRefused(Run(recording, {flag, deep}), 3, "deep.yaml:1: lists or maps are nested");
   }
   const std::string twice = folder_.Write("twice.yaml", "image_width: 200\nimage_width: 300\n");
   ExpectRefused(Run(recording, {"--config", twice}), 3, "twice.yaml:2: `image_width` is given");

@@ -191,7 +191,7 @@ TEST_F(EvaluateDepth, KeyframesWithoutTruthAreLeftOutAndCounted) {
               {{TinyStamp(1), Plain(1)}, {TinyStamp(2), Plain(1)}, {"300.0", Plain(1)}});
   const json depth = Json(folder_.path());
   EXPECT_EQ(depth["keyframes"].size(), 1u);
-  EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes were taken at times"));
+  EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes have no frame of the same time"));
   EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes have no true depth"));
 }
 

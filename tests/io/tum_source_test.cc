@@ -139,9 +139,9 @@ TEST(TumSource, TimesOutOfOrderAreSortedRepeatsAndNonsenseSkipped) {
   EXPECT_EQ(good, (std::vector<std::string>{"100.5", "104.5"}));
   EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:3: `nan` is not a time stamp"));
   EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:5: `soon` is not a time stamp"));
-  EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:6: there is no file name"));
+  EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:6: the file name after"));
   EXPECT_THAT(problems,
-              testing::HasSubstr("102.500000.png has the time stamp of the frame before"));
+              testing::HasSubstr("102.500000.png has the time stamp of the previous frame"));
   EXPECT_THAT(warnings.text(), testing::HasSubstr("not in order"));
 }
 
