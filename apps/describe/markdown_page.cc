@@ -47,7 +47,12 @@ void AddOptionTable(const CommandText& command, const std::string& heading, bool
   bool begun = false;
   for (const OptionText& option : command.options) {
     if (option.positional != positional || (!positional && option.group != heading)) continue;
-    if (!begun) out << "\n| " << (positional ? "argument" : heading) << " | meaning |\n|---|---|\n";
+    if (!begun)
+      out << "\n| "
+          << (positional             ? std::string("argument")
+              : heading == "Options" ? "option"
+                                     : heading)
+          << " | meaning |\n|---|---|\n";
     begun = true;
     out << "| " << OptionCell(option) << " | " << MarkdownText(option.help);
     if (!option.fallback.empty()) out << " Default: " << MarkdownCode(option.fallback) << ".";
@@ -55,9 +60,15 @@ void AddOptionTable(const CommandText& command, const std::string& heading, bool
   }
 }
 
+// A help text as a sentence.
+std::string Sentence(std::string text) {
+  if (!text.empty() && text.back() == '.') text.pop_back();
+  return MarkdownText(text) + ".";
+}
+
 void AddCommand(const CommandText& command, std::ostream& out) {
   out << "\n## " << command.path << "\n\n"
-      << MarkdownText(command.help) << ".\n\n```\n"
+      << Sentence(command.help) << "\n\n```\n"
       << UsageLine(command) << "\n```\n";
   AddOptionTable(command, "", true, out);
   std::vector<std::string> groups;
