@@ -3,23 +3,27 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/folder/earlier_result.h"
 #include "alidade/run/play/loop.h"
 #include "batch_arguments.h"
+#include "old_forms.h"
 #include "program/arguments.h"
 #include "run_flags.h"
 
 namespace alidade {
 namespace {
 
-// Parses the words of a line as `alidade run` does. Throws Error (usage) for invalid ones.
-RunOptions OptionsOf(const BatchItem& item) {
+// Parses the words of a line as `alidade run` does, and replaces old forms among them. Throws Error
+// (usage) for invalid ones.
+RunOptions OptionsOf(BatchItem& item) {
   RunOptions options;
   CLI::App run("", "alidade run");
   AddRunOptions(run, options);
+  item.words = WithoutOldForms(run, std::move(item.words));
   CheckNames(run, item.words);
   std::vector<std::string> words(item.words.rbegin(), item.words.rend());
   try {

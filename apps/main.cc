@@ -3,6 +3,7 @@
 
 #include "alidade/version.h"
 #include "commands.h"
+#include "old_forms.h"
 
 namespace {
 
@@ -48,4 +49,6 @@ void Describe(CLI::App& app, alidade::Action& action) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return alidade::RunProgram(argc, argv, Describe); }
+int main(int argc, char** argv) {
+  return alidade::RunProgram(argc, argv, Describe, alidade::WithoutOldForms);
+}

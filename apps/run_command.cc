@@ -28,19 +28,19 @@ int RunAndTell(const RunOptions& options) {
   std::vector<RunWatcher*> watchers = {&progress};
   std::optional<StreamFeed> feed;
   std::unique_ptr<ViewerServer> server;
-  if (options.record || options.viewer) {
+  const std::optional<std::string> record = RecordFileOf(options);
+  if (record || options.viewer) {
     CheckRunOptions(options);
-    feed.emplace("alidade " ALIDADE_VERSION, options.record, SettingsFrom(options).stream);
+    feed.emplace("alidade " ALIDADE_VERSION, record, SettingsFrom(options).stream);
     watchers.push_back(&*feed);
   }
   if (options.viewer) {
-    server =
-        StartViewer(ServeSettingsFor(options.viewer, options.host), &*feed, "", options.source);
+    server = StartViewer(ServeSettingsFor(options.port, options.host), &*feed, "", options.source);
     std::printf("Viewer: %s\n", server->address().c_str());
     std::fflush(stdout);
   }
   const int status = Run(options, watchers).status;
-  if (options.record && !options.quiet && feed->frames() > 0)
+  if (record && !options.quiet && feed->frames() > 0)
     std::printf("The recorded stream has %.1f MB\n", 1e-6 * static_cast<double>(feed->bytes()));
   if (server && isatty(STDOUT_FILENO) != 0) {
     std::printf("Viewer still at %s; Ctrl-C ends\n", server->address().c_str());

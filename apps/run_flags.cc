@@ -6,20 +6,23 @@ namespace alidade {
 namespace {
 
 constexpr char kExamples[] =
-    "\nExamples:\n  alidade run my_recording                     uses depth or stereo if there is "
-    "any\n  alidade run \"synth:desk?seed=3\" --sensor mono\n  alidade run walk.mp4                "
-    "         a video: its camera is calibrated first\n  alidade run walk.mp4 --fov 70 --out walk  "
-    "   a video with a known field of view\n  alidade run walk.bag                         a ROS "
-    "recording: .bag, .db3, .mcap or folder\n  alidade run "
-    "\"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   with these topics\n  alidade run "
-    "my_recording --viewer            watch the run in a browser\n  alidade run my_recording "
-    "--record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag play\n  alidade run "
-    "my_recording --schedule threaded --profile phone\n  alidade run my_recording --semidense      "
-    "   also estimates semi-dense depth\n  alidade run more --load "
-    "alidade-out/my_recording/map.alidade\n  alidade run my_recording --set "
-    "tracker.extractor.features=1500 --first 100 --last 400\n\nWrites trajectory.txt, "
-    "keyframes.txt, landmarks.ply, stats.json, report.html and more to --out;\nwith --semidense "
-    "also semidense.ply, semidense.png and depth/ (docs/reference/run-folder.md).";
+    "\nExamples:\n"
+    "  alidade run my_recording                     uses depth or stereo if there is any\n"
+    "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
+    "  alidade run walk.mp4                         a video: its camera is calibrated first\n"
+    "  alidade run walk.mp4 --fov 70 --out walk     a video with a known field of view\n"
+    "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
+    "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   with these topics\n"
+    "  alidade run my_recording --viewer            watch the run in a browser\n"
+    "  alidade run my_recording --record-to a.mcap  for Foxglove, Lichtblick, Rerun, ros2 bag "
+    "play\n"
+    "  alidade run my_recording --schedule threaded --profile phone\n"
+    "  alidade run my_recording --semidense         also estimates semi-dense depth\n"
+    "  alidade run more --load alidade-out/my_recording/map.alidade\n"
+    "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
+    "\nWrites trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more to "
+    "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ "
+    "(docs/reference/run-folder.md).";
 
 void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
@@ -76,20 +79,18 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command.add_option("--threads", options.threads, "Threads for parallel loops; 0: one per core")
       ->type_name("N");
   command.add_option("--seed", options.seed, "Seed of all random numbers")->type_name("N");
+  command.add_flag("--record", options.record,
+                   "Record the run for `alidade view`, as run.stream in the result folder");
   command
-      .add_option("--record", options.record,
-                  "Record the run for `alidade view`, as run.stream in the result folder or as "
-                  "FILE; FILE.mcap: for Foxglove, Rerun and ros2")
-      ->type_name("FILE")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--record-to", options.record_to,
+                  "Record the run to FILE instead; FILE.mcap: for Foxglove, Rerun and ros2")
+      ->type_name("FILE");
+  command.add_flag("--viewer", options.viewer,
+                   "Show the run in a browser while it is processed, and print the address");
   command
-      .add_option("--viewer", options.viewer,
-                  "Show the run in a browser while it is processed, and print the address; default "
-                  "port: 8090, or the next free one")
-      ->type_name("PORT")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--port", options.port,
+                  "Port on which the viewer listens; default: 8090, or the next free one")
+      ->type_name("PORT");
   command
       .add_option("--host", options.host,
                   "Address on which the viewer listens; default: 127.0.0.1, reachable from this "

@@ -35,9 +35,7 @@ void AddBashValues(const CommandText& command, std::ostream& out) {
     for (const std::string& name : option.names)
       pattern += (pattern.empty() ? "" : " | ") + ShellQuoted(command.path + " " + name);
     std::string does = BashOffers(WordsOf(option), IsPath(option));
-    // An optional value may be followed by anything; other values without known words get no
-    // proposals.
-    if (does.empty() && option.value_optional) continue;
+    // Values without known words get no proposals.
     out << "    " << pattern << ") " << (does.empty() ? ";;" : does) << "\n";
   }
   for (const CommandText& sub : command.commands) AddBashValues(sub, out);

@@ -14,11 +14,10 @@ struct OptionText {
   std::vector<std::string> names;  // "-h", "--help"; the name of a positional argument: "SOURCE"
   bool positional = false;
   bool required = false;
-  bool repeats = false;         // may occur, or takes values, more than once
-  bool takes_value = false;     // false: a flag
-  bool value_optional = false;  // an option with an optional value
-  std::string placeholder;      // name of the value: "FILE", "mono|stereo|rgbd"
-  std::string fallback;         // default value; empty: not stated
+  bool repeats = false;      // may occur, or takes values, more than once
+  bool takes_value = false;  // false: a flag
+  std::string placeholder;   // name of the value: "FILE", "mono|stereo|rgbd"
+  std::string fallback;      // default value; empty: not stated
   std::string help;
   std::string group;  // heading in the help
 };

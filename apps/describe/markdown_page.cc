@@ -38,7 +38,7 @@ std::string OptionCell(const OptionText& option) {
   std::string names;
   for (const std::string& name : option.names) names += (names.empty() ? "" : ", ") + name;
   if (option.takes_value && !option.positional && !option.placeholder.empty())
-    names += option.value_optional ? " [" + option.placeholder + "]" : " " + option.placeholder;
+    names += " " + option.placeholder;
   return MarkdownCode(names) + (option.required && !option.positional ? ", required" : "");
 }
 

@@ -88,7 +88,9 @@ def signature(name, function, skip_self):
         parts.pop()
     if arguments.kwarg:
         parts.append(part(arguments.kwarg, None, "**"))
-    result = " -> " + ast.unparse(function.returns).strip("'\"") if function.returns and function.name != "__init__" else ""
+    result = ""
+    if function.returns and function.name != "__init__":
+        result = " -> " + ast.unparse(function.returns).strip("'\"")
     text = f"{name}({', '.join(parts)}){result}"
     if len(text) <= WIDTH:
         return text

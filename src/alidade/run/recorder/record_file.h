@@ -1,4 +1,4 @@
-// The file of --record: the stream (run.stream), or its conversion to MCAP.
+// The file of --record and --record-to: the stream (run.stream), or its conversion to MCAP.
 #pragma once
 
 #include <memory>

@@ -18,6 +18,8 @@ void CheckRunOptions(const RunOptions& options) {
     ThrowUsage("--semidense is not available for localize, which does not extend the map");
   }
   if (options.host && !options.viewer) ThrowUsage("--host requires --viewer");
+  if (options.port && !options.viewer) ThrowUsage("--port requires --viewer");
+  if (options.record_to && options.record_to->empty()) ThrowUsage("--record-to must not be empty");
   if (options.detector && options.own_detector)
     ThrowUsage("give one detector: a file or a function");
   CheckThreads(options.threads);

@@ -29,10 +29,12 @@ struct RunOptions {
   std::optional<std::string> dynamics, detector;
   std::shared_ptr<Detector> own_detector;  // detector of the caller instead of a file
   bool write_masks = false;
-  bool overwrite = false;             // replace any existing results
-  std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
-  std::optional<std::string> viewer;  // show it in a browser: the port; empty: one that is free
-  std::optional<std::string> host;    // address the viewer listens on; 127.0.0.1
+  bool overwrite = false;                // replace any existing results
+  bool record = false;                   // the stream, as run.stream in the result folder
+  std::optional<std::string> record_to;  // the stream, to this file instead
+  bool viewer = false;                   // show it in a browser
+  std::optional<std::string> port;       // of the viewer; 8090 or the next free one
+  std::optional<std::string> host;       // address the viewer listens on; 127.0.0.1
 };
 
 // Upper bound on threads: more threads than cores do not help, and each reserves 8 MB of stack.
@@ -43,6 +45,12 @@ void CheckThreads(int threads);
 // True for a detector file and for a detector of the caller.
 inline bool HasDetector(const RunOptions& options) {
   return options.detector || options.own_detector;
+}
+
+// File the stream is recorded to; empty: run.stream in the result folder; nullopt: not recorded.
+inline std::optional<std::string> RecordFileOf(const RunOptions& options) {
+  if (options.record_to) return options.record_to;
+  return options.record ? std::optional<std::string>("") : std::nullopt;
 }
 
 // Throws Error (usage) for contradicting options.
