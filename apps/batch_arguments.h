@@ -1,4 +1,4 @@
-// What `alidade batch` is asked to do.
+// Arguments of `alidade batch`.
 #pragma once
 
 #include <string>
@@ -11,39 +11,39 @@ namespace alidade {
 
 struct BatchArguments {
   std::string list, out;
-  std::vector<std::string> more;  // options for every line
-  int jobs = 0;                   // 0: one for every two cores
+  std::vector<std::string> more;  // options for all lines
+  int jobs = 0;                   // 0: one per two cores
   std::string against;            // folder of an earlier batch, or its batch.json
   bool merge = false;
-  bool table = false;  // run nothing
-  int only = 0;        // the one line to run, from 1; 0: all
+  bool table = false;  // only write the table
+  int only = 0;        // number of the only line to run, from 1; 0: all
   bool slurm = false, wait = false;
-  std::string sbatch;  // options for it
+  std::string sbatch;  // options of sbatch
   WorseSettings worse;
-  std::vector<std::string> worse_words;  // the options that made it
+  std::vector<std::string> worse_words;  // the options as typed
 };
 
 struct BatchWork {
   BatchItem item;
   std::string fingerprint;
-  bool done = false;  // already, by the same program, from the same files
+  bool done = false;  // already, with the same program and files
 };
 
-// Runs, tells and writes all of it; the exit status.
+// Runs the batch and writes its results; returns the exit status.
 int Batch(const BatchArguments& arguments);
 
-// The whole list, before anything is run. Throws Error, naming the line, for what `alidade run`
-// would refuse (usage), and for what cannot be read (input).
+// Reads the whole list before anything is run. Throws Error, naming the line, for options that
+// `alidade run` refuses (usage) and for files that cannot be read (input).
 std::vector<BatchWork> WorksOf(const BatchArguments& arguments);
 
-// By this program, from the same files.
+// Done by this program with the same files.
 bool IsDone(const BatchFolder& folder, const BatchWork& work);
 
 std::string OwnProgram();  // path of this executable
 
-// Writes the scripts of a Slurm array of what is not done, and of the job that makes the table once
-// all of it has ended, and submits both. Returns the exit status. Throws Error (input) when Slurm
-// is not there or refuses.
+// Writes the scripts of a Slurm job array for the recordings that are not done, and of a job that
+// writes the table afterwards, and submits both. Returns the exit status. Throws Error (input) if
+// Slurm is missing or refuses them.
 int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
                   const std::vector<BatchWork>& works);
 

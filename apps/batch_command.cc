@@ -1,4 +1,5 @@
-// alidade batch: many recordings, each in a process and a folder of its own, and a table of all.
+// alidade batch: runs many recordings, each in its own process and folder, and tabulates the
+// results.
 #include <algorithm>
 #include <cstdio>
 #include <optional>
@@ -18,9 +19,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kWorseStatus = 1;  // something failed, or got worse
+constexpr int kWorseStatus = 1;  // a recording failed or got worse
 
-// Why it ended: its last "alidade: …" that is no warning, else the last line of all.
+// Reason of a failure: the last "alidade: …" line that is not a warning, else the last line.
 std::string LastWords(const std::string& log) {
   if (!IsFile(log)) return "";
   std::istringstream lines(ReadFile(log));
@@ -53,7 +54,7 @@ std::string Tracked(const BatchFolder& folder, const BatchItem& item) {
 
 int Cores() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-// Cores for each run: what Slurm gave, else its part of the machine.
+// Cores for each run: those given by Slurm, else an equal share of the machine.
 int ThreadsOfOne(const BatchArguments& arguments, int jobs) {
   const char* given = arguments.only > 0 ? std::getenv("SLURM_CPUS_PER_TASK") : nullptr;
   if (given && std::atoi(given) > 0) return std::min(std::atoi(given), kMostThreads);
@@ -61,7 +62,7 @@ int ThreadsOfOne(const BatchArguments& arguments, int jobs) {
   return std::clamp(Cores() / jobs, 1, kMostThreads);
 }
 
-// Runs what is not done. Each that ends is written down at once.
+// Runs the remaining recordings and stores each result as soon as it is there.
 void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
               const std::vector<BatchWork>& todo, size_t of_all) {
   const int jobs = arguments.jobs > 0 ? arguments.jobs : std::max(1, Cores() / 2);
@@ -115,7 +116,7 @@ void RunWorks(const BatchArguments& arguments, BatchFolder& folder,
   RunProcesses(tasks, jobs, events);
 }
 
-// Rows of all, written as tables and as a page; on it the earlier batch (may be null) beside them.
+// Writes the rows as tables and as a page, which also shows the earlier batch (may be null).
 std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<BatchWork>& works,
                                 const EarlierBatch* earlier) {
   std::vector<BatchRow> rows;
@@ -135,7 +136,7 @@ std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<Bat
   return rows;
 }
 
-// Their maps become one. False when that failed; what it says is shown.
+// Merges all maps. Returns false, with a message, if that failed.
 bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
   ProcessTask task{{OwnProgram(), "merge"}, folder.path() + "/log/merged.txt"};
   for (const BatchRow& row : rows) {

@@ -25,7 +25,7 @@ constexpr char kFooter[] =
     "each recording, batch.json, batch.md and compare.html to --out\n(docs/guides/batch.md). Times "
     "are comparable with --jobs 1 only.\nExit status 1: a recording failed, or a result got worse.";
 
-// An option that says how much worse a figure may get.
+// Adds an option for the tolerance of a figure.
 void AddWorse(CLI::App& command, const std::string& name, BatchArguments& arguments, WorseBy& by,
               const std::string& what, const std::vector<std::pair<std::string, double>>& units) {
   command

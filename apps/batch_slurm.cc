@@ -1,4 +1,5 @@
-// A batch as jobs of Slurm: an array with a task for each recording, and one that makes the table.
+// Runs a batch with Slurm: a job array with one task per recording, and a job that writes the
+// table.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// For a POSIX shell.
+// Quotes for a POSIX shell.
 std::string ForShell(const std::string& word) {
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -40,7 +41,7 @@ CommandEnd OutputOf(const std::string& command) {
   return end;
 }
 
-// Its number: "123" of "123;cluster". Empty with the status when sbatch failed.
+// The job number: "123" of "123;cluster". Empty, with the status, if sbatch failed.
 std::string JobOf(const CommandEnd& end) { return end.out.substr(0, end.out.find_first_of(";\n")); }
 
 // "1-4,7" of 1, 2, 3, 4, 7.
@@ -72,7 +73,7 @@ int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
   std::error_code error;
   fs::create_directories(slurm, error);
   if (error) ThrowInput(slurm + ": cannot be created: " + error.message());
-  // The list as it is now: who changes it later changes no job.
+  // A copy of the list, so that later changes do not affect the jobs.
   std::string list;  // line N is task N
   std::vector<size_t> tasks;
   for (size_t i = 0; i < works.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a batch has to do: its list, read as `alidade run` would read each line.
+// Reads the list of a batch, with the options of each line.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <functional>
@@ -17,8 +17,8 @@
 namespace alidade {
 namespace {
 
-// A line's words as `alidade run` reads them; old forms among them become new ones. Throws Error
-// (usage) for what it would refuse.
+// Parses the words of a line as `alidade run` does, and replaces old forms among them. Throws Error
+// (usage) for invalid ones.
 RunOptions OptionsOf(BatchItem& item) {
   RunOptions options;
   CLI::App run("", "alidade run");
@@ -74,7 +74,7 @@ std::vector<BatchWork> WorksOf(const BatchArguments& arguments) {
 bool IsDone(const BatchFolder& folder, const BatchWork& work) {
   const std::optional<BatchDone> done = folder.DoneOf(work.item);
   if (!done || done->status != 0 || done->fingerprint != work.fingerprint) return false;
-  // Another run may have been sent there since.
+  // Another run may have written to the folder since.
   const auto result = ReadEarlierResult(folder.ResultOf(work.item) + "/stats.json");
   return result && result->complete && result->owner.source == SourceOf(work.item);
 }
@@ -83,7 +83,7 @@ std::string OwnProgram() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
   if (error) ThrowInput("cannot find the path of this program: " + error.message());
-  // As the system calls one that was replaced meanwhile, by its successor's name or not.
+  // The path of a program that was replaced meanwhile; the system may append " (deleted)".
   const std::string name = path.string(), gone = " (deleted)";
   const bool replaced = name.size() > gone.size() && name.ends_with(gone);
   return replaced ? name.substr(0, name.size() - gone.size()) : name;

@@ -1,4 +1,4 @@
-// `alidade-bench`: how long the parts take, in milliseconds and in U (docs/benchmarks/index.md).
+// `alidade bench`, which moved to the program alidade-bench.
 #include <CLI/CLI.hpp>
 
 #include "alidade/base/error.h"

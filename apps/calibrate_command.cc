@@ -1,4 +1,4 @@
-// `alidade calibrate`: the camera of recordings that nobody calibrated.
+// `alidade calibrate`: estimates the camera of uncalibrated recordings.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -30,14 +30,15 @@ struct CalibrateOptions {
   RunOptions run;
 };
 
-// How the file begins, and by that is known to be of these recordings.
+// First lines of the file, which identify the recordings it was estimated from.
 std::string HeadOf(const CalibrateOptions& options) {
   std::string head = "Found by alidade calibrate from";
   for (const std::string& source : options.sources) head += "\n" + source;
   return head;
 }
 
-// Before the work: a calibration of something else, or one that somebody wrote, does not give way.
+// Refuses to replace a calibration of other recordings, or one written by hand, before any work is
+// done.
 void CheckIsFree(const CalibrateOptions& options) {
   if (options.overwrite || !IsThere(options.out)) return;
   CheckIsNoResult(options.out);
@@ -58,7 +59,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   if (info.kind == "camera")
     ThrowUsage("calibrate plays a source more than once, which is not possible with " + source);
   if (!info.told.empty() && !options.run.quiet) std::printf("%s\n", info.told.c_str());
-  // What lies beside the images is not looked at: that is what is asked for.
+  // Ignores a calibration that belongs to the recording: estimating it is the task.
   if (!wanted.fov_degrees) wanted.fov_degrees = AssumedFov({info.camera.width, info.camera.height});
   wanted.fov_rough = true;
   const auto open = [&] { return OpenAnySource(source, wanted); };
@@ -72,7 +73,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   });
 }
 
-// All that the recordings' last passes saw, with one lens for all of it.
+// Estimates one camera from the windows of the last pass over each recording.
 CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings& settings) {
   std::vector<LensWindow> windows;
   const CameraFound* best = nullptr;

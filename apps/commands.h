@@ -1,5 +1,5 @@
-// The subcommands. Each adds itself to the command line; when it is the one chosen, parsing fills
-// `action`, which main then runs: what it returns is the program's exit status.
+// The subcommands. Each adds itself to the command line. Parsing sets `action` to the chosen one;
+// main runs it and returns its result as exit status.
 #pragma once
 
 #include "program/program.h"
@@ -19,7 +19,7 @@ void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);
 void AddSettingsCommand(CLI::App& app, Action& action);
-void AddBenchCommand(CLI::App& app, Action& action);      // says what it is called now
-void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages
+void AddBenchCommand(CLI::App& app, Action& action);      // names its successor
+void AddDescribeCommands(CLI::App& app, Action& action);  // completion, man-pages, cli-page
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// alidade compare: several runs beside each other, as one HTML file.
+// alidade compare: writes a page that compares several runs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
@@ -19,7 +19,7 @@ struct CompareArguments {
   std::string out = "compare.html";
 };
 
-// An earlier page gives way; anything else of that name is somebody's.
+// Replaces an earlier page, but no other file.
 void CheckIsFree(const std::string& path) {
   CheckIsNoResult(path);
   if (!IsFile(path)) return;

@@ -17,11 +17,11 @@ namespace alidade {
 namespace {
 
 constexpr double kDepthPerUnit = 5000;
-constexpr int kMostMaps = 100000;  // no run leaves more: a file of a higher number is not ours
+constexpr int kMostMaps = 100000;  // more than any run writes
 
 using json = nlohmann::ordered_json;
 
-// stats.json as far as it can be read; null else.
+// stats.json; null if it cannot be read.
 json ReadStats(const std::string& path) {
   if (!IsFile(path)) return nullptr;
   return json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
@@ -40,7 +40,7 @@ bool WasAskedForDepth(const json& stats) {
   return enabled == 1 || enabled == true;  // settings are written as 0 and 1
 }
 
-// Numbers of the maps that have a list; any may have no depth, the first too.
+// Numbers of the maps that have a list; any of them may have no depth, also the first one.
 std::vector<int> ListedMaps(const std::string& folder) {
   std::vector<int> maps;
   std::error_code error;

@@ -1,4 +1,5 @@
-// The semi-dense depth in the folder `alidade run --semidense` left (docs/guides/shape.md).
+// Reads the semi-dense depth in a result folder of `alidade run --semidense`
+// (docs/guides/shape.md).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,15 +19,15 @@ struct DepthFile {
 };
 
 struct DepthFolder {
-  std::optional<Sensor> sensor;  // of the run; nothing: stats.json does not say
-  std::vector<DepthFile> files;  // of all maps, in the order of time
+  std::optional<Sensor> sensor;  // of the run; nullopt: unknown
+  std::vector<DepthFile> files;  // of all maps, by time
 };
 
-// Throws Error (input) when a line cannot be used, and when there is no list, unless stats.json
-// says that --semidense was given: then no depth could be told, which is a result too.
+// Throws Error (input) for an invalid line, and if there is no list, unless stats.json says that
+// --semidense was given: then the result has no depth.
 DepthFolder ReadDepthFolder(const std::string& folder);
 
-// CV_32F in the map's unit, 0 = none. Throws Error (input) when it cannot be read.
+// CV_32F in map units, 0 = none. Throws Error (input) if it cannot be read.
 cv::Mat ReadKeyframeDepth(const std::string& path);
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// `alidade evaluate`: how good a trajectory is against the truth (for depth: evaluate_depth.h).
+// `alidade evaluate`: compares a trajectory with ground truth (depth: evaluate_depth.h).
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -35,7 +35,7 @@ std::filesystem::path Beside(const std::string& path, const char* name) {
   return (IsFolder(path) ? folder : folder.parent_path()) / name;
 }
 
-// A JSON object beside what is judged; empty: there is none.
+// Reads a JSON object from the folder of the estimate; empty: there is none.
 json NotesBeside(const std::string& estimate, const char* name) {
   const std::string path = Beside(estimate, name).string();
   if (!IsFile(path)) return json::object();
@@ -43,7 +43,7 @@ json NotesBeside(const std::string& estimate, const char* name) {
   return notes.is_object() ? notes : json::object();
 }
 
-// As `run`, or `merge`, noted it beside the trajectory; empty: nobody did.
+// The sensor, as written by `run` or `merge` to that folder; empty: unknown.
 std::string SensorOf(const std::string& estimate) {
   for (const char* name : {"stats.json", "merge.json"}) {
     const json notes = NotesBeside(estimate, name);
@@ -53,7 +53,7 @@ std::string SensorOf(const std::string& estimate) {
   return {};
 }
 
-// The span of the recording as `run` noted it beside the trajectory it wrote.
+// The time span of the recording, as written by `run` to the folder of the trajectory.
 std::optional<TimeSpan> SpanFromStats(const std::string& estimate) {
   const json stats = NotesBeside(estimate, "stats.json");
   if (!stats.contains("span")) return std::nullopt;
@@ -64,7 +64,7 @@ std::optional<TimeSpan> SpanFromStats(const std::string& estimate) {
   return TimeSpan{span[0].get<double>(), span[1].get<double>()};
 }
 
-// The span of the images listed beside the truth, in a TUM folder.
+// The time span of the images that are listed in the folder of the ground truth, for TUM.
 std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path) {
   if (!IsFile(list_path.string())) return std::nullopt;
   std::istringstream file(ReadFile(list_path.string()));
@@ -80,7 +80,7 @@ std::optional<TimeSpan> SpanFromImageList(const std::filesystem::path& list_path
   return span;
 }
 
-// First and last frame of the recording; unknown for a truth and an estimate that lie alone.
+// Times of the first and last frame of the recording; nullopt: unknown.
 std::optional<TimeSpan> SourceSpan(const EvaluateOptions& options) {
   if (const auto span = SpanFromStats(options.estimate)) return span;
   return SpanFromImageList(Beside(options.truth, "rgb.txt"));

@@ -30,12 +30,12 @@ struct Options {
 };
 
 struct Evaluation {
-  bool rendered = false;  // the truth is exact
+  bool rendered = false;  // the ground truth is exact
   bool fit_scale = false;
   std::vector<DepthFile> files;  // those that were scored
   DepthErrorResult result;
 
-  // What is said first: a sensor's depth is to be trusted where it is continuous only.
+  // The main scores. Depth of a sensor is reliable only where it is continuous.
   const DepthScore& Main(const DepthScores& scores) const {
     return rendered ? scores.all : scores.continuous;
   }
@@ -99,7 +99,7 @@ Evaluation Evaluate(const Options& options) {
   return evaluation;
 }
 
-// What is not known (NaN) is printed as null.
+// Unknown values (NaN) are printed as null.
 json ToJson(const DepthScore& s) {
   return {{"n", s.n},
           {"median_rel", s.median_rel},

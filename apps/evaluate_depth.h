@@ -1,4 +1,4 @@
-// `alidade evaluate depth`: semi-dense depth against the truth.
+// `alidade evaluate depth`: compares semi-dense depth with ground truth.
 #pragma once
 
 #include "commands.h"

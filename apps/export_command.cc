@@ -1,4 +1,4 @@
-// `alidade export`: a map as what other programs read.
+// `alidade export`: converts a map or a run for other programs.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>

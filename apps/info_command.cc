@@ -1,4 +1,4 @@
-// `alidade info`: what is in a map.
+// `alidade info`: shows what a map contains.
 #include <CLI/CLI.hpp>
 #include <Eigen/Geometry>
 #include <algorithm>

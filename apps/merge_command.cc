@@ -1,4 +1,4 @@
-// alidade merge: maps of several recordings of one place become one.
+// alidade merge: merges maps of several recordings of one place.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>

@@ -1,4 +1,4 @@
-// alidade phone: the page for phones, and, when asked to, the computer that does its work.
+// alidade phone: serves the page for phones, and processes their images with --connected.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -28,7 +28,7 @@ struct PhoneArguments {
   std::vector<std::string> set;
 };
 
-// Beside the installed program, or in the tree it was built in; empty: nowhere.
+// Folder of the core: that of the installation or of the source tree; empty: not found.
 std::string FindCoreFolder() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error).parent_path();

@@ -38,14 +38,15 @@ FrameMessage Skipped(uint32_t number, const std::string& problem = "") {
   return Text(told);
 }
 
-// Makes session-1, session-2, … in `out`: the first that does not exist. So no result replaces
-// another one, of this or of an earlier run of the program.
+// Creates session-1, session-2, … in `out`: the first that does not exist, so that no earlier
+// result is replaced.
 std::filesystem::path MakeSessionFolder(const std::filesystem::path& out) {
   std::filesystem::create_directories(out);
   for (int number = 1;; ++number) {
     const std::filesystem::path folder = out / ("session-" + std::to_string(number));
     if (std::filesystem::exists(std::filesystem::symlink_status(folder))) continue;
-    if (std::filesystem::create_directory(folder)) return folder;  // false: somebody else did
+    // false: another process was faster
+    if (std::filesystem::create_directory(folder)) return folder;
   }
 }
 
@@ -57,7 +58,7 @@ std::vector<FrameMessage> Binary(std::vector<std::string> messages) {
 
 }  // namespace
 
-// One map, and the thread that works on it. A page is seated at a time; the newest one stays.
+// A map and the thread that builds it. One page at a time is connected; a new one replaces it.
 class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
  public:
   PhoneSession(std::string name, int width, int height, double fov,
@@ -81,7 +82,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
 
   bool SameSize(int width, int height) const { return width == width_ && height == height_; }
 
-  // A page takes its seat; one that is there leaves.
+  // Connects a page and disconnects the previous one.
   int Sit(FrameTell tell, bool resumed) {
     const std::lock_guard lock(mutex_);
     if (tell_) tell_({Text({{"error", "another page has taken over this session"}})}, true);
@@ -99,7 +100,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     left_ = SessionClock::now();
   }
 
-  // Seconds without a page; below 0: there is one.
+  // Seconds since the page was disconnected; negative: it is connected.
   double Alone() {
     const std::lock_guard lock(mutex_);
     if (tell_) return -1;
@@ -117,7 +118,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     std::memcpy(&frame.number, bytes.data(), sizeof(frame.number));  // little endian, as here
     std::memcpy(&frame.time, bytes.data() + 8, sizeof(frame.time));
     if (last_ >= 0 && frame.number <= static_cast<uint32_t>(last_)) {
-      tell_({Skipped(frame.number)}, false);  // it was here before
+      tell_({Skipped(frame.number)}, false);  // an image that was sent before
       return;
     }
     last_ = frame.number;
@@ -148,14 +149,14 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
       lock.unlock();
       std::vector<FrameMessage> told = WorkOn(frame);
       lock.lock();
-      // A page that has come meanwhile is given the whole, which holds this.
+      // A page that connected meanwhile gets the complete state, which includes this.
       if (tell_ && !whole_) tell_(std::move(told), false);
     }
     lock.unlock();
     Write();
   }
 
-  // Nothing a page sends ends the session.
+  // No message of a page ends the session.
   std::vector<FrameMessage> WorkOn(const SentFrame& frame) {
     try {
       if (!std::isfinite(frame.time)) return {Skipped(frame.number, "its time is not a number")};
@@ -220,14 +221,14 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   const std::string name_;
   const int width_, height_;
   const std::string out_;
-  PhoneSlam slam_;  // the thread's alone
+  PhoneSlam slam_;  // used by the thread only
   std::mutex mutex_;
   std::condition_variable wake_;
   FrameTell tell_;  // null: no page
   std::optional<SentFrame> waiting_;
-  int64_t last_ = -1;  // number of the last frame taken
+  int64_t last_ = -1;  // number of the last accepted frame
   int seat_ = 0;
-  bool whole_ = false;  // the page is owed the whole state
+  bool whole_ = false;  // the page needs the complete state
   bool end_ = false;
   SessionClock::time_point left_;
   std::thread thread_;
@@ -290,7 +291,7 @@ std::pair<std::shared_ptr<PhoneSession>, bool> PhoneHost::Find(const std::string
     return {found->second, true};
   }
   if (static_cast<int>(sessions_.size()) >= settings_.max_sessions) {
-    // The one without a page for longest makes room.
+    // The session whose page has been disconnected longest makes room.
     auto oldest = sessions_.end();
     for (auto it = sessions_.begin(); it != sessions_.end(); ++it) {
       if (it->second->Alone() >= 0 &&

@@ -10,7 +10,7 @@ namespace alidade {
 
 std::string QrCode(const std::string& text) {
 #ifdef ALIDADE_QRENCODE
-  constexpr int kMargin = 4;  // modules that must be light about it
+  constexpr int kMargin = 4;  // margin of light modules
   const std::unique_ptr<QRcode, decltype(&QRcode_free)> code(
       QRcode_encodeString(text.c_str(), 0, QR_ECLEVEL_L, QR_MODE_8, 1), QRcode_free);
   if (!code) return {};
@@ -18,8 +18,8 @@ std::string QrCode(const std::string& text) {
     return x >= 0 && y >= 0 && x < code->width && y < code->width &&
            (code->data[y * code->width + x] & 1) != 0;
   };
-  // Two rows of modules in a line. White ink on black, whatever the terminal's own colours: the
-  // light modules are drawn.
+  // Two rows of modules per line. Draws the light modules in white on black, whatever the colors of
+  // the terminal.
   std::string lines;
   for (int y = -kMargin; y < code->width + kMargin; y += 2) {
     lines += "\x1b[97;40m";

@@ -1,4 +1,4 @@
-// alidade run: a recording or camera in, a trajectory and a map out.
+// alidade run, localize: a recording or camera in, a trajectory and a map out.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>

@@ -9,7 +9,7 @@ class App;
 
 namespace alidade {
 
-// Adds the flags; parsing fills `options`, which must outlive `command`.
+// Adds the flags. Parsing fills `options`, which must outlive `command`.
 void AddRunOptions(CLI::App& command, RunOptions& options);
 // The same for `alidade localize`.
 void AddLocalizeOptions(CLI::App& command, RunOptions& options);

@@ -108,7 +108,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   } else if (settings.semidense.enabled && !settings.localize) {
     shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
-  // Where it began and what went wrong, when it is not all of the recording.
+  // First tracked frame and losses, if not all frames were tracked.
   std::string tracked;
   if (summary.first_tracked && !run_->log.numbers.empty() &&
       *summary.first_tracked != run_->log.numbers.front())

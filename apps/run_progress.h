@@ -1,5 +1,4 @@
-// What `alidade run` says of itself: the line that shows how far it is, warnings, and what came
-// out.
+// The output of `alidade run`: progress line, warnings and summary.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// `alidade settings`: what can be set, with value, range, unit and meaning.
+// `alidade settings`: lists settings with value, range, unit and meaning.
 #include <sys/ioctl.h>
 #include <unistd.h>
 
@@ -27,7 +27,8 @@ struct SettingsOptions {
   bool all = false, as_json = false, markdown = false;
 };
 
-// Those of the name or group; all of them for an empty one. "expert." may be left out.
+// The settings with this name or of this group; all of them for an empty name. "expert." may be
+// omitted.
 std::vector<SettingInfo> Chosen(const std::vector<SettingInfo>& all,
                                 const SettingsOptions& options) {
   std::vector<SettingInfo> chosen;
@@ -37,7 +38,7 @@ std::vector<SettingInfo> Chosen(const std::vector<SettingInfo>& all,
     const auto fits = [&](const std::string& name) {
       return name == options.name || name.starts_with(options.name + ".");
     };
-    names.push_back(bare);  // nearer to what people type than the full name
+    names.push_back(bare);  // closer to what users type than the full name
     if (options.name.empty() ? options.all || info.is_public : fits(info.name) || fits(bare))
       chosen.push_back(info);
   }

@@ -1,4 +1,4 @@
-// `alidade synth`: renders a recording with exact truth.
+// `alidade synth`: renders a recording with exact ground truth.
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ using nlohmann::ordered_json;
 struct SynthArguments {
   SynthSettings settings;
   std::string out, format;
-  int frames = 0;  // 0: once round
+  int frames = 0;  // 0: once along the path
   int threads = 0;
   bool quiet = false;
 };

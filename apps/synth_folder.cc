@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr char kSynthDraft[] = "synth", kSynthLock[] = "synth.lock";
 
-// But for what is there while a recording is rendered.
+// Empty except for files of a running `alidade synth`.
 bool HoldsNothing(const fs::path& folder) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
@@ -31,8 +31,8 @@ void RemoveFile(const fs::path& path) {
     ThrowInput("cannot remove " + path.string() + ": " + error.message());
 }
 
-// Pictures called by a time or a number, and EuRoC's files beside them; then the folder, if nothing
-// else is in it.
+// Removes images named by a time or a number, and EuRoC's other files; then the folder if it is
+// empty.
 void RemovePictures(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(fs::symlink_status(folder, error))) return;
@@ -50,7 +50,7 @@ void RemovePictures(const fs::path& folder) {
   fs::remove(folder, error);
 }
 
-// Into a folder that is there, or in its place; of files, lists come last.
+// Moves the content into an existing folder, or renames it; lists are moved last.
 void MoveTree(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::is_directory(from) || !fs::exists(fs::symlink_status(to, error))) {
@@ -86,8 +86,9 @@ SynthFolder::SynthFolder(const std::string& path) : path_(path) {
 }
 
 void SynthFolder::Place() {
-  // Lists go first: without them no reader takes the folder for a recording. The marker stays until
-  // it is replaced, so that what an interruption leaves is still known to be ours.
+  // Lists are removed first: without them no reader recognizes the folder as a recording. The
+  // marker remains until it is replaced, so that an interrupted recording is still recognized as
+  // ours.
   for (const char* name : {"rgb.txt", "depth.txt", "mask.txt", "groundtruth.txt", "camera.yaml",
                            "times.txt", "poses.txt", "calib.txt"})
     RemoveFile(path_ + "/" + name);

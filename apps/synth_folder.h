@@ -9,14 +9,14 @@
 
 namespace alidade {
 
-// The file that says a folder is ours.
+// Marker file of folders written by `alidade synth`.
 inline constexpr char kSynthMarker[] = "synth.json";
 
-// The folder of a recording, locked. The new one is gathered beside an earlier one of ours and
-// takes its place when it is whole; files that are not ours stay.
+// The folder of a recording, locked. The new recording is written to a temporary folder and
+// replaces an earlier one when it is complete; other files remain.
 class SynthFolder {
  public:
-  // Makes the folder. Throws Error (input) when it holds anything else than a recording of ours.
+  // Creates the folder. Throws Error (input) if it contains anything but a recording of ours.
   explicit SynthFolder(const std::string& path);
   const std::string& draft() const { return draft_->path(); }
   void Place();  // throws Error (input)

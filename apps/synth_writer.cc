@@ -32,7 +32,7 @@ std::string Join(const std::vector<double>& values, const char* between) {
   return text;
 }
 
-// Rows of [R t], three or four of them.
+// Three or four rows of [R t].
 std::string Matrix(const Se3& T, int rows, const char* between) {
   std::vector<double> values;
   for (int row = 0; row < 3; ++row) {
@@ -70,7 +70,7 @@ class FolderWriter : public SynthWriter {
   Camera camera_;
 };
 
-// Sturm et al. 2012: lists of stamped images, poses as stamp, place and quaternion.
+// Sturm et al. 2012: lists of stamped images, poses as stamp, position and quaternion.
 class TumWriter : public FolderWriter {
  public:
   TumWriter(const std::string& folder, const Camera& camera, bool fisheye)
@@ -89,7 +89,7 @@ class TumWriter : public FolderWriter {
 
   void Finish() override {
     const Camera& c = camera();
-    // A fisheye's four numbers are all 0: it is as equidistant as can be.
+    // All four coefficients are 0: exactly equidistant.
     const std::vector<double> distortion(c.distortion.begin(),
                                          c.distortion.begin() + (fisheye_ ? 4 : 5));
     WriteText("camera.yaml",
@@ -111,7 +111,7 @@ class TumWriter : public FolderWriter {
   Trajectory truth_;
 };
 
-// Burri et al. 2016. The body looks along its x axis, z up; its middle is the left camera's.
+// Burri et al. 2016. The body frame has x forward and z up; its origin is the left camera's center.
 class EurocWriter : public FolderWriter {
  public:
   EurocWriter(const std::string& folder, const Camera& camera)

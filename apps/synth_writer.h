@@ -1,5 +1,5 @@
-// Writes rendered recordings to disk, laid out as known datasets are (docs/reference/sources.md),
-// with depth and masks always.
+// Writes rendered recordings in the layouts of known datasets (docs/reference/sources.md), always
+// with depth and masks.
 #pragma once
 
 #include <memory>
@@ -14,18 +14,19 @@ enum class SynthFormat { kTum, kEuroc, kKitti };
 class SynthWriter {
  public:
   virtual ~SynthWriter() = default;
-  // Frames in order, from 0.
+  // Adds the next frame; frames are numbered from 0.
   virtual void Add(const RenderedFrame& frame, const Se3& T_world_camera) = 0;
-  // Lists, poses and calibration: until then no reader takes the folder for a recording.
+  // Writes lists, poses and calibration. Before that, no reader recognizes the folder as a
+  // recording.
   virtual void Finish() = 0;
 };
 
-// The folder must be there. `fisheye`: the camera's lens is an equidistant one (kTum alone). Throws
-// Error (input) when a file cannot be written.
+// The folder must exist. `fisheye`: equidistant lens (kTum only). Throws Error (input) if a file
+// cannot be written.
 std::unique_ptr<SynthWriter> MakeSynthWriter(SynthFormat format, const std::string& folder,
                                              const Camera& camera, bool fisheye);
 
-// EuRoC recordings count from 1970: when ours begin, seconds.
+// First time stamp of recordings in EuRoC's format, seconds since 1970.
 inline constexpr int kSynthEurocStart = 1'000'000'000;
 
 }  // namespace alidade

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The `synth:` source that gives the frames of a recording of `alidade synth`.
+// The `synth:` source that renders the frames of a recording of `alidade synth`.
 std::string SynthSourceOf(const std::string& marker) {
   const auto about = nlohmann::json::parse(ReadFile(marker), nullptr, false);
   const auto damaged = [&] {
@@ -48,7 +48,7 @@ TrueDepthSource::TrueDepthSource(const std::string& sequence, std::optional<Sens
   rendered_ = on_disk || IsSynthSource(sequence);
   SourceOptions options;
   options.camera_file = camera_file;
-  // A pair that distorts is rectified, one camera alone is not.
+  // A stereo pair with distortion is rectified, a single camera is not.
   if (rendered_ && sensor != Sensor::kStereo) options.sensor = sensor;
   source_ = OpenAnySource(on_disk ? SynthSourceOf(marker) : sequence, options);
   if (!rendered_ && source_->Info().sensor != Sensor::kRgbd)

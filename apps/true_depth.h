@@ -1,4 +1,4 @@
-// The true depth of a sequence's frames: exact where it was rendered, a depth sensor's elsewhere.
+// True depth of the frames of a sequence: exact if it was rendered, else that of a depth sensor.
 #pragma once
 
 #include <memory>
@@ -13,24 +13,24 @@ namespace alidade {
 
 struct TrueDepth {
   cv::Mat image;  // CV_8U
-  cv::Mat depth;  // CV_32F, metres, 0 = unknown; empty: this frame has none
+  cv::Mat depth;  // CV_32F, meters, 0 = unknown; empty: no depth
 };
 
 class TrueDepthSource {
  public:
-  // `sequence` is what `run` can open; a recording that `alidade synth` wrote is rendered anew,
-  // since the depth images in it have a sensor's faults. `sensor` (of the run): says whether images
-  // were rectified. Throws Error: kInput when there is no depth.
+  // `sequence`: a source of `run`. A recording of `alidade synth` is rendered again, since its
+  // depth images have the errors of a sensor. `sensor` (of the run): whether images were rectified.
+  // Throws Error (input) if there is no depth.
   TrueDepthSource(const std::string& sequence, std::optional<Sensor> sensor,
                   const std::optional<std::string>& camera_file);
 
   bool rendered() const { return rendered_; }
-  // Of the frame nearest to `time`, at most `max_dt` away (seconds); nullopt: there is none.
+  // Depth of the frame nearest to `time`, at most `max_dt` seconds away; nullopt: there is none.
   std::optional<TrueDepth> At(double time, double max_dt);
 
  private:
   bool rendered_;
-  double time_offset_ = 0;  // seconds from the times of the recording to those of the source
+  double time_offset_ = 0;  // offset from the recording's times to those of the source, seconds
   std::unique_ptr<FrameSource> source_;
   std::unique_ptr<FrameFinder> finder_;
 };

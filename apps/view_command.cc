@@ -1,4 +1,4 @@
-// alidade view: a run that was recorded, or a map, in a browser.
+// alidade view: shows a recorded run or a map in a browser.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -27,7 +27,7 @@ struct ViewArguments {
   std::optional<std::string> port, host;
 };
 
-// Has said all there is to say.
+// A hub without further messages.
 class StillHub : public StreamHub {
  public:
   explicit StillHub(std::vector<std::string> messages) {
@@ -45,7 +45,7 @@ class StillHub : public StreamHub {
   std::vector<std::shared_ptr<const std::string>> messages_;
 };
 
-// A map alone.
+// The messages of a map without a run.
 std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& path) {
   StreamSource source;
   source.program = "alidade " ALIDADE_VERSION;
@@ -70,7 +70,7 @@ int View(const ViewArguments& arguments) {
   if (recorded.empty()) {
     hub = std::make_unique<StillHub>(MessagesOf(ReadSavedMap(arguments.what), arguments.what));
   } else {
-    StreamFileReader check(recorded);  // says what is wrong with it before anyone looks
+    StreamFileReader check(recorded);  // reports a damaged file before a page connects
   }
   CatchInterrupts();
   const auto server = StartViewer(ServeSettingsFor(arguments.port, arguments.host), hub.get(),

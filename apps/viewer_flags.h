@@ -1,4 +1,4 @@
-// The flags of a viewer, as `run` and `view` have them.
+// Parses the viewer's options of `run` and `view`.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-// `port`: as typed; empty or nothing: 8090, or the next that is free. Throws Error (usage).
+// `port`: as typed; empty or nullopt: 8090, or the next free one. Throws Error (usage).
 ServeSettings ServeSettingsFor(const std::optional<std::string>& port,
                                const std::optional<std::string>& host);
 

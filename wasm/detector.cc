@@ -36,7 +36,7 @@ int Tried(Call&& call) {
   } catch (const std::exception& error) {
     last_error = error.what();
   } catch (...) {
-    last_error = "something unknown went wrong";
+    last_error = "unknown error";
   }
   return -1;
 }

@@ -40,7 +40,7 @@ auto Guarded(Call&& call, decltype(call()) failed) -> decltype(call()) {
   } catch (const std::exception& error) {
     last_error = error.what();
   } catch (...) {
-    last_error = "something unknown went wrong";
+    last_error = "unknown error";
   }
   return failed;
 }

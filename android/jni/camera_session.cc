@@ -45,8 +45,8 @@ CameraSession::CameraSession(int width, int height, const LensNumbers& lens,
       settings_(PhoneSettings::Default(true)),
       view_(MakeSceneView()) {
   if (width < 1 || height < 1 || width > kMostSide || height > kMostSide) {
-    ThrowUsage("pictures of " + std::to_string(width) + "x" + std::to_string(height) +
-               " pixels are not taken: sides have 1 to " + std::to_string(kMostSide));
+    ThrowUsage("images of " + std::to_string(width) + "x" + std::to_string(height) +
+               " pixels are not accepted: sides must have 1 to " + std::to_string(kMostSide));
   }
   const auto cores = static_cast<int>(std::thread::hardware_concurrency());
   SetThreadCount(std::clamp(cores, 1, kMostThreads));
@@ -74,7 +74,7 @@ void CameraSession::Offer(const uint8_t* plane, size_t bytes, int row_stride, do
                std::to_string(row_stride) + " apart, has no " + std::to_string(width_) + "x" +
                std::to_string(height_) + " pixels");
   }
-  if (!std::isfinite(time)) ThrowInput("the time of a picture is no number");
+  if (!std::isfinite(time)) ThrowInput("the time of an image is not a number");
   {
     const std::lock_guard lock(mutex_);
     if (gone_) throw StateError("the camera is gone: cameraBack() comes before the next picture");
@@ -157,7 +157,7 @@ void CameraSession::WorkOn(double time, bool cut) {
   } catch (const std::exception& error) {
     Fail(error.what());
   } catch (...) {
-    Fail("something unknown went wrong");
+    Fail("unknown error");
   }
 }
 

@@ -30,7 +30,7 @@ Result Guarded(JNIEnv* env, Result failed, Call&& call) {
   } catch (const std::exception& error) {
     ThrowJava(env, "java/lang/IllegalStateException", error.what());
   } catch (...) {
-    ThrowJava(env, "java/lang/IllegalStateException", "something unknown went wrong");
+    ThrowJava(env, "java/lang/IllegalStateException", "unknown error");
   }
   return failed;
 }

@@ -27,7 +27,7 @@ std::string BashOffers(const std::vector<std::string>& words, bool path) {
   return does.empty() ? "" : does + ";;";
 }
 
-// What may follow an option.
+// Completes the value of an option.
 void AddBashValues(const CommandText& command, std::ostream& out) {
   for (const OptionText& option : command.options) {
     if (option.positional || !option.takes_value) continue;
@@ -35,13 +35,13 @@ void AddBashValues(const CommandText& command, std::ostream& out) {
     for (const std::string& name : option.names)
       pattern += (pattern.empty() ? "" : " | ") + ShellQuoted(command.path + " " + name);
     std::string does = BashOffers(WordsOf(option), IsPath(option));
-    // A value that nobody can guess is offered nothing.
+    // Values without known words get no proposals.
     out << "    " << pattern << ") " << (does.empty() ? ";;" : does) << "\n";
   }
   for (const CommandText& sub : command.commands) AddBashValues(sub, out);
 }
 
-// What a command may go on with.
+// Completes the words after a command.
 void AddBashCommand(const CommandText& command, std::ostream& out) {
   std::vector<std::string> options, words;
   bool path = false;

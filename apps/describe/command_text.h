@@ -11,15 +11,15 @@ class App;
 namespace alidade {
 
 struct OptionText {
-  std::vector<std::string> names;  // "-h", "--help"; of a positional one its name: "SOURCE"
+  std::vector<std::string> names;  // "-h", "--help"; the name of a positional argument: "SOURCE"
   bool positional = false;
   bool required = false;
-  bool repeats = false;      // may be given, or goes on, more than once
+  bool repeats = false;      // may occur, or takes values, more than once
   bool takes_value = false;  // false: a flag
-  std::string placeholder;   // what the value is called: "FILE", "mono|stereo|rgbd"
-  std::string fallback;      // what it is by default; empty: not said
+  std::string placeholder;   // name of the value: "FILE", "mono|stereo|rgbd"
+  std::string fallback;      // default value; empty: not stated
   std::string help;
-  std::string group;  // heading it stands under
+  std::string group;  // heading in the help
 };
 
 struct CommandText {
@@ -34,10 +34,10 @@ struct CommandText {
 // Hidden commands and options (group "") are left out.
 CommandText DescribeCommand(const CLI::App& app, const std::string& path);
 
-// The words a value is one of: of "realtime|max|FPS" the lower-case ones, of NAME=VALUE every
-// setting, with its '='.
+// The possible words of a value: the lower-case words of "realtime|max|FPS"; for NAME=VALUE all
+// settings with '='.
 std::vector<std::string> WordsOf(const OptionText& option);
-// Whether it names files or folders: FILE, FOLDER, PATH, or one of them among other words.
+// Whether the value is a path: FILE, FOLDER or PATH, possibly among other words.
 bool IsPath(const OptionText& option);
 
 }  // namespace alidade

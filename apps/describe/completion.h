@@ -1,4 +1,4 @@
-// Scripts that make a shell complete the program's commands, options and their values.
+// Generates shell scripts that complete commands, options and values.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace alidade {
 
-// Each is a whole file, as the shell wants it.
+// Each returns a complete file.
 std::string BashCompletion(const CommandText& program);
 std::string ZshCompletion(const CommandText& program);
 std::string FishCompletion(const CommandText& program);
 
-// The first sentence of a help text, without a full stop: there is one line for it.
+// The first clause of a help text, without full stop, for lists with one line per option.
 std::string ShortHelp(const std::string& help);
 
 }  // namespace alidade

@@ -5,7 +5,7 @@
 namespace alidade {
 namespace {
 
-// fish knows two escapes inside single quotes.
+// fish has two escapes inside single quotes.
 std::string FishQuoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {
@@ -22,7 +22,7 @@ void AddFishPaths(const CommandText& command, std::string& paths) {
   }
 }
 
-// The part of `complete` that says what values there are.
+// The arguments of `complete` for the values.
 std::string FishValues(const OptionText& option) {
   std::string list;
   for (const std::string& word : WordsOf(option)) list += (list.empty() ? "" : " ") + word;

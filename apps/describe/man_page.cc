@@ -7,7 +7,7 @@
 namespace alidade {
 namespace {
 
-// Text as roff has it: no word of it is taken for a command.
+// Escapes text for roff, so that no word becomes a command.
 std::string Roff(const std::string& text) {
   std::string roff;
   for (const char c : text) {
@@ -16,7 +16,7 @@ std::string Roff(const std::string& text) {
     if (c == '\\') {
       roff += "\\e";
     } else if (c == '-') {
-      roff += "\\-";  // a minus, which can be copied
+      roff += "\\-";  // a minus sign, which can be copied
     } else if (c == '\'') {
       roff += "\\(aq";
     } else if (c == '`') {
@@ -94,7 +94,7 @@ void AddManCommands(const CommandText& command, std::ostream& out) {
     out << ".TP\n" << SeePage(sub.path) << "\n" << Roff(sub.help) << "\n";
 }
 
-// Paragraphs; lines that are indented are shown as they are, "Examples:" and the like are headings.
+// Paragraphs; indented lines are shown verbatim; "Examples:" and the like become headings.
 void AddManFooter(const std::string& footer, std::ostream& out) {
   std::istringstream lines(footer);
   bool shown = false;
@@ -119,8 +119,7 @@ void AddManFooter(const std::string& footer, std::ostream& out) {
   show(false);
 }
 
-// Headings that nothing stands under, and paragraphs that begin or end nothing, are warned of by
-// readers of manual pages.
+// Removes empty sections and paragraphs, of which readers of manual pages warn.
 std::string TidiedPage(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream stream(text);
@@ -139,7 +138,7 @@ std::string TidiedPage(const std::string& text) {
   return tidy;
 }
 
-// What `man -k` shows: without the program's name and a full stop.
+// Text for `man -k`: without the program's name and a full stop.
 std::string ManSummary(std::string help) {
   const std::string name = "Alidade: ";
   if (help.rfind(name, 0) == 0) help = help.substr(name.size());

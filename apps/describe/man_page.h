@@ -14,8 +14,8 @@ struct ManPage {
   std::string text;  // with the macros of man(7)
 };
 
-// One page for the program and one for each command that is run: alidade-run.1,
-// alidade-evaluate-ate.1. `version`: "alidade 0.1.0".
+// One page for the program and one for each command: alidade-run.1, alidade-evaluate-ate.1.
+// `version`: "alidade 0.1.0".
 std::vector<ManPage> ManPages(const CommandText& program, const std::string& version);
 
 }  // namespace alidade

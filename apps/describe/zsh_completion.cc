@@ -14,7 +14,7 @@ std::string ZshFunction(const std::string& path) {
   return name;
 }
 
-// A help text inside [] of a specification, where brackets and colons have a meaning.
+// Escapes a help text inside the [] of a specification, where brackets and colons are special.
 std::string ZshEscaped(const std::string& text) {
   std::string escaped;
   for (const char c : text) {
@@ -42,7 +42,7 @@ std::string ZshValue(const OptionText& option) {
 
 void AddZshOption(const OptionText& option, std::ostream& out) {
   const std::string help = "[" + ZshEscaped(ShortHelp(option.help)) + "]";
-  std::string others;  // once one of the names is there, none is offered again
+  std::string others;  // after one of the names, none is offered again
   for (const std::string& name : option.names) others += (others.empty() ? "" : " ") + name;
   for (const std::string& name : option.names) {
     std::string text = option.repeats ? "*" : "(" + others + ")";

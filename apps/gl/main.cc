@@ -1,4 +1,4 @@
-// alidade-gl: a recorded run in a window, drawn by the renderer that the Android app has.
+// alidade-gl: plays a recorded run in a window, with the renderer of the Android app.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

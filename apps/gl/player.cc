@@ -49,7 +49,7 @@ void StreamPlayer::PlayTo(double seconds) {
 
 cv::Mat StreamPlayer::TakePicture() {
   if (picture_.empty()) return {};
-  cv::Mat image = DecodeJpeg(picture_, ImageUse::kGray).image;  // none of a damaged one
+  cv::Mat image = DecodeJpeg(picture_, ImageUse::kGray).image;  // empty if it is damaged
   picture_.clear();
   return image;
 }

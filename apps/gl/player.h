@@ -1,4 +1,4 @@
-// A recorded run, told as fast as it happened.
+// Plays a recorded run at its original speed.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,25 +11,25 @@ namespace alidade::gl_app {
 
 class StreamPlayer {
  public:
-  // A run's folder or its run.stream. Throws Error (input) when there is none.
+  // A result folder or its run.stream. Throws Error (input) if there is none.
   explicit StreamPlayer(const std::string& what);
 
-  // Takes what was told until the frame at `seconds` after the first one. Throws Error (input) on a
+  // Processes the stream up to the frame `seconds` after the first one. Throws Error (input) for a
   // damaged file.
   void PlayTo(double seconds);
   bool ended() const { return ended_; }
   const StreamScene& scene() const { return scene_; }
-  // The camera's latest picture, CV_8U grey, if it came since the last call; else empty.
+  // The newest camera image, CV_8U gray, if it is new since the last call; else empty.
   cv::Mat TakePicture();
-  // For the window: who, how many, in which state.
+  // Text for the window: name, counts and state.
   std::string Title() const;
 
  private:
   StreamFileReader reader_;
   std::string name_;
   StreamScene scene_;
-  std::string picture_;  // coded; empty: none that is new
-  double first_ = 0;     // seconds, of the first frame
+  std::string picture_;  // encoded; empty: no new one
+  double first_ = 0;     // time of the first frame, seconds
   bool begun_ = false, ended_ = false;
 };
 

@@ -19,11 +19,11 @@
 namespace alidade::gl_app {
 namespace {
 
-// What mouse and keys change.
+// State changed by mouse and keys.
 struct Hands {
   gles::Orbit orbit;
   gles::ViewSettings view;
-  bool led = false;  // by hand: no longer fitted to the map
+  bool led = false;  // moved by hand: no longer fitted to the map
   bool paused = false;
   double x = 0, y = 0;  // of the mouse
 };
@@ -98,7 +98,7 @@ void OnWheel(GLFWwindow* window, double, double up) {
   hands.led = true;
 }
 
-// Closes GLFW with everything that is open.
+// Closes GLFW and all its windows.
 struct Glfw {
   Glfw() {
     if (!glfwInit()) Refuse();
@@ -130,7 +130,8 @@ GLFWwindow* Open(const WindowSettings& settings) {
   return window;
 }
 
-// In the upper left corner, three tenths of the window wide and not over half of it high.
+// Position of the camera image: upper left corner, at most 30 % of the window's width and 50 % of
+// its height.
 gles::Area CornerFor(const cv::Size& picture, int width, int height) {
   const double most = std::min(0.3 * width, 0.5 * height * picture.width / picture.height);
   return {0, 0, most / width, most * picture.height / picture.width / height};
@@ -140,7 +141,7 @@ void Save(const std::string& path, int width, int height) {
   cv::Mat rgba(height, width, CV_8UC4), bgr;
   glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data);
   cv::cvtColor(rgba, bgr, cv::COLOR_RGBA2BGR);
-  cv::flip(bgr, bgr, 0);  // OpenGL's rows begin at the bottom
+  cv::flip(bgr, bgr, 0);  // rows of OpenGL begin at the bottom
   WriteImage(path, bgr);
 }
 
@@ -182,7 +183,7 @@ void ShowRun(StreamPlayer& player, const WindowSettings& settings) {
     fitted = hands.led ? 0 : scene.told;
     int width = 1, height = 1;
     glfwGetFramebufferSize(window, &width, &height);
-    if (width > 0 && height > 0) {  // not while it is an icon
+    if (width > 0 && height > 0) {  // 0 while the window is minimized
       if (!size.empty()) hands.view.picture = CornerFor(size, width, height);
       renderer.Resize(width, height);
       renderer.Show(scene);

@@ -1,4 +1,4 @@
-// A window with a context of OpenGL ES 3, in which a recorded run is played.
+// Plays a recorded run in a window with OpenGL ES 3.
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@ namespace alidade::gl_app {
 
 struct WindowSettings {
   int width = 1280, height = 720;  // pixels
-  double speed = 1;                // of the recording; 0: all at once
-  std::string screenshot;          // PNG of the end, no window is shown; empty: a window
+  double speed = 1;                // relative to the recording; 0: show the end at once
+  std::string screenshot;          // write a PNG of the end without a window; empty: open a window
 };
 
-// Until the window is closed. Throws Error (input) when none can be opened.
+// Returns when the window is closed. Throws Error (input) if none can be opened.
 void ShowRun(StreamPlayer& player, const WindowSettings& settings);
 
 }  // namespace alidade::gl_app

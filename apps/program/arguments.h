@@ -1,4 +1,4 @@
-// What the subcommands share about words on the command line.
+// Checks command lines for typing errors.
 #pragma once
 
 #include <string>
@@ -12,9 +12,9 @@ class App;
 
 namespace alidade {
 
-// Throws Error (usage), with the nearest known name, for the first subcommand or --option that is
-// not known. Done before the real parse, whose own complaint might be about something that follows
-// from the slip.
+// Throws Error (usage), suggesting the nearest known name, for the first unknown subcommand or
+// --option. Called before the real parser, whose message might be about a later consequence of the
+// typing error.
 void CheckNames(const CLI::App& app, const std::vector<std::string>& arguments);
 
 }  // namespace alidade

@@ -22,14 +22,14 @@ constexpr int kBugStatus = 70;  // EX_SOFTWARE
 
 int Complain(const CLI::App& app, std::string message, int status) {
   for (char& c : message) {
-    // One line, and nothing in it that a terminal obeys: names and values are quoted as found.
+    // One line without control characters: names and values are quoted verbatim.
     if ((c >= 0 && c < ' ') || c == '\x7f') c = ' ';
   }
   std::fprintf(stderr, "%s: %s\n", app.get_name().c_str(), message.c_str());
   return status;
 }
 
-// Where to read on: the innermost subcommand that was named.
+// The help of the innermost subcommand that was named.
 std::string HelpOf(const CLI::App& app) {
   std::string path = app.get_name();
   const CLI::App* command = &app;
@@ -71,7 +71,7 @@ int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action
     return ParseAndRun(app, action, std::move(words));
   } catch (const Error& error) {
     return Complain(app, error.what(), static_cast<int>(error.kind()));
-  } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
+  } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be resolved
     return Complain(app, error.what(), static_cast<int>(ErrorKind::kInput));
   } catch (const RunStopped& stopped) {
     return Complain(app, stopped.what(), kBugStatus);

@@ -1,5 +1,5 @@
-// What the main() of every program does: reads the command line, runs the chosen subcommand, turns
-// errors into one line and an exit status.
+// main() of all programs: parses the command line, runs the chosen subcommand, and reports errors
+// as one line and an exit status.
 #pragma once
 
 #include <functional>
@@ -12,15 +12,15 @@ class App;
 
 namespace alidade {
 
-// What a subcommand does; returns the exit status. Each subcommand sets it when it was chosen.
+// Runs a subcommand and returns the exit status. Set by the chosen subcommand.
 using Action = std::function<int()>;
 
-// What the words of a command line of an earlier version are now.
+// Translates the words of a command line of an earlier version.
 using RenewWords =
     std::function<std::vector<std::string>(const CLI::App&, std::vector<std::string>)>;
 
-// `add` names the program and adds its subcommands. Returns the exit status: 0 done, 2 usage,
-// 3 input, 70 a bug, else what the action returns.
+// `add` sets the program's name and adds its subcommands. Returns the exit status: 0 done, 2 usage,
+// 3 input, 70 a bug, else the result of the action.
 int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action&)>& add,
                const RenewWords& renew = {});
 

@@ -1,4 +1,4 @@
-// What a command says while it works: warnings, and on a terminal one line that is kept up to date.
+// Terminal output of a running command: warnings, and one line of progress.
 #pragma once
 
 #include <mutex>
@@ -6,7 +6,7 @@
 
 namespace alidade {
 
-// Any thread may warn.
+// Warn() may be called from any thread.
 class Terminal {
  public:
   explicit Terminal(bool quiet);
@@ -23,7 +23,7 @@ class Terminal {
 
   const bool quiet_, shows_progress_;
   std::mutex mutex_;
-  std::string line_;  // as it stands on the terminal
+  std::string line_;  // as currently shown
 };
 
 }  // namespace alidade

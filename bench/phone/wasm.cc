@@ -21,7 +21,7 @@ class JobFolder {
  public:
   JobFolder() {
     std::string pattern = (fs::temp_directory_path() / "alidade-bench-XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) ThrowInput("cannot make the folder " + pattern);
+    if (mkdtemp(pattern.data()) == nullptr) ThrowInput("cannot create the folder " + pattern);
     path_ = pattern;
   }
   ~JobFolder() {

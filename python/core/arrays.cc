@@ -35,7 +35,7 @@ py::array ArrayFrom(const py::handle& value, const std::string& name) {
   py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();
-    ThrowInput(name + " is no array");
+    ThrowInput(name + " is not an array");
   }
   if (array.size() == 0) ThrowInput(name + " is empty: " + ShapeOf(array));
   return array;
@@ -70,10 +70,10 @@ WrappedImage WrapDepth(const py::handle& value, const std::string& name) {
   const py::array array = ArrayFrom(value, name);
   const bool whole = py::isinstance<py::array_t<uint16_t>>(array);
   if (array.ndim() != 2 || !(whole || py::isinstance<py::array_t<float>>(array))) {
-    ThrowInput(name +
-               " must be (height, width) of float32 (meters) or uint16 (depth_factor per meter), "
-               "not " +
-               ShapeOf(array));
+    ThrowInput(
+        name +
+        " must be (height, width) of float32 (meters) or uint16 (depth_factor per meter), not " +
+        ShapeOf(array));
   }
   return Wrap(array, whole ? CV_16U : CV_32F, whole ? 2 : 4);
 }
@@ -125,7 +125,7 @@ Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
   if (!array) {
     PyErr_Clear();
-    ThrowInput(name + " is no array of numbers");
+    ThrowInput(name + " is not an array of numbers");
   }
   if (array.ndim() != 2 || array.shape(1) != 8) {
     ThrowInput(name + " must be (n, 8): timestamp tx ty tz qx qy qz qw, not " + ShapeOf(array));
@@ -135,7 +135,7 @@ Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
     const double* row = array.data(i, 0);
     const Eigen::Quaterniond q(row[7], row[4], row[5], row[6]);
     if (!(std::abs(q.norm() - 1) < 0.05))  // the same tolerance as for files
-      ThrowInput(name + ": row " + std::to_string(i) + " has no unit quaternion");
+      ThrowInput(name + ": row " + std::to_string(i) + " is not a unit quaternion");
     trajectory.push_back({row[0], Se3::FromQuaternion(q, {row[1], row[2], row[3]}), {}});
   }
   return trajectory;

@@ -48,7 +48,7 @@ py::object ReadCamera(const std::string& path, const std::string& sensor) {
   const Calibration calibration = ReadCameraFile(path);
   const Sensor wanted = SensorNamed("sensor", sensor);
   if (calibration.left.lens == Lens::kFisheye || (wanted == Sensor::kStereo && calibration.right)) {
-    ThrowUsage(path + ": images of this camera must be rectified; alidade.Rectifier does it");
+    ThrowUsage(path + ": images of this camera must be rectified with alidade.Rectifier");
   }
   return CameraObject(ImagePreparation(calibration, wanted).camera());
 }

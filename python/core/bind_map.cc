@@ -118,7 +118,7 @@ py::array_t<uint32_t> LoopsOf(const Part& part) {
 }
 
 py::dict CloudOf(const Part& part, double voxel) {
-  if (!(voxel >= 0)) ThrowUsage("voxel must be a length, or 0 for every pixel");
+  if (!(voxel >= 0)) ThrowUsage("voxel must be a positive length, or 0 for one point per pixel");
   Cloud cloud;
   {
     const py::gil_scoped_release release;

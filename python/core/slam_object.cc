@@ -44,7 +44,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   };
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localize)
-    ThrowUsage("semidense adds depth to a map that grows: localize leaves the map as it is");
+    ThrowUsage("semidense extends the map, which localize must not change: use one of them");
   SlamSettings settings = SettingsFrom(wanted).slam;
   settings.localize = wanted.localize;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
@@ -121,7 +121,8 @@ MapResults SlamObject::ResultsOfMap(size_t number) const {
   const std::lock_guard<std::mutex> lock(held->turn);
   RunResults results = ResultsOf(held->slam, held->log, held->R_camera_rectified);
   if (number >= results.maps.size())
-    ThrowUsage("map " + std::to_string(number) + ": maps are numbered from 0, and here are " +
+    ThrowUsage("map " + std::to_string(number) +
+               " does not exist: maps are numbered from 0, and their number is " +
                std::to_string(results.maps.size()));
   return std::move(results.maps[number]);
 }

@@ -67,7 +67,7 @@ def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
     result = alidade.run(DESK, sensor="rgbd", semidense=True, record_to=tmp_path / "live.mcap", out=tmp_path / "run")
     assert read(tmp_path, "live.mcap")[:8] == b"\x89MCAP0\r\n" == read(tmp_path, "live.mcap")[-8:]
     said = result.export(tmp_path / "result.mcap")
-    assert said.startswith("40 frames, ") and "points of shape" in said
+    assert said.startswith("40 frames, ") and "semi-dense points" in said
     program("export", result.folder, tmp_path / "program.mcap", "--to", "mcap")
     assert read(tmp_path, "result.mcap") == read(tmp_path, "program.mcap")
     assert result.export(tmp_path / "points.ply") == f"{len(result.map.points.ids)} points"

@@ -125,7 +125,7 @@ TEST_F(BadFiles, YamlThatGrowsOrHoldsItselfIsRefused) {
   for (const std::string flag : {"--config", "--camera"}) {
     ExpectRefused(Run(recording, {flag, itself}), 3, "itself.yaml:1: anchors and aliases");
     ExpectRefused(Run(recording, {flag, lol}), 3, "laughs.yaml:1: anchors and aliases");
-    ExpectRefused(Run(recording, {flag, deep}), 3, "deep.yaml:1: lists or maps in one another");
+    ExpectRefused(Run(recording, {flag, deep}), 3, "deep.yaml:1: lists or maps are nested");
   }
   const std::string twice = folder_.Write("twice.yaml", "image_width: 200\nimage_width: 300\n");
   ExpectRefused(Run(recording, {"--config", twice}), 3, "twice.yaml:2: `image_width` is given");
@@ -136,7 +136,7 @@ TEST_F(BadFiles, ACameraLargerThanAnyIsRefused) {
       "large.yaml",
       "model: fisheye\nwidth: 20000\nheight: 20000\nfx: 9000\nfy: 9000\ncx: 9999\ncy: 9999\n");
   ExpectRefused(Run(Recording(), {"--camera", camera}), 3,
-                "large.yaml:2: pictures of 20000x20000 are too large");
+                "large.yaml:2: images of 20000x20000 are too large");
 }
 
 TEST_F(BadFiles, NumbersNobodyCanMeanAreUsageErrors) {
@@ -147,7 +147,7 @@ TEST_F(BadFiles, NumbersNobodyCanMeanAreUsageErrors) {
                 "--threads must be from 0");
   ExpectRefused(Run(recording, {"--repeat", "2000000000"}), 2, "at most");
   for (const char* rate : {"1e-300", "-1", "nan", "inf", "0", "1e300"})
-    ExpectRefused(Run(recording, {"--rate", rate}), 2, "--rate is");
+    ExpectRefused(Run(recording, {"--rate", rate}), 2, "--rate must be");
   ExpectRefused(Alidade({"run", "synth:room?width=1000000000"}), 2, "width");
   ExpectRefused(Alidade({"run", "synth:room?frames=1000000000"}), 2, "frames");
   ExpectRefused(Alidade({"run", "synth:room?noise=nan"}), 2, "noise");

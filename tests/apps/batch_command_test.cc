@@ -260,7 +260,7 @@ TEST(BatchCommand, RefusesAWrongListBeforeAnythingIsRun) {
   WriteLines(list, {kRoom + "15"});
   const ProgramResult full = Batch({list, "--out", folder.path()});
   EXPECT_EQ(full.status, 3);  // it holds the list
-  EXPECT_THAT(full.err, HasSubstr("something else than a batch"));
+  EXPECT_THAT(full.err, HasSubstr("other files than those of a batch"));
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ TEST_F(CompareCommand, PageNamesBothAndNeedsNothingElse) {
   }
   // Paths from above and from the side, the truth with them; errors over time.
   for (const char* drawn : {"class=\"curve run0\"", "class=\"curve run1\"", "class=\"truth\"",
-                            "distance to the truth over time", "paths from the side"}) {
+                            "distance to the ground truth over time", "paths from the side"}) {
     EXPECT_THAT(page, HasSubstr(drawn));
   }
 }
@@ -130,7 +130,7 @@ TEST_F(CompareCommand, ReportOfARenderedRunTellsItsErrors) {
   const std::string report = ReadText(deep_ + "/report.html");
   EXPECT_THAT(report, HasSubstr("From the side"));
   EXPECT_THAT(report, HasSubstr(Printed("%.6f m", Rmse(deep_, "se3"))));
-  EXPECT_THAT(report, HasSubstr("distance to the truth over time"));
+  EXPECT_THAT(report, HasSubstr("distance to the ground truth over time"));
 }
 
 }  // namespace

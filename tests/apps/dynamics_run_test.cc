@@ -116,7 +116,7 @@ TEST_F(DynamicsRun, PeopleWhoFillThePictureAreLeftOutUnasked) {
   const std::string walk = DataFolder() + "/kitchen_walk", out = folder_ / "walk";
   const ProgramResult run = RunAlidade({"run", walk, "--sensor", "rgbd", "--out", out});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_NE(run.err.find("what moves is left out"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("moving objects are left out"), std::string::npos) << run.err;
   const ProgramResult result = RunAlidade({"evaluate", "ate", walk, out, "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_LT(json::parse(result.out).value("rmse", 1e9), 0.08);

@@ -103,10 +103,9 @@ TEST_F(EvaluateCommand, OneCamerasResultIsScaledUnlessItIsSaidOtherwise) {
     EXPECT_THAT(table(command, mono), HasSubstr("aligned by Sim(3) (one camera), scale 0.500000"));
     EXPECT_THAT(table(command, deep),
                 HasSubstr("aligned by SE(3) (depth or stereo); Sim(3) would scale by 0.500000"));
-    EXPECT_THAT(
-        table(command, twice_),
-        HasSubstr("aligned by SE(3) (sensor not known; sim3 is for one camera); Sim(3) would "
-                  "scale by 0.500000"));
+    EXPECT_THAT(table(command, twice_),
+                HasSubstr("aligned by SE(3) (unknown sensor; sim3 is for one camera); Sim(3) would "
+                          "scale by 0.500000"));
   }
   EXPECT_THAT(RunAlidade({"evaluate", "ate", truth_, twice_, "--align", "sim3"}).out,
               HasSubstr("aligned by Sim(3) (--align), scale 0.500000"));

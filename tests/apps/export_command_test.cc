@@ -189,7 +189,7 @@ TEST_F(SavedMapCommand, ColmapFolderIsReplacedOnlyWhenItIsOurs) {
   ExpectRefused({"export", result, "--to", "colmap", foreign}, 3, "foreign");
   EXPECT_EQ(ReadText(foreign + "/images.txt"), "months of work");
   folder_.Write("deep/model/notes.txt", "dear diary");
-  ExpectRefused({"export", result, "--to", "colmap", out}, 3, "other things");
+  ExpectRefused({"export", result, "--to", "colmap", out}, 3, "other files");
   ExpectRefused({"export", result, "--to", "colmap", foreign + "/images.txt"}, 3, "file");
   ExpectRefused({"export", result, "--to", "colmap", "/proc/model"}, 3, "/proc/model");
   EXPECT_EQ(NamesIn(folder_.path()).size(), 3u);  // no drafts
@@ -210,7 +210,7 @@ TEST_F(SavedMapCommand, ExportsThatCannotBeAreUsageErrors) {
   ExpectRefused({"export", map, "--to", "obj", out}, 2, "obj");
   ExpectRefused({"export", map, "--to", "tum", out, "--format", "binary"}, 2, "text");
   ExpectRefused({"export", map, "--to", "ply", out, "--format", "both"}, 2, "colmap");
-  ExpectRefused({"export", map, "--to", "ply", out, "--part", "1"}, 2, "here are 1");
+  ExpectRefused({"export", map, "--to", "ply", out, "--part", "1"}, 2, "their number is 1");
   ExpectRefused({"export", map, "--to", "ply", map}, 2, "the map itself");
   ExpectRefused({"export", map, "--to", "ply", folder_.path()}, 3, "is a folder");
   EXPECT_TRUE(NamesIn(folder_.path()).empty());

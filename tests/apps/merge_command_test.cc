@@ -139,7 +139,7 @@ TEST_F(MergeCommand, SaysWhatCannotBe) {
     EXPECT_FALSE(std::filesystem::exists(out));
     return result.err;
   };
-  EXPECT_THAT(complaint({noon_}, 2), HasSubstr("two maps or more"));
+  EXPECT_THAT(complaint({noon_}, 2), HasSubstr("at least two maps"));
   EXPECT_THAT(complaint({noon_, noon_ + "/map.alidade"}, 3), HasSubstr("are the same map"));
   EXPECT_THAT(complaint({noon_, *folder_ / "nowhere"}, 3), HasSubstr("nowhere"));
   Run("synth:desk?frames=60&width=320&height=240", "mono", {"--sensor", "mono"});

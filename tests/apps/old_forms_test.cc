@@ -103,7 +103,7 @@ TEST_F(OldForms, BothAtOnce) {
 TEST_F(OldForms, APortNeedsAViewerAndIsANumber) {
   const ProgramResult alone = Run({recording_.path(), "--port", "8090"});
   EXPECT_EQ(alone.status, 2);
-  EXPECT_THAT(alone.err, HasSubstr("--port is where the viewer listens: it needs --viewer"));
+  EXPECT_THAT(alone.err, HasSubstr("--port requires --viewer"));
   const ProgramResult word = Run({recording_.path(), "--viewer", "--port", "web"});
   EXPECT_EQ(word.status, 2);
   EXPECT_THAT(word.err, HasSubstr("not 'web'"));

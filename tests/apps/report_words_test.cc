@@ -51,7 +51,7 @@ TEST_F(ReportWords, BlurredStretch) {
                 return blurred;
               }),
               HasSubstr("tracked, lost once, "));
-  EXPECT_THAT(Lost(), HasSubstr("the picture was blurred. More light, or moving more slowly"));
+  EXPECT_THAT(Lost(), HasSubstr("the image was blurred. Move more slowly, or use more light"));
 }
 
 TEST_F(ReportWords, BareWall) {

@@ -127,7 +127,8 @@ TEST_F(ResultsKept, AnotherSourceOfTheSameNameHasAFolderOfItsOwn) {
   const Files before = FilesIn(at_ / "alidade-out/walk");
   const ProgramResult second = Alidade({"run", "b/walk"});
   EXPECT_EQ(second.status, 0);
-  EXPECT_THAT(second.err, HasSubstr("alidade-out/walk holds the results of `alidade run a/walk`"));
+  EXPECT_THAT(second.err,
+              HasSubstr("alidade-out/walk contains the results of `alidade run a/walk`"));
   EXPECT_THAT(second.out, HasSubstr("alidade-out/walk-2"));
   EXPECT_EQ(Alidade({"run", "c/walk"}).status, 4);
   EXPECT_EQ(FilesIn(at_ / "alidade-out/walk"), before);

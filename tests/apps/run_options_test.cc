@@ -105,7 +105,7 @@ TEST_F(RunOptions, UnknownOptionAndWordNameTheNearest) {
 TEST_F(RunOptions, DynamicsFlagsThatDoNotGoTogetherAreRefused) {
   ExpectError(2, {"--dynamics", "full"}, "needs --detector");
   ExpectError(2, {"--dynamics", "geometry", "--detector", "model.onnx"}, "--detector");
-  ExpectError(2, {"--write-masks"}, "needs --dynamics");
+  ExpectError(2, {"--write-masks"}, "requires --dynamics");
   ExpectError(2, {"--dynamics", "ful"}, "did you mean");
   ExpectError(3, {"--detector", "no_such_model.onnx"}, "no_such_model.onnx");
 }

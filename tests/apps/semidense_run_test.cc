@@ -72,8 +72,8 @@ TEST_F(SemiDenseRun, ReportShowsItAndStillNeedsNothingElse) {
   ASSERT_EQ(Run("out").status, 0);
   const std::string report = Text("out/report.html");
   EXPECT_THAT(report, HasSubstr("<h2>Shape</h2>"));
-  for (const char* view : {"from behind the first camera", "as the first camera looked",
-                           "from its right", "from above"})
+  for (const char* view : {"from behind the first camera", "in the direction of the first camera",
+                           "from the right", "from above"})
     EXPECT_EQ(CountOf(report, std::string("<img alt=\"") + view + "\""), 1) << view;
   EXPECT_EQ(CountOf(report, "src="),
             CountOf(report, "src=\"data:image/jpeg;base64,/9j/"));  // how a JPEG begins

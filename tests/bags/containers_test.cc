@@ -121,7 +121,7 @@ TEST(ContainerErrors, SayWhatIsWrongAndWhere) {
     return MessageOf(ErrorKind::kInput, [&] { OpenSource(path); });
   };
   EXPECT_THAT(message("a.bag", ""), HasSubstr("a.bag is empty"));
-  EXPECT_THAT(message("b.bag", "something else"), HasSubstr("no ROS bag"));
+  EXPECT_THAT(message("b.bag", "something else"), HasSubstr("neither a ROS bag"));
   EXPECT_THAT(message("c.bag", "#ROSBAG V1.2\n..."), HasSubstr("rosbag migrate"));
   EXPECT_THAT(message("d.mcap", "\x89MCAP0\r\n"), HasSubstr("d.mcap"));
   EXPECT_THAT(message("e.db3", "SQLite format 3"), HasSubstr("e.db3"));

@@ -155,7 +155,7 @@ TEST(RosPictures, OfCompressedDepthAreUnpacked) {
   EXPECT_FLOAT_EQ(decode("32FC1; compressedDepth png", head + png).at<float>(0, 0), 2.5f);
   EXPECT_THAT(MessageOf(ErrorKind::kInput,
                         [&] { decode("16UC1; compressedDepth rvl", head + "xxxxxxxx"); }),
-              HasSubstr("another way than PNG"));
+              HasSubstr("a compression other than PNG"));
 }
 
 TEST(RosPictures, ThatCannotBeAreRefused) {
@@ -163,8 +163,8 @@ TEST(RosPictures, ThatCannotBeAreRefused) {
   const auto message = [](const RosPicture& picture) {
     return MessageOf(ErrorKind::kInput, [&] { PictureOf(picture, ImageUse::kGray); });
   };
-  EXPECT_THAT(message({{}, false, "mono8", 64, 48, 64, false, "short"}), HasSubstr("cut short"));
-  EXPECT_THAT(message({{}, false, "mono8", 64, 48, 3, false, "short"}), HasSubstr("cut short"));
+  EXPECT_THAT(message({{}, false, "mono8", 64, 48, 64, false, "short"}), HasSubstr("truncated"));
+  EXPECT_THAT(message({{}, false, "mono8", 64, 48, 3, false, "short"}), HasSubstr("truncated"));
   EXPECT_THAT(message({{}, false, "mono8", 70000, 70000, 0, false, ""}), HasSubstr("too large"));
   EXPECT_THAT(message({{}, false, "mono8", 0, 0, 0, false, ""}), HasSubstr("too large"));
   EXPECT_THAT(message({{}, true, "jpeg", 0, 0, 0, false, "\xff\xd8\xff"}), HasSubstr("JPEG"));

@@ -128,7 +128,7 @@ TEST_F(Topics, ADepthCameraBesideIsNotTakenForDepthOfThePicture) {
   }
   const auto mono = Open(messages);
   EXPECT_EQ(mono->Info().sensor, Sensor::kMono);
-  EXPECT_THAT(mono->Info().told, HasSubstr("not taken: /camera/depth/image_rect_raw (depth)"));
+  EXPECT_THAT(mono->Info().told, HasSubstr("not used: /camera/depth/image_rect_raw (depth)"));
   EXPECT_EQ(Open(messages, "?depth=/camera/depth/image_rect_raw")->Info().sensor, Sensor::kRgbd);
   for (WrittenMessage& message : messages) {
     if (message.topic == "/camera/depth/image_rect_raw")

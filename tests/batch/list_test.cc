@@ -84,10 +84,10 @@ TEST(ParseBatchList, SaysWhichLineIsWrong) {
     return MessageOf(ErrorKind::kUsage, [&] { ParseBatchList(text, "list.txt", {}); });
   };
   EXPECT_THAT(complaint("a\nb 'c\n"), HasSubstr("list.txt:2: "));
-  EXPECT_THAT(complaint("--sensor mono a\n"), HasSubstr("begins with its source"));
-  EXPECT_THAT(complaint("a --out x\nb --out x\n"), HasSubstr("another line has that name"));
+  EXPECT_THAT(complaint("--sensor mono a\n"), HasSubstr("begin with its source"));
+  EXPECT_THAT(complaint("a --out x\nb --out x\n"), HasSubstr("another line has the same name"));
   EXPECT_THAT(complaint("a --out ../x\n"), HasSubstr("name of a folder"));
-  EXPECT_THAT(complaint("a --out log\n"), HasSubstr("file of its own"));
+  EXPECT_THAT(complaint("a --out log\n"), HasSubstr("itself writes a file"));
   EXPECT_THAT(complaint("# nothing\n"), HasSubstr("no recording"));
 }
 

@@ -47,7 +47,8 @@ TEST(LateDetector, WhatCannotBeIsRefusedAndNothingIsLost) {
                         }),
               HasSubstr("cannot be"));
   EXPECT_EQ(detector.TakeAnswer()->number, 1);
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { detector.Detect({}); }), HasSubstr("own time"));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { detector.Detect({}); }),
+              HasSubstr("asynchronously"));
 }
 
 }  // namespace

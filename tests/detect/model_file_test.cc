@@ -63,7 +63,7 @@ TEST(OnnxModel, RefusesLayersThatWorkOnNothing) {
   OnnxFile file;
   file.Input("x", {1, 3, 32, 32}).Node("Conv", {"x", "weights"}, "y");
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(file.Bytes()); }),
-              testing::HasSubstr("not there"));
+              testing::HasSubstr("does not exist"));
 }
 
 TEST(OnnxModel, RefusesConstantsThatAreTooShortOrTooLong) {
@@ -101,7 +101,7 @@ TEST(OnnxModel, RefusesMoreThanANetworkCanHave) {
   for (const std::string& graph : {ProtobufWriter().Bytes(11, input).text(),
                                    ProtobufWriter().Bytes(5, constant.text()).text()}) {
     EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadOnnxModel(bytes(graph)); }),
-                testing::HasSubstr("too many sides"));
+                testing::HasSubstr("too many dimensions"));
   }
 }
 

@@ -62,7 +62,7 @@ TEST(CameraFile, HoldsASecondCamera) {
   EXPECT_EQ(c.T_left_right.t.x(), 0.2);
   EXPECT_THAT(
       MessageOf(ErrorKind::kInput, [&] { Read(kGood + std::string("baseline: 1\n") + right); }),
-      HasSubstr("not both"));
+      HasSubstr("either `baseline`"));
 }
 
 TEST(CameraFile, MistakesAreNamedWithTheirLine) {
@@ -98,7 +98,7 @@ TEST(CameraFile, MistakesAreNamedWithTheirLine) {
 TEST(CameraFile, NamesThatMeanNothingAreWarnedOf) {
   WarningCatcher warnings;
   Read(std::string(kGood) + "distorsion: [1, 2, 3, 4]\n");
-  EXPECT_THAT(warnings.text(), HasSubstr("camera.yaml:8: `distorsion` means nothing here"));
+  EXPECT_THAT(warnings.text(), HasSubstr("camera.yaml:8: `distorsion` is not known here"));
 }
 
 TEST(CameraFile, FisheyeImagesBecomePinholes) {

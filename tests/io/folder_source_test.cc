@@ -38,7 +38,7 @@ TEST(FolderSource, OfFilesThatAreNoImagesIsAnError) {
   folder.Write("a.png", "");
   folder.Write("b.png", "x");
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { OpenSource(folder.path()); }),
-              testing::HasSubstr("not one image can be read"));
+              testing::HasSubstr("no image can be read"));
 }
 
 }  // namespace

@@ -123,7 +123,7 @@ TEST(FrameFinder, EmptyAndLiveSourcesAreNoRecordings) {
   TimedSource live({0, 1});
   live.seeks = false;
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { FrameFinder finder(live); }),
-              testing::HasSubstr("cannot be read from any place"));
+              testing::HasSubstr("only be played from the start"));
 }
 
 }  // namespace

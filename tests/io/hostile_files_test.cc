@@ -155,7 +155,8 @@ TEST(HostileFiles, TextInUtf16IsCalledThat) {
               AllOf(HasSubstr(list), HasSubstr("UTF-16")));
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadTrajectory(list); }), HasSubstr("UTF-16"));
   const std::string zeros = folder.Write("zeros.txt", std::string(100, '\0'));
-  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadTrajectory(zeros); }), HasSubstr("no text"));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadTrajectory(zeros); }),
+              HasSubstr("not a text file"));
 }
 
 std::string YamlProblem(const std::string& text) {

@@ -36,14 +36,14 @@ TEST(PictureSize, CamerasBeyondItAreRefusedAtTheirLine) {
   const std::string message = MessageOf(ErrorKind::kInput, [] {
     ParseCameraFile(CameraText("width: 20000\nheight: 20000"), "c.yaml");
   });
-  EXPECT_THAT(message, HasSubstr("c.yaml:2: pictures of 20000x20000 are too large"));
+  EXPECT_THAT(message, HasSubstr("c.yaml:2: images of 20000x20000 are too large"));
   EXPECT_THAT(message, HasSubstr("scale them down"));
   EXPECT_THAT(MessageOf(ErrorKind::kInput,
                         [] {
                           ParseEurocCamera("camera_model: pinhole\nresolution: [20000, 20000]\n",
                                            "s.yaml");
                         }),
-              HasSubstr("s.yaml:2: pictures of 20000x20000"));
+              HasSubstr("s.yaml:2: images of 20000x20000"));
 }
 
 TEST(PictureSize, NoMapsAreMadeForACameraBeyondIt) {
@@ -51,7 +51,7 @@ TEST(PictureSize, NoMapsAreMadeForACameraBeyondIt) {
   calibration.origin = "given";
   calibration.left = {Lens::kFisheye, 20000, 20000, 9000, 9000, 9999, 9999, {}};
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ImagePreparation(calibration, Sensor::kMono); }),
-              HasSubstr("given: pictures of 20000x20000"));
+              HasSubstr("given: images of 20000x20000"));
   Camera camera = Camera::FromFieldOfView(20000, 20000, 66);
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { camera.Check(); }), HasSubstr("20000x20000"));
 }
@@ -89,8 +89,8 @@ TEST(PictureSize, ImagesThatClaimMoreAreRefusedByTheirHeader) {
     EXPECT_THAT(read, HasSubstr(path));
     EXPECT_THAT(size, HasSubstr(path));
     if (path.find("c.png") == std::string::npos) {  // libpng's own limit is a million per side
-      EXPECT_THAT(read, HasSubstr("pictures of 20000x20000 are too large"));
-      EXPECT_THAT(size, HasSubstr("pictures of 20000x20000 are too large"));
+      EXPECT_THAT(read, HasSubstr("images of 20000x20000 are too large"));
+      EXPECT_THAT(size, HasSubstr("images of 20000x20000 are too large"));
     }
   }
 }

@@ -77,7 +77,7 @@ TEST(Trajectory, OfTheBodyIsTakenToTheLeftCamera) {
     WarningCatcher warnings;
     EXPECT_LT((ReadTrajectory(folder.path())[0].T_world_camera.t - Eigen::Vector3d(1, 2, 3)).norm(),
               1e-12);
-    EXPECT_THAT(warnings.text(), HasSubstr("body's poses"));
+    EXPECT_THAT(warnings.text(), HasSubstr("poses of the body"));
   }
   folder.Write("mav0/cam0/sensor.yaml",
                "%YAML:1.0\nT_BS:\n  cols: 4\n  rows: 4\n  data: [0, -1, 0, 0.5, 1, 0, 0, 0, 0, 0, "
@@ -122,7 +122,7 @@ TEST(Trajectory, FilesThatHoldNoneSaySo) {
               HasSubstr("x.txt"));
   EXPECT_THAT(
       MessageOf(ErrorKind::kInput, [&] { ReadTrajectory(folder.Write("x.txt", "# none\n")); }),
-      HasSubstr("holds no poses"));
+      HasSubstr("contains no poses"));
 }
 
 }  // namespace

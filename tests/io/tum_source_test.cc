@@ -107,7 +107,7 @@ TEST(TumSource, BadImagesAreSkippedAndTheRestGoesOn) {
   WarningCatcher warnings;
   const auto frames = AllFrames(*OpenSource(folder.path()));
   ASSERT_EQ(frames.size(), 7u);
-  const std::string expected[] = {"", "cut short", "is empty", "32x24", "No such file", "", ""};
+  const std::string expected[] = {"", "truncated", "is empty", "32x24", "No such file", "", ""};
   for (int i = 0; i < 7; ++i) {
     const SourceFrame& frame = frames[static_cast<size_t>(i)];
     EXPECT_EQ(frame.number, i);
@@ -140,9 +140,9 @@ TEST(TumSource, TimesOutOfOrderAreSortedRepeatsAndNonsenseSkipped) {
   EXPECT_EQ(good, (std::vector<std::string>{"100.5", "104.5"}));
   EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:3: `nan` is not a time stamp"));
   EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:5: `soon` is not a time stamp"));
-  EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:6: there is no file name"));
+  EXPECT_THAT(problems, testing::HasSubstr("rgb.txt:6: the file name after"));
   EXPECT_THAT(problems,
-              testing::HasSubstr("102.500000.png has the time stamp of the frame before"));
+              testing::HasSubstr("102.500000.png has the time stamp of the previous frame"));
   EXPECT_THAT(warnings.text(), testing::HasSubstr("not in order"));
 }
 

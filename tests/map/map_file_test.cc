@@ -215,11 +215,11 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
     void (*spoil)(MapCommit&);
   };
   const Case cases[] = {
-      {"no rigid motion", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.R *= 1.1; }},
+      {"not a rigid motion", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.R *= 1.1; }},
       {"not a number", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = NAN; }},
-      {"farther away", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = 1e13; }},
+      {"far away", [](MapCommit& c) { c.Edit(KeyFrameId{1})->T_camera_world.t.x() = 1e13; }},
       {"another map", [](MapCommit& c) { c.Edit(KeyFrameId{1})->map = {1}; }},
-      {"never was", [](MapCommit& c) { c.Edit(KeyFrameId{1})->map = {2}; }},
+      {"never existed", [](MapCommit& c) { c.Edit(KeyFrameId{1})->map = {2}; }},
       {"two first", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {}; }},
       {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = 0; }},
       {"scale", [](MapCommit& c) { c.Edit(KeyFrameId{1})->scale = NAN; }},
@@ -236,10 +236,10 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
       {"neighbour", [](MapCommit& c) { c.Edit(KeyFrameId{1})->covisible[0].id = {77}; }},
       {"reference", [](MapCommit& c) { c.Edit(LandmarkId{0})->reference = {77}; }},
       {"reference", [](MapCommit& c) { c.Edit(LandmarkId{0})->observations.clear(); }},
-      {"never was", [](MapCommit& c) { c.Edit(LandmarkId{0})->born = {77}; }},
-      {"what is not there",
+      {"never existed", [](MapCommit& c) { c.Edit(LandmarkId{0})->born = {77}; }},
+      {"that does not exist",
        [](MapCommit& c) { c.Edit(LandmarkId{0})->observations[0].keypoint = 100000; }},
-      {"what is not there",
+      {"that does not exist",
        [](MapCommit& c) { c.Edit(LandmarkId{0})->observations[0].keyframe = {77}; }},
       {"out of order",
        [](MapCommit& c) {

@@ -110,7 +110,7 @@ TEST(HostileMap, IdsWithoutObjects) {
   FlatBufferBuilder second;
   parts.keyframes = {AddKeyFrame(second, 0)};
   parts.next_keyframe = parts.next_map = 0;
-  EXPECT_THAT(Complaint(second, parts), testing::HasSubstr("never given"));
+  EXPECT_THAT(Complaint(second, parts), testing::HasSubstr("never assigned"));
   FlatBufferBuilder third;
   parts.keyframes.clear();
   parts.next_keyframe = 10;

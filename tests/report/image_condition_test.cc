@@ -47,9 +47,9 @@ TEST(LostInWords, SaysWhatBeganItAndWhatHelpsToComeBack) {
       {100.4, 106, "the place was not recognized", Look::kOrdinary, 56}};
   const auto lines = LostInWords({{100, 106.1}}, untracked, 90);
   ASSERT_EQ(lines.size(), 1u);
-  EXPECT_THAT(lines[0], HasSubstr("10.00 s to 16.10 s: the picture was blurred."));
-  EXPECT_THAT(lines[0], HasSubstr("going back to where the camera has been"));
-  EXPECT_THAT(LostInWords({{100, 101}}, {}, 90)[0], HasSubstr("given up"));
+  EXPECT_THAT(lines[0], HasSubstr("10.00 s to 16.10 s: the image was blurred."));
+  EXPECT_THAT(lines[0], HasSubstr("return to a place"));
+  EXPECT_THAT(LostInWords({{100, 101}}, {}, 90)[0], HasSubstr("dropped"));
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST(DynamicsAuto, LeavesOutWhomTheCameraFollowed) {
   EXPECT_GE(watched.tracked, 80);
   EXPECT_GT(watched.with_mask, 30);
   EXPECT_LT(watched.with_mask, kFrames);  // not from the start
-  EXPECT_THAT(watched.warnings, testing::HasSubstr("moves is left out"));
+  EXPECT_THAT(watched.warnings, testing::HasSubstr("moving objects are left out"));
   EXPECT_THAT(watched.stages, testing::Contains("dynamics"));
 }
 

@@ -137,7 +137,7 @@ TEST_F(MergeMapsOfARoom, WhatCannotBeTogetherIsSaid) {
     return MessageOf(kind, [&] { MergeMaps(maps); });
   };
   using testing::HasSubstr;
-  EXPECT_THAT(complaint(ErrorKind::kUsage, {early_->map}), HasSubstr("two maps or more"));
+  EXPECT_THAT(complaint(ErrorKind::kUsage, {early_->map}), HasSubstr("at least two maps"));
   EXPECT_THAT(complaint(ErrorKind::kInput, {early_->map, early_->map}), HasSubstr("the same map"));
   MapToMerge other = late_->map;
   other.name = "other";

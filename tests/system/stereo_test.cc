@@ -72,7 +72,7 @@ TEST(Start, APairThatSeesOnlyWhatIsTooFarForItSaysSo) {
   Slam slam(motorway.camera, settings);
   const TrackResult result = slam.Track({0, motorway.frames[0].left, motorway.frames[0].right, {}});
   EXPECT_EQ(result.state, TrackState::kInitializing);
-  EXPECT_EQ(std::string(result.reason()), "too few corners near enough for the sensor to place");
+  EXPECT_EQ(std::string(result.reason()), "too few corners near enough for accurate depth");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ void LateDetector::Bring(FrameDetections answer) {
     const cv::Rect2f& box = detection.box;
     if (!(box.width >= 0 && box.height >= 0) || !std::isfinite(box.x + box.y) ||
         !std::isfinite(box.width + box.height) || !std::isfinite(detection.score))
-      ThrowInput("a detection whose numbers cannot be");
+      ThrowInput("a detection with impossible numbers");
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   if (answer.number <= last_) return;
@@ -28,7 +28,7 @@ std::optional<FrameDetections> LateDetector::TakeAnswer() {
 }
 
 std::vector<Detection> LateDetector::Detect(const cv::Mat&) {
-  ThrowInput("this detector answers in its own time");
+  ThrowInput("this detector answers asynchronously");
 }
 
 }  // namespace alidade

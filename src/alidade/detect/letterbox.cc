@@ -15,7 +15,7 @@ constexpr float kLeastSide = 2;  // pixels
 }  // namespace
 
 Letterbox FitInto(cv::Size image, cv::Size input) {
-  if (image.empty() || input.empty()) ThrowInput("an empty image cannot be searched for things");
+  if (image.empty() || input.empty()) ThrowInput("the detector got an empty image");
   const double scale = std::min(static_cast<double>(input.width) / image.width,
                                 static_cast<double>(input.height) / image.height);
   Letterbox letterbox;

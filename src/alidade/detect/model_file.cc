@@ -61,7 +61,7 @@ class PartCounter {
  public:
   void Add() {
     if (++parts_ > kMostParts)
-      ThrowInput("is no detector: its layers and constants have more than " +
+      ThrowInput("is not a detector: its layers and constants have more than " +
                  std::to_string(kMostParts) + " parts");
   }
 
@@ -81,7 +81,7 @@ template <typename Visit>
 void ForEachField(std::string_view message, const Visit& visit) {
   ProtobufReader reader(message);
   while (const std::optional<ProtobufField> field = reader.Next()) visit(*field);
-  if (reader.damaged()) ThrowInput("is damaged or cut short");
+  if (reader.damaged()) ThrowInput("is damaged or truncated");
 }
 
 Node ReadNode(std::string_view bytes, PartCounter& count) {
@@ -123,7 +123,7 @@ void ReadTensorType(std::string_view bytes, OnnxInput* input) {
     ForEachField(field.bytes, [&](const ProtobufField& side) {
       if (side.number != shape::kDim) return;
       if (input->shape.size() == kMostOnnxSides)
-        ThrowInput("is damaged: an input has too many sides");
+        ThrowInput("is damaged: an input has too many dimensions");
       input->shape.push_back(ReadSide(side.bytes));
     });
   });
@@ -150,7 +150,7 @@ void CheckConnections(const Graph& read) {
   for (const Node& node : read.nodes) {
     for (const std::string_view input : node.inputs) {
       if (!input.empty() && known.count(input) == 0)
-        ThrowInput("is damaged: a layer works on something that is not there");
+        ThrowInput("is damaged: a layer has an input that does not exist");
     }
     known.insert(node.outputs.begin(), node.outputs.end());
   }
@@ -202,7 +202,7 @@ std::string ReadClassNames(std::string_view metadata) {
 void CheckOnnxStart(std::string_view start) {
   if (start.empty()) ThrowInput("is empty");
   // The first byte holds a field number, which is at least 1. A sparse file begins with zeros.
-  if (static_cast<unsigned char>(start.front()) >> 3 == 0) ThrowInput("is no ONNX file");
+  if (static_cast<unsigned char>(start.front()) >> 3 == 0) ThrowInput("is not an ONNX file");
 }
 
 OnnxModel ReadOnnxModel(std::string_view bytes) {
@@ -219,10 +219,10 @@ OnnxModel ReadOnnxModel(std::string_view bytes) {
     if (field->number == model::kMetadata && read.class_names.empty())
       read.class_names = ReadClassNames(field->bytes);
   }
-  if (!version) ThrowInput("is no ONNX file");
-  if (reader.damaged()) ThrowInput("is damaged or cut short");
+  if (!version) ThrowInput("is not an ONNX file");
+  if (reader.damaged()) ThrowInput("is damaged or truncated");
   if (!graph || graph->nodes.empty())
-    ThrowInput("holds no network: is it an ONNX file, and whole?");
+    ThrowInput("contains no network: it is not an ONNX file, or incomplete");
   read.normalises_input = NormalisesInput(*graph);
   read.external_weights = graph->external_weights;
   read.inputs = std::move(graph->inputs);

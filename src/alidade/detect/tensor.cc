@@ -50,7 +50,7 @@ OnnxTensor ReadTensor(std::string_view bytes) {
         for (const uint64_t side : Integers(*field, kMostOnnxSides + 1))
           tensor.shape.push_back(static_cast<int64_t>(side));
         if (tensor.shape.size() > kMostOnnxSides)
-          ThrowInput("is damaged: a constant has too many sides");
+          ThrowInput("is damaged: a constant has too many dimensions");
         break;
       case kDataType:
         type = field->value;
@@ -80,11 +80,11 @@ OnnxTensor ReadTensor(std::string_view bytes) {
     }
   }
   const std::optional<uint64_t> count = CountOf(tensor.shape);
-  if (reader.damaged() || !count) ThrowInput("is damaged or cut short");
+  if (reader.damaged() || !count) ThrowInput("is damaged or truncated");
   const size_t size = type < std::size(kBytesOf) ? kBytesOf[type] : 0;
   if (tensor.external || size == 0) return tensor;
   if (raw_bytes > 0 ? raw_bytes != *count * size : numbers != *count)
-    ThrowInput("is damaged: a constant has fewer or more numbers than its shape");
+    ThrowInput("is damaged: the size of a constant does not match its shape");
   return tensor;
 }
 

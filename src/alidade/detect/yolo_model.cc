@@ -19,15 +19,15 @@ constexpr int kFloat = 1, kHalf = 10;  // TensorProto.DataType
 cv::Size InputSize(const OnnxModel& model) {
   if (model.inputs.size() != 1)
     ThrowInput("has " + std::to_string(model.inputs.size()) +
-               " inputs: a detector has one, the picture");
+               " inputs: a detector has one, the image");
   const OnnxInput& input = model.inputs[0];
   const std::vector<int64_t>& shape = input.shape;
   if (input.element_type > 0 && input.element_type != kFloat && input.element_type != kHalf)
-    ThrowInput("takes no floating point numbers as input: export it with a float32 input");
+    ThrowInput("has an input that is not float32: export it with a float32 input");
   if (shape.empty()) return {kOpenSize, kOpenSize};
   if (shape.size() != 4 || (shape[1] != 3 && shape[1] > 0))
-    ThrowInput("takes no color picture: its input should be 1 x 3 x height x width");
-  if (shape[0] > 1) ThrowInput("takes several pictures at once: export it for a batch of 1");
+    ThrowInput("does not take color images: its input must be 1 x 3 x height x width");
+  if (shape[0] > 1) ThrowInput("takes several images at once: export it with batch size 1");
   const auto side = [](int64_t length) -> int64_t { return length > 0 ? length : kOpenSize; };
   const int64_t width = side(shape[3]), height = side(shape[2]);
   if (width % kStride != 0 || height % kStride != 0 || width > kMostSide || height > kMostSide) {
@@ -57,7 +57,7 @@ YoloModel::YoloModel(std::string_view bytes, const DetectorSettings& settings)
     : model_(ReadOnnxModel(bytes)), settings_(settings) {
   settings_.Check();
   if (model_.external_weights)
-    ThrowInput("keeps its weights in another file: export it as a single one");
+    ThrowInput("stores its weights in another file: export it as a single file");
   input_ = InputSize(model_);
   leaves_size_open_ = LeavesSizeOpen(model_);
 }
@@ -74,7 +74,7 @@ void YoloModel::Recognise(std::span<const NetworkOutput> outputs) {
 
 cv::Mat YoloModel::Prepare(const cv::Mat& image) const {
   if (image.type() != CV_8UC3 && image.type() != CV_8UC1)
-    ThrowInput("images have one or three channels of bytes");
+    ThrowInput("images must have one or three channels of 8 bits");
   return ToNetworkInput(Apply(FitInto(image.size(), input_), image), convention_);
 }
 

@@ -107,7 +107,7 @@ void RequireScores(const YoloLayout& layout, const Table& table) {
       if (score < -kScoreSlack || score > 1 + kScoreSlack) {
         ThrowInput("the network's outputs have the shape of a detector's, but a score is " +
                    std::to_string(score) +
-                   ": it does something else, or was exported without its last layer (sigmoid)");
+                   ": it is not a detector, or was exported without its last layer (sigmoid)");
       }
     }
   }
@@ -200,8 +200,8 @@ YoloLayout RecogniseYolo(std::span<const NetworkOutput> outputs, cv::Size input)
     }
     return *layout;
   }
-  ThrowInput("the network's outputs are " + (found.empty() ? "none" : found) +
-             ", not those of a detector that is known: " + Known(input));
+  ThrowInput("the outputs of the network are " + (found.empty() ? "none" : found) +
+             ", which is not a known detector's: " + Known(input));
 }
 
 std::vector<Detection> DecodeYolo(const YoloLayout& layout, const NetworkOutput& output,

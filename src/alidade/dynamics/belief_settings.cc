@@ -8,7 +8,7 @@
 namespace alidade {
 namespace {
 
-// Holds fields of one part to what they may be; not a number is refused as well.
+// Checks the ranges of the fields of one part; NaN is refused.
 class FieldCheck {
  public:
   explicit FieldCheck(const char* part) : part_(part) {}
@@ -19,7 +19,7 @@ class FieldCheck {
     ThrowUsage(text.str());
   }
   void Share(const char* field, double value) const { Range(field, value, 0, 1); }
-  // Evidence for motion, and against it.
+  // Evidence for motion must be negative, evidence against it positive.
   void Moved(const char* field, double value) const { Range(field, value, -10, 0); }
   void Stood(const char* field, double value) const { Range(field, value, 0, 10); }
 
@@ -27,7 +27,7 @@ class FieldCheck {
   const char* part_;
 };
 
-constexpr int kTrackFrames = FlowTracks::kHistory - 1;  // frames back that tracks reach
+constexpr int kTrackFrames = FlowTracks::kHistory - 1;  // length of tracks in frames
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Settings of what keeps moving things out of pose and map.
+// Settings for excluding moving objects from pose and map.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,17 @@
 namespace ALIDADE_API alidade {
 
 enum class DynamicsMode {
-  kOff,       // everything is taken to stand still
-  kAuto,      // the same, until much moves or the poses follow what does; then kGeometry
-  kGeometry,  // what moves against the rest is left out
-  kFull       // and so is what a detector knows to move by itself, even while it rests
+  kOff,  // everything counts as static
+  // as kOff until much of the image moves or the poses follow a moving object; then kGeometry
+  kAuto,
+  kGeometry,  // objects that move relative to the scene are excluded
+  kFull       // as kGeometry, and objects of movable classes, also at rest
 };
 
-// Whether what moves is left out whatever is seen: geometry and full.
+// True if moving objects are excluded from the start: geometry and full.
 bool LeavesOutFromStart(DynamicsMode mode);
 const char* NameOf(DynamicsMode mode);  // off, auto, geometry, full
-// Throws Error (usage) for a word that names none; `what` is whose word it is.
+// Throws Error (usage) for an unknown word; `what` is the option it was given for.
 DynamicsMode DynamicsModeNamed(const std::string& what, const std::string& word);
 
 struct Setting;
@@ -69,7 +70,7 @@ struct DynamicsSettings {
   double drop_detections = 0;
   double bridge_seconds = 1.0;
 
-  // Parts that can be switched off to measure what they contribute.
+  // Switches for individual parts, to measure their contribution.
   bool foreground = true;
   bool geometry = true;
   bool propagate = true;
@@ -86,7 +87,7 @@ struct DynamicsSettings {
   FeatureBeliefSettings features;
   LandmarkEvidenceSettings landmarks;
 
-  uint64_t seed = 1;  // of random samples; the system's
+  uint64_t seed = 1;  // of random samples; set to the system's seed
 
   static std::span<const Setting> Table();
   void Check() const;  // throws Error (usage) naming the invalid setting

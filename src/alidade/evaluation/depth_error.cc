@@ -21,7 +21,7 @@ std::string SizeText(const cv::Mat& image) {
 void CheckFrame(const DepthFrame& frame) {
   const auto& [estimate, truth, image, map] = frame;
   if (estimate.type() != CV_32F || truth.type() != CV_32F || image.type() != CV_8U)
-    ThrowInput("depth must be 32 bit float and the image 8 bit gray");
+    ThrowInput("depth must be 32-bit float and the image 8-bit gray");
   if (estimate.empty() || truth.empty()) ThrowInput("a depth image is empty");
   if (truth.size() != image.size())
     ThrowInput("true depth of " + SizeText(truth) + " for an image of " + SizeText(image));

@@ -48,9 +48,10 @@ std::vector<StampPair> MatchPoses(const TimeOrder& truth, const TimeOrder& estim
       AssociateStamps(truth.stamps, estimate.stamps, max_dt, association);
   if (pairs.size() < 3) {
     ThrowInput("only " + std::to_string(pairs.size()) + " of " +
-               std::to_string(estimate.stamps.size()) + " estimated poses have a true one within " +
-               Seconds(max_dt) + " s (3 are needed): the estimate runs from " + Span(estimate) +
-               ", the truth from " + Span(truth));
+               std::to_string(estimate.stamps.size()) +
+               " estimated poses have a true pose within " + Seconds(max_dt) +
+               " s (3 are needed): the estimate runs from " + Span(estimate) +
+               ", the ground truth from " + Span(truth));
   }
   for (StampPair& pair : pairs) {
     pair = {truth.index[pair.truth], estimate.index[pair.estimate]};

@@ -36,10 +36,10 @@ float DepthAt(const DepthImage& depth, int x, int y) {
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
   const bool integers = depth.type() == CV_16UC1;
   if (!integers && depth.type() != CV_32FC1) {
-    ThrowInput("depth image: must have one channel of 16 bit integers or 32 bit floats");
+    ThrowInput("depth image: must have one channel of 16-bit integers or 32-bit floats");
   }
   if (depth.size() != frame.image.size()) {
-    ThrowInput("depth image: its size differs from the color image's");
+    ThrowInput("depth image: its size differs from that of the color image");
   }
   if (integers && !(camera.depth_factor > 0)) {
     ThrowInput("depth image: the camera's depth_factor must be positive");

@@ -157,7 +157,7 @@ std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& ban
 
 Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number,
                          const cv::Mat& avoid) {
-  if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8 bit gray");
+  if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8-bit gray");
   if (image.cols != camera.width || image.rows != camera.height) {
     ThrowUsage("extractor: the image is " + std::to_string(image.cols) + "x" +
                std::to_string(image.rows) + ", the camera " + std::to_string(camera.width) + "x" +

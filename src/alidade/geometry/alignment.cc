@@ -37,7 +37,7 @@ Moments MomentsOf(std::span<const Eigen::Vector3d> points, const char* name) {
   const double rounding = 1e-14 * largest;
   if (moments.variance <= rounding * rounding) {
     ThrowInput(std::string("alignment: all points of the ") + name +
-               " are the same point; the motion between the two cannot be told");
+               " are the same point; the motion between the two is undefined");
   }
   return moments;
 }

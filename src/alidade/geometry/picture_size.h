@@ -20,10 +20,10 @@ inline bool IsPictureSize(int64_t width, int64_t height) {
 
 // Error text for an image beyond the limits.
 inline std::string TooLargeText(int64_t width, int64_t height) {
-  return "pictures of " + std::to_string(width) + "x" + std::to_string(height) +
+  return "images of " + std::to_string(width) + "x" + std::to_string(height) +
          " are too large: at most " + std::to_string(kMostPixels / 1000000) +
          " million pixels and " + std::to_string(kMostSide) +
-         " a side can be worked on; scale them down";
+         " per side are supported; scale them down";
 }
 
 }  // namespace alidade

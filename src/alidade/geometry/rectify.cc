@@ -42,7 +42,7 @@ PlaneRect CoveredRect(const RawCamera& raw, const Eigen::Matrix3d& R_raw_rectifi
 Camera FittingCamera(int width, int height, const PlaneRect& rect) {
   const double wide = rect.right - rect.left, high = rect.bottom - rect.top;
   if (!(wide > 1e-3 && high > 1e-3))
-    ThrowInput("the calibration leaves no common picture to rectify to");
+    ThrowInput("the calibration leaves no common image area after rectification");
   Camera camera;
   camera.width = width;
   camera.height = height;

@@ -29,7 +29,7 @@ std::ostringstream FloatText() {
 void CheckLengths(const Cloud& cloud) {
   for (const size_t length : {cloud.colors.size(), cloud.normals.size(), cloud.sigmas.size()}) {
     if (length != 0 && length != cloud.points.size())
-      ThrowUsage("a cloud needs as many colors, normals and sigmas as points, or none");
+      ThrowUsage("a cloud must have as many colors, normals and sigmas as points, or none");
   }
 }
 

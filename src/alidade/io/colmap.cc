@@ -40,7 +40,7 @@ void Check(const ColmapModel& model) {
     }
     for (const ColmapModel::Keypoint& keypoint : image.keypoints) {
       if (keypoint.point != ColmapModel::kNoPoint && !within(keypoint.point, model.points.size())) {
-        ThrowUsage("a COLMAP keypoint shows a point that is not there");
+        ThrowUsage("a COLMAP keypoint refers to a point that does not exist");
       }
     }
   }
@@ -48,7 +48,7 @@ void Check(const ColmapModel& model) {
     for (const ColmapModel::Seen& seen : point.track) {
       if (!within(seen.image, model.images.size()) ||
           !within(seen.keypoint, model.images[seen.image].keypoints.size())) {
-        ThrowUsage("a COLMAP track leads to a keypoint that is not there");
+        ThrowUsage("a COLMAP track refers to a keypoint that does not exist");
       }
     }
   }

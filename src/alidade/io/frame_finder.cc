@@ -17,7 +17,7 @@ constexpr double kSameTime = 1e-6;
 
 FrameFinder::FrameFinder(FrameSource& source) : source_(source), frames_(source.Info().frames) {
   if (frames_ < 0 || !source_.Seek(0))
-    ThrowInput(source_.Info().name + " cannot be read from any place in it, as a recording can");
+    ThrowInput(source_.Info().name + " can only be played from the start");
 }
 
 const SourceFrame& FrameFinder::Read(int number) {

@@ -20,7 +20,7 @@ struct PlyLayout {
 };
 
 PlyLayout LayoutOf(std::string_view bytes, const std::string& name) {
-  const auto refuse = [&]() { ThrowInput(name + " is not a cloud that alidade wrote"); };
+  const auto refuse = [&]() { ThrowInput(name + " is not a point cloud written by alidade"); };
   const size_t end = bytes.substr(0, 4096).find("end_header\n");
   if (bytes.substr(0, 4) != "ply\n" || end == std::string_view::npos) refuse();
   PlyLayout layout;
@@ -112,7 +112,7 @@ Cloud DecodePly(std::string_view bytes, const std::string& name) {
     if (layout.normals) cloud.normals.push_back(vector());
     if (layout.sigmas) cloud.sigmas.push_back(numbers.Float());
   }
-  if (numbers.bad()) ThrowInput(name + " holds what is no number");
+  if (numbers.bad()) ThrowInput(name + " contains a value that is not a number");
   return cloud;
 }
 

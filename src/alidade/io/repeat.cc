@@ -46,7 +46,8 @@ class RepeatedSource : public FrameSource {
     at_ += forwards() ? 1 : -1;
     std::optional<SourceFrame> frame = Get(at_);
     if (!frame)
-      ThrowInput("frame " + std::to_string(first_number_ + at_) + " was there once and is no more");
+      ThrowInput("frame " + std::to_string(first_number_ + at_) +
+                 " could be read before, but not again");
     time_ += std::abs(frame->time - recorded_time_);
     recorded_time_ = frame->time;
     frame->time = time_;
@@ -65,7 +66,7 @@ class RepeatedSource : public FrameSource {
       block_start_ = start;
       if (!forwards() || index != next_in_source_) {
         if (!source_->Seek(start))
-          ThrowUsage("--repeat needs a recording that can be played backwards");
+          ThrowUsage("--repeat needs a recording that can be played backward");
       }
       const int count = forwards() ? 1 : index - start + 1;
       for (int i = 0; i < count; ++i) {
@@ -104,7 +105,7 @@ std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int tim
   const int64_t frames = source->Info().frames > 0 ? source->Info().frames : kUnknown;
   const int64_t most = (std::numeric_limits<int>::max() - 1) / (2 * frames);
   if (times > most)
-    ThrowUsage("--repeat " + std::to_string(times) + " of this recording is more frames than " +
+    ThrowUsage("--repeat " + std::to_string(times) + " of this recording gives more frames than " +
                "can be counted: at most " + std::to_string(most));
   return std::make_unique<RepeatedSource>(std::move(source), times);
 }

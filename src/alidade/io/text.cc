@@ -26,7 +26,7 @@ void CheckIsText(std::string_view bytes, const std::string& name) {
   if (mark == "\xff\xfe" || mark == "\xfe\xff")
     ThrowInput(name + " is written in UTF-16: save it as UTF-8 or plain ASCII");
   if (bytes.find('\0') != std::string_view::npos)
-    ThrowInput(name + " is no text: there are bytes of 0 in it");
+    ThrowInput(name + " is not a text file: it contains bytes of 0");
   size_t lines = 0;
   for (size_t begin = 0; begin < bytes.size(); ++lines) {
     if (lines == kMostLines)

@@ -22,7 +22,7 @@ class Objects {
  public:
   // Creates an object; throws Error with `complaint` if the id already exists.
   Object& Add(uint32_t id, uint32_t next, const char* complaint) {
-    Require(id < next, "an id was never given");
+    Require(id < next, "an id was never assigned");
     const auto [place, is_new] = by_id_.try_emplace(id);
     Require(is_new, complaint);
     place->second = std::make_shared<Object>();
@@ -83,7 +83,7 @@ class Decoder {
     }
     saved.places = DecodePlaces(file_.places(), budget_);
     Require(saved.places.grown_at <= file_.next_keyframe(),
-            "its vocabulary was grown from keyframes that never were");
+            "its vocabulary was built from keyframes that never existed");
     auto state = std::make_shared<MapState>();
     state->keyframes = keyframes_.Table();
     state->landmarks = landmarks_.Table();
@@ -106,7 +106,7 @@ class Decoder {
     keyframe.frame = DecodeFrame(from, camera_, budget_);
     keyframe.T_camera_world = DecodePose(from.t_camera_world());
     keyframe.map = {from.map()};
-    Require(from.map() < NextMap(), "a keyframe is in a map that never was");
+    Require(from.map() < NextMap(), "a keyframe is in a map that never existed");
     keyframe.parent = {from.parent()};
     keyframe.scale = DecodeScale(from.scale());
     keyframe.landmarks.resize(keyframe.frame->keypoints.size());
@@ -133,7 +133,7 @@ class Decoder {
       }
       const KeyFrame* parent =
           keyframe->parent.value < id ? keyframes_.Find(keyframe->parent.value) : nullptr;
-      Require(parent, "a keyframe's parent is not there");
+      Require(parent, "a keyframe's parent does not exist");
       Require(parent->map == keyframe->map, "a keyframe's parent is in another map");
     }
   }
@@ -142,13 +142,13 @@ class Decoder {
     for (const Neighbour& neighbour : keyframe.covisible) {
       const KeyFrame* other = keyframes_.Find(neighbour.id.value);
       Require(other && other != &keyframe && neighbour.shared > 0,
-              "a keyframe's neighbor is not there");
+              "a keyframe's neighbor does not exist");
     }
     for (KeyFrameId id : keyframe.loops) {
       const KeyFrame* other = keyframes_.Find(id.value);
       Require(other && other != &keyframe && other->map == keyframe.map &&
                   std::binary_search(other->loops.begin(), other->loops.end(), keyframe.id),
-              "a loop leads to what is not there");
+              "a loop refers to a keyframe that does not exist");
     }
   }
 
@@ -166,22 +166,22 @@ class Decoder {
     landmark.reference = {from.reference()};
     if (const char* complaint = ComplaintOf(landmark)) Require(false, complaint);
     Require(landmark.born.value < file_.next_keyframe(),
-            "a landmark was born in a keyframe that never was");
+            "a landmark was created in a keyframe that never existed");
     bool reference_sees_it = false;
     for (uint32_t i = 0; i < SizeOf(from.observations()); ++i) {
       const fb::Observation& seen = *from.observations()->Get(i);
       KeyFrame* keyframe = keyframes_.Find(seen.keyframe());
       Require(keyframe && seen.keypoint() < keyframe->landmarks.size(),
-              "a landmark is seen by what is not there");
+              "a landmark is observed by a keyframe that does not exist");
       Require(landmark.observations.empty() || landmark.observations.back().keyframe < keyframe->id,
               "observations are out of order");
       LandmarkId& shown = keyframe->landmarks[seen.keypoint()];
-      Require(!shown.valid(), "a keypoint shows two landmarks");
+      Require(!shown.valid(), "a keypoint observes two landmarks");
       shown = landmark.id;
       landmark.observations.push_back({keyframe->id, static_cast<int>(seen.keypoint())});
       reference_sees_it = reference_sees_it || keyframe->id == landmark.reference;
     }
-    Require(reference_sees_it, "a landmark's reference keyframe does not see it");
+    Require(reference_sees_it, "a landmark's reference keyframe does not observe it");
   }
 
   const fb::Map& file_;
@@ -209,15 +209,15 @@ SavedMap DecodeMap(std::string_view bytes) {
     std::memcpy(aligned.data(), bytes.data(), bytes.size());
     data = reinterpret_cast<const uint8_t*>(aligned.data());
   }
-  if (bytes.size() > FLATBUFFERS_MAX_BUFFER_SIZE)
-    ThrowInput("the map is too large to be one (2 GB)");
+  if (bytes.size() > FLATBUFFERS_MAX_BUFFER_SIZE) ThrowInput("the map is too large (2 GB)");
   const auto most_tables = static_cast<flatbuffers::uoffset_t>(bytes.size() / 4);
   flatbuffers::Verifier verifier(data, bytes.size(), /*max_depth=*/16, most_tables);
-  if (!fb::VerifyMapBuffer(verifier)) ThrowInput("the map is damaged or cut short");
+  if (!fb::VerifyMapBuffer(verifier)) ThrowInput("the map is damaged or truncated");
   const fb::Map& file = *fb::GetMap(data);
   if (file.version() > kMapVersion) {
     ThrowInput("the map has format version " + std::to_string(file.version()) +
-               ", this program reads up to " + std::to_string(kMapVersion) + "; use a newer one");
+               ", but this program reads up to version " + std::to_string(kMapVersion) +
+               "; use a newer program");
   }
   Require(file.version() > 0, "it has no version");
   Require(file.checksum(), "it has no checksum");

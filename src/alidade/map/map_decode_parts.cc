@@ -25,7 +25,7 @@ Keypoint DecodeKeypoint(const fb::Keypoint& from) {
               near(keypoint.raw_x, kMaxPixel) && near(keypoint.raw_y, kMaxPixel) &&
               near(keypoint.right_x, kMaxPixel) && near(keypoint.angle, kMaxAngle) &&
               std::isfinite(keypoint.response) && std::isfinite(keypoint.depth),
-          "a keypoint has something that cannot be");
+          "a keypoint has an impossible value");
   Require(keypoint.level >= 0 && keypoint.level < kPyramidLevels,
           "a keypoint is on no pyramid level");
   return keypoint;
@@ -35,11 +35,10 @@ Keypoint DecodeKeypoint(const fb::Keypoint& from) {
 template <typename Items>
 void RequireAligned(const Items* items) {
   const auto place = items == nullptr ? 0 : reinterpret_cast<uintptr_t>(items->Data());
-  Require(SizeOf(items) == 0 || place % sizeof(uint64_t) == 0,
-          "a list does not lie where its numbers can be read");
+  Require(SizeOf(items) == 0 || place % sizeof(uint64_t) == 0, "a list is misaligned");
 }
 
-constexpr const char* kFarPoint = "a point is not a number, or farther away than can be";
+constexpr const char* kFarPoint = "a point is not a number, or impossibly far away";
 
 bool IsNear(const Eigen::Vector3d& p) {  // false for NaN
   return p.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= kFarthest;
@@ -62,12 +61,12 @@ Eigen::Vector3d PointOf(const fb::Vec3& from) { return {from.x(), from.y(), from
 const char* ComplaintOf(const Landmark& landmark) {
   // Conditions are written so that NaN fails them.
   if (!IsNear(landmark.p_world)) return kFarPoint;
-  if (!(landmark.normal.norm() <= 1.001f)) return "a landmark's normal is no direction";
+  if (!(landmark.normal.norm() <= 1.001f)) return "a landmark's normal is not a direction";
   if (!(landmark.min_distance >= 0 && landmark.min_distance <= landmark.max_distance &&
         landmark.max_distance <= kFarthest))
-    return "a landmark can be seen from nowhere";
+    return "a landmark has an empty range of distances";
   if (!(landmark.static_probability >= 0 && landmark.static_probability <= 1))
-    return "a landmark's probability of standing still is none";
+    return "a landmark's static probability is not in [0, 1]";
   return nullptr;
 }
 
@@ -79,13 +78,14 @@ Se3 DecodePose(const fb::Pose* from) {
   T.R.row(2) = DecodePoint(from->row2()).transpose();
   T.t = DecodePoint(from->t());
   const Eigen::Matrix3d error = T.R * T.R.transpose() - Eigen::Matrix3d::Identity();
-  Require(error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0, "a pose is no rigid motion");
+  Require(error.cwiseAbs().maxCoeff() < 1e-6 && T.R.determinant() > 0,
+          "a pose is not a rigid motion");
   return T;
 }
 
 double DecodeScale(double from) {
   constexpr double kMost = 1e6;  // far beyond any loop correction
-  Require(from >= 1 / kMost && from <= kMost, "a keyframe's scale cannot be");
+  Require(from >= 1 / kMost && from <= kMost, "a keyframe has an impossible scale");
   return from;
 }
 
@@ -114,7 +114,7 @@ Camera DecodeCamera(const fb::Camera& from) {
   camera.Check();
   Require(camera.width <= kMaxImageSide && camera.height <= kMaxImageSide &&
               int64_t{camera.width} * camera.height <= kMaxImageArea,
-          "the camera's image is larger than can be");
+          "the camera's image is impossibly large");
   return camera;
 }
 
@@ -128,7 +128,7 @@ std::shared_ptr<const Frame> DecodeFrame(const fb::KeyFrame& from, const Camera&
   frame->number = from.frame();
   frame->time = from.time();
   Require(frame->number >= 0 && frame->number <= kMaxFrameNumber,
-          "a keyframe's frame has a number that cannot be");
+          "a keyframe's frame has an impossible number");
   Require(std::isfinite(frame->time), "a keyframe's time is not a number");
   frame->keypoints.reserve(count);
   frame->descriptors.reserve(count);
@@ -144,7 +144,7 @@ SavedPlaces DecodePlaces(const fb::Places* from, ByteBudget& budget) {
   SavedPlaces places;
   if (!from) return places;
   const size_t count = SizeOf(from->nodes());
-  Require(count <= Vocabulary::kMaxNodes, "its vocabulary is larger than can be");
+  Require(count <= Vocabulary::kMaxNodes, "its vocabulary is impossibly large");
   budget.Take(count, sizeof(fb::PlaceNode));
   RequireAligned(from->nodes());
   places.nodes.reserve(count);
@@ -153,8 +153,7 @@ SavedPlaces DecodePlaces(const fb::Places* from, ByteBudget& budget) {
     places.nodes.push_back({DecodeDescriptor(node.centre()), node.first_child(), node.children()});
   }
   places.grown_at = from->grown_at();
-  Require(places.nodes.empty() == (places.grown_at == 0),
-          "its vocabulary was never grown, or grown to nothing");
+  Require(places.nodes.empty() == (places.grown_at == 0), "its vocabulary is missing or empty");
   Vocabulary checked(places.nodes);  // throws if the nodes are not a tree
   return places;
 }

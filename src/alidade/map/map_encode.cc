@@ -134,7 +134,7 @@ std::string EncodeMap(const SavedMap& saved) {
   try {
     DecodeMap(written);
   } catch (const Error& error) {
-    throw std::logic_error(std::string("the map would not load again: ") + error.what());
+    throw std::logic_error(std::string("the map is inconsistent: ") + error.what());
   }
   return written;
 }

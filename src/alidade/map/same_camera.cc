@@ -46,7 +46,7 @@ std::string Differences(const Camera& saved, const Camera& now) {
   const char* gap = "";
   const auto compare = [&](const char* name, double there, double here) {
     if (std::abs(there - here) <= 1e-9 * std::abs(there)) return;
-    out << gap << name << ' ' << there << " there, " << here << " here";
+    out << gap << name << ' ' << there << " in the map, " << here << " here";
     gap = "; ";
   };
   compare("width", saved.width, now.width);

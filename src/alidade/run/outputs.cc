@@ -17,7 +17,7 @@ namespace {
 
 Cloud LandmarksOf(const RunResults& results) {
   Cloud cloud;
-  for (LandmarkId id : results.map.Landmarks()) {  // others lie in worlds of their own
+  for (LandmarkId id : results.map.Landmarks()) {  // those of other maps have other world frames
     if (results.map.MapOf(results.map.Find(id)->reference) != results.maps.front().id) continue;
     cloud.points.push_back(
         (results.R_camera_rectified * results.map.Find(id)->p_world).cast<float>());
@@ -33,8 +33,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
   Cloud shape;
   Cloud landmarks;
   ReportPictures pictures;
-  std::exception_ptr failure;  // the first that is neither the disk's fault nor the folder's
-  // What there is no memory for is left out, and the next is tried.
+  std::exception_ptr failure;  // the first exception other than of the disk or the folder
+  // Continues with the next file if memory is exhausted.
   const auto attempt = [&](const auto& write) {
     try {
       write();
@@ -48,7 +48,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
     results = ResultsOf(slam, log, setup.source.R_camera_rectified);
     for (size_t i = 0; i < results.maps.size(); ++i) {
       const MapResults& map = results.maps[i];
-      if (i > 0 && map.trajectory.empty()) break;  // of a loaded map nothing was seen of
+      if (i > 0 && map.trajectory.empty()) break;  // a loaded map that was not seen
       folder.Write(NumberedFile("trajectory", i), FormatTumTrajectory(map.trajectory));
       folder.Write(NumberedFile("keyframes", i), FormatTumTrajectory(map.keyframes));
     }
@@ -73,7 +73,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
       if (!shape.points.empty())
         pictures.shape = WriteShapeViews(folder, results, slam.camera(), shape, voxel);
     });
-    // Without its pictures a report is still one.
+    // The report is also written without images.
     attempt([&] {
       if (pictures.shape.scene.cloud.points.empty() && !landmarks.points.empty())
         pictures.shape = LandmarkViews(results, std::move(landmarks));

@@ -1,4 +1,4 @@
-// The folder `alidade run` leaves behind (docs/reference/run-folder.md).
+// Writes the result folder of `alidade run` (docs/reference/run-folder.md).
 #pragma once
 
 #include "alidade/run/calibration/camera_finding.h"

@@ -36,15 +36,14 @@ std::string SizeOf(const Camera& camera) {
   return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 }
 
-// Where the settings did not ask for it.
+// Unless it was disabled by a setting.
 void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& settings) {
   if (settings.image_width != 0 || used.width == given.width) return;
-  LogWarning("pictures of " + SizeOf(given) + " are scaled down to " + SizeOf(used) +
-             ": larger ones take longer and tell no more (--set max_image_side=0 takes them as "
-             "they are)");
+  LogWarning("images of " + SizeOf(given) + " are downscaled to " + SizeOf(used) +
+             ": larger ones take longer without gain (--set max_image_side=0 keeps their size)");
 }
 
-// Takes the library's warnings while it lives.
+// Collects the warnings of the library while it exists.
 class Warnings {
  public:
   explicit Warnings(const std::vector<RunWatcher*>& watchers) {
@@ -68,7 +67,7 @@ class Warnings {
   std::vector<std::string> all_;
 };
 
-// The folder of the results, locked, before the work begins.
+// Creates and locks the result folder before the run.
 OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   OutputClaim claim;
   claim.owner = OwnerOf(options.source, options.localize);
@@ -84,7 +83,7 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   return claim;
 }
 
-// What ended the run, with `problem` (may be empty) behind it.
+// Rethrows the error that ended the run, with `problem` (may be empty) appended.
 [[noreturn]] void Rethrow(const std::exception_ptr& failure, const std::string& problem) {
   try {
     std::rethrow_exception(failure);
@@ -93,7 +92,7 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   }
 }
 
-// Writes the results and puts them in their place. Throws what says that the run did not end well.
+// Writes the results and moves them to their place. Throws the error, if any, that ended the run.
 void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
                   const std::vector<RunWatcher*>& watchers, RunOutcome& outcome) {
   const RunLog& log = outcome.log;
@@ -117,7 +116,8 @@ void LeaveResults(OutputFolder& folder, const Slam& slam, MaskWriter* masks,
   for (RunWatcher* watcher : watchers) watcher->End(outcome.summary, placed.folder);
   if (log.failure) Rethrow(log.failure, problem);
   if (!bugs.empty())
-    throw RunStopped(bugs + " (what could be done without is in " + placed.folder + ")" + problem);
+    throw RunStopped(bugs + " (the results obtained without it are in " + placed.folder + ")" +
+                     problem);
   if (log.interrupted) {
     outcome.status = kInterruptedStatus;
     if (!placed.problem.empty()) LogWarning(placed.problem);
@@ -144,7 +144,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   ThreadedFrom(options, false);  // slips in words come out before anything is opened
   RateFrom(options, false);
 
-  cv::setNumThreads(1);  // the loops are ours
+  cv::setNumThreads(1);  // parallel loops use our own threads
   SetThreadCount(options.threads);
   setup.threads = ThreadCount();
   const Warnings warnings(watchers);
@@ -152,7 +152,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::optional<SavedMap> saved;
   if (options.load) saved = ReadSavedMap(*options.load);
   SourceOptions wanted = SourceOptionsFrom(options);
-  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the map's sensor", saved->sensor);
+  if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the sensor of the map", saved->sensor);
   settings.localize = options.localize;
   wanted.color = settings.WantsColor();
   InspectedSource inspected = OpenInspected(options.source, wanted);

@@ -1,4 +1,4 @@
-// A whole run: from what was asked for to the files it leaves behind.
+// A whole run: from its options to the result files.
 #pragma once
 
 #include <stdexcept>
@@ -17,20 +17,19 @@ struct RunOutcome {
   CameraFinding camera;
   RunLog log;
   std::string folder;  // where the results are
-  // Exit status of a program that ends with it: 0, or 130 when it was interrupted. All else is
-  // thrown.
+  // Exit status of the program: 0, or 130 if interrupted. All other cases are exceptions.
   int status = 0;
 };
 
-// A part of the system stopped, by no fault of the recording's: it had no memory left, or has a
-// bug. What could be done without is written.
+// A part of the system stopped because of a bug or exhausted memory. The results obtained without
+// it are written.
 class RunStopped : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// Opens the source, plays it, writes the results. Throws Error (see ErrorKind) for what cannot be,
-// RunStopped (after everything else was done), and whatever else is a bug of ours.
+// Opens the source, plays it and writes the results. Throws Error (see ErrorKind) for invalid
+// options and input, RunStopped (after everything else was done), and other exceptions for bugs.
 RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watchers);
 
 }  // namespace alidade

@@ -109,7 +109,7 @@ void SemiDenseMapper::LetGo(int turned_away) {
   if (before == 0 && report_.let_go > 0) {
     LogWarning("semi-dense mapping cannot keep up: more than " +
                std::to_string(settings_.max_waiting) +
-               " keyframes wait (semidense.max_waiting), the oldest stay without depth");
+               " keyframes are waiting (semidense.max_waiting), so the oldest ones get no depth");
   }
 }
 

@@ -68,7 +68,7 @@ void FrameClient::Hear(std::string bytes, bool text) {
     if (!text) seat_->Take(std::move(bytes));
     return;
   }
-  if (!text) return Refuse("the first message says who sends: text");
+  if (!text) return Refuse("the first message must be text that identifies the session");
   std::string problem;
   // Only a posted handler may hold a strong reference, so that the client is destroyed in its own
   // thread.

@@ -46,10 +46,10 @@ bool Gate::IsOurs(std::string_view host, const Caller& caller) const {
 }
 
 std::string Gate::Refusal(const Caller& caller) const {
-  if (!caller.host || !IsOurs(*caller.host, caller)) return "this host is called something else";
+  if (!caller.host || !IsOurs(*caller.host, caller)) return "the request names another host";
   if (caller.origin &&
       !SameName(*caller.origin, (tls_ ? "https://" : "http://") + std::string(*caller.host)))
-    return "pages of other hosts may not ask";
+    return "requests from pages of other hosts are refused";
   return "";
 }
 
@@ -69,7 +69,7 @@ bool Gate::HasToken(std::string_view target) const {
 std::string RandomToken() {
   std::array<unsigned char, 16> bytes{};
   if (getrandom(bytes.data(), bytes.size(), 0) != static_cast<ssize_t>(bytes.size()))
-    throw std::runtime_error("the system has no random numbers");
+    throw std::runtime_error("the system provides no random numbers");
   std::string token;
   for (const unsigned char byte : bytes) {
     token += "0123456789abcdef"[byte >> 4];

@@ -65,13 +65,13 @@ void HttpSession::OnBadRequest(beast::error_code error) {
   keep_alive_ = false;
   head_only_ = false;
   if (error == http::error::header_limit || error == http::error::buffer_overflow)
-    return Send(431, kText, "too long\n");
+    return Send(431, kText, "the request is too long\n");
   if (error == http::error::body_limit || error == http::error::unexpected_body)
-    return Send(413, kText, "requests have no body\n");
+    return Send(413, kText, "requests must not have a body\n");
   const bool malformed = error.category() == make_error_code(http::error::bad_method).category() &&
                          error != http::error::end_of_stream &&
                          error != http::error::partial_message;
-  if (malformed) return Send(400, kText, "no HTTP\n");
+  if (malformed) return Send(400, kText, "not an HTTP request\n");
   Close();  // the client disconnected or timed out
 }
 
@@ -101,7 +101,7 @@ void HttpSession::OnRequest() {
     return Send(403, kText, text_);
   }
   if (!head_only_ && request.method() != http::verb::get)
-    return Send(405, kText, "GET and HEAD only\n");
+    return Send(405, kText, "only GET and HEAD are allowed\n");
   const std::string_view target(request.target().data(), request.target().size());
   const std::string_view path = PathOf(target);
   const ServeTask& task = core_.task;
@@ -111,7 +111,8 @@ void HttpSession::OnRequest() {
   // Compiled-in files are public; the page requests them without the token.
   const bool is_own = path == "/" || path == "/index.html" || path == "/info.json";
   if ((is_stream || is_frames || is_file || is_own) && !core_.gate->HasToken(target)) {
-    return Send(403, kText, "the address that the program printed ends in a token: it is needed\n");
+    return Send(403, kText,
+                "the token is missing, with which the address printed by the program ends\n");
   }
   if (is_stream) return Upgrade();
   if (is_frames) return UpgradeFrames();
@@ -129,7 +130,7 @@ void HttpSession::OnRequest() {
 void HttpSession::Upgrade() {
   const Request& request = parser_->get();
   if (!beast::websocket::is_upgrade(request) || buffer_.size() > 0)
-    return Send(400, kText, "this is a WebSocket\n");
+    return Send(400, kText, "this address is a WebSocket\n");
   if (!core_.MayJoin()) return Send(503, kText, "too many viewers\n");
   auto client = std::make_shared<StreamClient>(std::move(stream_), core_.io, *core_.task.hub,
                                                core_.task.settings, core_.viewers);
@@ -140,7 +141,7 @@ void HttpSession::Upgrade() {
 void HttpSession::UpgradeFrames() {
   const Request& request = parser_->get();
   if (!beast::websocket::is_upgrade(request) || buffer_.size() > 0)
-    return Send(400, kText, "this is a WebSocket\n");
+    return Send(400, kText, "this address is a WebSocket\n");
   if (!core_.MayJoin()) return Send(503, kText, "too many pages\n");
   auto client = std::make_shared<FrameClient>(std::move(stream_), core_.io, *core_.task.frames,
                                               core_.task.settings);
@@ -163,7 +164,7 @@ void HttpSession::SendFile(const std::string& path, std::string_view type) {
   std::error_code error;
   file_left_ = std::filesystem::file_size(path, error);
   file_.open(path, std::ios::binary);
-  if (error || !file_) return Send(404, kText, "the file is gone\n");
+  if (error || !file_) return Send(404, kText, "the file no longer exists\n");
   const Site site = core_.task.phone ? Site::kPhone : Site::kViewer;
   head_ = ResponseHead(200, type, file_left_, keep_alive_, false, site);
   if (head_only_) file_left_ = 0;

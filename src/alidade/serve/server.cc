@@ -37,7 +37,7 @@ asio::ip::address AddressOf(const std::string& host, asio::io_context& io) {
   if (!error) return address;
   tcp::resolver resolver(io);
   const auto found = resolver.resolve(host, "", error);
-  if (error || found.empty()) throw std::runtime_error("no address is known of '" + host + "'");
+  if (error || found.empty()) throw std::runtime_error("unknown address '" + host + "'");
   return found.begin()->endpoint().address();
 }
 
@@ -152,7 +152,7 @@ void Server::OpenTls(const asio::ip::address& host, const std::string& name) {
   static_cast<void>(host);
   static_cast<void>(name);
   throw std::runtime_error(
-      "this program was built without TLS (Debian: libssl-dev, then build again)");
+      "this program was built without TLS (install Debian's libssl-dev and build again)");
 #endif
 }
 
@@ -177,8 +177,9 @@ int Server::Listen(const asio::ip::address& host, tcp::acceptor& acceptor) {
   }
   const std::string what = settings.host + ":" + std::to_string(settings.port);
   if (error == asio::error::address_in_use) {
-    throw std::runtime_error(tries == 1 ? "port " + what + " is in use; another, or none, will do"
-                                        : "port " + what + " and those after it are in use");
+    throw std::runtime_error(tries == 1
+                                 ? "port " + what + " is in use; choose another port, or none"
+                                 : "port " + what + " and the next ones are in use");
   }
   throw std::runtime_error(what + ": " + error.message());
 }

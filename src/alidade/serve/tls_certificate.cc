@@ -19,12 +19,12 @@ constexpr long kDays = 30;
 
 template <class T>
 T* Made(T* made) {
-  if (made == nullptr) throw std::runtime_error("no certificate could be made (OpenSSL)");
+  if (made == nullptr) throw std::runtime_error("a certificate could not be created (OpenSSL)");
   return made;
 }
 
 void Require(bool done) {
-  if (!done) throw std::runtime_error("no certificate could be made (OpenSSL)");
+  if (!done) throw std::runtime_error("a certificate could not be created (OpenSSL)");
 }
 
 template <class Write>

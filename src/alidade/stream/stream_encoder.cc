@@ -210,14 +210,14 @@ void StreamEncoder::TellMap(const MapSnapshot& map, int number, double time,
     events_.push_back(messages.back());
   };
   for (MapId begun : news.begun) {
-    if (begun.value > 0) event(stream::EventKind::new_map, "a new map was begun", begun.value);
+    if (begun.value > 0) event(stream::EventKind::new_map, "new map", begun.value);
   }
   for (const auto& [a, b] : news.loops)
-    event(stream::EventKind::loop, "been here before: a loop was closed", a.value, b.value);
+    event(stream::EventKind::loop, "loop closed", a.value, b.value);
   for (const auto& [a, b] : news.merged)
-    event(stream::EventKind::merge, "two maps met and became one", a.value, b.value);
+    event(stream::EventKind::merge, "maps merged", a.value, b.value);
   for (MapId map_id : news.given_up)
-    event(stream::EventKind::given_up, "a map was given up", map_id.value);
+    event(stream::EventKind::given_up, "map dropped", map_id.value);
 }
 
 void StreamEncoder::TellState(const StreamFrame& frame, std::vector<std::string>& messages) {
@@ -236,7 +236,7 @@ void StreamEncoder::TellState(const StreamFrame& frame, std::vector<std::string>
   if (state == TrackState::kTracking) {
     if (other) {
       event(tracked_ ? stream::EventKind::found : stream::EventKind::started,
-            tracked_ ? "found again" : "started");
+            tracked_ ? "relocalized" : "started");
     }
     tracked_ = true;
   } else if (state == TrackState::kLost) {

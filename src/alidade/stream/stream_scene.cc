@@ -82,7 +82,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
   if (change.moves()) {
     for (const stream::Move* move : *change.moves()) {
       const auto found = scene.keyframes.find({move->id()});
-      if (found == scene.keyframes.end()) Refuse("a keyframe moves that was never told");
+      if (found == scene.keyframes.end()) Refuse("a moved keyframe is unknown");
       found->second.T_world_camera = PoseFrom(&move->t_world_camera(), "a keyframe");
       found->second.scale = ScaleFrom(move->scale());
     }
@@ -102,7 +102,7 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
   for (size_t i = 0; change.depth() && i < change.depth()->size(); ++i) {
     const stream::DepthCloud& cloud = *change.depth()->Get(static_cast<unsigned>(i));
     const auto found = scene.keyframes.find({cloud.keyframe()});
-    if (found == scene.keyframes.end()) Refuse("depth of a keyframe that was never told");
+    if (found == scene.keyframes.end()) Refuse("depth of an unknown keyframe");
     Check(cloud.points(), kPackedPoint, "point");
     const bool any = cloud.points() && cloud.points()->size() > 0;
     if (any && !(cloud.least() > 0 && cloud.most() >= cloud.least() && std::isfinite(cloud.most())))
@@ -179,7 +179,7 @@ void TakeFrame(const stream::Frame& told, StreamScene& scene) {
   Check(told.features(), kPackedFeature, "feature");
   SceneFrame frame{told.number(), static_cast<int>(told.state()), told.time(), {}, {}};
   if (told.reference() != KeyFrameId::kNone) {
-    if (scene.keyframes.count({told.reference()}) == 0) Refuse("a frame hangs on nothing");
+    if (scene.keyframes.count({told.reference()}) == 0) Refuse("a frame has no reference keyframe");
     frame.reference = {told.reference()};
     frame.T_reference_camera = PoseFrom(told.t_reference_camera(), "a frame");
   }
@@ -217,11 +217,11 @@ void StreamScene::Take(std::string_view bytes) {
   flatbuffers::Verifier verifier(data, bytes.size());
   if (bytes.size() < 12 || !stream::MessageBufferHasIdentifier(data) ||
       !stream::VerifyMessageBuffer(verifier)) {
-    Refuse("these bytes are no message");
+    Refuse("a message cannot be decoded");
   }
   const stream::Message& message = *stream::GetMessage(data);
   if (const stream::Hello* hello = message.body_as_Hello()) {
-    if (hello->version() > 1) ThrowInput("the stream is of a newer version");
+    if (hello->version() > 1) ThrowInput("the stream has a newer version");
     if (hello->camera()) TakeCamera(*hello->camera(), *this);
     source = TextFrom(hello->source());
     unit = TextFrom(hello->unit());

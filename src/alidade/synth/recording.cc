@@ -169,7 +169,8 @@ SynthRecording::SynthRecording(SynthSettings settings) {
   SceneBuilder builder(settings.seed);
   const Layout layout = LayOutFor(settings, builder);
   if (settings.things > 0 && !layout.table)
-    ThrowUsage("synth: no table for things in the scene \"" + settings.scene + "\"");
+    ThrowUsage("synth: things need a table, which the scene does not have: \"" + settings.scene +
+               "\"");
   std::vector<ActorLooks> looks;
   // Separate stream: the scene is the same with and without people.
   Random random(settings.seed, 51);

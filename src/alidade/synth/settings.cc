@@ -36,7 +36,7 @@ int SceneFrames(const std::string& name) {
   std::string known;
   for (const NamedScene& scene : kScenes)
     known += std::string(known.empty() ? "" : ", ") + scene.name;
-  ThrowUsage("synth: no scene is called \"" + name + "\"; there are " + known);
+  ThrowUsage("synth: unknown scene \"" + name + "\"; known are " + known);
 }
 
 double SynthSettings::Focal() const {
@@ -56,7 +56,7 @@ void SynthSettings::Check() const {
           "path must be walk, turn, turn-walk or still");
   require(speed > 0 && speed <= 100, "speed must be above 0 and at most 100");
   require(arm >= 0 && arm <= 2, "arm must be between 0 and 2 meters");
-  require(arm == 0 || path == "turn", "arm is of the path \"turn\" alone");
+  require(arm == 0 || path == "turn", "arm requires the path \"turn\"");
   require(things >= 0 && things <= 5, "things must be between 0 and 5");
   require(fov == 0 || (fov >= 10 && fov <= 150), "fov must be between 10 and 150 degrees");
   require(light > 0 && light <= 1, "light must be above 0 and at most 1");
@@ -64,8 +64,8 @@ void SynthSettings::Check() const {
   require(rolling_shutter >= 0 && rolling_shutter <= 500,
           "rolling_shutter must be between 0 and 500 milliseconds");
   require((distortion ? 1 : 0) + (k1 != 0 ? 1 : 0) + (fisheye ? 1 : 0) <= 1,
-          "distortion, k1 and fisheye are three lenses: choose one");
-  require(!fisheye || !stereo, "fisheye lenses come without stereo");
+          "distortion, k1 and fisheye are different lenses: choose one");
+  require(!fisheye || !stereo, "fisheye cannot be combined with stereo");
   require(k1 >= -1 && k1 <= 1, "k1 must be between -1 and 1");
   require(actors >= 0 && actors <= 20, "actors must be between 0 and 20");
   require(std::isfinite(noise) && noise >= 0 && noise <= 100,
@@ -77,7 +77,8 @@ void SynthSettings::Check() const {
   // r (1 + k1 r²) grows up to r² = -1 / (3 k1) only, where it is 2/3 r: no ray comes further out.
   const double corner = std::hypot(width, height) / 2 / Focal();
   require(k1 >= 0 || corner < 2.0 / 3 / std::sqrt(-3 * k1),
-          "k1 bends the picture's corners back: choose it nearer to 0, or a smaller fov");
+          "k1 makes the distortion not invertible at the image corners: choose it closer to 0, or "
+          "a smaller fov");
 }
 
 }  // namespace alidade

@@ -341,10 +341,10 @@ void FramePipeline::BeginRecording() {
 }
 
 void FramePipeline::Load(const SavedMap& saved) {
-  if (!log_.empty()) ThrowUsage("a map is loaded before the first frame, not after");
+  if (!log_.empty()) ThrowUsage("a map must be loaded before the first frame");
   CheckSameCamera(saved.camera, camera_);
   if (saved.sensor != NameOf(settings_.sensor)) {
-    ThrowInput("the map was made with a " + saved.sensor + " camera, this is " +
+    ThrowInput("the map was made with a " + saved.sensor + " camera, but this is " +
                NameOf(settings_.sensor));
   }
   workers_.Restore(saved);

@@ -49,7 +49,7 @@ std::vector<size_t> BySize(const std::vector<MapToMerge>& maps) {
     if (a == b) return false;
     if (size(maps[a]) != size(maps[b])) return size(maps[a]) > size(maps[b]);
     if (bytes_of(a) == bytes_of(b))
-      ThrowInput(maps[a].name + " and " + maps[b].name + " are the same map: give it once");
+      ThrowInput(maps[a].name + " and " + maps[b].name + " are the same map");
     return bytes_of(a) < bytes_of(b);
   });
   return order;
@@ -59,7 +59,7 @@ void CheckTogether(const MapToMerge& first, const MapToMerge& other) {
   const std::string both = other.name + " cannot be merged with " + first.name + ": ";
   if (first.saved.sensor != other.saved.sensor) {
     ThrowInput(both + "it was made with a " + other.saved.sensor + " camera, the other with a " +
-               first.saved.sensor + " one; run both with the same --sensor");
+               first.saved.sensor + " camera; run both with the same --sensor");
   }
   try {
     CheckSameCamera(first.saved.camera, other.saved.camera);
@@ -120,7 +120,7 @@ class Merger {
   // then more landmarks surround the places, and keyframes without a match are worth another try.
   bool JoinOnce() {
     bool any = false;
-    ForEachKeyFrame("looking for the same place", [&](KeyFrameId id) {
+    ForEachKeyFrame("searching for common places", [&](KeyFrameId id) {
       const MapSnapshot map = map_.Snapshot();
       const MapId here = map.MapOf(id);
       const auto elsewhere = [&](KeyFrameId other) { return map.MapOf(other) != here; };
@@ -142,7 +142,7 @@ class Merger {
   // landmarks with them yet. Returns the number of matches.
   int Tie() {
     int found = 0;
-    ForEachKeyFrame("tying the maps together", [&](KeyFrameId id) {
+    ForEachKeyFrame("connecting the maps", [&](KeyFrameId id) {
       const MapSnapshot map = map_.Snapshot();
       if (!IsJoined(map, id)) return;
       const auto other_part = [&](KeyFrameId other) {
@@ -170,7 +170,7 @@ class Merger {
 
   // Adjusts a whole map, removes outliers, and adjusts it once more.
   void Adjust(MapId id) {
-    for (const char* round : {"adjusting all", "adjusting all again"}) {
+    for (const char* round : {"adjusting all keyframes", "adjusting all keyframes again"}) {
       const MapSnapshot map = map_.Snapshot();
       const std::vector<KeyFrameId> ids = map.KeyFramesOf(id);
       if (progress_) progress_(round, 0, static_cast<int>(ids.size()));
@@ -213,7 +213,7 @@ class Merger {
 }  // namespace
 
 MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& progress) {
-  if (maps.size() < 2) ThrowUsage("there is nothing to merge: give two maps or more");
+  if (maps.size() < 2) ThrowUsage("nothing to merge: give at least two maps");
   const std::vector<size_t> order = BySize(maps);
   const MapToMerge& first = maps[order.front()];
   for (size_t i : order) {

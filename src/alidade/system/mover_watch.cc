@@ -95,7 +95,8 @@ bool MoverWatch::FollowsMover(bool young) {
   const bool follows = doubtful_ >= enough;
   if (!counts_ && (MuchMoves(young) || follows)) {
     LogWarning(
-        "much of the picture moves: from now on what moves is left out (--dynamics off: never)");
+        "much of the image moves: moving objects are left out from now on (--dynamics off disables "
+        "this)");
     used_ = counts_ = true;  // counts_: this frame already gives evidence on landmarks
   }
   present_ms_ += watch.Milliseconds();

@@ -14,10 +14,10 @@ Camera CameraInUse(Camera camera, const SlamSettings& settings) {
   if (settings.sensor != Sensor::kRgbd) camera.depth_factor = 0;
   if (settings.sensor != Sensor::kStereo) camera.baseline = 0;
   if (settings.sensor == Sensor::kRgbd && camera.depth_factor <= 0) {
-    ThrowInput("camera: an RGB-D run needs depth_factor (depth image value per meter)");
+    ThrowInput("camera: RGB-D needs depth_factor (depth image value per meter)");
   }
   if (settings.sensor == Sensor::kStereo && camera.baseline <= 0) {
-    ThrowInput("camera: a stereo run needs the baseline between the cameras");
+    ThrowInput("camera: stereo needs the baseline between the cameras");
   }
   int width = settings.image_width;
   const int longer = std::max(camera.width, camera.height);
@@ -45,7 +45,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
   if (!prepared.depth.empty()) {
     check(prepared.depth, "depth image");
     if (prepared.depth.type() != CV_16U && prepared.depth.type() != CV_32F)
-      ThrowInput("depth must be 16 bit or float");
+      ThrowInput("depth must be 16-bit or float");
   }
   if (!settings.WantsColor()) {
     prepared.color.release();

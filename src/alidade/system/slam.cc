@@ -26,9 +26,9 @@ SlamSettings InUse(SlamSettings settings) {
 }
 
 void WarnOfJump(double seconds) {
-  char text[100];
+  char text[120];
   PrintTo(text, sizeof(text),
-          "the time jumps %s by %.1f s: taken as a cut (further ones are not told)",
+          "the time jumps %s by %.1f s, which is treated as a cut (further jumps are not reported)",
           seconds < 0 ? "back" : "ahead", std::abs(seconds));
   LogWarning(text);
 }
@@ -87,7 +87,7 @@ const char* Slam::Impl::CheckTime(double time) {
     case ClockStep::kGoesOn:
       return std::exchange(restarted_, false) ? "a new recording" : "";
     case ClockStep::kLate:
-      ThrowInput("the frame's time does not grow");
+      ThrowInput("the time of the frame does not increase");
     case ClockStep::kGap:
       Cut();
       reason = "after a gap in time";

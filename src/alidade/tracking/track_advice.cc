@@ -9,29 +9,29 @@ namespace alidade {
 const char* AdviceText(TrackFailure failure) {
   switch (failure) {
     case TrackFailure::kFewCorners:
-      return "Turning to something with structure helps";
+      return "Point the camera at something with texture";
     case TrackFailure::kFewMatches:
-      return "Moving more slowly helps";
+      return "Move the camera more slowly";
     case TrackFailure::kLittleMotion:
-      return "Moving the camera sideways helps";
+      return "Move the camera sideways";
     case TrackFailure::kNoMotionModel:
-      return "Something in view moves by itself: looking elsewhere, or --dynamics geometry, helps";
+      return "Something in view moves: point the camera elsewhere, or use --dynamics geometry";
     case TrackFailure::kLowParallax:
-      return "Turning alone shows no depth";
+      return "Rotation alone gives no depth";
     case TrackFailure::kPureRotation:
-      return "Turning alone shows no depth";
+      return "Rotation alone gives no depth";
     case TrackFailure::kTwoMotions:
-      return "Looking at more than one flat wall, and moving on, helps";
+      return "Keep moving, with more than one flat surface in view";
     case TrackFailure::kStillCamera:
       return "The camera itself has to move";
     case TrackFailure::kNotConfirmed:
-      return "Moving on, sideways, helps";
+      return "Keep moving sideways";
     case TrackFailure::kMovingStart:
-      return "Looking where nothing moves helps";
+      return "Point the camera at things that do not move";
     case TrackFailure::kFewDepths:
-      return "Going nearer, to something with structure, helps";
+      return "Move closer to something with texture";
     case TrackFailure::kFewNearDepths:
-      return "Going nearer, to something with structure, helps";
+      return "Move closer to something with texture";
     case TrackFailure::kMappingStopped:
       return "A part of the program failed: see the warnings";
     case TrackFailure::kNone:

@@ -7,7 +7,7 @@ const char* ReasonText(TrackFailure failure) {
     case TrackFailure::kNone:
       break;
     case TrackFailure::kFirstView:
-      return "no frame yet";
+      return "no earlier image to compare with";
     case TrackFailure::kFewCorners:
       return "too few corners in the image";
     case TrackFailure::kFewMatches:
@@ -15,29 +15,29 @@ const char* ReasonText(TrackFailure failure) {
     case TrackFailure::kLittleMotion:
       return "the camera hardly moves";
     case TrackFailure::kNoMotionModel:
-      return "too few points agree on one motion";
+      return "too few matches agree on one camera motion";
     case TrackFailure::kLowParallax:
       return "too little parallax: move the camera sideways";
     case TrackFailure::kPureRotation:
-      return "a turn on the spot explains what is seen: move the camera sideways";
+      return "pure rotation: move the camera sideways";
     case TrackFailure::kTwoMotions:
-      return "two motions explain what is seen";
+      return "two camera motions fit the matches equally well";
     case TrackFailure::kStillCamera:
-      return "something moves, the camera seems to stand still";
+      return "only an object moves: move the camera";
     case TrackFailure::kNotConfirmed:
-      return "the first points did not hold";
+      return "the next frames contradicted the new map";
     case TrackFailure::kMovingStart:
-      return "the first points moved";
+      return "the new map was of a moving object";
     case TrackFailure::kFewDepths:
       return "too few corners with depth in the sensor's range";
     case TrackFailure::kFewNearDepths:
-      return "too few corners near enough for the sensor to place";
+      return "too few corners near enough for accurate depth";
     case TrackFailure::kFewLandmarks:
       return "too few landmarks found";
     case TrackFailure::kNotRecognized:
       return "the place was not recognized";
     case TrackFailure::kUnknownScale:
-      return "a turn left no scale: move sideways while turning";
+      return "pure rotation left the scale unknown: move sideways while turning";
     case TrackFailure::kMappingStopped:
       return "mapping has stopped";
   }

@@ -32,7 +32,7 @@ std::string Legend(const RunComparison& comparison, bool with_ends) {
   for (size_t i = 0; i < comparison.runs.size(); ++i)
     html += "<span>" + Chip(comparison.runs[i], i) + "</span> ";
   if (with_ends) {
-    if (!comparison.truth.empty()) html += "<span>dashed: the truth</span> ";
+    if (!comparison.truth.empty()) html += "<span>dashed: ground truth</span> ";
     html +=
         "<span><span class=\"key\" style=\"background:#1a9d50;margin-left:0\"></span>start</span> "
         "<span><span class=\"key\" style=\"background:#d43a2f;margin-left:0\"></span>end</span>";
@@ -59,8 +59,9 @@ std::string Errors(const RunComparison& comparison) {
     any = any || !run.error.empty();
   }
   if (!any) return "";
-  return "<h2>Distance to the truth</h2>\n" +
-         DrawCurves(curves, comparison.seconds, "s", "m", "distance to the truth over time") +
+  return "<h2>Distance to the ground truth</h2>\n" +
+         DrawCurves(curves, comparison.seconds, "s", "m",
+                    "distance to the ground truth over time") +
          Legend(comparison, false);
 }
 
@@ -81,9 +82,8 @@ std::string Times(const RunComparison& comparison) {
   std::string more;
   for (size_t stage = 1; stage < comparison.stages.size(); ++stage)
     more += Stage(comparison, stage);
-  return "<h2>Milliseconds</h2>\n<p class=\"soft\">Full color: to the median; lighter: to the "
-         "95th "
-         "percentile. Each part has a scale of its own.</p>\n" +
+  return "<h2>Milliseconds</h2>\n<p class=\"soft\">Full color: up to the median; lighter: up to "
+         "the 95th percentile. Each stage has its own scale.</p>\n" +
          Stage(comparison, 0) + "<details>\n<summary>Parts</summary>\n" + more + "</details>\n";
 }
 

@@ -25,7 +25,7 @@ std::string DrawPlace(const PlaceDrawing& place, PlaceView view) {
 
 std::string DrawTimeline(const std::vector<FrameFate>& frames) {
   constexpr double kBar = 18;
-  std::string svg = OpenSvg(kPictureWidth, kBar, "what became of each frame");
+  std::string svg = OpenSvg(kPictureWidth, kBar, "state of each frame");
   const double step = kPictureWidth / static_cast<double>(std::max<size_t>(1, frames.size()));
   for (size_t begin = 0; begin < frames.size();) {
     size_t end = begin;

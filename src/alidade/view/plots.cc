@@ -112,7 +112,7 @@ std::string DrawSpans(const std::vector<std::string>& names,
                       const std::vector<std::vector<FateSpan>>& runs, double x_end) {
   x_end = std::max(x_end, 1e-9);
   const double bottom = kRow * static_cast<double>(runs.size());
-  std::string svg = OpenSvg(kPictureWidth, bottom + 34, "what became of each run's frames");
+  std::string svg = OpenSvg(kPictureWidth, bottom + 34, "state of each run's frames");
   for (size_t i = 0; i < runs.size(); ++i) {
     const double y = kRow * static_cast<double>(i) + 24;
     svg += SvgText(0, y - 5, "start", names[i]);

@@ -47,15 +47,15 @@ std::string Histograms(
             Cell("figcaption", name) + "</figure>\n";
   }
   return html +
-         "</div>\n<p class=\"soft\">How often each took how long; line: median, dashed: 95 % are "
-         "below, last bar: with all that took longer.</p>\n";
+         "</div>\n<p class=\"soft\">Distribution of the times. Line: median; dashed: 95th "
+         "percentile; last bar: all longer times.</p>\n";
 }
 
 std::string Timing(const RunReport& report) {
   if (report.milliseconds.empty() || report.milliseconds.front().second.empty()) return "";
   const std::vector<double>& frames = report.milliseconds.front().second;
   return "<h2>Time</h2>\n" + TimingTable(report.milliseconds) + Histograms(report.milliseconds) +
-         "<p class=\"soft\">Each frame, as its caller waits:</p>\n" +
+         "<p class=\"soft\">Time for which the caller waits for each frame:</p>\n" +
          DrawSeries(frames, 1.5 * Summarise(frames).p95, "ms");
 }
 
@@ -85,10 +85,10 @@ std::string Keyframes(const std::vector<ReportKeyframe>& keyframes) {
   }
   return html +
          "</div>\n<p class=\"soft legend\"><span><span class=\"key\" "
-         "style=\"background:#1fb6e8\"></span>features that show a landmark</span> "
-         "<span><span class=\"key\" style=\"background:#b9c1ca\"></span>others</span> "
-         "<span><span class=\"key\" style=\"background:#d43a2f\"></span>on what moves</span> "
-         "<span>depth: near is bright, far is dark</span></p>\n";
+         "style=\"background:#1fb6e8\"></span>features matched to a landmark</span> <span><span "
+         "class=\"key\" style=\"background:#b9c1ca\"></span>others</span> <span><span "
+         "class=\"key\" style=\"background:#d43a2f\"></span>on moving objects</span> <span>depth: "
+         "near is bright, far is dark</span></p>\n";
 }
 
 std::string Legend(bool with_truth) {
@@ -100,7 +100,7 @@ std::string Legend(bool with_truth) {
              "keyframes</span> "
              "<span><span class=\"key\" style=\"background:var(--dot)\"></span>landmarks"
              "</span>") +
-         (with_truth ? " <span>dashed: the truth</span>" : "") + "</p>\n";
+         (with_truth ? " <span>dashed: ground truth</span>" : "") + "</p>\n";
 }
 
 // Draws each map from above and from the side.
@@ -149,8 +149,9 @@ std::string RenderReport(const RunReport& report) {
   html += Maps(report.maps);
   html += Shape(report);
   if (!report.error.empty()) {
-    html += "<h2>Distance to the truth</h2>\n" +
-            DrawCurves({report.error}, report.seconds, "s", "m", "distance to the truth over time");
+    html += "<h2>Distance to the ground truth</h2>\n" +
+            DrawCurves({report.error}, report.seconds, "s", "m",
+                       "distance to the ground truth over time");
   }
   html += Keyframes(report.keyframes);
   html += "<h2>Frames</h2>\n" + DrawTimeline(report.frames) +

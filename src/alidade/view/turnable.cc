@@ -108,9 +108,8 @@ std::string TurnableHtml(const CloudScene& scene, const ReportPicture& picture) 
   if (!picture.bytes.empty()) html += PictureHtml(picture) + "\n";
   if (packed.points == 0) return html + "</figure>\n";
   html +=
-      "<canvas tabindex=\"0\" role=\"application\" aria-label=\"the place, to be turned with the "
-      "arrow keys, nearer and further with plus and minus\"></canvas>\n"
-      "<figcaption><span class=\"still\">" +
+      "<canvas tabindex=\"0\" role=\"application\" aria-label=\"the map; arrow keys rotate, plus "
+      "and minus zoom\"></canvas>\n<figcaption><span class=\"still\">" +
       EscapeHtml(picture.caption) +
       "</span><span class=\"live\"><button type=\"button\" data-view=\"behind\">From behind"
       "</button> <button type=\"button\" data-view=\"above\">From above</button> "

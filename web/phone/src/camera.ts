@@ -3,10 +3,10 @@
 export class CameraProblem extends Error {}
 
 const PROBLEMS: Record<string, string> = {
-  NotAllowedError: 'The camera was refused. Allow it for this page (the lock or camera sign beside the address), then press Start again. A video can be opened without it.',
+  NotAllowedError: 'The browser denied the camera. Allow it for this page (lock or camera symbol next to the address), then press Start again. A video can be opened without it.',
   NotFoundError: 'No camera was found. A video can be opened instead.',
-  NotReadableError: 'The camera is in use by something else, or does not answer. Close other apps that show it, then press Start again.',
-  OverconstrainedError: 'No camera fits what was asked for. A video can be opened instead.',
+  NotReadableError: 'The camera is in use by another app, or does not answer. Close other apps that use it, then press Start again.',
+  OverconstrainedError: 'No camera supports the requested size. A video can be opened instead.',
 };
 
 interface FocusCapabilities extends MediaTrackCapabilities { focusMode?: string[]; focusDistance?: { min: number; max: number } }
@@ -15,8 +15,8 @@ interface FocusSettings extends MediaTrackSettings { focusDistance?: number }
 // Prefers the rear camera.
 export async function openCamera(): Promise<MediaStream> {
   if (!navigator.mediaDevices) {
-    throw new CameraProblem(isSecureContext ? 'This browser gives pages no camera. A video can be opened instead.'
-      : 'Browsers give the camera to secure pages only (https, or localhost): start the program with --tls. A video can be opened instead.');
+    throw new CameraProblem(isSecureContext ? 'This browser does not support cameras in pages. A video can be opened instead.'
+      : 'Browsers allow the camera only on https pages and on localhost: start the program with --tls. A video can be opened instead.');
   }
   try {
     return await navigator.mediaDevices.getUserMedia({

@@ -101,7 +101,7 @@ export class Control {
     if (!at || this.state.shown?.frame.state !== 'tracking') return;
     const placed = Cube.place(this.state.map, at);
     if (placed) this.dispatch({ kind: 'cube', cube: placed });
-    this.notice(placed ? '' : 'There are no map points near there yet: look at it a little longer.', 'cube');
+    this.notice(placed ? '' : 'There are no map points there yet: look at it a little longer.', 'cube');
   }
 
   toggleRecording(): void {

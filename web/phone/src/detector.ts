@@ -37,14 +37,14 @@ export class DetectorHost {
       const { port1, port2 } = new MessageChannel();
       engine.connect(port1);
       this.send({ kind: 'connect', port: port2 }, [port2]);
-    })().catch((error: Error) => this.stopped(`The detector ${detector.name} does not run: ${error.message}. Only what is seen to move is left out.`));
+    })().catch((error: Error) => this.stopped(`The detector ${detector.name} cannot run: ${error.message}. Only objects that are seen moving are left out.`));
   }
 
   // Accepts the file once it was loaded and run successfully.
   private async add(file: File): Promise<void> {
     this.tell(`Trying ${file.name} …`);
     try {
-      if (file.size > MOST_BYTES) throw new Error('it is larger than 200 MB: that is no detector for a phone');
+      if (file.size > MOST_BYTES) throw new Error('it is larger than 200 MB: which is too large for a phone');
       const model = await file.arrayBuffer();
       const classes = await this.open(model);
       await keepFile(model);
@@ -79,7 +79,7 @@ export class DetectorHost {
           ({ things: this.things, milliseconds: this.milliseconds } = data);
         } else {
           this.end();
-          this.stopped(`The detector has stopped: ${data.error}. Only what is seen to move is left out.`);
+          this.stopped(`The detector has stopped: ${data.error}. Only objects that are seen moving are left out.`);
         }
       };
     });

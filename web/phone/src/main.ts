@@ -58,7 +58,7 @@ byId('save-open').addEventListener('click', () => control.save());
 byId('settings-open').addEventListener('click', () => (byId('settings') as HTMLDialogElement).showModal());
 bind(choices, () => dispatch({ kind: 'choices', choices }));
 write(byId('about'), `${PROGRAM}. Built with ${BUNDLED.map(({ name, version, licence }) => `${name} ${version} (${licence})`).join(', ')}.`);
-if (!view.map.scene) dispatch({ kind: 'notice', about: 'webgl', text: 'This browser shows no 3D: the picture and the numbers are here, the map is not.' });
+if (!view.map.scene) dispatch({ kind: 'notice', about: 'webgl', text: 'This browser cannot show 3D: the map is missing, image and numbers are shown.' });
 
 if ('serviceWorker' in navigator && isSecureContext) {
   void navigator.serviceWorker.register('sw.js' + location.search).then(({ installing, waiting, active }) => {

@@ -19,7 +19,7 @@ export function engineHooks(dispatch: Dispatch, ended: (why: string) => void): H
     done(done) { dispatch({ kind: 'done', done, messages: decoded(done.messages) }); },
     messages(messages) { dispatch({ kind: 'stream', messages: decoded(messages) }); },
     anew() { dispatch({ kind: 'anew' }); },
-    failed(text) { ended(`The core has stopped: ${text}. What there is can be saved; Start anew begins again.`); },
+    failed(text) { ended(`The core has stopped: ${text}. The results so far can be saved; Start anew begins again.`); },
     lost(text) { dispatch({ kind: 'notice', about: 'connection', text }); },
   };
 }

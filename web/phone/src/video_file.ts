@@ -31,12 +31,12 @@ export class VideoFile {
     const address = URL.createObjectURL(file);
     await new Promise<void>((resolve, reject) => {
       video.onloadeddata = () => resolve();
-      video.onerror = () => reject(new Error('this browser cannot read it as a video (MP4 with H.264 and WebM are read nearly everywhere)'));
+      video.onerror = () => reject(new Error('this browser cannot read it as a video (MP4 with H.264 and WebM work in nearly all browsers)'));
       video.srcObject = null;
       video.src = address;
       video.load();
     });
-    if (!video.videoWidth) throw new Error('there are no pictures in it');
+    if (!video.videoWidth) throw new Error('it contains no images');
     const opened = new VideoFile(video, address);
     video.playbackRate = 0.5;
     video.requestVideoFrameCallback(opened.take);

@@ -18,18 +18,18 @@ const ADVICE: Readonly<Record<Failure, string>> = {
   still_camera: 'Move the phone, not the objects in front of it.',
   not_confirmed: 'Move slowly; keep people out of the image.',
   moving_start: 'Move slowly; keep people out of the image.',
-  few_depths: 'Go nearer to something with texture.',
-  few_near_depths: 'Go nearer to something with texture.',
-  few_landmarks: 'Go back slowly to what was mapped.',
-  not_recognized: 'Go back to a place that was mapped, and look in the same direction.',
+  few_depths: 'Move closer to something with texture.',
+  few_near_depths: 'Move closer to something with texture.',
+  few_landmarks: 'Go back slowly to a mapped place.',
+  not_recognized: 'Go back to a mapped place, and look in the same direction.',
   unknown_scale: 'Move sideways while rotating.',
-  mapping_stopped: 'No new map can begin: stop, and start anew.',
+  mapping_stopped: 'No new map can be started: stop, and start again.',
 };
 
 // `light`: mean gray level of the image; NaN: unknown.
 export function advice({ state, failure, reason, predicted }: Frame, light: number): string {
   if (state === 'tracking') return light < DARK ? 'It is dark: more light would help.' : '';
-  if (predicted) return 'Lost just now: the pose is predicted from the last motion.';
+  if (predicted) return 'Just lost: the pose is predicted from the last motion.';
   if (light < DARK) return 'Too dark: switch on a light.';
   return failure ? ADVICE[failure] : sentence(reason);
 }

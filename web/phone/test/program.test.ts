@@ -224,7 +224,7 @@ test('who may not is told so, and what is no picture harms nobody', options, asy
   assert.match((await talk('nonsense'))[0]!, /error.*JSON/);
   assert.match((await talk(Buffer.from([1, 2, 3])))[0]!, /error/);
   assert.match((await talk(hello('../../etc')))[0]!, /error.*32 hexadecimal/);
-  assert.match((await talk(hello(name('a'), 100000, 100000)))[0]!, /error.*not taken/);
+  assert.match((await talk(hello(name('a'), 100000, 100000)))[0]!, /error.*not accepted/);
   const frame = (number: number, bytes: Buffer) => {
     const head = Buffer.alloc(16);
     head.writeUInt32LE(number, 0);

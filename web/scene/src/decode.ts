@@ -17,7 +17,7 @@ export function decode(bytes: Uint8Array): Message {
   verify(aligned);
   const message = fb.Message.getRootAsMessage(new flatbuffers.ByteBuffer(aligned));
   const body = <T>(table: T): T => {
-    if (message.body(table as never) === null) throw new DecodeError('a message that says nothing');
+    if (message.body(table as never) === null) throw new DecodeError('an empty message');
     return table;
   };
   switch (message.bodyType()) {
@@ -34,7 +34,7 @@ export function decode(bytes: Uint8Array): Message {
       return { kind: 'playback', paused: playback.paused(), finished: playback.finished(), mayPause: playback.mayPause() };
     }
     default:
-      throw new DecodeError('a message that says nothing');
+      throw new DecodeError('an empty message');
   }
 }
 
@@ -46,7 +46,7 @@ function list<From, To>(count: number, at: (i: number) => From | null, to: (from
 
 function pose(p: fb.Pose): Pose {
   const values = [p.qx(), p.qy(), p.qz(), p.qw(), p.tx(), p.ty(), p.tz()];
-  if (!values.every(Number.isFinite)) throw new DecodeError('a pose that is no number');
+  if (!values.every(Number.isFinite)) throw new DecodeError('a pose that is not a number');
   const norm = Math.hypot(values[0], values[1], values[2], values[3]);
   if (Math.abs(norm - 1) > 1e-3) throw new DecodeError(`a rotation whose quaternion has length ${norm}`);
   return values;

@@ -18,7 +18,7 @@ export class StreamFileReader {
     if (!this.started) {
       const head = this.peek(8);
       if (!head) return messages;
-      if (String.fromCharCode(...head) !== MAGIC) throw new DecodeError('this is no recorded stream: it does not begin with ' + MAGIC);
+      if (String.fromCharCode(...head) !== MAGIC) throw new DecodeError('this is not a recorded stream: it does not begin with ' + MAGIC);
       this.take(8);
       this.started = true;
     }

@@ -101,6 +101,6 @@ class Verifier {
 
   private spend(bytes: number): void {
     this.budget -= bytes;
-    if (this.budget < 0) throw new DecodeError('says the same bytes too often');
+    if (this.budget < 0) throw new DecodeError('refers to the same bytes too often');
   }
 }

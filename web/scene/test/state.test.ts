@@ -154,7 +154,7 @@ test('a recorded stream is read in pieces of any size, and its cut-off end told'
     read.forEach((bytes, i) => assert.deepEqual(bytes, messages[i]));
     assert.equal(reader.rest, 3);
   }
-  assert.throws(() => new StreamFileReader().push(new Uint8Array(16)), /no recorded stream/);
+  assert.throws(() => new StreamFileReader().push(new Uint8Array(16)), /not a recorded stream/);
 });
 
 function moveTo(id: number, gone: { T_world_camera: readonly number[]; scale: number }, next: typeof gone & { id: number }) {

@@ -40,7 +40,7 @@ function makeScene(): Scene | null {
   } catch (error) {
     if (!(error instanceof NoWebGL)) throw error;
     document.body.classList.add('no-webgl');
-    notice('This browser shows no 3D (WebGL 2 is missing or switched off): the picture and the numbers are here, the map is not.', 'webgl');
+    notice('This browser cannot show 3D (WebGL 2 is missing or disabled): the map is missing, image and numbers are shown.', 'webgl');
     return null;
   }
 }
@@ -94,8 +94,8 @@ function connect(): void {
     closed() {
       document.body.dataset.connection = 'closed';
       const over = player.latest.playback?.finished;
-      notice(over ? 'The program has ended. What it told stays here; the page goes on by itself if it is started again.'
-        : 'No connection: the program has ended, or has yet to start. Trying again …', 'connection');
+      notice(over ? 'The program has ended. The page keeps what it has received and continues when the program is started again.'
+        : 'No connection: the program has ended or has not started yet. Trying again …', 'connection');
     },
   });
 }
@@ -115,13 +115,13 @@ async function loadRecorded(): Promise<void> {
     if (done) break;
     total += value.byteLength;
     if (total > MOST_BYTES) {
-      notice('The recording is larger than this page can hold: its end is not shown.', 'file');
+      notice('The recording is larger than this page can hold: the end is not shown.', 'file');
       await body.cancel();
       break;
     }
     for (const bytes of reader.push(value)) receive(bytes);
   }
-  if (reader.rest > 0 && total <= MOST_BYTES) notice('The end of the recording is missing: the program was stopped while it wrote.', 'file');
+  if (reader.rest > 0 && total <= MOST_BYTES) notice('The end of the recording is missing: the program was stopped while writing.', 'file');
 }
 
 async function begin(): Promise<void> {

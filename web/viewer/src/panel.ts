@@ -39,7 +39,7 @@ export class Panel {
     write(byId('source'), hello?.source ?? '');
     const sensors: Record<string, string> = { mono: 'one camera', stereo: 'stereo pair', rgbd: 'RGB-D camera' };
     const maps = frame && frame.maps > 1 ? `${frame.maps} maps` : '';
-    write(byId('about-run'), hello ? [sensors[hello.sensor] ?? hello.sensor, `lengths in ${hello.unit === 'm' ? 'metres' : hello.unit}`, maps]
+    write(byId('about-run'), hello ? [sensors[hello.sensor] ?? hello.sensor, `lengths in ${hello.unit === 'm' ? 'meters' : hello.unit}`, maps]
       .filter(Boolean).join(' · ') : '');
     if (hello) write(byId('about-program'), hello.program);
     this.listEvents();

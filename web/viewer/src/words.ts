@@ -16,11 +16,11 @@ const ADVICE: Readonly<Record<Failure, string>> = {
   not_confirmed: 'Keep moving sideways, slowly.',
   moving_start: 'Keep moving objects out of the image.',
   few_depths: 'Show it something with texture, within the range of the depth camera.',
-  few_near_depths: 'Go nearer to something with texture.',
-  few_landmarks: 'The image may be blurred, covered or without texture: go back slowly to what was mapped.',
+  few_near_depths: 'Move closer to something with texture.',
+  few_landmarks: 'The image may be blurred, covered or without texture: go back slowly to a mapped place.',
   not_recognized: 'Go back to a place that was mapped, and look in the same direction.',
   unknown_scale: 'Move sideways while rotating.',
-  mapping_stopped: 'The program names the cause on its terminal.',
+  mapping_stopped: 'The terminal of the program shows the cause.',
 };
 
 export function advice(failure: Failure | null): string {
@@ -29,13 +29,13 @@ export function advice(failure: Failure | null): string {
 
 export function reasonText(frame: Frame): string {
   if (frame.state === 'tracking') return '';
-  const guess = frame.predicted ? 'The camera is drawn where its last motion leads.' : '';
+  const guess = frame.predicted ? 'The camera is drawn at the pose predicted from its last motion.' : '';
   return [sentence(frame.reason), guess || advice(frame.failure)].filter(Boolean).join(' ');
 }
 
 // For the end of the run.
 export function endText({ hello, frame, latest, keyframes }: State): { word: string; reason: string } {
-  if (!frame && hello && hello.frames < 0 && !hello.live) return { word: 'Map', reason: 'As it was saved.' };
+  if (!frame && hello && hello.frames < 0 && !hello.live) return { word: 'Map', reason: 'As saved.' };
   const why = sentence(frame?.reason ?? '');
   if (latest?.state === 'tracking') return { word: 'Ended', reason: 'Tracked to the last frame.' };
   if (keyframes.size === 0) return { word: 'Ended', reason: `It did not start. ${why}`.trimEnd() };
@@ -49,8 +49,8 @@ export function clock(seconds: number): string {
 }
 
 export const EVENT_WORDS = {
-  waiting: 'Not started', started: 'Started', lost: 'Lost', found: 'Found again', loop: 'Loop closed', merge: 'Maps merged',
-  new_map: 'New map', given_up: 'Map given up', cut: 'Cut in the recording', warning: 'Warning', finished: 'Finished',
+  waiting: 'Not started', started: 'Started', lost: 'Lost', found: 'Relocalized', loop: 'Loop closed', merge: 'Maps merged',
+  new_map: 'New map', given_up: 'Map dropped', cut: 'Cut in the recording', warning: 'Warning', finished: 'Finished',
 } as const;
 
 // Some event texts already contain the kind of event.

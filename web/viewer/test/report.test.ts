@@ -103,6 +103,6 @@ test('keyframes are shown with their features and depth, and what was measured',
   assert.deepEqual(pictures.filter((width) => width !== 320), []);
   assert.match((await page.textContent('.keyframes-shown'))!, /features; semi-dense depth, [\d.]+ to [\d.]+ m/);
   assert.ok(await page.locator('svg[aria-label^=histogram]').count() >= 4);
-  assert.ok(await page.locator('svg[aria-label="distance to the truth over time"]').isVisible());
+  assert.ok(await page.locator('svg[aria-label="distance to the ground truth over time"]').isVisible());
   await page.context().close();
 });

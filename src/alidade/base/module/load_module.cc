@@ -57,10 +57,9 @@ LoadedModule LoadModule(const std::string& file, const std::vector<std::string>&
     }
     if (module.symbols.size() == names.size()) return module;
     dlclose(handle);
-    problem = place + " is not of this version";
+    problem = place + " belongs to another version";
   }
-  if (!exists)
-    problem = "it was not built (scripts/setup installs what it needs for scripts/build)";
+  if (!exists) problem = "it has not been built (scripts/setup installs the packages it needs)";
   return {{}, problem};
 }
 

@@ -15,9 +15,7 @@ namespace alidade {
 namespace {
 
 constexpr size_t kMostNetworkBytes = size_t{1} << 30;  // the largest YOLO has 0.4 GB
-constexpr char kAdvice[] =
-    "; networks of the YOLOv5 and YOLOX families can be, others may need the layers of a newer "
-    "OpenCV";
+constexpr char kAdvice[] = "; the YOLOv5 and YOLOX families work, others may need a newer OpenCV";
 
 // Checks size and first bytes before it allocates memory, because a sparse file can be large
 // without using disk space.
@@ -33,7 +31,7 @@ std::string ReadNetworkFile(const std::string& path) {
   if (error || !stream) fail();
   if (size > kMostNetworkBytes)
     ThrowInput("is longer than " + std::to_string(kMostNetworkBytes >> 20) +
-               " MB: it cannot be a detector");
+               " MB, which is too long for a detector");
   std::string bytes(std::min<size_t>(size, 1), '\0');
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) fail();
   CheckOnnxStart(bytes);
@@ -50,13 +48,13 @@ std::unique_ptr<Network> OpenNetwork(const std::string& bytes) {
   std::string problem;
   std::unique_ptr<Network> network(open(bytes.data(), bytes.size(), &problem));
   if (!network)
-    ThrowInput("is no network that OpenCV " CV_VERSION " can read: " + problem + kAdvice);
+    ThrowInput("is not a network that OpenCV " CV_VERSION " can read: " + problem + kAdvice);
   return network;
 }
 
 NetworkOutput ViewOf(const cv::Mat& output) {
   if (output.type() != CV_32F || !output.isContinuous())
-    ThrowInput("gives an output that is no array of floats");
+    ThrowInput("has an output that is not an array of floats");
   return {{output.size.p, output.size.p + output.dims}, {output.ptr<float>(), output.total()}};
 }
 
@@ -67,9 +65,9 @@ class OnnxDetector : public Detector {
     std::vector<cv::Mat> outputs;
     const std::string problem = network_->Run(model_.TrialInput(), kAllOutputs, &outputs);
     if (!problem.empty()) {
-      ThrowInput("is no network that OpenCV " CV_VERSION " can run: " + problem +
+      ThrowInput("is not a network that OpenCV " CV_VERSION " can run: " + problem +
                  (model_.leaves_size_open()
-                      ? "; its input size is left open, export it with a fixed one"
+                      ? "; its input size is not fixed: export it with a fixed one"
                       : kAdvice));
     }
     std::vector<NetworkOutput> views;

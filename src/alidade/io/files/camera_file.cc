@@ -33,7 +33,7 @@ void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool righ
         (right ? key == "T_left_right" : std::any_of(kLeftOnly.begin(), kLeftOnly.end(), is_key));
     if (!known) {
       LogWarning(file.path() + ":" + std::to_string(entry.first.Mark().line + 1) + ": `" + key +
-                 "` means nothing here");
+                 "` is not known here");
     }
   }
 }
@@ -43,7 +43,7 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
   const YAML::Node model = file.Need(node, "model");
   const std::string name = file.Text(model, "model");
   if (name != "pinhole" && name != "fisheye")
-    file.Fail(model, "`model` is pinhole or fisheye, not `" + name + "`");
+    file.Fail(model, "`model` must be pinhole or fisheye, not `" + name + "`");
   raw.lens = name == "pinhole" ? Lens::kPinhole : Lens::kFisheye;
   raw.width = file.PositiveInteger(file.Need(node, "width"), "width");
   raw.height = file.PositiveInteger(file.Need(node, "height"), "height");
@@ -57,8 +57,8 @@ RawCamera ReadRawCamera(const YamlFile& file, const YAML::Node& node) {
     const size_t most = raw.lens == Lens::kPinhole ? 5 : 4;
     if (k.size() > most || (k.size() != 4 && k.size() != 5 && !k.empty())) {
       file.Fail(distortion, raw.lens == Lens::kPinhole
-                                ? "`distortion` is [k1, k2, p1, p2, k3] (k3 may be left out)"
-                                : "`distortion` of a fisheye is [k1, k2, k3, k4]");
+                                ? "`distortion` must be [k1, k2, p1, p2, k3] (k3 is optional)"
+                                : "`distortion` of a fisheye camera must be [k1, k2, k3, k4]");
     }
     std::copy(k.begin(), k.end(), raw.distortion.begin());
   }
@@ -71,7 +71,7 @@ std::array<double, 2> ReadReadout(const YamlFile& file, const YAML::Node& node) 
   if (!node.IsSequence()) return {0, file.Number(node, "readout")};
   const auto both = file.Numbers(node, "readout");
   if (both.size() != 2)
-    file.Fail(node, "`readout` is one number (seconds from the top to the bottom row) or two");
+    file.Fail(node, "`readout` must be one number (seconds from the top to the bottom row) or two");
   return {both[0], both[1]};
 }
 
@@ -95,8 +95,8 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name) {
     if (*calibration.depth_factor < 0) file.Fail(factor, "`depth_factor` must not be negative");
   }
   if (const YAML::Node right = root["right"]) {
-    if (root["baseline"]) file.Fail(root["baseline"], "give `baseline` or `right`, not both");
-    if (!right.IsMap()) file.Fail(right, "`right` holds a camera's names and values");
+    if (root["baseline"]) file.Fail(root["baseline"], "give either `baseline` or `right`");
+    if (!right.IsMap()) file.Fail(right, "`right` must contain the names and values of a camera");
     WarnOfUnknownKeys(file, right, true);
     calibration.right = ReadRawCamera(file, right);
     calibration.T_left_right = file.Transform(file.Need(right, "T_left_right"), "T_left_right");

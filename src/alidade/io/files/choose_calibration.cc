@@ -16,8 +16,9 @@ constexpr double kShortest35 = 6, kLongest35 = 1000;  // mm
 void CheckSize(const Calibration& calibration, cv::Size size) {
   if (size != cv::Size(calibration.left.width, calibration.left.height)) {
     ThrowInput(calibration.origin + " is for images of " + std::to_string(calibration.left.width) +
-               "x" + std::to_string(calibration.left.height) + ", the recording's are " +
-               std::to_string(size.width) + "x" + std::to_string(size.height));
+               "x" + std::to_string(calibration.left.height) +
+               ", but those of the recording have " + std::to_string(size.width) + "x" +
+               std::to_string(size.height));
   }
 }
 

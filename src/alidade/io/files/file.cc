@@ -74,7 +74,7 @@ void CheckEnds(const std::string& path, const struct stat& status) {
               : S_ISFIFO(mode) ? "a pipe"
               : S_ISSOCK(mode) ? "a socket"
                                : "a device") +
-             ", where a file is needed");
+             ", not a file");
 }
 
 }  // namespace
@@ -95,7 +95,7 @@ std::string ReadFile(const std::string& path, size_t most_bytes, const StartChec
   const auto check_size = [&](size_t size) {
     if (size <= most_bytes) return;
     ThrowInput(path + " is longer than " + std::to_string(most_bytes >> 20) +
-               " MB: it cannot be what it is taken for");
+               " MB, which is too long for such a file");
   };
   check_size(static_cast<size_t>(status.st_size));
   // The size is only a hint: pipes and files in /proc report 0.

@@ -148,7 +148,7 @@ DecodedImage FromLumaAndChroma(const cv::Mat& y_cb_cr) {
 bool LooksLikeJpeg(std::string_view bytes) { return bytes.substr(0, 3) == "\xff\xd8\xff"; }
 
 DecodedImage DecodeJpeg(std::string_view bytes, ImageUse use) {
-  if (use == ImageUse::kDepth) return {{}, "is a JPEG: depth needs 16 bits"};
+  if (use == ImageUse::kDepth) return {{}, "is a JPEG: depth images need 16 bits"};
   Decompressor decoder;
   const auto failed = [&] {
     return DecodedImage{{}, std::string("is a damaged JPEG: ") + decoder.errors.message};

@@ -54,27 +54,28 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use) {
   const Module& module = TheModule();
   if (module.decode == nullptr) {
     return {{},
-            std::string("is no JPEG or PNG, and other images need ") + kMediaModuleFile + ": " +
-                module.problem};
+            std::string("is neither a JPEG nor a PNG, and other images need ") + kMediaModuleFile +
+                ": " + module.problem};
   }
   DecodedImage decoded;
   if (!module.decode(bytes.data(), bytes.size(), static_cast<int>(use), &decoded.image)) {
-    return {{}, "is no image, or a damaged one"};
+    return {{}, "is not an image, or damaged"};
   }
   if (use == ImageUse::kDepth && decoded.image.type() == CV_8UC1) return {{}, kDepthOf8Bits};
   if (use == ImageUse::kDepth && decoded.image.type() != CV_16UC1 &&
       decoded.image.type() != CV_32FC1) {
-    return {{}, "is a color image: depth has one channel"};
+    return {{}, "is a color image: depth images have one channel"};
   }
   return decoded;
 }
 
 std::unique_ptr<MediaStream> OpenVideo(const std::string& path) {
-  return Open(path, 0, path, "it is no video or image folder that is known");
+  return Open(path, 0, path, "it is not a known video or image folder");
 }
 
 std::unique_ptr<MediaStream> OpenLiveCamera(int number) {
-  return Open("", number, "camera:" + std::to_string(number), "is it connected, and not in use?");
+  return Open("", number, "camera:" + std::to_string(number),
+              "is it connected, and not used by another program?");
 }
 
 }  // namespace alidade

@@ -41,9 +41,9 @@ Recording ReadRecording(const std::string& folder, const SourceOptions& options)
   }
   if (NamesIn(folder).empty()) ThrowInput(folder + " is an empty folder");
   ThrowInput(folder +
-             " is no recording: known are TUM RGB-D folders (rgb.txt), EuRoC (mav0/), KITTI "
-             "odometry (image_0/ and "
-             "times.txt), folders of images and ROS recordings (.bag, .db3, .mcap)");
+             " is not a recording: known are folders of TUM RGB-D (rgb.txt), EuRoC (mav0/), KITTI "
+             "odometry (image_0/ and times.txt), folders of images and ROS recordings (.bag, .db3, "
+             ".mcap)");
 }
 
 Sensor ChooseSensor(const Recording& recording, const std::string& path,
@@ -102,7 +102,7 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   const Sensor sensor = ChooseSensor(recording, path, options);
   if (sensor == Sensor::kStereo && !calibration.right && !(calibration.baseline > 0)) {
     ThrowInput((calibration.origin.empty() ? path : calibration.origin) +
-               ": stereo needs the `baseline` or the `right` camera in the camera file (or ask for "
+               ": stereo needs the `baseline` or the `right` camera in the camera file (or use "
                "--sensor mono)");
   }
   ImagePreparation preparation(calibration, sensor);
@@ -125,7 +125,7 @@ std::optional<int> LiveCameraNumber(const std::string& path) {
 }  // namespace
 
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options) {
-  if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
+  if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
   std::unique_ptr<FrameSource> source;
   if (const auto number = LiveCameraNumber(path)) {
     source = OpenLiveCameraSource(*number, options);

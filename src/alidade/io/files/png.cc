@@ -39,7 +39,7 @@ struct Reader {
 
 void ReadBytes(png_structp png, png_bytep out, size_t count) {
   auto* reader = static_cast<Reader*>(png_get_io_ptr(png));
-  if (count > reader->rest.size()) png_error(png, "the file is cut short");
+  if (count > reader->rest.size()) png_error(png, "the file is truncated");
   std::memcpy(out, reader->rest.data(), count);
   reader->rest.remove_prefix(count);
 }
@@ -153,7 +153,7 @@ DecodedImage DecodePng(std::string_view bytes, ImageUse use) {
   const int channels = png_get_channels(decoder.png, decoder.info);
   const int depth = png_get_bit_depth(decoder.png, decoder.info) == 16 ? CV_16U : CV_8U;
   if (use == ImageUse::kDepth && channels != 1)
-    return {{}, "is a color image: depth has one channel"};
+    return {{}, "is a color image: depth images have one channel"};
   cv::Mat image(static_cast<int>(png_get_image_height(decoder.png, decoder.info)),
                 static_cast<int>(png_get_image_width(decoder.png, decoder.info)),
                 CV_MAKETYPE(depth, channels));

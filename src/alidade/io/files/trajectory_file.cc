@@ -29,7 +29,9 @@ Trajectory ReadEuroc(const std::string& path, const std::string& text) {
       (fs::absolute(path).parent_path().parent_path() / "cam0/sensor.yaml").string();
   if (IsThere(sensor))
     return ParseEurocTrajectory(text, path, ReadEurocCamera(sensor).T_body_camera);
-  LogWarning(path + ": no cam0/sensor.yaml near it: these are the body's poses, not the camera's");
+  LogWarning(
+      path +
+      ": without cam0/sensor.yaml next to it, these are poses of the body, not of the camera");
   return ParseEurocTrajectory(text, path, {});
 }
 
@@ -40,7 +42,7 @@ Trajectory ReadKitti(const std::string& path, const std::string& text) {
     if (IsThere(times.string()))
       return ParseKittiTrajectory(text, path, ReadFile(times.string()), times.string());
   }
-  ThrowInput(path + " holds poses without times, and there is no times.txt beside it or in " +
+  ThrowInput(path + " contains poses without times, and there is no times.txt next to it or in " +
              sequence.string());
 }
 
@@ -51,7 +53,7 @@ Trajectory ReadTrajectory(const std::string& path) {
   const std::string text = ReadFile(path);
   CheckIsText(text, path);
   const auto lines = ContentLines(text);
-  if (lines.empty()) ThrowInput(path + " holds no poses");
+  if (lines.empty()) ThrowInput(path + " contains no poses");
   const std::string_view first = lines.front().text;
   const size_t fields = Fields(first).size();
   if (fields == 12) return ReadKitti(path, text);

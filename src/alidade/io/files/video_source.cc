@@ -133,7 +133,7 @@ class VideoSource : public FrameSource {
     if (warned_ || next_ + 2 >= info_.frames) return;
     warned_ = true;
     LogWarning(info_.name + " ends after " + std::to_string(next_) + " of " +
-               std::to_string(info_.frames) + " frames: is the file cut short?");
+               std::to_string(info_.frames) + " frames: the file may be truncated");
   }
 
   SourceInfo info_;
@@ -159,9 +159,9 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
                                         const SourceOptions& options) {
   const std::string name = path.empty() ? info.name : path;
   if (options.sensor.value_or(Sensor::kMono) != Sensor::kMono)
-    ThrowUsage(name + " has one camera: only --sensor mono");
+    ThrowUsage(name + " has one camera: use --sensor mono");
   const cv::Mat first = stream->Grab() ? stream->Gray() : cv::Mat();
-  if (first.empty()) ThrowInput(name + ": not one picture can be read");
+  if (first.empty()) ThrowInput(name + ": no image can be read");
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(beside, first.size(), options, stream->FocalLength35());
   const double fps = stream->FramesPerSecond();

@@ -50,13 +50,13 @@ class Checker : public YAML::EventHandler {
   };
 
   [[noreturn]] void RefuseNames(const YAML::Mark& mark) const {
-    Fail(mark, "anchors and aliases (& and *) are not for this file: write the value itself");
+    Fail(mark, "anchors and aliases (& and *) are not supported: write the value itself");
   }
 
   void Add(const YAML::Mark& mark, const std::string* text) {
     if (++nodes_ > kMostYamlNodes)
       Fail(mark, "more than " + std::to_string(kMostYamlNodes) +
-                     " names and values: this is no camera or settings file");
+                     " names and values: this is not a camera or settings file");
     if (open_.empty() || !open_.back().is_map) return;
     Level& map = open_.back();
     if (map.name_next && text != nullptr && !map.names.insert(*text).second)
@@ -67,8 +67,8 @@ class Checker : public YAML::EventHandler {
   void Open(const YAML::Mark& mark, bool is_map) {
     Add(mark, nullptr);
     if (open_.size() == static_cast<size_t>(kMostYamlDepth))
-      Fail(mark, "lists or maps in one another, more than " + std::to_string(kMostYamlDepth) +
-                     " deep: this is no camera or settings file");
+      Fail(mark, "lists or maps are nested more than " + std::to_string(kMostYamlDepth) +
+                     " deep: this is not a camera or settings file");
     open_.push_back({is_map});
   }
 
@@ -85,7 +85,8 @@ void CheckYaml(const std::string& text, const std::string& name) {
   try {
     YAML::Parser parser(stream);
     if (parser.HandleNextDocument(checker) && parser.HandleNextDocument(checker))
-      ThrowInput(name + ": holds a second document (after a line `---`), which nobody would read");
+      ThrowInput(name +
+                 ": contains a second document (after a line `---`), which would be ignored");
   } catch (const YAML::Exception& error) {
     checker.Fail(error.mark, error.msg);
   }

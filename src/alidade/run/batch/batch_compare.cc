@@ -35,7 +35,8 @@ EarlierBatch ReadEarlierBatch(const std::string& path) {
 BatchComparison RunsToCompare(const std::string& folder, const std::vector<BatchRow>& rows,
                               const EarlierBatch* earlier) {
   BatchComparison page;
-  if (earlier && IsOneFolder(folder, earlier->folder)) earlier = nullptr;  // holds only the new
+  // contains only the new batch
+  if (earlier && IsOneFolder(folder, earlier->folder)) earlier = nullptr;
   std::string now, before;
   if (earlier) {
     now = LastPart(folder);

@@ -1,4 +1,4 @@
-// Which runs a batch's compare.html shows: its own, and those of an earlier batch beside them.
+// Chooses the runs of a batch's compare.html: its own, and those of an earlier batch.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace alidade {
 
-// Another batch to be held against this one.
+// An earlier batch to compare with.
 struct EarlierBatch {
   std::string folder;
   std::vector<BatchRow> rows;
 };
 
-// `path`: its folder or its batch.json. Throws Error (input) when it cannot be read.
+// `path`: the folder of the batch or its batch.json. Throws Error (input) if it cannot be read.
 EarlierBatch ReadEarlierBatch(const std::string& path);
 
 struct BatchComparison {
   std::vector<ComparedFolder> runs;
-  std::vector<std::string> missing;  // "desk: why it is not beside"
+  std::vector<std::string> missing;  // "desk: why it is not compared"
 };
 
-// All of `folder` that were mapped, in the order of `rows`. `earlier` (may be null): each of its
-// runs stands before the one of the same name, and both are called FOLDER/NAME; those that only one
-// batch has, or whose folder is gone, are left out of it.
+// All runs of `folder` that have a map, in the order of `rows`. With `earlier` (may be null), each
+// run follows the earlier run of the same name, and both are named FOLDER/NAME. Runs of one batch
+// only, and those whose folder no longer exists, are listed in `missing`.
 BatchComparison RunsToCompare(const std::string& folder, const std::vector<BatchRow>& rows,
                               const EarlierBatch* earlier);
 

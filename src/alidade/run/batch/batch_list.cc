@@ -24,19 +24,19 @@ std::string FromEnvironment(const std::string& name) {
   return value;
 }
 
-// `at` is the $ in `line`; moves it to the last sign of the name.
+// `at`: position of the $ in `line`; moved to the last character of the name.
 std::string Expanded(const std::string& line, size_t& at) {
   const bool braced = at + 1 < line.size() && line[at + 1] == '{';
   size_t end = at + (braced ? 2 : 1);
   const size_t begin = end;
   while (end < line.size() && IsNameSign(line[end])) ++end;
-  if (end == begin) return "$";  // a dollar is a dollar
+  if (end == begin) return "$";  // a plain dollar sign
   if (braced && (end >= line.size() || line[end] != '}')) ThrowUsage("${ without }");
   at = braced ? end : end - 1;
   return FromEnvironment(line.substr(begin, end - begin));
 }
 
-// What the folder of a source's results is called.
+// Default name of the result folder of a source.
 std::string FolderNameOf(const std::string& source) {
   std::string name = source;
   if (const std::string path = PathOfSource(source); !path.empty()) {
@@ -52,7 +52,7 @@ std::string FolderNameOf(const std::string& source) {
   return name.empty() || name.front() == '.' ? "recording" : name;
 }
 
-// What the batch has in its folder besides those of the recordings.
+// Files of the batch itself in its folder.
 bool IsBatchsOwn(const std::string& name) {
   static const std::set<std::string> kOwn = {"log",        "done",   "batch.json",
                                              "batch.md",   "merged", "batch.log",
@@ -62,12 +62,12 @@ bool IsBatchsOwn(const std::string& name) {
 
 void CheckFolderName(const std::string& name) {
   if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
-    ThrowUsage("--out " + name + ": here it is the name of a folder within the batch's --out");
+    ThrowUsage("--out " + name + " must be the name of a folder within the batch's --out");
   if (IsBatchsOwn(name))
-    ThrowUsage("--out " + name + ": the batch has a file of its own of that name");
+    ThrowUsage("--out " + name + ": the batch itself writes a file of that name");
 }
 
-// Takes --out NAME or --out=NAME out of the words.
+// Removes --out NAME or --out=NAME from the words.
 std::optional<std::string> TakeOut(std::vector<std::string>& words) {
   for (size_t i = 0; i < words.size(); ++i) {
     if (words[i] == "--out" && i + 1 < words.size()) {
@@ -96,7 +96,7 @@ std::string Quoted(const std::string& word) {
 std::vector<std::string> WordsOfLine(const std::string& line) {
   std::vector<std::string> words;
   std::string word;
-  bool within = false;  // a word, which may be empty: ''
+  bool within = false;  // within a word, which may be empty: ''
   char quote = 0;
   const auto end_word = [&] {
     if (within) words.push_back(word);
@@ -150,11 +150,11 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
       if (item.words.empty()) continue;
       item.line = number;
       if (item.words.front().rfind("--", 0) == 0)
-        ThrowUsage("a line begins with its source, and options follow");
+        ThrowUsage("a line must begin with its source; options follow");
       if (const auto out = TakeOut(item.words)) {
         CheckFolderName(*out);
         if (!taken.insert(*out).second)
-          ThrowUsage("--out " + *out + ": another line has that name");
+          ThrowUsage("--out " + *out + ": another line has the same name");
         item.name = *out;
       }
       item.words.insert(item.words.end(), more.begin(), more.end());
@@ -163,8 +163,8 @@ std::vector<BatchItem> ParseBatchList(const std::string& text, const std::string
       ThrowUsage(name + ":" + std::to_string(number) + ": " + error.what());
     }
   }
-  if (items.empty()) ThrowUsage(name + ": there is no recording in the list");
-  for (BatchItem& item : items) {  // given names first: others give way to them
+  if (items.empty()) ThrowUsage(name + ": the list contains no recording");
+  for (BatchItem& item : items) {  // given names have priority
     if (!item.name.empty()) continue;
     const std::string own = FolderNameOf(SourceOf(item));
     item.name = own;

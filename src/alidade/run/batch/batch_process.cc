@@ -39,9 +39,8 @@ pid_t Launch(const ProcessTask& task) {
   argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  // From fork to exec the child has our handlers of Ctrl-C, which note it in memory that exec
-  // throws away: a SIGINT of that moment would be lost. Blocked, it waits until the child ends by
-  // it.
+  // Between fork and exec the child has our handlers of Ctrl-C, whose state is lost with exec, so a
+  // SIGINT then would be ignored. SIGINT is blocked until the child has its own handlers.
   sigset_t stops, before;
   sigemptyset(&stops);
   sigaddset(&stops, SIGINT);
@@ -52,8 +51,8 @@ pid_t Launch(const ProcessTask& task) {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
-    setpgid(0, 0);                     // Ctrl-C comes to us alone, and we tell it
-    prctl(PR_SET_PDEATHSIG, SIGTERM);  // nobody is left behind when we are killed
+    setpgid(0, 0);                     // Ctrl-C reaches only this process, which passes it on
+    prctl(PR_SET_PDEATHSIG, SIGTERM);  // children end when this process is killed
     dup2(nothing, STDIN_FILENO);
     dup2(log, STDOUT_FILENO);
     dup2(log, STDERR_FILENO);
@@ -64,11 +63,11 @@ pid_t Launch(const ProcessTask& task) {
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   close(log);
   if (nothing >= 0) close(nothing);
-  if (child < 0) ThrowInput(std::string("no process can be started: ") + std::strerror(why));
+  if (child < 0) ThrowInput(std::string("cannot start a process: ") + std::strerror(why));
   return child;
 }
 
-// `told`: it was sent SIGINT, by which it ends at once while it starts and catches none yet.
+// `told`: SIGINT was sent to it; a program without handlers yet ends at once.
 ProcessEnd EndOf(int state, const rusage& usage, const Stopwatch& clock, bool told) {
   ProcessEnd end;
   end.status = WIFEXITED(state) ? WEXITSTATUS(state) : -WTERMSIG(state);
@@ -97,7 +96,7 @@ void RunProcesses(const std::vector<ProcessTask>& tasks, int at_once, const Proc
         problem = std::current_exception();
       }
     }
-    if (running.empty()) break;  // interrupted, or it cannot go on
+    if (running.empty()) break;  // interrupted, or no task can be started
     if (Interrupted() && !std::exchange(told, true)) {
       for (const auto& [child, what] : running) kill(child, SIGINT);
     }

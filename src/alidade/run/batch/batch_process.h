@@ -1,4 +1,4 @@
-// Programs that run beside each other, a few at a time.
+// Runs several programs at the same time.
 #pragma once
 
 #include <sys/types.h>
@@ -11,7 +11,7 @@ namespace alidade {
 
 struct ProcessTask {
   std::vector<std::string> words;  // program and arguments
-  std::string log;                 // file for what it says
+  std::string log;                 // file for its output
 };
 
 struct ProcessEnd {
@@ -22,12 +22,13 @@ struct ProcessEnd {
 struct ProcessEvents {
   std::function<void(size_t task)> begun;
   std::function<void(size_t task, const ProcessEnd& end)> ended;
-  std::function<void()> waiting;  // ten times a second
+  std::function<void()> waiting;  // called ten times per second
 };
 
-// Runs all tasks, `at_once` at a time, in order, and returns when the last has ended. After an
-// interrupt (CatchInterrupts()) those that run are told, by SIGINT, and no more are begun. Throws
-// Error (input) when a process or its log cannot be made; those that run are waited for.
+// Runs all tasks in order, at most `at_once` at the same time, and returns when the last one has
+// ended. After an interrupt (CatchInterrupts()) running tasks get SIGINT, and no further ones are
+// started. Throws Error (input) if a process or its log cannot be created, after the running tasks
+// have ended.
 void RunProcesses(const std::vector<ProcessTask>& tasks, int at_once, const ProcessEvents& events);
 
 }  // namespace alidade

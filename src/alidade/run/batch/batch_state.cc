@@ -47,8 +47,8 @@ void AddFile(Fnv1a& hash, const fs::path& path, const std::string& name) {
   hash.Add(static_cast<int64_t>(info.st_mtim.tv_nsec));
 }
 
-// A calibration beside a video or a ROS recording is taken without being named; one of a folder of
-// pictures lies in it.
+// A camera.yaml in the folder of a video or a ROS recording is used without an option; for a folder
+// of images it is part of the source.
 void AddCalibrationBeside(Fnv1a& hash, const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return;
@@ -56,7 +56,7 @@ void AddCalibrationBeside(Fnv1a& hash, const fs::path& path) {
   hash.Add(IsFile(file) ? ReadFile(file) : "none");
 }
 
-// A file, or all that is in a folder.
+// A file, or all files of a folder.
 void AddSource(Fnv1a& hash, const fs::path& path) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return AddFile(hash, path, "");
@@ -75,7 +75,8 @@ void AddContent(Fnv1a& hash, const std::optional<std::string>& path) {
   if (path) hash.Add(IsFile(*path) ? ReadFile(*path) : "gone");
 }
 
-// Without what changes no result: "--threads 4", "--threads=4", "--quiet", "--overwrite".
+// Removes options that do not change results: "--threads 4", "--threads=4", "--quiet",
+// "--overwrite".
 std::vector<std::string> TellingWords(const std::vector<std::string>& words) {
   std::vector<std::string> telling;
   for (size_t i = 0; i < words.size(); ++i) {
@@ -119,10 +120,10 @@ BatchFolder::BatchFolder(const std::string& path) : path_(path) {
   if (path.empty()) ThrowUsage("--out must not be empty");
   std::error_code error;
   if (IsFolder(path) && !fs::is_empty(path, error) && !IsFolder(path + "/done"))
-    ThrowInput(path + " holds something else than a batch: give another --out");
+    ThrowInput(path + " contains other files than those of a batch: choose another --out");
   for (const char* part : {"/log", "/done"}) {
     fs::create_directories(path + part, error);
-    if (error) ThrowInput(path + part + ": cannot be made: " + error.message());
+    if (error) ThrowInput(path + part + ": cannot be created: " + error.message());
   }
 }
 
@@ -173,7 +174,7 @@ void BatchFolder::Note(const std::string& what, const BatchItem& item) {
       std::string(when) + " " + HostName() + " " + what + " " + item.name + "\n";
   const int fd =
       open((path_ + "/batch.log").c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd < 0) return;  // a diary that cannot be written stops nobody
+  if (fd < 0) return;  // logging is optional
   const auto written = write(fd, line.data(), line.size());
   (void)written;
   close(fd);

@@ -1,4 +1,5 @@
-// What is done of a batch, and by what: kept in its folder, so that it goes on where it stopped.
+// What a batch has finished, and with which program and inputs; stored in its folder, so that an
+// interrupted batch can continue.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +11,10 @@
 
 namespace alidade {
 
-// What a result depends on: the words of its line, the files of its source (name, size and time of
-// change) and of its options (content of settings and calibration), the program's version, and the
-// program itself. Not the number of threads. 16 hexadecimal digits.
+// Hash of everything a result depends on, as 16 hexadecimal digits: the words of its line, the
+// files of its source (name, size and modification time) and of its options (content of settings
+// and calibration), the version of the program and the program file. The number of threads does not
+// count.
 std::string FingerprintOf(const BatchItem& item, const RunOptions& options,
                           const std::string& program);
 
@@ -20,22 +22,23 @@ struct BatchDone {
   std::string fingerprint;
   int status = 0;                             // exit status; -N: ended by signal N
   double wall_s = 0, cpu_s = 0, peak_mb = 0;  // of the process
-  std::string message;                        // its last words, where it failed
+  std::string message;                        // last output line of a failed run
 };
 
-// One folder for all: NAME/ the results, log/NAME.txt what was said, done/NAME.json the above.
+// The folder of a batch: NAME/ with results, log/NAME.txt with the output, done/NAME.json with a
+// BatchDone.
 class BatchFolder {
  public:
-  // Makes it. Throws Error (input) when it cannot be written, or is something else's.
+  // Creates the folder. Throws Error (input) if it cannot be written, or contains other files.
   explicit BatchFolder(const std::string& path);
   const std::string& path() const { return path_; }
   std::string ResultOf(const BatchItem& item) const { return path_ + "/" + item.name; }
   std::string LogOf(const BatchItem& item) const { return path_ + "/log/" + item.name + ".txt"; }
-  // Nothing when it was never run to an end.
+  // nullopt if the item has never been run to its end.
   std::optional<BatchDone> DoneOf(const BatchItem& item) const;
   void SetDone(const BatchItem& item, const BatchDone& done);
-  void Forget(const BatchItem& item);  // it begins anew
-  // A line of batch.log: time, machine, what, name. Lines of several processes do not mix.
+  void Forget(const BatchItem& item);  // called when a run starts again
+  // Appends a line to batch.log: time, machine, what, name. Safe for several processes.
   void Note(const std::string& what, const BatchItem& item);
 
  private:

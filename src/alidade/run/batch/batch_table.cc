@@ -45,12 +45,12 @@ std::vector<std::string> CellsOf(const BatchRow& row) {
           TextOf("%.0f", row.peak_mb)};
 }
 
-// What a row without figures says instead.
+// Text of a row without figures.
 std::string FateOf(const BatchRow& row) {
   return row.state + (row.message.empty() ? "" : ": " + row.message);
 }
 
-// Characters a terminal shows: bytes of UTF-8 that begin one.
+// Number of characters in UTF-8.
 size_t WidthOf(const std::string& text) {
   return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0) != 0x80;
@@ -147,7 +147,7 @@ std::string BatchJson(const std::vector<BatchRow>& rows) {
 std::vector<BatchRow> ParseBatchJson(const std::string& text, const std::string& name) {
   const auto all = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!all.is_object() || !all.contains("recordings") || !all["recordings"].is_array())
-    ThrowInput(name + " is not one that `alidade batch` wrote");
+    ThrowInput(name + " was not written by `alidade batch`");
   std::vector<BatchRow> rows;
   for (const auto& item : all["recordings"]) {
     if (!item.is_object()) continue;
@@ -223,8 +223,8 @@ WorseBy ParseWorseBy(const std::string& option, const std::string& text,
     if (good && unit == name) return {0, number * size};
     known += ", " + name;
   }
-  ThrowUsage(option + " is how much worse it may get, with a unit (" + known + "), or off; not '" +
-             text + "'");
+  ThrowUsage(option + " must be a tolerance with a unit (" + known + "), or off; not '" + text +
+             "'");
 }
 
 std::vector<std::string> WorseThan(const std::vector<BatchRow>& earlier,
@@ -232,7 +232,7 @@ std::vector<std::string> WorseThan(const std::vector<BatchRow>& earlier,
                                    const WorseSettings& settings) {
   struct Figure {
     const char* name;
-    const char* format;  // in what follows
+    const char* format;  // with that format
     double factor;
     std::optional<double> BatchRow::*value;
     WorseBy by;
@@ -253,14 +253,14 @@ std::vector<std::string> WorseThan(const std::vector<BatchRow>& earlier,
     if (found == before.end() || !found->second->ok()) continue;
     const BatchRow& old = *found->second;
     if (!row.ok()) {
-      worse.push_back(row.name + ": " + FateOf(row) + ", and was ok");
+      worse.push_back(row.name + ": " + FateOf(row) + ", and was ok before");
       continue;
     }
     for (const Figure& figure : figures) {
       const auto &then = old.*figure.value, &here = row.*figure.value;
       if (!figure.by.on() || !then) continue;
       if (!here) {
-        worse.push_back(row.name + ": " + figure.name + " is not known, was " +
+        worse.push_back(row.name + ": " + figure.name + " is unknown, but was " +
                         TextOf(figure.format, then, figure.factor));
         continue;
       }

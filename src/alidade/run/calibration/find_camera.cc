@@ -15,7 +15,7 @@
 namespace alidade {
 namespace {
 
-// One run over the recording with one camera.
+// One pass over the recording with one camera.
 class Pass {
  public:
   Pass(std::unique_ptr<FrameSource> source, const Camera& camera, const SlamSettings& settings,
@@ -27,11 +27,11 @@ class Pass {
         calibrate_(calibrate),
         ask_at_(calibrate.first_keyframes) {}
 
-  // The next frame; false at the end.
+  // Processes the next frame; false at the end.
   bool Step() {
     const std::optional<SourceFrame> frame = frames_.Next();
     if (!frame) return false;
-    if (std::isfinite(frame->time)) {  // of bad frames it may not be
+    if (std::isfinite(frame->time)) {  // unusable frames may have none
       if (!first_time_) first_time_ = frame->time;
       if (frame->time - *first_time_ > calibrate_.max_seconds) return false;
     }
@@ -40,7 +40,7 @@ class Pass {
     if (!frame->problem.empty()) return true;
     try {
       slam_.Track(InputOf(*frame));
-    } catch (const Error&) {  // a bad frame: the run itself will tell of it
+    } catch (const Error&) {  // an unusable frame: the run itself reports it
     }
     return true;
   }
@@ -50,7 +50,7 @@ class Pass {
     const MapId largest = LargestMap(map);
     return largest.valid() ? static_cast<int>(map.KeyFramesOf(largest).size()) : 0;
   }
-  // What the map says by now, when it has grown since it was asked last.
+  // A new estimate, if the map has grown enough since the last one.
   std::optional<CameraEstimate> Ask() {
     const int now = keyframes();
     if (now < ask_at_) return {};
@@ -100,21 +100,23 @@ namespace {
 using Opener = std::function<std::unique_ptr<FrameSource>()>;
 using Watcher = std::function<bool(const CalibrateProgress&)>;
 
-// How far two cameras may be apart and still agree, in standard deviations of the focal length.
+// Largest difference between the focal lengths of two passes that agree, in their standard
+// deviations.
 constexpr double kAgreement = 3;
-// Passes that must agree: a map supports the camera it was made with, and the matches of two maps
-// of one recording differ by chance (docs/development/decisions/0005-offline-self-calibration.md).
+// Number of passes that must agree: a map supports the camera it was made with, and the matches of
+// two maps of one recording differ by chance
+// (docs/development/decisions/0005-offline-self-calibration.md).
 constexpr size_t kAgreeingPasses = 2;
 
-// A pass whose answer is the camera it began with, up to its standard deviation.
+// A pass whose estimate equals its initial camera within its standard deviation.
 struct Agreeing {
   CameraEstimate estimate;
-  std::vector<LensWindow> windows;  // of pictures of `used`
+  std::vector<LensWindow> windows;  // of images of `used`
   Camera used;
 };
 
-// The camera that the maps of all passes support together. They show the same images: the standard
-// deviation is that of one pass, the last.
+// Adjusts the camera to the maps of all passes together. Since they show the same images, the
+// standard deviation is that of one pass, the last.
 CameraEstimate Together(const std::vector<Agreeing>& passes, const MeasurementNoise& noise,
                         const CalibrateSettings& calibrate) {
   CameraEstimate estimate = passes.back().estimate;
@@ -133,8 +135,8 @@ CameraEstimate Together(const std::vector<Agreeing>& passes, const MeasurementNo
 
 enum class PassEnd { kRecordingEnded, kBetterCamera, kEnough, kStopped };
 
-// Plays a pass until it knows enough, a clearly better camera to begin with, or the recording ends.
-// `estimate`: the last one. `may_restart`: another pass may follow.
+// Plays a pass until the camera is known, a clearly better initial camera is found, or the
+// recording ends. `estimate`: the last one. `may_restart`: another pass may follow.
 PassEnd Play(Pass& pass, const Camera& start, const CalibrateSettings& calibrate, bool may_restart,
              const Watcher& go_on, CalibrateProgress& progress, CameraEstimate& estimate) {
   std::optional<CameraEstimate> before;
@@ -145,7 +147,7 @@ PassEnd Play(Pass& pass, const Camera& start, const CalibrateSettings& calibrate
       progress.keyframes = pass.keyframes();
       progress.estimate = estimate = *now;
       const double off = Apart(now->camera, start);
-      // Of two consecutive estimates that agree: the first one of a young map may be wrong.
+      // Requires two consecutive estimates that agree: the first one of a small map may be wrong.
       if (before && now->focal_sigma <= calibrate.max_restart_sigma && off > calibrate.max_off &&
           off > 2 * now->focal_sigma &&
           std::abs(std::log(now->camera.fx / before->camera.fx)) <=
@@ -163,10 +165,10 @@ PassEnd Play(Pass& pass, const Camera& start, const CalibrateSettings& calibrate
   return PassEnd::kRecordingEnded;
 }
 
-// Passes, each beginning with the camera found so far, until kAgreeingPasses agree or an answer is
-// neither usable nor points to another camera. The first one, with `camera`, plays `first` if that
-// is open. `found` goes on counting; `stopped`: go_on said so,
-// and nothing is known.
+// Plays passes, each starting with the camera estimated so far, until kAgreeingPasses agree or an
+// estimate is neither usable nor indicates another camera. The first pass, with `camera`, plays
+// `first` if that is open. `found` counts on; `stopped`: go_on ended the search, and nothing is
+// known.
 void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camera,
             const SlamSettings& settings, const CalibrateSettings& calibrate, const Watcher& go_on,
             CameraFound& found, bool& stopped) {
@@ -183,7 +185,7 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
       stopped = true;
       found.estimate = last;
       found.estimate.known = false;
-      found.why_not = "the search was stopped";
+      found.why_not = "the calibration was stopped";
       return;
     }
     if (end == PassEnd::kRecordingEnded) {
@@ -218,8 +220,8 @@ void Search(std::unique_ptr<FrameSource> first, const Opener& open, Camera camer
                   : last.keyframes < calibrate.first_keyframes
                       ? "only " + std::to_string(last.keyframes) + " keyframes were mapped"
                   : found.usable && !agreed
-                      ? "estimates differ from pass to pass"
-                      : "the camera turns and moves too little for its focal length to tell";
+                      ? "the estimates of the passes differ"
+                      : "the camera moves and rotates too little to determine its focal length";
 }
 
 }  // namespace
@@ -231,7 +233,7 @@ CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
   plain.sensor = Sensor::kMono;
   plain.threaded = false;
   plain.semidense.enabled = false;
-  plain.readout.enabled = false;  // looked for with the lens, not on its own
+  plain.readout.enabled = false;  // estimated together with the lens
   std::unique_ptr<FrameSource> first = open();
   Camera camera = first->Info().camera;
   CameraFound found;
@@ -240,7 +242,8 @@ CameraFound FindCamera(const Opener& open, const SlamSettings& settings,
   if (stopped || found.usable || found.estimate.keyframes < calibrate.first_keyframes ||
       calibrate.retry_bend == 0)
     return found;
-  // A map made as if a bent lens were straight may itself be too bent to tell.
+  // A map made without the radial distortion of the lens may itself be too distorted for an
+  // estimate.
   camera.distortion[0] =
       calibrate.retry_bend * 4 /
       (std::pow(camera.width / camera.fx, 2) + std::pow(camera.height / camera.fy, 2));
@@ -278,10 +281,10 @@ std::string CameraInWords(const CameraEstimate& estimate) {
           camera.distortion[1], estimate.k2_sigma, camera.cx, camera.cy,
           estimate.centre_sigma.maxCoeff());
   std::string words = FovInWords(estimate) + text;
-  // By rows, or by columns where the picture was taken upright; negative: from the far side.
+  // Along rows, or along columns for upright images; negative: from the opposite side.
   const double readout = camera.readout[0] + camera.readout[1];
   if (readout != 0) {
-    PrintTo(text, sizeof(text), ", read in %.1f ± %.1f ms", 1e3 * std::abs(readout),
+    PrintTo(text, sizeof(text), ", readout time %.1f ± %.1f ms", 1e3 * std::abs(readout),
             1e3 * estimate.readout_sigma.maxCoeff());
     words += text;
   }

@@ -1,5 +1,5 @@
-// The camera of a recording that nobody calibrated: played until what was mapped says what focal
-// length and distortion it was made with.
+// Offline self-calibration: plays a recording of an uncalibrated camera until the map determines
+// focal length and distortion.
 #pragma once
 
 #include <functional>
@@ -15,34 +15,34 @@
 namespace alidade {
 
 struct CameraFound {
-  CameraEstimate estimate;  // of the recording's images; the camera is the guess where not `usable`
-  // Better than the guess, though perhaps not known well enough to say so.
+  CameraEstimate estimate;  // for images of the recording's size; the initial guess if not `usable`
+  // More accurate than the guess, but possibly not accurate enough to count as known.
   bool usable = false;
-  std::string why_not;              // it is not known: in words
-  int passes = 0, frames = 0;       // frames of all passes
-  std::vector<LensWindow> windows;  // of the last pass, for pictures of `windows_camera`
+  std::string why_not;              // why the camera is not known, in words
+  int passes = 0, frames = 0;       // frames: of all passes
+  std::vector<LensWindow> windows;  // of the last pass, for images of `windows_camera`
   Camera windows_camera;
 };
 
-// What is looked on with; may say stop.
+// Progress of the calibration. The callback may stop it.
 struct CalibrateProgress {
   int pass = 0, frames = 0, keyframes = 0;
   CameraEstimate estimate;
 };
 
-// `open` gives the recording from its begin on, each time; its camera is where the search starts,
-// pinhole with square pixels. `settings`: as the recording will be run; shape is left out.
-// `go_on` is asked after each frame. The same result each time with the inline schedule, which is
-// used whatever the settings say. Throws what the source throws.
+// `open` opens the recording from its start, for each pass; its camera, a pinhole with square
+// pixels, is the initial guess. `settings`: those of the later run; semi-dense mapping is disabled.
+// `go_on` is called after each frame. Always uses the inline schedule, so the result is
+// reproducible. Throws what the source throws.
 CameraFound FindCamera(const std::function<std::unique_ptr<FrameSource>()>& open,
                        const SlamSettings& settings, const CalibrateSettings& calibrate,
                        const std::function<bool(const CalibrateProgress&)>& go_on);
 
-// `camera` of pictures `width` pixels wide, where they are `of` otherwise: the way back from
+// `camera` for images of size `of`, scaled to images `width` pixels wide: the inverse of
 // Camera::ScaledToWidth().
 Camera CameraOfSize(const Camera& camera, const Camera& of);
 
-double FovDegrees(const Camera& camera);  // horizontal, of the focal length alone
+double FovDegrees(const Camera& camera);  // horizontal field of view, from the focal length alone
 // "56.4 ± 0.3 degrees".
 std::string FovInWords(const CameraEstimate& estimate);
 // "56.4 ± 0.3 degrees (f 789.7 ± 4.1 px, k1 -0.02 ± 0.01, read in 15.3 ± 0.4 ms)".

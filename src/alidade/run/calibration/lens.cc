@@ -15,7 +15,7 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckS
     MeasurementNoise noise = used.mapper.noise;
     noise.right_from_sensor = slam.camera().baseline <= 0;
     return largest.valid() ? CheckLens(map, largest, slam.camera(), noise, settings) : LensCheck{};
-  } catch (const std::bad_alloc&) {  // results matter more
+  } catch (const std::bad_alloc&) {  // the warning is optional
     return {};
   }
 }
@@ -23,13 +23,12 @@ LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckS
 std::string LensInWords(const LensCheck& check, const Camera& camera) {
   if (!check.strong) return "";
   char how[80];
-  PrintTo(how, sizeof(how), " (k1 near %.2f, by %.0f %% at the picture's corners)", check.k1,
+  PrintTo(how, sizeof(how), " (k1 near %.2f, a shift of %.0f %% at the image corners)", check.k1,
           100 * std::abs(check.bend));
-  const std::string than =
-      camera.HasDistortion() ? " more strongly than its calibration says" : " strongly";
-  return "this camera's lens bends lines" + than + how +
-         ": the path and the map are bent with it. Give its calibration, distortion included, with "
-         "--camera (docs/reference/camera.md)";
+  const std::string than = camera.HasDistortion() ? " beyond its calibration" : "";
+  return "this camera has strong radial distortion" + than + how +
+         " that is not corrected, so trajectory and map are distorted. Use a calibration with "
+         "distortion: --camera (docs/reference/camera.md)";
 }
 
 }  // namespace alidade

@@ -1,4 +1,4 @@
-// Says when a lens bends lines that it is taken to leave straight.
+// Warns of radial distortion that the calibration does not model.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace alidade {
 
-// Of the map with most keyframes. No windows where there is none, or a loaded map was only looked
-// at, or there is no memory for it.
+// Examines the map with the most keyframes. Returns no windows if there is no map, if a loaded map
+// was only localized in, or if memory is exhausted.
 LensCheck CheckLens(const Slam& slam, const SlamSettings& used, const LensCheckSettings& settings);
 
-// The warning, with what helps; empty when there is nothing to warn of.
+// The warning, with advice; empty: no reason to warn.
 std::string LensInWords(const LensCheck& check, const Camera& camera);
 
 }  // namespace alidade

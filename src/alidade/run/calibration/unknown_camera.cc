@@ -11,19 +11,19 @@
 namespace alidade {
 namespace {
 
-constexpr const char* kBetter = " (--camera, or --fov, which is the horizontal one, say better)";
+constexpr const char* kBetter = " (--camera or --fov gives a better value)";
 
 std::string AssumedInWords(const SourceInfo& source, const Camera& camera) {
   char text[80];
   PrintTo(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
           FovDegrees(camera));
-  return source.lens_told.empty() ? text : text + (", by what it says: " + source.lens_told);
+  return source.lens_told.empty() ? text : text + (", from its metadata: " + source.lens_told);
 }
 
 void WarnOfDoubt(CameraEstimate estimate, const Camera& taken) {
   estimate.camera = taken;
-  LogWarning("the camera is not known for certain: a field of view of " + CameraInWords(estimate) +
-             " was found and is taken" + kBetter);
+  LogWarning("the camera is uncertain: the estimated field of view of " + CameraInWords(estimate) +
+             " is used" + kBetter);
 }
 
 }  // namespace
@@ -63,8 +63,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   }
   if (!looked_for) {
     settings.readout.enabled = false;  // a wrong lens may be taken for it
-    LogWarning("nothing is known of the camera: " + AssumedInWords(source, finding.camera) +
-               kBetter);
+    LogWarning("the camera is unknown: " + AssumedInWords(source, finding.camera) + kBetter);
     return finding;
   }
   const double cpu = ProcessCpuSeconds();
@@ -86,8 +85,8 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   } else if (found.usable) {
     WarnOfDoubt(found.estimate, found.estimate.camera);
   } else {
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
-               AssumedInWords(source, finding.camera) + kBetter);
+    LogWarning("the camera could not be calibrated: " + found.why_not + "; " +
+               AssumedInWords(source) + kBetter);
   }
   return finding;
 }
@@ -110,8 +109,8 @@ void TakeRefinedCamera(const Slam& slam, const RunSetup& setup, int frames,
       WarnOfDoubt(found.estimate, camera);
     }
   } else {
-    found.why_not = "the camera turns and moves too little for its focal length to tell";
-    LogWarning("the camera stays unknown, as " + found.why_not + ": " +
+    found.why_not = "the camera moves and rotates too little to determine its focal length";
+    LogWarning("the camera could not be calibrated: " + found.why_not + "; " +
                AssumedInWords(setup.source, camera) + kBetter);
   }
   found.estimate.camera = camera;

@@ -1,4 +1,4 @@
-// What a run does about its camera: takes it as given, or finds it first.
+// Chooses the camera of a run: given, estimated before the run, or estimated during it.
 #pragma once
 
 #include <functional>

@@ -39,13 +39,12 @@ bool HoldsOurMarker(const fs::path& folder) {
 void CheckFree(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return;
-  if (!fs::is_directory(path, error)) ThrowInput(path.string() + ": there is a file of that name");
+  if (!fs::is_directory(path, error)) ThrowInput(path.string() + " is a file, not a folder");
   const bool empty = fs::is_empty(path, error);
   if (error) ThrowInput(path.string() + ": " + error.message());
   if (!empty && !(HoldsOurMarker(path) && HoldsOnlyOurs(path))) {
     ThrowInput(path.string() +
-               ": the folder exists and holds other things than an earlier export; "
-               "name another");
+               ": the folder contains other files than an earlier export; choose another");
   }
 }
 
@@ -53,7 +52,7 @@ void CheckFree(const fs::path& path) {
 
 void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>& files) {
   fs::path path = fs::path(folder).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // written with a slash at its end
+  if (!path.has_filename()) path = path.parent_path();  // with a trailing slash
   CheckFree(path);
   for (const std::string& left : StaleTemporaries(path.string())) {
     std::error_code ignored;

@@ -1,4 +1,4 @@
-// A folder that holds an exported model: there whole, or not at all.
+// Writes a folder with an exported model completely or not at all.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace alidade {
 
-// Writes the files, and export.json to know them by, into a new folder beside `path`, then renames
-// that to `path`. What is there must be an empty folder or an earlier export, with nothing else in
-// it. Throws Error (input) otherwise, and when something cannot be written: nothing new stays then.
+// Writes the files, and export.json as a marker, into a temporary folder next to `path`, then
+// renames that to `path`. An existing `path` must be empty or an earlier export without other
+// files. Throws Error (input) otherwise, and if writing fails; nothing new remains then.
 void WriteExportFolder(const std::string& path, const std::vector<ColmapFile>& files);
 
 }  // namespace alidade

@@ -1,4 +1,5 @@
-// `alidade export` and Python's Result.export: a map or a run into what other programs read.
+// `alidade export` and Python's Result.export: converts a map or a run to formats of other
+// programs.
 #pragma once
 
 #include <string>
@@ -7,10 +8,10 @@
 
 namespace alidade {
 
-// `path`: a map.alidade, a folder of results, or (mcap) a recorded stream. A folder's run is told
-// as it was where it was recorded; of everything but mcap it is its map that is written. What was
-// written, in words. Throws Error: usage for what cannot be asked of it, input for what cannot be
-// read or written.
+// `path`: a map.alidade, a result folder, or (mcap) a recorded stream. mcap contains the whole run
+// if it was recorded; the other formats contain the map of a folder. Returns a description of what
+// was written. Throws Error: usage for impossible requests, input for files that cannot be read or
+// written.
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
                        const std::string& out);
 

@@ -23,7 +23,7 @@ struct Plan {
   Form form;
 };
 
-// What the words ask for, with `default` made definite.
+// The format with `default` resolved.
 Plan PlanOf(const ExportSettings& settings) {
   const auto target = Choice<Target>("--to", settings.to,
                                      {{"ply", Target::kPly},
@@ -53,7 +53,8 @@ MapPart PartOf(const SavedMap& saved, int number) {
   const std::vector<MapPart> parts = PartsOf(saved.map);
   if (parts.empty() && number == 0) return {};
   if (number < 0 || static_cast<size_t>(number) >= parts.size()) {
-    ThrowUsage("--part " + std::to_string(number) + ": maps are numbered from 0, and here are " +
+    ThrowUsage("--part " + std::to_string(number) +
+               " does not exist: maps are numbered from 0, and their number is " +
                std::to_string(parts.size()));
   }
   return parts[static_cast<size_t>(number)];
@@ -62,7 +63,7 @@ MapPart PartOf(const SavedMap& saved, int number) {
 void WriteExportFile(const std::string& path, const std::string& bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    ThrowInput(path + " is a folder; name the file to write");
+    ThrowInput(path + " is a folder; give the name of a file");
   }
   AtomicWriteFile(path, bytes);
 }

@@ -1,4 +1,4 @@
-// `alidade export`: a map into files that other programs read.
+// `alidade export`: writes a map to files for other programs.
 #pragma once
 
 #include <string>
@@ -12,17 +12,17 @@ struct ExportSettings {
   std::string to;
   std::string format = "default";  // text, binary, both (colmap only)
   int part = 0;                    // 0: the largest of the maps in the file
-  int min_observations = 1;        // landmarks fewer keyframes see are left out
-  void Check() const;              // throws Error (usage) for words that cannot be
+  int min_observations = 1;        // landmarks observed by fewer keyframes are omitted
+  void Check() const;              // throws Error (usage) for unknown words
 };
 
-// The map that is asked for, with the landmarks that are seen often enough. Throws Error (usage)
-// for a part that is not there.
+// The chosen map, with the landmarks that have enough observations. Throws Error (usage) for a part
+// that does not exist.
 MapPart PartFor(const SavedMap& saved, const ExportSettings& settings);
 
-// Writes `out`: a file, or for colmap a folder (export_folder.h). What was written, in words
-// ("3071 points"). Throws Error: usage for a part that is not there, input for what cannot be
-// written.
+// Writes `out`: a file, or for colmap a folder (export_folder.h). Returns a description of what was
+// written ("3071 points"). Throws Error: usage for a part that does not exist, input if writing
+// fails.
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
                       const std::string& out);
 

@@ -12,7 +12,7 @@
 namespace alidade {
 namespace {
 
-// From a keypoint to where its camera would see the landmark, pixels of the image as taken.
+// Offset from a keypoint to the projection of its landmark, raw image pixels.
 std::optional<double> ErrorInImage(const Camera& camera, const KeyFrame& keyframe,
                                    const Keypoint& keypoint, const Eigen::Vector3d& p_world) {
   const Eigen::Vector3d p_camera = keyframe.T_camera_world * p_world;
@@ -21,7 +21,7 @@ std::optional<double> ErrorInImage(const Camera& camera, const KeyFrame& keyfram
   return (seen - Eigen::Vector2d(keypoint.raw_x, keypoint.raw_y)).norm();
 }
 
-// Times repeat when a recording was added to the map of another: then -2, -3, … tells them apart.
+// Times are not unique if a recording was added to the map of another: -2, -3, … is appended then.
 std::string FreshName(double time, std::set<std::string>& taken) {
   const std::string stem = ShortTime(time);
   std::string name = stem + ".png";

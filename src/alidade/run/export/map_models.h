@@ -1,4 +1,4 @@
-// One map of a file as what other programs read: plain values, no files.
+// Converts one map of a file to the data of other programs; no file access.
 #pragma once
 
 #include "alidade/io/cloud.h"
@@ -11,18 +11,18 @@ namespace alidade {
 // Poses of the keyframes, in order of time.
 Trajectory TrajectoryOf(const SavedMap& saved, const MapPart& part);
 
-// The map without the landmarks that fewer keyframes see.
+// The map without landmarks that fewer keyframes observe.
 MapPart SeenOften(const SavedMap& saved, MapPart part, int min_observations);
 
 // The landmarks.
 Cloud CloudOf(const SavedMap& saved, const MapPart& part);
 
-// Keyframes as images, called by their time (ImageName), with all their keypoints as they lie in
-// the image; landmarks as grey points whose tracks are their observations.
+// Keyframes as images, named by their time (ImageName), with all their keypoints in raw image
+// coordinates; landmarks as gray points whose tracks are their observations.
 ColmapModel ColmapModelOf(const SavedMap& saved, const MapPart& part);
 
-// A time in seconds with the fewest digits after the point, six at least and nine at most, that
-// bring it back: TUM's 1305031102.175304 stays that.
+// A time in seconds with the fewest decimals, from six to nine, that represent it exactly: the TUM
+// stamp 1305031102.175304 remains the same.
 std::string ShortTime(double seconds);
 
 }  // namespace alidade

@@ -24,7 +24,7 @@ std::vector<RosPose> RosPathOf(const Trajectory& trajectory) {
   return path;
 }
 
-// The whole of what is known at the end.
+// Writes the complete final state.
 void TellState(RosLog& log, double time, const FinalState& state) {
   if (!state.trajectory.empty()) log.Path(time, RosPathOf(state.trajectory));
   if (state.landmarks) log.Landmarks(time, *state.landmarks);
@@ -38,7 +38,7 @@ McapCounts CountsOf(int frames, const FinalState& state, const McapLog& file) {
   return {frames, points(state.landmarks), points(state.shape), file.bytes()};
 }
 
-// Frames one by one, and what is known at the end before them and after.
+// Writes frames individually, and the final state before and after them.
 McapCounts TellKnown(const Trajectory& frames, const FinalState& state,
                      const std::optional<Camera>& camera, const std::vector<RosStatus>& diagnostics,
                      const std::string& out, const std::string& program) {
@@ -58,7 +58,7 @@ McapCounts TellKnown(const Trajectory& frames, const FinalState& state,
 }
 
 std::string CountText(const std::optional<double>& number) {
-  return number ? std::to_string(static_cast<long>(*number)) : "not known";
+  return number ? std::to_string(static_cast<long>(*number)) : "unknown";
 }
 
 std::vector<RosStatus> StatusOf(const ResultFolder& result) {
@@ -95,7 +95,7 @@ McapCounts ExportStream(const std::string& stream, const std::string& out,
   } catch (const Error& error) {
     throw Error(error.kind(), stream + ": " + error.what());
   }
-  if (ros.scene().frames == 0) ThrowInput(stream + ": no frame was recorded");
+  if (ros.scene().frames == 0) ThrowInput(stream + " contains no recorded frame");
   const std::string folder = fs::path(stream).parent_path().string();
   FinalState state;
   if (IsFile(fs::path(folder) / "stats.json")) state = FinalStateIn(folder.empty() ? "." : folder);
@@ -110,7 +110,7 @@ McapCounts ExportResults(const std::string& folder, const std::string& out,
                          const std::string& program) {
   const ResultFolder result = ReadResultFolder(folder);
   const FinalState state = FinalStateIn(folder);
-  if (state.trajectory.empty()) ThrowInput(folder + ": nothing was mapped there");
+  if (state.trajectory.empty()) ThrowInput(folder + " contains no map");
   const std::string live = folder + "/trajectory_live.txt";
   const Trajectory frames = IsFile(live) ? ReadTrajectory(live) : state.trajectory;
   return TellKnown(frames, state, result.camera, StatusOf(result), out, program);

@@ -16,9 +16,10 @@
 namespace alidade {
 namespace {
 
-constexpr double kSameTime = 1e-6;   // seconds: stamps are written with 6 digits or more
+constexpr double kSameTime = 1e-6;   // seconds: stamps are written with at least 6 digits
 constexpr double kSamePlace = 1e-6;  // map units: poses are written with 9 digits
-constexpr double kTold = 1e-2;       // map units: keyframes this far apart tell directions
+// map units: smallest distance of keyframes that determines a direction
+constexpr double kTold = 1e-2;
 
 std::string OwnName(const std::string& path) {
   const std::filesystem::path whole = std::filesystem::path(path + "/").lexically_normal();
@@ -36,7 +37,8 @@ std::string Fresh(const std::string& name, std::set<std::string>& taken) {
   return fresh;
 }
 
-// Living keyframes by time; of equal times (a recording added to the map of another) the youngest.
+// Existing keyframes by time; of those with equal times (a recording added to the map of another)
+// the newest.
 std::map<double, KeyFrameId> ByTime(const MapSnapshot& map) {
   std::map<double, KeyFrameId> by_time;
   map.keyframes().ForEach(
@@ -49,7 +51,7 @@ KeyFrameId KeyFrameAt(const std::map<double, KeyFrameId>& by_time, double time) 
   return it != by_time.end() && it->first <= time + kSameTime ? it->second : KeyFrameId{};
 }
 
-// Keyframes as written beside the map, each with the one of the map it is.
+// The keyframes of the trajectory file, with the corresponding ones of the map.
 std::vector<std::pair<StampedPose, KeyFrameId>> Known(const Trajectory& written,
                                                       const std::map<double, KeyFrameId>& by_time) {
   std::vector<std::pair<StampedPose, KeyFrameId>> known;
@@ -60,7 +62,7 @@ std::vector<std::pair<StampedPose, KeyFrameId>> Known(const Trajectory& written,
   return known;
 }
 
-// The turn between the two: p_written = R p_map, for where keyframes are.
+// Rotation R between both: p_written = R p_map, from the keyframes' positions.
 Eigen::Matrix3d TurnOf(const MapSnapshot& map,
                        const std::vector<std::pair<StampedPose, KeyFrameId>>& known) {
   std::vector<Eigen::Vector3d> written{Eigen::Vector3d::Zero()}, mapped{Eigen::Vector3d::Zero()};
@@ -72,7 +74,7 @@ Eigen::Matrix3d TurnOf(const MapSnapshot& map,
     if (T.t.norm() < kTold) continue;
     written.push_back(pose.T_world_camera.t);
     mapped.push_back(T.t);
-    // So does a turn, by its axis: R_written = R R_map Rᵀ.
+    // Rotations also determine R, by their axes: R_written = R R_map Rᵀ.
     const auto axis = [](const Eigen::Matrix3d& R) {
       return Eigen::Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
     };
@@ -112,7 +114,7 @@ void ReadPaths(MergeInput& input) {
   }
 }
 
-// A keyframe before and after the merge, as told by trajectories.
+// Poses of a keyframe before and after the merge, in the trajectories' convention.
 struct Moved {
   double time = 0;
   Se3 T_old, T_new;  // T_world_camera
@@ -125,7 +127,7 @@ struct Moved {
   }
 };
 
-// From `a` by `share` of the way to `b`.
+// Interpolates from `a` to `b`.
 Se3 Blend(const Se3& a, const Se3& b, double share) {
   const Eigen::Quaterniond R =
       Eigen::Quaterniond(a.R).slerp(share, Eigen::Quaterniond(b.R)).normalized();
@@ -135,7 +137,7 @@ Se3 Blend(const Se3& a, const Se3& b, double share) {
 }  // namespace
 
 std::vector<MergeInput> ReadMergeInputs(const std::vector<std::string>& paths) {
-  if (paths.size() < 2) ThrowUsage("there is nothing to merge: give two maps or more");
+  if (paths.size() < 2) ThrowUsage("nothing to merge: give at least two maps");
   std::vector<MergeInput> inputs;
   std::set<std::string> names;
   for (const std::string& path : paths) {
@@ -144,7 +146,7 @@ std::vector<MergeInput> ReadMergeInputs(const std::vector<std::string>& paths) {
     input.path = path;
     input.saved = ReadSavedMap(path);
     if (input.saved.map.keyframe_count() == 0)
-      ThrowInput(SavedMapPath(path) + ": there is nothing in the map");
+      ThrowInput(SavedMapPath(path) + ": the map is empty");
     ReadPaths(input);
     inputs.push_back(std::move(input));
   }

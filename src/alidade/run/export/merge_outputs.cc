@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kMergeVersion = 1;  // of merge.json
+constexpr int kMergeVersion = 1;  // version of merge.json
 
 size_t OriginOf(const MergedMaps& merged, KeyFrameId id) {
   for (size_t i = 0; i < merged.parts.size(); ++i) {
@@ -26,14 +26,14 @@ size_t OriginOf(const MergedMaps& merged, KeyFrameId id) {
   return merged.parts.size();
 }
 
-// A map by where it is, wherever it is named.
+// The absolute path of a map, independent of how it was typed.
 std::string PlaceOfMap(const std::string& path) {
   std::error_code error;
   const auto place = std::filesystem::weakly_canonical(SavedMapPath(path), error);
   return error ? path : place.string();
 }
 
-// What an earlier merge left in a folder, as its merge.json says.
+// The files of an earlier merge in a folder, from its merge.json.
 struct EarlierMerge {
   std::set<std::string> inputs, files;
 };
@@ -43,7 +43,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
   const std::string file = folder + "/merge.json";
   if (!IsFile(file)) return earlier;
   const auto json = ordered_json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
-  // Anybody may have written it.
+  // The file may have been written by anybody.
   const auto list_in = [](const ordered_json& object, const char* name) {
     const bool there = object.is_object() && object.contains(name) && object[name].is_array();
     return there ? object[name] : ordered_json::array();
@@ -66,7 +66,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
 void MakeFolder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
-  if (error) ThrowInput(path + ": cannot be made: " + error.message());
+  if (error) ThrowInput(path + ": cannot be created: " + error.message());
 }
 
 }  // namespace
@@ -103,10 +103,11 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
   std::error_code error;
   for (const MergeInput& input : inputs) {
     if (std::filesystem::equivalent(places.map, SavedMapPath(input.path), error))
-      ThrowUsage("--out would replace " + places.map + ", which is one of the maps to be merged");
+      ThrowUsage("--out would replace " + places.map + ", which is one of the maps to merge");
   }
   if (IsFile(places.folder + "/stats.json"))
-    ThrowUsage("--out " + places.folder + " holds what `alidade run` left: give another folder");
+    ThrowUsage("--out " + places.folder +
+               " contains results of `alidade run`: choose another folder");
   if (overwrite) return;
   const EarlierMerge earlier = ReadEarlierMerge(places.folder);
   std::set<std::string> now;
@@ -115,13 +116,13 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
       std::includes(now.begin(), now.end(), earlier.inputs.begin(), earlier.inputs.end());
   if (IsThere(places.map) && (earlier.inputs.empty() || !of_these)) {
     ThrowUsage("--out would replace " + places.map +
-               ", which was not made of these maps: name another, or give --overwrite");
+               ", which was not made from these maps: choose another file, or use --overwrite");
   }
   for (const MergeInput& input : inputs) {
     const std::string name = NumberedFile(input.name, 0);
     if (IsThere(places.folder + "/" + name) && earlier.files.count(name) == 0) {
       ThrowUsage("--out would replace " + places.folder + "/" + name +
-                 ", which is not of an earlier merge: name another, or give --overwrite");
+                 ", which is not from an earlier merge: choose another file, or use --overwrite");
     }
   }
 }
@@ -129,7 +130,7 @@ void CheckMergePlaces(const MergePlaces& places, const std::vector<MergeInput>& 
 void WriteMerge(const MergePlaces& places, const std::vector<MergeInput>& inputs,
                 const MergedMaps& merged) {
   const std::vector<MergedWorld> worlds = WorldsOf(merged);
-  std::map<MapId, size_t> number;  // of a world
+  std::map<MapId, size_t> number;  // of each world
   ordered_json world_list = ordered_json::array();
   for (const MergedWorld& world : worlds) {
     number.emplace(world.id, number.size());

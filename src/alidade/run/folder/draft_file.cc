@@ -10,7 +10,7 @@
 namespace alidade {
 
 DraftFile::DraftFile(const std::string& path) : path_(path), draft_(TemporaryBeside(path)) {
-  if (IsFolder(path)) ThrowInput(path + " is a folder; name the file to write");
+  if (IsFolder(path)) ThrowInput(path + " is a folder; give the name of a file");
   std::error_code ignored;
   for (const std::string& left : StaleTemporaries(path)) std::filesystem::remove(left, ignored);
   file_ = std::fopen(draft_.c_str(), "wb");
@@ -40,7 +40,7 @@ void DraftFile::Close() {
   if (closed && !failed_) std::filesystem::rename(draft_, path_, error);
   if (!closed || failed_ || error) {
     std::filesystem::remove(draft_, error);
-    ThrowInput(path_ + ": could not be written whole (is the disk full?)");
+    ThrowInput(path_ + ": could not be written completely (is the disk full?)");
   }
 }
 

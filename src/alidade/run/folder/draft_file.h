@@ -1,5 +1,5 @@
-// A file that grows while a program runs: written beside its place, and there, whole, once it is
-// closed.
+// A file that is written while the program runs, under a temporary name in the same folder, and
+// renamed when it is closed.
 #pragma once
 
 #include <cstdio>
@@ -10,16 +10,16 @@ namespace alidade {
 
 class DraftFile {
  public:
-  // Throws Error (input) when it cannot be made. What an earlier program left beside `path` when it
-  // was killed goes.
+  // Throws Error (input) if it cannot be created. Removes temporary files of `path` that a killed
+  // program left.
   explicit DraftFile(const std::string& path);
-  ~DraftFile();  // without Close(): nothing stays
+  ~DraftFile();  // without Close(): the file is removed
   DraftFile(const DraftFile&) = delete;
   DraftFile& operator=(const DraftFile&) = delete;
 
-  // False when the disk is full or gone; nothing more is written then.
+  // False if writing failed (disk full); nothing more is written then.
   bool Write(std::string_view bytes);
-  void Close();  // throws Error (input) when not all of it could be written
+  void Close();  // throws Error (input) if writing was incomplete
   size_t bytes() const { return bytes_; }
 
  private:

@@ -1,15 +1,15 @@
-// A folder that is built beside its place, so that it is there whole or not at all.
+// A folder that is filled under a temporary name, so that it appears completely or not at all.
 #pragma once
 
 #include <string>
 
 namespace alidade {
 
-// Gone at the end unless it was renamed. While it lives, other programs know that it is in use; one
-// left by a program that was killed is among StaleTemporaries() of its place.
+// Removed by the destructor unless it was renamed. Locked while it exists; one of a killed program
+// is unlocked and among StaleTemporaries() of its place.
 class DraftFolder {
  public:
-  // Named TemporaryBeside(place). Throws Error (input) when it cannot be made.
+  // Named TemporaryBeside(place). Throws Error (input) if it cannot be created.
   explicit DraftFolder(const std::string& place);
   ~DraftFolder();
   DraftFolder(const DraftFolder&) = delete;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Anybody may have written the file: nothing is taken to be of its type.
+// The file may have been written by anybody: types are checked.
 double NumberOf(const json& object, const char* name) {
   return object.contains(name) && object[name].is_number() ? object[name].get<double>() : 0;
 }
@@ -22,7 +22,7 @@ std::string WordOf(const json& object, const char* name) {
   return object.contains(name) && object[name].is_string() ? object[name].get<std::string>() : "";
 }
 
-// As it comes back from a JSON file: a path may be in any encoding.
+// The form it has after a round trip through JSON: a path may have any encoding.
 std::string AsText(const std::string& path) {
   return json::parse(json(path).dump(-1, ' ', false, json::error_handler_t::replace))
       .get<std::string>();
@@ -53,7 +53,7 @@ std::optional<EarlierResult> ReadEarlierResult(const std::string& stats_path) {
   result.frames = NumberOf(stats, "frames") + NumberOf(stats, "late_frames");
   result.tracked = NumberOf(stats, "tracked");
   const json folder = stats.contains("folder") ? stats["folder"] : json();
-  if (!folder.is_object()) {  // of an older version
+  if (!folder.is_object()) {  // written by an older version
     result.owner.place = PlaceOfSource(result.owner.source);
     return result;
   }
@@ -92,7 +92,7 @@ std::string FreeFolder(const std::string& folder, const ResultOwner& owner) {
     free = folder + "-" + std::to_string(i);
   }
   if (taken) {
-    LogWarning(folder + " holds the results of " + taken->owner.InWords() + ": those of " +
+    LogWarning(folder + " contains the results of " + taken->owner.InWords() + "; the results of " +
                owner.InWords() + " go to " + free);
   }
   return free;

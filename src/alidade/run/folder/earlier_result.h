@@ -1,4 +1,4 @@
-// What a folder of results says of itself, and when a run may take its place.
+// Reads which run a result folder belongs to, and decides when another run may replace it.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,12 @@
 
 namespace alidade {
 
-// Whose results are: they are never mixed up with those of another.
+// The source and command of results. Results of different owners are never mixed.
 struct ResultOwner {
   std::string command = "run";  // or "localize"
   std::string source;           // as typed
-  // What it is, wherever it is typed: absolute, links resolved; rendered scenes as typed. Empty: no
-  // other run is of the same (live cameras).
+  // Identity of the source independent of how it is typed: absolute path with links resolved;
+  // rendered scenes as typed. Empty: unique (live cameras).
   std::string place;
 
   std::string InWords() const { return "`alidade " + command + " " + source + "`"; }
@@ -21,26 +21,26 @@ ResultOwner OwnerOf(const std::string& source, bool localize);
 
 struct EarlierResult {
   ResultOwner owner;
-  double frames = 0;  // that the source gave, late ones included
+  double frames = 0;  // frames of the source, late ones included
   double tracked = 0;
-  bool complete = true;  // the run ended well
-  // Names of the run's own files, as it noted them; older versions did not.
+  bool complete = true;  // the run ended successfully
+  // Files of the run as listed in stats.json; older versions have no list.
   std::optional<std::vector<std::string>> files;
 };
 
-// Of a stats.json; nothing when it is not there, or none of ours.
+// From a stats.json; nullopt if it does not exist or was not written by alidade.
 std::optional<EarlierResult> ReadEarlierResult(const std::string& stats_path);
 
 bool IsOf(const EarlierResult& result, const ResultOwner& owner);
 
-// Something would be lost, and another owner's at that.
+// True if the results belong to another owner and would be lost.
 bool IsTakenFrom(const std::optional<EarlierResult>& result, const ResultOwner& owner);
 
-// Whether `now` may take the place of an earlier result of the same owner: never when it is a
-// failed or interrupted run and the other was not, nor when the source gave it fewer frames.
+// Whether `now` may replace an earlier result of the same owner: not if it failed or was
+// interrupted and the other one succeeded, and not if the source had fewer frames.
 bool MayReplace(const EarlierResult& earlier, const EarlierResult& now);
 
-// `folder`, or where that is taken `folder`-2, -3, …; says so.
+// `folder`, or `folder`-2, -3, … if that is taken, with a warning.
 std::string FreeFolder(const std::string& folder, const ResultOwner& owner);
 
 }  // namespace alidade

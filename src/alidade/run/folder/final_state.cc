@@ -20,7 +20,8 @@ FinalState FinalStateIn(const std::string& results) {
   const std::string trajectory = results + "/trajectory.txt";
   if (IsFile(trajectory)) {
     const std::string text = ReadFile(trajectory);
-    if (text.find_first_of('\n') + 1 < text.size())  // else its head alone: nothing was tracked
+    // otherwise it has only a header: nothing was tracked
+    if (text.find_first_of('\n') + 1 < text.size())
       state.trajectory = ParseTumTrajectory(text, trajectory);
   }
   state.landmarks = CloudIn(results + "/landmarks.ply");

@@ -1,4 +1,4 @@
-// What a run ended with, as its files or a saved map have it: what an MCAP file ends with.
+// The final state of a run, read from its files or a saved map, for the end of an MCAP file.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@
 namespace alidade {
 
 struct FinalState {
-  Trajectory trajectory;                  // T_world_camera; empty: not known
+  Trajectory trajectory;                  // T_world_camera; empty: unknown
   std::optional<Cloud> landmarks, shape;  // in the same world
 };
 
-// trajectory.txt, landmarks.ply and semidense.ply of a folder of results, where they are there.
-// Throws Error (input) when one cannot be read.
+// Reads trajectory.txt, landmarks.ply and semidense.ply of a result folder if they exist. Throws
+// Error (input) if one cannot be read.
 FinalState FinalStateIn(const std::string& results);
 
-// Of one of the maps in a file: its keyframes and landmarks. Saved maps have no shape.
+// From one of the maps in a file: its keyframes and landmarks. Saved maps have no semi-dense depth.
 FinalState FinalStateOf(const SavedMap& saved, const MapPart& part);
 
 }  // namespace alidade

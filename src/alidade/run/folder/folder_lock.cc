@@ -29,7 +29,7 @@ std::string LineIn(int fd) {
   return line.empty() ? "another process" : line;
 }
 
-// Still the one of that name: who held it may have removed it before its lock ended.
+// Whether the locked file still has that name: the previous holder may have removed it.
 bool IsAt(int fd, const std::string& path) {
   struct stat own {
   }, there{};
@@ -49,13 +49,14 @@ FolderLock::FolderLock(const std::string& file, const std::string& where) : file
     if (!Occupy(fd_) && errno == EWOULDBLOCK) {
       const std::string holder = LineIn(fd_);
       ::close(fd_);
-      ThrowInput(where + holder + " is writing there; wait until it ends, or name another folder");
+      ThrowInput(where + holder +
+                 " is writing to this folder; wait until it ends, or choose another folder");
     }
     if (IsAt(fd_, file)) break;
     ::close(fd_);
   }
   const std::string line = ThisProcess() + "\n";
-  // A name that cannot be written down is only missing in a message.
+  // Without the name only a message is less precise.
   if (::ftruncate(fd_, 0) == 0) [[maybe_unused]]
     const ssize_t written = ::pwrite(fd_, line.data(), line.size(), 0);
 }

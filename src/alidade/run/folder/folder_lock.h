@@ -1,17 +1,17 @@
-// One program at a time in a folder.
+// Lets one program at a time write to a folder.
 #pragma once
 
 #include <string>
 
 namespace alidade {
 
-// Holds a lock (flock) on a file in the folder, which names this process. It ends with this object,
-// or with the process in whatever way: then the file stays, and hinders nobody. Where the file
-// system has no locks, none is held.
+// Holds a lock (flock) on a file in the folder that names this process, until this object is
+// destroyed or the process ends. The file may remain; it does not block later runs. Without effect
+// on file systems without locks.
 class FolderLock {
  public:
-  // `file`: made where it is not there, with the folder it is in. Throws Error (input) when another
-  // process holds it, beginning with `where` and naming the process.
+  // `file`: created with its folder if it does not exist. Throws Error (input), beginning with
+  // `where`, if another process holds the lock; the message names the process.
   FolderLock(const std::string& file, const std::string& where);
   ~FolderLock();
   FolderLock(const FolderLock&) = delete;

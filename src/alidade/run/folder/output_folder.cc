@@ -30,23 +30,23 @@ bool HoldsOtherThings(const fs::path& folder) {
 void CheckOwner(const OutputClaim& claim) {
   const auto earlier = ResultIn(claim.path);
   if (claim.overwrite || !IsTakenFrom(earlier, claim.owner)) return;
-  ThrowInput(Opening(claim) + "the folder holds the results of " + earlier->owner.InWords() +
-             ", and this is " + claim.owner.InWords() +
-             ": name another, or give --overwrite to replace them");
+  ThrowInput(Opening(claim) + "the folder contains the results of " + earlier->owner.InWords() +
+             ", but the source is " + claim.owner.InWords() +
+             ": choose another folder, or replace them with --overwrite");
 }
 
-// Why the new results are elsewhere.
+// The message why the new results are elsewhere.
 std::string Complaint(const OutputClaim& claim, const EarlierResult& earlier,
                       const EarlierResult& now, const std::string& place) {
   const auto frames = [](const EarlierResult& result) {
     return std::to_string(static_cast<long long>(result.frames)) + " frames";
   };
   return claim.path + " keeps the results of an earlier run (" + frames(earlier) +
-         ", this one had " + frames(now) + "), and this run's are in " + place +
-         "; --overwrite replaces the earlier ones";
+         "; this run: " + frames(now) + "). The results of this run are in " + place +
+         "; --overwrite replaces the earlier results";
 }
 
-// What ReadEarlierResult() reads.
+// The data read by ReadEarlierResult().
 void NoteFolder(const fs::path& draft, const ResultOwner& owner, bool complete) {
   using nlohmann::ordered_json;
   const std::string file = (draft / kStatsFile).string();
@@ -70,22 +70,22 @@ OutputFolder::MadeFolder::MadeFolder(const OutputClaim& claim) {
   std::error_code error;
   if (fs::exists(fs::symlink_status(claim.path, error))) {
     if (!fs::is_directory(claim.path, error))
-      ThrowInput(Opening(claim) + "there is a file of that name");
+      ThrowInput(Opening(claim) + "it is a file, not a folder");
     if (HoldsOtherThings(claim.path)) {
       ThrowInput(Opening(claim) +
-                 "the folder exists and holds no earlier run (no stats.json of ours); name "
+                 "the folder exists and contains no earlier run (no stats.json of alidade); choose "
                  "another");
     }
     return;
   }
   fs::create_directories(claim.path, error);
-  if (error) ThrowInput(Opening(claim) + "cannot be made: " + error.message());
+  if (error) ThrowInput(Opening(claim) + "cannot be created: " + error.message());
   path = claim.path;
 }
 
 OutputFolder::MadeFolder::~MadeFolder() {
   std::error_code error;
-  if (!path.empty()) fs::remove(path, error);  // only when it is empty
+  if (!path.empty()) fs::remove(path, error);  // succeeds only if it is empty
 }
 
 OutputFolder::OutputFolder(OutputClaim claim)
@@ -95,12 +95,13 @@ OutputFolder::OutputFolder(OutputClaim claim)
   FinishPlacing(claim_.path, claim_.inputs);
   const fs::path done = fs::path(claim_.path) / kRunDone;
   if (IsThere(done.string()))
-    ThrowInput(Opening(claim_) + "there is " + done.string() + ", which is not ours: name another");
+    ThrowInput(Opening(claim_) + "there is " + done.string() +
+               ", which was not written by alidade: choose another folder");
   CheckOwner(claim_);
   std::error_code error;
   for (const fs::path& left : LeftoversIn(claim_.path)) fs::remove_all(left, error);
   draft_.emplace((fs::path(claim_.path) / kRunPlace).string());
-  Write(kStatsFile, std::string(65536, '\0'));  // as much as a short run leaves
+  Write(kStatsFile, std::string(65536, '\0'));  // about the size of a short run's files
   Discard(kStatsFile);
 }
 
@@ -109,7 +110,7 @@ void OutputFolder::Write(const std::string& name, const std::string& bytes, Sync
   std::error_code error;
   if (fs::path(name).has_parent_path() && !fs::create_directories(path.parent_path(), error) &&
       error) {
-    ThrowInput("cannot make " + path.parent_path().string() + ": " + error.message());
+    ThrowInput("cannot create " + path.parent_path().string() + ": " + error.message());
   }
   AtomicWriteFile(path.string(), bytes, sync);
 }
@@ -137,7 +138,7 @@ PlacedResult OutputFolder::Place(bool complete) {
   LeaveFilesOfOthers(draft(), placed.folder, claim_.inputs);
   try {
     NoteFolder(draft(), claim_.owner, complete);
-  } catch (const Error&) {  // the disk is full: as older versions left it
+  } catch (const Error&) {  // the disk is full; older versions had no list either
   }
   PlaceFiles(draft(), placed.folder, claim_.inputs);
   draft_.reset();

@@ -1,5 +1,5 @@
-// The folder of a run's results. A run's files are gathered beside those of an earlier one, and
-// take their place when the run has ended: whoever fails or is killed leaves the earlier ones.
+// The result folder of a run. Files are gathered in a temporary folder and replace those of the
+// earlier run at the end, so a run that fails or is killed does not damage earlier results.
 #pragma once
 
 #include <optional>
@@ -17,43 +17,42 @@ namespace alidade {
 struct OutputClaim {
   std::string path;
   ResultOwner owner = {};
-  std::vector<std::string> inputs = {};  // files the run was given: never removed
-  bool overwrite = false;                // whatever is there, it is replaced
+  std::vector<std::string> inputs = {};  // input files of the run: never removed
+  bool overwrite = false;                // replace any existing results
 };
 
-// Where a run's files are in the end.
+// Where the files of a run are after Place().
 struct PlacedResult {
-  std::string folder;   // empty: the run left nothing
-  std::string problem;  // why it is not the folder that was asked for; empty: it is
+  std::string folder;   // empty: the run wrote nothing
+  std::string problem;  // why it is not the requested folder; empty: it is
 };
 
-// A folder for results, made when it is not there, and locked against other runs. One that is there
-// is taken when it is empty or holds an earlier run. Throws Error (input) for any other, for one
-// that holds results of another owner, for one another run is at work in, and when nothing can be
-// written into it: better now than after the work.
+// Creates and locks a result folder. An existing one must be empty or contain an earlier run.
+// Throws Error (input) for any other folder, for results of another owner, if another run is
+// writing to it, and if it is not writable: better before the run than after it.
 class OutputFolder {
  public:
   explicit OutputFolder(OutputClaim claim);
   const std::string& path() const { return claim_.path; }
 
-  // Where files are gathered until Place().
+  // Folder where files are gathered until Place().
   const std::string& draft() const { return draft_->path(); }
-  // Writes a file whole or not at all, making the folder it is in. Throws Error (input).
+  // Writes a file completely or not at all; creates its folder. Throws Error (input).
   void Write(const std::string& name, const std::string& bytes, Sync sync = Sync::kYes);
-  // Takes back what was written; the folder it was in goes when it is empty.
+  // Removes a written file, and its folder if that is empty.
   void Discard(const std::string& name);
 
-  // Puts the files in place of the earlier run's, or where that may not be (MayReplace) into the
-  // folder last-attempt, and notes in stats.json which they are. Without a stats.json nothing
-  // stays. `complete`: the run ended well. Throws Error (input).
+  // Replaces the files of the earlier run, or moves them to the folder last-attempt if MayReplace()
+  // is false, and lists them in stats.json. Without a stats.json nothing remains. `complete`: the
+  // run ended successfully. Throws Error (input).
   PlacedResult Place(bool complete);
 
  private:
-  // Makes the folder; it is removed at the end where nothing is in it.
+  // Creates the folder; the destructor removes it if it is empty.
   struct MadeFolder {
     explicit MadeFolder(const OutputClaim& claim);
     ~MadeFolder();
-    std::string path;  // empty: it was there
+    std::string path;  // empty: the folder existed before
   };
 
   const OutputClaim claim_;

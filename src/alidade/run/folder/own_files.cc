@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 12> kFiles = {
     "landmarks.ply",  "semidense.ply",       "semidense.png", "report.html",     kStatsFile,
     "run.stream",     "camera.yaml"};
 
-// Pictures with a list: NAME/STAMP.png and NAME.txt, where maps have their own NAME.1.txt, …
+// Images with a list: NAME/STAMP.png and NAME.txt, or NAME.1.txt, … for further maps.
 struct PictureKind {
   std::string name;
   std::string_view header;  // first line of the list
@@ -31,7 +31,7 @@ bool StartsWith(std::string_view text, std::string_view start) {
   return text.substr(0, start.size()) == start;
 }
 
-// trajectory.1.txt and the like, of further maps.
+// Files of further maps, such as trajectory.1.txt.
 bool IsNumbered(const std::string& name, const std::string& what, const std::string& ending) {
   if (!StartsWith(name, what + ".")) return false;
   const std::string rest = name.substr(what.size() + 1);
@@ -57,8 +57,8 @@ bool IsList(const fs::path& path, const PictureKind& kind) {
   return HasNameOfList(path.filename().string(), kind) && Begins(path, kind.header);
 }
 
-// Of older versions, which kept no list: a user may have put his own there, for `compare` or for
-// --camera.
+// For results of older versions, which have no list: such a file may be the user's own, for
+// `compare` or --camera.
 bool WasLikelyOurs(const fs::path& path, const EarlierResult& result) {
   const std::string name = path.filename().string();
   if (name == "groundtruth.txt") return StartsWith(result.owner.source, "synth:");
@@ -66,7 +66,7 @@ bool WasLikelyOurs(const fs::path& path, const EarlierResult& result) {
   return true;
 }
 
-// Of the pictures whose stamps the list tells.
+// The images whose stamps are in the list.
 void AddPictures(const fs::path& list, const fs::path& pictures, std::vector<fs::path>& own) {
   const std::string text = ReadFile(list.string());
   std::set<std::string> stamps;
@@ -82,7 +82,7 @@ void AddPictures(const fs::path& list, const fs::path& pictures, std::vector<fs:
   }
 }
 
-// "map.alidade" of "map.alidade.tmp123-0"; empty: no temporary of anything of ours.
+// "map.alidade" for "map.alidade.tmp123-0"; empty: not a temporary of one of our files.
 std::string PlaceOfTemporary(const std::string& name) {
   const size_t at = name.rfind(".tmp");
   if (at == std::string::npos) return {};
@@ -135,7 +135,8 @@ void CheckIsNoResult(const std::string& path) {
   for (const fs::path& own : OwnFilesIn(folder, *result)) {
     std::error_code error;
     if (fs::equivalent(own, path, error))
-      ThrowUsage(path + " is of the results of " + result->owner.InWords() + ": name another file");
+      ThrowUsage(path + " belongs to the results of " + result->owner.InWords() +
+                 ": choose another file");
   }
 }
 

@@ -1,4 +1,4 @@
-// Which files in a folder of results are a run's own.
+// Which files in a result folder belong to the run.
 #pragma once
 
 #include <filesystem>
@@ -12,39 +12,41 @@ namespace alidade {
 
 inline constexpr char kStatsFile[] = "stats.json";
 
-// What is in the folder only while a run is at work there.
-inline constexpr char kRunPlace[] = "run";      // its files are gathered in a temporary beside that
+// Files that exist only while a run is writing.
+inline constexpr char kRunPlace[] = "run";      // the temporary folder is named after it
 inline constexpr char kRunLock[] = "run.lock";  // folder_lock.h
-inline constexpr char kRunDone[] = "run.done";  // all files, on their way to their place
+inline constexpr char kRunDone[] = "run.done";  // all files, while they are moved to their places
 
-// Of the map with the most frames "trajectory.txt", of the next "trajectory.1.txt", and so on.
+// "trajectory.txt" for the map with the most frames, "trajectory.1.txt" for the next one, and so
+// on.
 std::string NumberedFile(const std::string& name, size_t number,
                          const std::string& ending = ".txt");
 
-// First line of the lists of depth pictures: a depth.txt without it is not ours.
+// First line of the lists of depth images. A depth.txt without it belongs to somebody else.
 inline constexpr std::string_view kDepthListHeader =
     "# semi-dense depth of keyframes: timestamp filename (5000 per map unit, 0 = none)\n";
-// Where a depth picture is, within the folder; `stamp` as in keyframes.txt.
+// Path of a depth image within the folder; `stamp` as in keyframes.txt.
 std::string DepthPictureFile(const std::string& stamp);
 
-// The same of masks (mask_writer.h).
+// The same for masks (mask_writer.h).
 inline constexpr std::string_view kMaskListHeader =
     "# what was left out as moving: timestamp filename (255 = left out)\n";
 std::string MaskPictureFile(const std::string& stamp);
 
-// Files and pictures of the run that left `result` in the folder. What has one of our names and is
-// not in its list is someone else's; so is, where an older version kept no list, a groundtruth.txt
-// of a recording that was not rendered, and a camera.yaml that does not say it was found by us.
+// Files and images of the run that wrote `result`. A file with one of these names that is not in
+// the list of the run belongs to somebody else. Without a list (older versions) this holds for a
+// groundtruth.txt of a recording that was not rendered, and for a camera.yaml that does not say it
+// was estimated.
 std::vector<std::filesystem::path> OwnFilesIn(const std::filesystem::path& folder,
                                               const EarlierResult& result);
 
-// Throws Error (usage) when a run wrote that file among its results: nothing else writes there.
+// Throws Error (usage) if `path` is a file of a run's results.
 void CheckIsNoResult(const std::string& path);
 
-// What runs that were killed left there, and nobody uses any more.
+// Temporary files of killed runs in the folder.
 std::vector<std::filesystem::path> LeftoversIn(const std::filesystem::path& folder);
 
-// There is nothing in it, or only what runs that were killed, or are going on, have there.
+// True if the folder is empty except for temporary files of killed or running runs.
 bool HoldsNoResult(const std::filesystem::path& folder, std::error_code& error);
 
 }  // namespace alidade

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kReplaced[] = "replaced.json";  // in kRunDone: the earlier run's stats.json
+constexpr char kReplaced[] = "replaced.json";  // in kRunDone: stats.json of the earlier run
 
 bool Exists(const fs::path& path) {
   std::error_code error;
@@ -40,7 +40,7 @@ std::vector<fs::path> EntriesOf(const fs::path& folder) {
   return entries;
 }
 
-// A folder of pictures joins the one that is there.
+// Merges a folder of images into an existing one.
 void MoveInto(const fs::path& from, const fs::path& to) {
   std::error_code error;
   if (!fs::is_directory(from, error) || !Exists(to)) return Move(from, to);
@@ -59,10 +59,10 @@ void RemoveOwnFiles(const fs::path& folder, const EarlierResult& result,
     if (path.parent_path() != folder) emptied.insert(path.parent_path());
   }
   std::error_code error;
-  for (const fs::path& path : emptied) fs::remove(path, error);  // only when nothing is in it
+  for (const fs::path& path : emptied) fs::remove(path, error);  // succeeds only if it is empty
 }
 
-// Pictures are left out all together, with their lists.
+// Images are omitted together with their list.
 void LeaveOut(const fs::path& draft, const std::string& name) {
   const std::string list = fs::is_directory(draft / name) ? name + "." : "";
   std::error_code error;
@@ -100,7 +100,7 @@ void LeaveFilesOfOthers(const fs::path& draft, const fs::path& folder,
     } else if (!is_others(in_the_way)) {
       continue;
     }
-    LogWarning(in_the_way.string() + " is not of an earlier run, and stays: this run's " + name +
+    LogWarning(in_the_way.string() + " is not from an earlier run and is kept: the new " + name +
                " is not written");
     LeaveOut(draft, name);
   }
@@ -108,7 +108,7 @@ void LeaveFilesOfOthers(const fs::path& draft, const fs::path& folder,
 
 void PlaceFiles(const fs::path& draft, const fs::path& folder,
                 const std::vector<std::string>& inputs) {
-  FinishPlacing(folder, inputs);  // of a run that was killed
+  FinishPlacing(folder, inputs);  // completes a move that was interrupted
   Move(draft, folder / kRunDone);
   FinishPlacing(folder, inputs);
 }
@@ -119,7 +119,7 @@ void FinishPlacing(const fs::path& folder, const std::vector<std::string>& input
   std::error_code error;
   if (Exists(done / kStatsFile)) {
     if (Exists(stats)) Move(stats, replaced);
-    // As long as this file is there, none of the new ones was moved.
+    // While this file exists, none of the new files has been moved.
     if (const auto earlier = ReadEarlierResult(replaced.string()))
       RemoveOwnFiles(folder, *earlier, inputs);
     fs::remove(replaced, error);
@@ -128,7 +128,7 @@ void FinishPlacing(const fs::path& folder, const std::vector<std::string>& input
     }
     Move(done / kStatsFile, stats);
   }
-  fs::remove(done, error);  // empty, unless it is someone else's
+  fs::remove(done, error);  // succeeds only if it is empty
 }
 
 }  // namespace alidade

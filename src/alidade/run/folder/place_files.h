@@ -1,4 +1,4 @@
-// A run's files take the place of an earlier run's.
+// Replaces the files of an earlier run.
 #pragma once
 
 #include <filesystem>
@@ -7,14 +7,15 @@
 
 namespace alidade {
 
-// Takes out of `draft` what would be written over a file of `folder` that is neither an earlier
-// run's nor one of `inputs`, and says so.
+// Removes from `draft` what would overwrite a file of `folder` that belongs neither to an earlier
+// run nor to `inputs`, with a warning.
 void LeaveFilesOfOthers(const std::filesystem::path& draft, const std::filesystem::path& folder,
                         const std::vector<std::string>& inputs);
 
-// Moves the files of `draft`, which is on the same file system, into `folder`, and removes those of
-// the earlier run there, but for `inputs`. While that goes on the folder has no stats.json: who is
-// killed then leaves all files of the new run, and FinishPlacing() goes on. Throws Error (input).
+// Moves the files of `draft`, which must be on the same file system, into `folder`, and removes
+// those of the earlier run except `inputs`. Meanwhile the folder has no stats.json; if the process
+// is killed, all files of the new run remain and FinishPlacing() completes the move. Throws Error
+// (input).
 void PlaceFiles(const std::filesystem::path& draft, const std::filesystem::path& folder,
                 const std::vector<std::string>& inputs);
 void FinishPlacing(const std::filesystem::path& folder, const std::vector<std::string>& inputs);

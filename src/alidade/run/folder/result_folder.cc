@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// Anybody may have written the file: nothing is taken to be of its type.
+// The file may have been written by anybody: types are checked.
 std::optional<double> NumberIn(const json& object, const char* name) {
   if (!object.is_object() || !object.contains(name) || !object[name].is_number())
     return std::nullopt;
@@ -75,13 +75,13 @@ std::optional<Camera> CameraIn(const json& stats) {
 
 ResultFolder ReadResultFolder(const std::string& path) {
   const std::string file = path + "/stats.json";
-  if (!IsFolder(path)) ThrowInput(path + " is not a folder that `alidade run` left");
+  if (!IsFolder(path)) ThrowInput(path + " is not a result folder of `alidade run`");
   if (!IsThere(file))
     ThrowInput("there is no stats.json in " + path +
-               ": it is not a folder that `alidade run` left");
+               ": it is not a result folder of `alidade run`");
   const json stats = json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
   if (!stats.is_object() || !NumberIn(stats, "frames") || !NumberIn(stats, "tracked"))
-    ThrowInput(file + " is not one that `alidade run` wrote");
+    ThrowInput(file + " was not written by `alidade run`");
   ResultFolder result;
   result.path = path;
   result.camera = CameraIn(stats);
@@ -114,7 +114,7 @@ ResultFolder ReadResultFolder(const std::string& path) {
   const std::string trajectory = path + "/trajectory.txt";
   if (*result.tracked > 0) result.trajectory = ReadTrajectory(trajectory);
   const std::string truth = path + "/groundtruth.txt";
-  // Since the run, the user may have gone to another folder.
+  // The working directory may have changed since the run.
   const json folder = stats.contains("folder") ? stats["folder"] : json();
   const std::string place = WordIn(folder, "source");
   result.truth =

@@ -1,4 +1,4 @@
-// What a run left behind, read again (docs/reference/run-folder.md).
+// Reads the results of a run (docs/reference/run-folder.md).
 #pragma once
 
 #include <array>
@@ -24,7 +24,7 @@ struct ResultFolder {
   std::optional<double> first_pose;     // in any map, seconds
   std::vector<std::array<double, 2>> lost_spans;
   Trajectory trajectory;  // of the map with the most frames; empty: nothing was mapped
-  Trajectory truth;       // groundtruth.txt, or what lies beside the recording; empty: not known
+  Trajectory truth;       // groundtruth.txt, or that of the recording; empty: unknown
 
   bool mono() const { return sensor == "mono"; }
 };
@@ -32,7 +32,7 @@ struct ResultFolder {
 inline constexpr std::array kResultStages = {"frame", "extract",   "track",  "map",
                                              "loop",  "semidense", "detect", "dynamics"};
 
-// Throws Error (input) for a folder without a run's stats.json, or with one that is none.
+// Throws Error (input) for a folder without a valid stats.json of a run.
 ResultFolder ReadResultFolder(const std::string& path);
 
 }  // namespace alidade

@@ -21,7 +21,7 @@
 namespace alidade {
 namespace {
 
-constexpr int kWarnedFrames = 10;  // a recording may be bad from end to end
+constexpr int kWarnedFrames = 10;  // warnings about individual frames at most
 constexpr double kBlack = 10;      // mean grey level
 
 std::atomic<int> g_interrupted{0};  // requests so far
@@ -32,7 +32,7 @@ void Interrupt(int) {
   ++g_interrupted;
 }
 
-// Waits for the workers; a second signal gives up what is left.
+// Waits for the workers; a second signal aborts the wait.
 class Finisher {
  public:
   explicit Finisher(Slam& slam)
@@ -50,10 +50,10 @@ class Finisher {
 
  private:
   std::atomic<bool> done_{false};
-  std::thread thread_;  // last: it uses the above
+  std::thread thread_;  // last, because it uses the other members
 };
 
-// Waits for the moment a frame is due.
+// Waits until a frame is due.
 class Pacer {
  public:
   explicit Pacer(const Rate& rate) : rate_(rate) {}
@@ -68,7 +68,7 @@ class Pacer {
     const double due =
         rate_.kind == Rate::Kind::kRealtime ? frame_time - first_time_ : count_ / rate_.fps;
     ++count_;
-    // In slices, so that Ctrl-C is not kept waiting.
+    // In steps, so that Ctrl-C takes effect soon.
     while (!Interrupted()) {
       const double left = due - clock_.Milliseconds() * 1e-3;
       if (left <= 0) return -left;
@@ -84,7 +84,7 @@ class Pacer {
   int count_ = 0;  // frames so far
 };
 
-// CPU time of everything but reading images, from its making on.
+// CPU time since its construction, except for reading images.
 class CpuMeter {
  public:
   explicit CpuMeter(const ReadAhead& source) : source_(source), start_(Now()) {}
@@ -226,7 +226,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   if (wall) log.wall_s = wall->Milliseconds() * 1e-3;
   log.interrupted = Interrupted();
   if (log.dropped > kWarnedFrames)
-    LogWarning(std::to_string(log.dropped) + " frames were skipped in all");
+    LogWarning(std::to_string(log.dropped) + " frames were skipped in total");
   if (log.incomplete > kWarnedFrames) {
     LogWarning(std::to_string(log.incomplete) +
                " frames had a depth or right image that could not be read");

@@ -1,4 +1,4 @@
-// Feeds a source to a Slam, frame by frame.
+// Plays a source into a Slam frame by frame.
 #pragma once
 
 #include <vector>
@@ -15,11 +15,11 @@ namespace alidade {
 // second one does not wait for them, a third ends the program.
 void CatchInterrupts();
 bool Interrupted();
-// The same for who has signal handlers of his own (Python): any thread may ask, once to end the run
-// and write its results, twice to wait for no worker. Forget it before the next run.
+// The same for programs with their own signal handlers (Python): the first request ends the run and
+// writes its results, the second one does not wait for workers. Reset before the next run.
 void RequestInterrupt();
 void ForgetInterrupts();
-inline constexpr int kInterruptedStatus = 130;  // exit status of a run that was
+inline constexpr int kInterruptedStatus = 130;  // exit status of an interrupted run
 
 // Plays `source` into `slam` to the end, or until interrupted, and waits for the workers. Frames
 // that cannot be used are warned about, counted and left out. In the threaded schedule a frame that

@@ -1,5 +1,5 @@
-// Those who look on while a recording is played: progress on a terminal, the viewer, the recorder.
-// They change no result.
+// Interface of observers of a run: progress on a terminal, the viewer, the recorder. They do not
+// influence results.
 #pragma once
 
 #include <string>
@@ -13,19 +13,11 @@
 
 namespace alidade {
 
-// A run as its watchers see it: all of it lives until End() has returned, or Run() throws.
-struct WatchedRun {
-  const Slam& slam;
-  const RunSetup& setup;
-  const CameraFinding& camera;
-  const RunLog& log;
-};
-
-// Calls come from the thread that plays the frames, but for Warn().
+// Called from the thread that plays the frames, except Warn().
 class RunWatcher {
  public:
   virtual ~RunWatcher() = default;
-  // Before all else, while the camera is looked for: after each frame of a pass.
+  // During offline self-calibration, before Begin(): after each frame of a pass.
   virtual void Calibrating(const CalibrateProgress& progress) { (void)progress; }
   // Before the first frame. Files are gathered in `folder`, which is there; a watcher may write its
   // own into it until Written() has returned.
@@ -33,18 +25,18 @@ class RunWatcher {
   // Before each frame: may hold the run up for as long as it should pause. `interrupted` says when
   // it must not any more.
   virtual void Wait(bool (*interrupted)()) { (void)interrupted; }
-  // After each frame that Track() took.
+  // After each frame that Track() has processed.
   virtual void Frame(const SourceFrame& frame, const TrackResult& result) {
     (void)frame, (void)result;
   }
-  virtual void Finishing() {}  // the workers are waited for
-  virtual void Finished() {}   // the map stays as it is now
-  // All files but the watchers' own are in `folder` (that of Begin()), from where they go to their
-  // place.
+  virtual void Finishing() {}  // waiting for the workers
+  virtual void Finished() {}   // the map is final
+  // All files except the watchers' own are in `folder` (that of Begin()), before they are moved to
+  // their place.
   virtual void Written(const std::string& folder) { (void)folder; }
-  // What could be written, which may not be all, is now in `folder`.
+  // All files that could be written are in `folder`.
   virtual void Placed(const std::string& folder) { (void)folder; }
-  // The results are written, in `folder`.
+  // The results are in `folder`, their final place.
   virtual void End(const RunSummary& summary, const std::string& folder) {
     (void)summary, (void)folder;
   }

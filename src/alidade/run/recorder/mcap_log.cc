@@ -17,7 +17,8 @@ McapCompression ChunkCompression() {
             std::string packed(ZSTD_compressBound(plain.size()), '\0');
             const size_t size =
                 ZSTD_compress(packed.data(), packed.size(), plain.data(), plain.size(), kLevel);
-            if (ZSTD_isError(size) != 0)  // it has room for everything: no memory
+            // cannot happen except without memory, since the buffer is large enough
+            if (ZSTD_isError(size) != 0)
               throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
             packed.resize(size);
             return packed;

@@ -1,5 +1,5 @@
-// An MCAP file on the disk, for what RosLog tells. Its chunks are compressed with zstd where the
-// library was there when this was built.
+// Writes the messages of RosLog to an MCAP file. Chunks are compressed with zstd if the library was
+// available when this was built.
 #pragma once
 
 #include <string>
@@ -11,17 +11,17 @@ namespace alidade {
 
 class McapLog {
  public:
-  // Throws Error (input) when it cannot be made. `program`: "alidade 0.1.0".
+  // Throws Error (input) if the file cannot be created. `program`: "alidade 0.1.0".
   McapLog(const std::string& path, const std::string& program);
 
   RosLog& log() { return log_; }
-  void Close();  // throws Error (input) when not all of it could be written
+  void Close();  // throws Error (input) if writing was incomplete
   bool good() const { return good_; }
   size_t bytes() const { return file_.bytes(); }
 
  private:
   DraftFile file_;
-  bool good_ = true;  // all so far is written
+  bool good_ = true;  // all writes so far succeeded
   RosLog log_;
 };
 

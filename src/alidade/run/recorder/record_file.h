@@ -1,4 +1,4 @@
-// What --record and --record-to write: the stream as it is (run.stream), or made into an MCAP file.
+// The file of --record and --record-to: the stream (run.stream), or its conversion to MCAP.
 #pragma once
 
 #include <memory>
@@ -11,21 +11,20 @@ namespace alidade {
 
 class RecordFile {
  public:
-  virtual ~RecordFile() = default;  // without Close(): nothing stays
-  // A message of the stream. False when the disk is full or gone; nothing more is written then.
-  // Throws Error on what is no message.
+  virtual ~RecordFile() = default;  // without Close(): the file is removed
+  // Adds a message of the stream. Returns false if writing failed (disk full); nothing more is
+  // written then. Throws Error for an invalid message.
   virtual bool Write(std::string_view message) = 0;
-  // `results`: the folder of what the run left. Throws Error (input) when not all of the file could
-  // be written.
+  // `results`: the result folder of the run. Throws Error (input) if writing was incomplete.
   virtual void Close(const std::string& results) = 0;
   virtual size_t bytes() const = 0;  // so far
-  // Whole states are of use to it, besides what has changed.
+  // Whether it needs complete states in addition to changes.
   virtual bool takes_whole() const = 0;
 };
 
-bool IsMcap(const std::string& path);  // by its ending
+bool IsMcap(const std::string& path);  // by the ending of the name
 
-// Throws Error (input) when it cannot be made. `program`: "alidade 0.1.0".
+// Throws Error (input) if the file cannot be created. `program`: "alidade 0.1.0".
 std::unique_ptr<RecordFile> MakeRecordFile(const std::string& path, const std::string& program,
                                            const StreamFeedSettings& settings);
 

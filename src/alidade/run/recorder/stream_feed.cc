@@ -70,7 +70,7 @@ void StreamFeed::Begin(const WatchedRun& run, const std::string& folder) {
   thread_ = std::thread([this] { Run(); });
 }
 
-// A viewer may hold up a recording.
+// Viewers may pause a recording.
 void StreamFeed::Wait(bool (*interrupted)()) {
   std::unique_lock<std::mutex> lock(queue_mutex_);
   while (paused_ && steps_ == 0 && !interrupted())
@@ -138,9 +138,9 @@ void StreamFeed::Fail() noexcept {
   }
   changed_.notify_all();
   try {
-    LogWarning("the stream stopped (" + WhatOf(std::current_exception()) +
-               "); the run goes on without it");
-  } catch (...) {  // no memory even for that
+    LogWarning("recording the stream stopped (" + WhatOf(std::current_exception()) +
+               "); the run continues without it");
+  } catch (...) {  // memory is exhausted
   }
 }
 

@@ -1,6 +1,6 @@
-// A run as a stream: shown each frame, it encodes what happened in a thread of its own, adds the
-// picture, and gives the messages to those who joined, and to a file. Where that fails (no memory),
-// a warning says so, the stream ends there, and the run goes on.
+// Encodes a run as a stream. A thread of its own encodes each frame, adds the camera image and
+// passes the messages to connected viewers and to a file. If that fails (out of memory), a warning
+// is logged and the stream ends; the run continues.
 #pragma once
 
 #include <atomic>
@@ -24,8 +24,8 @@ namespace alidade {
 
 class StreamFeed : public RunWatcher, public StreamHub {
  public:
-  // `file`: where the stream is kept, as MCAP when it ends in .mcap; nothing: nowhere. Empty:
-  // run.stream among the results.
+  // `file`: where the stream is stored, as MCAP if it ends in .mcap; nullopt: not stored; empty:
+  // run.stream in the result folder.
   StreamFeed(std::string program, std::optional<std::string> file,
              const StreamFeedSettings& settings = {});
   ~StreamFeed() override;
@@ -37,26 +37,26 @@ class StreamFeed : public RunWatcher, public StreamHub {
   void Finished() override;
   void Written(const std::string& folder) override;
 
-  // The carriers'.
+  // Calls of the servers.
   int Join(Take take) override;
   void Leave(int id) override;
   void Control(StreamControl control) override;
 
-  // Of the file, or of all messages where there is none.
+  // Size of the file, or of all messages if there is no file.
   size_t bytes() const { return bytes_; }
   int frames() const { return frames_; }
 
  private:
-  void Fail() noexcept;  // by the exception that is being handled
+  void Fail() noexcept;  // handles the current exception
   struct Shown {
     StreamFrame frame;
-    cv::Mat image;  // to be coded; empty: no picture
+    cv::Mat image;  // image to encode; empty: none
   };
   void Show(const SourceFrame& frame, const TrackResult& result);
   void TellEnd();
   void Run();
   void Encode(Shown& shown);
-  void Tell(std::vector<std::string> messages);  // with encoder_mutex_ held
+  void Tell(std::vector<std::string> messages);  // requires encoder_mutex_
   void Drain();
 
   const std::string program_;
@@ -65,10 +65,10 @@ class StreamFeed : public RunWatcher, public StreamHub {
   const Slam* slam_ = nullptr;
   const RunLog* log_ = nullptr;
   std::string folder_;
-  LatestTimes latest_;                                  // as of the frame before
+  LatestTimes latest_;                                  // of the previous frame
   double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording
 
-  std::mutex encoder_mutex_;  // of all down to the next mutex
+  std::mutex encoder_mutex_;  // guards all fields up to the next mutex
   std::unique_ptr<StreamEncoder> encoder_;
   std::unique_ptr<RecordFile> file_;
   std::map<int, Take> takers_;
@@ -80,7 +80,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   std::deque<Shown> queue_;
   bool working_ = false, stop_ = false, failed_ = false;
   bool paused_ = false;
-  int steps_ = 0;  // frames that may pass while paused
+  int steps_ = 0;  // frames to process while paused
 
   std::atomic<size_t> bytes_{0};
   std::atomic<int> frames_{0};

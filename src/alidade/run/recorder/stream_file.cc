@@ -38,7 +38,7 @@ StreamFileReader::StreamFileReader(const std::string& path) {
   char magic[8] = {};
   if (size < 8 || std::fread(magic, 1, 8, file_) != 8 || std::string_view(magic, 8) != kMagic) {
     std::fclose(file_);
-    ThrowInput(path + ": is no recorded stream (`alidade run --record` makes them)");
+    ThrowInput(path + ": is not a recorded stream (`alidade run --record` writes one)");
   }
   left_ = static_cast<size_t>(size) - 8;
 }

@@ -1,6 +1,6 @@
-// The stream in a file: run.stream. 8 bytes "ALIDSTR1", then for each message its length (u32,
-// little-endian), 4 zero bytes, and the message, filled up with zeros to a multiple of 8. A file
-// that was cut off is good up to its last whole message.
+// The file of a stream, run.stream: 8 bytes "ALIDSTR1", then for each message its length (u32,
+// little-endian), 4 zero bytes and the message, padded with zeros to a multiple of 8. A truncated
+// file is valid up to its last complete message.
 #pragma once
 
 #include <cstdio>
@@ -12,36 +12,36 @@
 
 namespace alidade {
 
-// Written beside its place, and there once it is closed.
+// Written under a temporary name until it is closed.
 class StreamFileWriter {
  public:
-  // Throws Error (input) when it cannot be made.
+  // Throws Error (input) if it cannot be created.
   explicit StreamFileWriter(const std::string& path);
 
-  // False when the disk is full or gone; nothing more is written then.
+  // False if writing failed (disk full); nothing more is written then.
   bool Write(std::string_view message);
-  void Close() { file_.Close(); }  // throws Error (input) when not all of it could be written
+  void Close() { file_.Close(); }  // throws Error (input) if writing was incomplete
   size_t bytes() const { return file_.bytes(); }
 
  private:
   DraftFile file_;
 };
 
-// Message by message.
+// Reads message by message.
 class StreamFileReader {
  public:
-  // Throws Error (input) when it cannot be read or is no stream.
+  // Throws Error (input) if it cannot be read or is not a stream.
   explicit StreamFileReader(const std::string& path);
   ~StreamFileReader();
   StreamFileReader(const StreamFileReader&) = delete;
   StreamFileReader& operator=(const StreamFileReader&) = delete;
 
-  // Nothing at the end, or where the file was cut off.
+  // nullopt at the end, also of a truncated file.
   std::optional<std::string> Next();
 
  private:
   std::FILE* file_ = nullptr;
-  size_t left_ = 0;  // bytes
+  size_t left_ = 0;  // remaining bytes
 };
 
 }  // namespace alidade

@@ -48,7 +48,7 @@ RosStatus MillisecondsStatus(const std::vector<float>& ms) {
   for (size_t i = 0; i < std::min(ms.size(), kResultStages.size()); ++i) {
     if (ms[i] >= 0) status.values.push_back({kResultStages[i], TwoDigits(ms[i])});
   }
-  status.message = status.values.empty() ? "not known" : status.values.front().second + " ms";
+  status.message = status.values.empty() ? "unknown" : status.values.front().second + " ms";
   return status;
 }
 
@@ -78,7 +78,7 @@ void StreamToRos::TellFrame() {
   TellWholes();
 }
 
-// With the camera of the picture, which may be smaller than what was tracked.
+// With the camera of the sent image, which may be smaller than the tracked one.
 void StreamToRos::TellPicture() {
   const SceneNow& now = scene_.now;
   if (now.picture.empty() || scene_.camera.width <= 0 || scene_.camera.height <= 0) return;
@@ -88,7 +88,7 @@ void StreamToRos::TellPicture() {
   if (x != 1 || y != 1) {
     camera.fx *= x;
     camera.fy *= y;
-    camera.cx = (camera.cx + 0.5) * x - 0.5;  // edges lie on edges
+    camera.cx = (camera.cx + 0.5) * x - 0.5;  // the image borders coincide
     camera.cy = (camera.cy + 0.5) * y - 0.5;
     camera.width = now.picture_width;
     camera.height = now.picture_height;
@@ -118,7 +118,7 @@ void StreamToRos::Told(Whole& whole, size_t bytes) const {
   whole.version = scene_.version;
 }
 
-// From the rectified camera's world to the mounted camera's, which trajectories are told in.
+// From the world of the rectified camera to that of the camera as mounted, which trajectories use.
 Se3 StreamToRos::Mounted(const Se3& T_world_camera) const {
   const Se3 turn{scene_.R_camera_rectified, Eigen::Vector3d::Zero()};
   return turn * T_world_camera * turn.Inverse();
@@ -181,7 +181,7 @@ void StreamToRos::End(FinalState state) {
   if (path.empty()) path = PathIn(map);
   if (!state.landmarks) state.landmarks = LandmarksIn(map);
   if (!state.shape) state.shape = ShapeIn(map);
-  // Transforms of a time that was told already would be ignored by tf2.
+  // tf2 ignores further transforms with the same time.
   const double time = scene_.now.time + kAfterTheLastFrame;
   if (!path.empty()) {
     log_.Transforms(time, path.back().T_frame_body);

@@ -1,5 +1,5 @@
-// The stream of a run (docs/reference/stream.md) told to ROS: each frame as it was when it was
-// done, and at the end what the run's files say.
+// Converts the stream of a run (docs/reference/stream.md) to ROS messages: each frame as it was
+// processed, and at the end the final results.
 #pragma once
 
 #include <cstdint>
@@ -19,22 +19,23 @@ namespace alidade {
 
 class StreamToRos {
  public:
-  // `log` must outlive it.
+  // `log` must outlive this object.
   StreamToRos(RosLog& log, const StreamFeedSettings& settings) : log_(log), settings_(settings) {}
 
   // The next message. Throws Error (input) as StreamScene::Take().
   void Take(std::string_view message);
-  // When nothing follows. What `state` does not know is told as the stream has it, of the map with
-  // the most frames.
+  // After the last message. What `state` does not contain is taken from the stream, for the map
+  // with the most frames.
   void End(FinalState state);
 
   const StreamScene& scene() const { return scene_; }
 
  private:
-  // What is told as a whole now and then: the path, the points.
+  // Messages that repeat a whole state at intervals: the path, the points.
   struct Whole {
-    double next = -std::numeric_limits<double>::infinity();  // not before that time, seconds
-    uint64_t version = UINT64_MAX;                           // of the map it was told of
+    // earliest time of the next message, seconds
+    double next = -std::numeric_limits<double>::infinity();
+    uint64_t version = UINT64_MAX;  // version of the map that was last written
   };
   void TellEvents();
   void TellFrame();
@@ -52,15 +53,16 @@ class StreamToRos {
   RosLog& log_;
   const StreamFeedSettings settings_;
   StreamScene scene_;
-  MapId map_;  // that the camera was in last
+  MapId map_;  // the last map of the camera
   Whole path_, landmarks_, shape_;
-  std::set<std::tuple<int, int, std::string>> events_;  // told: whole states repeat them
+  // events already written, which complete states repeat
+  std::set<std::tuple<int, int, std::string>> events_;
 };
 
-// Seconds after the last frame that the end is told at.
+// Time of the final messages after the last frame, seconds.
 inline constexpr double kAfterTheLastFrame = 1e-3;
 
-// What each stage took; `ms`: as in stream.fbs.
+// Processing times of the stages; `ms`: as in stream.fbs.
 RosStatus MillisecondsStatus(const std::vector<float>& ms);
 
 }  // namespace alidade

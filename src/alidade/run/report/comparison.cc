@@ -22,7 +22,7 @@ std::string Figure(const char* format, const std::optional<double>& value) {
   return text;
 }
 
-// The folders' own names, or whole paths where two have the same.
+// The names of the folders, or their paths if two are equal.
 std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
   std::vector<std::string> names;
   for (const ComparedFolder& folder : folders) {
@@ -38,7 +38,7 @@ std::vector<std::string> NamesOf(const std::vector<ComparedFolder>& folders) {
   return names;
 }
 
-// Where time is 0 on the page: one moment for recordings of the same time, else each one's start.
+// The origin of time on the page: common for recordings of the same time, else the start of each.
 std::vector<double> StartsOf(const std::vector<ResultFolder>& results) {
   double last_start = results.front().span.first, first_end = results.front().span.last;
   double start = last_start;
@@ -58,12 +58,12 @@ std::vector<FateSpan> FatesOf(const ResultFolder& result, double start) {
   if (!result.first_pose) return {{begin, end, FrameFate::kStarting}};
   std::vector<FateSpan> fates = {{begin, *result.first_pose - start, FrameFate::kStarting},
                                  {*result.first_pose - start, end, FrameFate::kTracked}};
-  for (const auto& [from, to] : result.lost_spans)  // drawn over it
+  for (const auto& [from, to] : result.lost_spans)  // drawn on top
     fates.push_back({from - start, to - start, FrameFate::kLost});
   return fates;
 }
 
-// How the first result's world is laid on the page, and then the others'.
+// Transforms from the world of the first result to the page, and then for the others.
 class Layout {
  public:
   Layout(const ResultFolder& first, const std::optional<TruthErrors>& errors)
@@ -71,7 +71,7 @@ class Layout {
 
   std::string unit() const { return first_.mono() && !errors_ ? "map units" : "m"; }
 
-  // T_page_world; nothing, and a note, when it has too little in common with the first.
+  // T_page_world; nullopt, with a note, if it has too little in common with the first.
   std::optional<Sim3> Of(const ResultFolder& run, const std::optional<TruthErrors>& errors,
                          std::string* problem) const {
     if (run.trajectory.empty()) {
@@ -82,7 +82,7 @@ class Layout {
     if (&run == &first_) return first;
     if (errors_ && errors) return errors->ate.T_truth_estimate;
     if (first_.trajectory.empty()) {
-      *problem = "its path cannot be laid on the first one's, which has none";
+      *problem = "its trajectory cannot be aligned with that of the first run, which has none";
       return std::nullopt;
     }
     AteSettings settings;
@@ -90,7 +90,8 @@ class Layout {
     try {
       return first * EvaluateAte(first_.trajectory, run.trajectory, settings).T_truth_estimate;
     } catch (const Error& error) {
-      *problem = std::string("its path cannot be laid on the first one's: ") + error.what();
+      *problem = std::string("its trajectory cannot be aligned with that of the first run: ") +
+                 error.what();
       return std::nullopt;
     }
   }
@@ -130,7 +131,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
                              ? "Sim(3), scale " + Figure("%.4f", errors->ate.T_truth_estimate.s)
                              : "SE(3)"},
           {"RPE RMSE in 1 s", rpe ? Figure("%.6f m", rpe->trans.rmse) : kNone},
-          {"the same, turning", rpe ? Figure("%.4f°", rpe->rot.rmse) : kNone},
+          {"RPE rotation RMSE in 1 s", rpe ? Figure("%.4f°", rpe->rot.rmse) : kNone},
           {"ms per frame, median", timed ? Figure("%.2f", frame.median) : kNone},
           {"ms per frame, p95", timed ? Figure("%.2f", frame.p95) : kNone},
           {"CPU time", result.cpu_s ? Figure("%.2f s", result.cpu_s) : kNone},
@@ -140,7 +141,7 @@ std::vector<std::pair<std::string, std::string>> MeasuresOf(
 }  // namespace
 
 std::string CompareResults(const std::vector<ComparedFolder>& folders) {
-  if (folders.size() < 2) ThrowUsage("there is nothing to compare: give two results or more");
+  if (folders.size() < 2) ThrowUsage("nothing to compare: give at least two results");
   std::vector<ResultFolder> results;
   results.reserve(folders.size());
   for (const ComparedFolder& folder : folders) results.push_back(ReadResultFolder(folder.path));
@@ -156,7 +157,8 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     if (!result.truth.empty() && !result.trajectory.empty())
       errors[i] =
           ErrorsAgainst(result.truth, result.trajectory, result.mono(), result.span, &problem);
-    if (!problem.empty()) page.notes.push_back(names[i] + ": no errors to the truth: " + problem);
+    if (!problem.empty())
+      page.notes.push_back(names[i] + ": no errors against ground truth: " + problem);
   }
   const Layout layout(results.front(), errors.front());
   page.unit = layout.unit();
@@ -180,7 +182,7 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     if (!problem.empty()) page.notes.push_back(names[i] + ": " + problem);
     if (result.maps.value_or(0) > 1)
       page.notes.push_back(names[i] +
-                           ": of its maps the one with the most frames is drawn and judged");
+                           ": of its maps, the one with the most frames is shown and evaluated");
     run.fates = FatesOf(result, starts[i]);
     if (errors[i]) run.error = ErrorCurve(*errors[i], result.trajectory, starts[i]);
     run.milliseconds = result.milliseconds;

@@ -1,4 +1,4 @@
-// Several runs beside each other, from the folders they left.
+// Compares several runs, from their result folders.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@ namespace alidade {
 
 struct ComparedFolder {
   std::string path;
-  std::string name;  // on the page; empty: the folder's own, or its path where two have the same
+  std::string name;  // name on the page; empty: that of the folder, or its path if two are equal
 };
 
-// The page (view/comparison.h). Paths are drawn in the first result's world: when its truth is
-// known it is laid on that, and so are the others on theirs; without, others are laid on the first
-// by the stamps they have in common. Throws Error: usage for fewer than two, input for folders that
-// hold no run.
+// The page (view/comparison.h). Trajectories are drawn in the world of the first result: if its
+// ground truth is known, each is aligned to its own ground truth, else the others are aligned to
+// the first one by common time stamps. Throws Error: usage for fewer than two results, input for
+// folders without a run.
 std::string CompareResults(const std::vector<ComparedFolder>& folders);
 
 }  // namespace alidade

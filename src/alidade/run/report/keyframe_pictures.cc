@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostDrawn = 8;
 constexpr int kQuality = 80;     // JPEG: 15 KB each
-constexpr float kMoving = 0.5f;  // features less likely to stand still are drawn as moving
+constexpr float kMoving = 0.5f;  // features with a lower static probability are drawn as moving
 const cv::Scalar kMatched(232, 182, 31), kFree(202, 193, 185), kMoved(47, 58, 212);  // viewer.css
 
 std::string Jpeg(const cv::Mat& picture) { return EncodeJpeg(picture, kQuality); }
@@ -28,7 +28,7 @@ cv::Mat InColor(const cv::Mat& image) {
 
 cv::Mat WithFeatures(const KeyframeAlbum::Page& page) {
   cv::Mat picture = InColor(page.image);
-  for (const bool matched : {false, true}) {  // matched ones over the rest
+  for (const bool matched : {false, true}) {  // matched ones on top
     for (const FeatureUse& feature : page.features) {
       if (feature.matched != matched) continue;
       const cv::Scalar& color = feature.static_probability < kMoving ? kMoved
@@ -40,7 +40,7 @@ cv::Mat WithFeatures(const KeyframeAlbum::Page& page) {
   return picture;
 }
 
-// Depth at pixels of the small picture, metres or map units.
+// Depth at pixels of the small image, meters or map units.
 struct DepthDot {
   cv::Point2f at;
   float depth;
@@ -73,8 +73,8 @@ std::vector<DepthDot> DotsOf(const KeyFrame& keyframe, const MapSnapshot& map, f
   return dots;
 }
 
-// Near is bright, far is dark (viridis); over the picture, darkened. Returns the range that is
-// coloured: what 5 % to 95 % are below.
+// Draws depth on the darkened image, near bright and far dark (viridis). Returns the color range:
+// the 5 % to 95 % quantiles.
 std::pair<float, float> Paint(std::vector<DepthDot> dots, int radius, cv::Mat& picture) {
   std::sort(dots.begin(), dots.end(),
             [](const DepthDot& a, const DepthDot& b) { return a.depth > b.depth; });
@@ -99,7 +99,7 @@ std::string Words(const char* format, double a, double b = 0) {
   return text;
 }
 
-// The living keyframes by the number of their frame.
+// The existing keyframes by the number of their frame.
 std::map<int, const KeyFrame*> ByIndex(const MapSnapshot& map, int first_number) {
   std::map<int, const KeyFrame*> keyframes;
   for (KeyFrameId id : map.KeyFrames()) {
@@ -132,11 +132,11 @@ std::vector<ReportKeyframe> DrawKeyframes(const KeyframeAlbum& album, const RunR
       from = "semi-dense depth";
     } else if (!page.depth.empty() && camera.depth_factor > 0) {
       dots = DotsOf(page.depth, static_cast<float>(1 / camera.depth_factor), 1);
-      from = "the sensor's depth";
+      from = "depth of the sensor";
     } else if (keyframe) {
       dots = DotsOf(*keyframe, results.map, smaller);
       radius = 3;
-      from = "depth of its landmarks";
+      from = "depth of the landmarks";
     }
     ReportKeyframe shown;
     shown.caption =

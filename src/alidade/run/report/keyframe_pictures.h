@@ -1,4 +1,4 @@
-// Keyframes of a run as small pictures, for its report.
+// Small images of keyframes for the report of a run.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-// At most eight, evenly: the picture with its features, and what is known of its depth: by
-// semi-dense mapping, else the sensor, else the landmarks it shows.
+// At most eight keyframes, evenly distributed: the image with its features, and its depth from
+// semi-dense mapping, else from the sensor, else from the landmarks.
 std::vector<ReportKeyframe> DrawKeyframes(const KeyframeAlbum& album, const RunResults& results,
                                           const Slam& slam, double start);
 

@@ -15,7 +15,7 @@ std::string Format(const char* format, double value) {
   return text;
 }
 
-// Landmarks of all maps that are drawn: more do not show, but make the page large.
+// Most landmarks that are drawn, of all maps: more are not visible, but enlarge the page.
 constexpr size_t kMostLandmarks = 8000;
 
 PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
@@ -28,7 +28,7 @@ PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string
   }
   const size_t step = 1 + static_cast<size_t>(results.map.landmark_count()) / kMostLandmarks;
   size_t counted = 0;
-  for (LandmarkId id : results.map.Landmarks()) {  // of other maps they lie in other worlds
+  for (LandmarkId id : results.map.Landmarks()) {  // those of other maps have other world frames
     if (results.map.MapOf(results.map.Find(id)->reference) != map.id) continue;
     if (counted++ % step != 0) continue;
     place.landmarks.push_back(results.R_camera_rectified * results.map.Find(id)->p_world);
@@ -71,12 +71,12 @@ std::string FirstTracked(const RunLog& log, const RunResults& results) {
 
 std::string CameraFact(const CameraFinding& camera) {
   if (camera.found && camera.found->usable) {
-    return CameraInWords(camera.found->estimate) + ", found from the recording" +
-           (camera.found->estimate.known ? "" : ", not for certain");
+    return CameraInWords(camera.found->estimate) + ", estimated from the recording" +
+           (camera.found->estimate.known ? "" : ", uncertain");
   }
   const std::string fov = Format("%.1f degrees", FovDegrees(camera.camera));
   if (camera.known == "given") return fov + ", as given";
-  return fov + (camera.known == "file" ? ", by its calibration" : ", assumed");
+  return fov + (camera.known == "file" ? ", from its calibration" : ", assumed");
 }
 
 std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
@@ -112,12 +112,12 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +
-                                          ", which have no place in common; the first has most "
-                                          "frames, and the path's length is its"});
+                                          ", which share no place; the first one has the most "
+                                          "frames, and the path length is that of it"});
   }
   if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(log)});
   if (log.dropped > 0) facts.push_back({"frames skipped", std::to_string(log.dropped)});
-  if (log.interrupted) facts.push_back({"interrupted", "results as far as it got"});
+  if (log.interrupted) facts.push_back({"interrupted", "results are incomplete"});
   return facts;
 }
 

@@ -17,11 +17,11 @@ constexpr int kJpegQuality = 88;  // a third of the bytes of a PNG, and the dots
 
 constexpr std::pair<CloudView, const char*> kViews[] = {
     {CloudView::kBehind, "from behind the first camera"},
-    {CloudView::kFront, "as the first camera looked"},
-    {CloudView::kSide, "from its right"},
+    {CloudView::kFront, "in the direction of the first camera"},
+    {CloudView::kSide, "from the right"},
     {CloudView::kAbove, "from above"}};
 
-// About a pixel of a picture of most of the cloud.
+// About one pixel in an image of most of the cloud.
 double PixelOf(const Cloud& cloud) {
   constexpr double kPixels = 800, kLeftOut = 0.03;
   Eigen::Vector3d size;
@@ -42,8 +42,8 @@ double PixelOf(const Cloud& cloud) {
 
 ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, const Camera& camera,
                            const Cloud& cloud, double voxel) {
-  // Whoever wants few points, or whose map has large units, wants to see the place all the same;
-  // and no picture needs every pixel of every keyframe.
+  // With few requested points, or a large map unit, the image still shows the place; and no image
+  // needs every pixel of every keyframe.
   const double pixel = PixelOf(cloud);
   CloudScene scene = {voxel > 0 && voxel <= pixel
                           ? cloud

@@ -1,4 +1,4 @@
-// Pictures of what semi-dense mapping found.
+// Images of the semi-dense point cloud.
 #pragma once
 
 #include <vector>
@@ -13,17 +13,16 @@
 namespace alidade {
 
 struct ShapeViews {
-  CloudScene scene;  // about as many points as there are pixels in a picture of it
+  CloudScene scene;  // about as many points as an image of it has pixels
   std::vector<ReportPicture> pictures;
 };
 
-// semidense.png, and the same with views from other sides for the report: of the first map's depth,
-// whose cloud with that voxel (0: all points) is `cloud`. Throws Error (input) when it cannot be
-// written.
+// semidense.png, and further views for the report. `cloud`: semi-dense cloud of the first map, with
+// that voxel size (0: all points). Throws Error (input) if the file cannot be written.
 ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, const Camera& camera,
                            const Cloud& cloud, double voxel);
 
-// The first map's landmarks, and a picture of them.
+// The landmarks of the first map, and an image of them.
 ShapeViews LandmarkViews(const RunResults& results, Cloud landmarks);
 
 }  // namespace alidade

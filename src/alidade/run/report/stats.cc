@@ -43,7 +43,7 @@ ordered_json SemiDenseJson(const SlamSettings& settings, const SemiDenseReport& 
           {"most_behind", report.most_behind}};
 }
 
-// What the map says of the lens; null: too little was seen.
+// Result of the distortion check; null: too few keyframes.
 ordered_json LensJson(const LensCheck& lens) {
   if (lens.windows == 0) return nullptr;
   return {{"k1", lens.k1},
@@ -87,7 +87,7 @@ ordered_json CalibrationJson(const CameraFinding& finding) {
           {"wall_s", finding.wall_s}};
 }
 
-// Parts that failed and did nothing from then on.
+// Parts that failed and stopped.
 ordered_json StoppedJson(const SlamHealth& health) {
   ordered_json stopped = ordered_json::array();
   for (const StageHealth& stage : health.stages) {
@@ -96,7 +96,7 @@ ordered_json StoppedJson(const SlamHealth& health) {
   return stopped;
 }
 
-// Which frames are in which map, and where its poses are.
+// The frames of each map, and the files with its poses.
 ordered_json MapFiles(const RunResults& results) {
   ordered_json files = ordered_json::array();
   for (size_t i = 0; i < results.maps.size(); ++i) {

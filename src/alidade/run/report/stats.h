@@ -1,4 +1,4 @@
-// A run in numbers: stats.json and report.html.
+// A run as numbers: stats.json and report.html.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace alidade {
 
-// What a report shows besides drawings. What is empty is left out.
+// What a report shows besides drawings. Empty parts are omitted.
 struct ReportPictures {
   ShapeViews shape;
   std::vector<ReportKeyframe> keyframes;

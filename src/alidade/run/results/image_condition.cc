@@ -10,19 +10,19 @@
 namespace alidade {
 namespace {
 
-constexpr int kTaps = 9;    // of the blur that is added, as in the paper
-constexpr int kLines = 48;  // rows and columns looked at, evenly: the measure is a mean of many
+constexpr int kTaps = 9;    // of the added blur, as in the paper
+constexpr int kLines = 48;  // number of rows and columns used, evenly distributed
 
-// Sums over one line of the picture.
+// Sums over one row or column of the image.
 struct Differences {
   double all = 0;   // between neighbours
-  double lost = 0;  // of these, what the added blur takes away
+  double lost = 0;  // the part that the added blur removes
   void Add(const std::vector<int>& line) {
     const int count = static_cast<int>(line.size());
     for (int i = kTaps / 2 + 1; i + kTaps / 2 < count; ++i) {
       const auto at = [&](int k) { return line[static_cast<size_t>(k)]; };
       const int sharp = std::abs(at(i) - at(i - 1));
-      // The difference of two neighbouring means of kTaps pixels.
+      // Difference of two neighboring means of kTaps pixels.
       const double blurred =
           std::abs(at(i + kTaps / 2) - at(i - kTaps / 2 - 1)) / static_cast<double>(kTaps);
       all += sharp;

@@ -25,7 +25,7 @@ void KeyframeAlbum::Add(int index, const SourceFrame& frame, const Slam& slam) t
   for (size_t i = 0; 2 * i < pages_.size(); ++i) std::swap(pages_[i], pages_[2 * i]);
   pages_.resize((pages_.size() + 1) / 2);
   step_ *= 2;
-} catch (...) {  // std::bad_alloc, cv::Exception: the run needs no picture
+} catch (...) {  // std::bad_alloc, cv::Exception: images are optional
 }
 
 }  // namespace alidade

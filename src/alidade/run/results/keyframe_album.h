@@ -1,4 +1,4 @@
-// Small pictures of some keyframes, kept while a run goes on, for its report.
+// Keeps small images of some keyframes during a run, for its report.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,15 +11,15 @@ namespace alidade {
 
 class KeyframeAlbum {
  public:
-  // A frame that became a keyframe; `index`: its number among those Track() took. What there is no
-  // memory for is left out.
+  // A frame that became a keyframe; `index`: its number among those that Track() processed. Skipped
+  // if memory is exhausted.
   void Add(int index, const SourceFrame& frame, const Slam& slam);
 
   struct Page {
     int index = 0;
     double time = 0;                   // seconds
-    cv::Mat image;                     // grey or blue green red, kWide pixels wide
-    cv::Mat depth;                     // the sensor's, as stored, as large; empty: none
+    cv::Mat image;                     // gray or BGR, kWide pixels wide
+    cv::Mat depth;                     // depth of the sensor as stored, same size; empty: none
     std::vector<FeatureUse> features;  // in pixels of `image`
   };
   const std::vector<Page>& pages() const { return pages_; }
@@ -27,11 +27,11 @@ class KeyframeAlbum {
   static constexpr int kWide = 320;  // pixels
 
  private:
-  // When there are this many every second one goes, and from then on every second is not taken: a
-  // run of any length is covered evenly, in 5 MB at most.
+  // At this number, every second image is removed and from then on every second keyframe is
+  // skipped: runs of any length are covered evenly, with at most 5 MB.
   static constexpr size_t kMost = 16;
   std::vector<Page> pages_;
-  int step_ = 1, met_ = 0;  // one of how many keyframes is taken; how many there were
+  int step_ = 1, met_ = 0;  // every step_-th keyframe is kept; met_: number of keyframes so far
 };
 
 }  // namespace alidade

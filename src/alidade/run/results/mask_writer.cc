@@ -22,7 +22,7 @@ void MaskWriter::Write(const SourceFrame& frame, const cv::Mat& mask) {
     if (!draft_)
       draft_ =
           std::make_unique<DraftFolder>((fs::path(folder_.draft()) / name).parent_path().string());
-    // Flushing thousands of pictures one by one would hold up the frames.
+    // Images are not flushed individually, which would delay the frames.
     AtomicWriteFile(draft_->path() + "/" + stamp + ".png", EncodePng(picture), Sync::kNo);
   } catch (...) {
     Discard();
@@ -49,7 +49,7 @@ void MaskWriter::Publish() {
     move(draft_->path(), place);
     return;
   }
-  for (const std::string& name : written_)  // someone else's pictures are there
+  for (const std::string& name : written_)  // images of somebody else are there
     move(fs::path(draft_->path()) / fs::path(name).filename(), folder / name);
 }
 

@@ -1,4 +1,5 @@
-// mask/TIMESTAMP.png and mask.txt: what each frame left out (docs/guides/moving-objects.md).
+// mask/TIMESTAMP.png and mask.txt: the moving objects left out of each frame
+// (docs/guides/moving-objects.md).
 #pragma once
 
 #include <memory>
@@ -11,18 +12,18 @@
 
 namespace alidade {
 
-// Pictures are gathered in a folder beside their place: until Finish() there is no mask/, and when
-// it is never called (the run failed, or was killed) none of them stays.
+// Images are gathered in a temporary folder until Finish(). Without Finish() (the run failed or was
+// killed) they are removed.
 class MaskWriter {
  public:
   explicit MaskWriter(OutputFolder& folder) : folder_(folder) {}
 
-  // `mask`: CV_8U, 255 = left out; scaled to the frame's size, pixel by pixel; empty: nothing was
-  // left out. Throws Error (input) when it cannot be written: then there will be no masks at all.
+  // `mask`: CV_8U, 255 = left out; scaled to the size of the frame by nearest neighbor; empty:
+  // nothing was left out. Throws Error (input) if writing fails; then no masks are written at all.
   void Write(const SourceFrame& frame, const cv::Mat& mask);
-  // The pictures to their place, then the list of them. Throws Error (input), leaving neither.
+  // Moves the images to their place and writes their list. Throws Error (input), leaving neither.
   void Finish();
-  void Discard();  // takes back all that was not finished
+  void Discard();  // removes everything that was not finished
 
  private:
   void Publish();

@@ -5,7 +5,7 @@
 namespace alidade {
 
 std::string WhyNothing(const RunLog& log) {
-  if (log.frames == 0) return "there was no frame";
+  if (log.frames == 0) return "the source has no frame";
   if (log.dropped == log.frames) {
     return "none of the " + std::to_string(log.frames) + " frames could be used (" +
            log.first_problem + ")";

@@ -7,7 +7,7 @@
 namespace alidade {
 namespace {
 
-// From the rectified camera's world to the mounted camera's.
+// From the world of the rectified camera to that of the camera as mounted.
 Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified) {
   const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
   return turn * T_world_camera * turn.Inverse();
@@ -16,7 +16,7 @@ Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified
 std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frames) {
   std::vector<std::array<double, 2>> spans;
   bool started = false;
-  const FramePose* lost = nullptr;  // first frame of the span that is open
+  const FramePose* lost = nullptr;  // first frame of the current span
   for (const FramePose& frame : frames) {
     if (frame.tracked) {
       if (lost) spans.push_back({lost->time, frame.time});
@@ -80,7 +80,7 @@ std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number) {
   std::vector<std::vector<Se3>> path;
   const MapResults& map = results.maps[number];
   bool going_on = false;
-  size_t next = 0;  // of the trajectory
+  size_t next = 0;  // index in the trajectory
   for (const FramePose& frame : results.frames) {
     const bool here = frame.tracked && frame.map == map.id;
     if (here) {

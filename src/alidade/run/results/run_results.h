@@ -1,4 +1,4 @@
-// A finished run as plain values, for the files made of it.
+// The results of a finished run as plain values, from which its files are written.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace alidade {
 
-// One map and the frames placed in it. Poses are T_world_camera of the (left) camera as mounted,
-// `world` the map's first keyframe's.
+// One map and the frames located in it. Poses are T_world_camera of the (left) camera as mounted;
+// `world` is that of the map's first keyframe.
 struct MapResults {
   MapId id;
   Trajectory trajectory, live, keyframes;
@@ -22,7 +22,7 @@ struct MapResults {
 };
 
 struct RunResults {
-  std::vector<FramePose> frames;  // every one that Track() took
+  std::vector<FramePose> frames;  // all frames that Track() processed
   MapSnapshot map;
   StageTimes times;
   SlamCounts counts;
@@ -39,13 +39,13 @@ struct RunResults {
 RunResults ResultsOf(const Slam& slam, const RunLog& log,
                      const Eigen::Matrix3d& R_camera_rectified);
 
-// The way of the camera through one of the maps: T_world_camera, one list for each stretch without
-// a gap.
+// The trajectory of the camera in one of the maps: T_world_camera, one list for each stretch
+// without a gap.
 std::vector<std::vector<Se3>> PathOf(const RunResults& results, size_t number = 0);
 
 // "twice, 1.30 s in all".
 std::string LostInAll(const std::vector<std::array<double, 2>>& spans);
 
-double PathLength(const Trajectory& trajectory);  // in the trajectory's unit
+double PathLength(const Trajectory& trajectory);  // in the unit of the trajectory
 
 }  // namespace alidade

@@ -18,7 +18,7 @@ std::string StampOf(const StampedPose& pose) {
   return pose.stamp.empty() ? FormatTime(pose.time) : pose.stamp;
 }
 
-// Writes the pictures of one map, adding their names to `written`; returns the list of them.
+// Writes the images of one map, appending their names to `written`; returns their list.
 std::string WritePictures(OutputFolder& folder, const RunResults& results, const MapResults& map,
                           const Camera& camera, std::vector<std::string>& written) {
   std::string list;
@@ -28,7 +28,7 @@ std::string WritePictures(OutputFolder& folder, const RunResults& results, const
     const std::string stamp = StampOf(map.keyframes[i]), name = DepthPictureFile(stamp);
     const double scale = PlaceDepth(keyframe).scale;
     written.push_back(name);
-    // Flushing hundreds of pictures one by one takes longer than drawing them.
+    // Images are not flushed individually, which would take longer than rendering them.
     folder.Write(name, EncodePng(DrawDepth(*keyframe.depth, scale, camera)), Sync::kNo);
     list += stamp;
     list += " ";
@@ -38,7 +38,7 @@ std::string WritePictures(OutputFolder& folder, const RunResults& results, const
   return list;
 }
 
-// All pictures, then all lists: what is listed is there.
+// All images before all lists, so that every listed image exists.
 void WriteDepth(OutputFolder& folder, const RunResults& results, const Camera& camera) {
   std::vector<std::string> written;
   try {

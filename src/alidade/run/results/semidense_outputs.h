@@ -1,5 +1,5 @@
-// What semi-dense mapping leaves behind (docs/guides/shape.md): depth pictures of the keyframes,
-// their lists, and clouds.
+// Writes the results of semi-dense mapping (docs/guides/shape.md): depth images of the keyframes,
+// their lists, and point clouds.
 #pragma once
 
 #include "alidade/map/depth_cloud.h"
@@ -8,12 +8,12 @@
 
 namespace alidade {
 
-// The depth there is of one map's keyframes, in the world of its files. Points into `results`.
+// Depth of the keyframes of one map, in the world of its files. Refers to `results`.
 std::vector<PlacedDepth> DepthOf(const RunResults& results, const MapResults& map);
 
-// depth/STAMP.png, depth.txt and semidense.ply; of further maps depth.1.txt, … Maps without depth
-// leave nothing. Returns the cloud of the first map. Throws Error (input) when a file cannot be
-// written; no depth picture stays that is on no list.
+// Writes depth/STAMP.png, depth.txt and semidense.ply; for further maps depth.1.txt, … Maps without
+// depth are skipped. Returns the cloud of the first map. Throws Error (input) if a file cannot be
+// written; depth images without a list are removed then.
 Cloud WriteSemiDense(OutputFolder& folder, const RunResults& results, const Camera& camera,
                      double voxel);
 

@@ -9,19 +9,19 @@
 namespace alidade {
 namespace {
 
-constexpr double kBeginning = 1;    // seconds of a stretch that are asked why it was lost
-constexpr double kShare = 1.0 / 3;  // of their frames must look alike to be the cause
-constexpr double kLong = 2;         // seconds after which coming back needs advice of its own
+constexpr double kBeginning = 1;    // seconds at the start of a loss that show its cause
+constexpr double kShare = 1.0 / 3;  // share of these frames that must have the same condition
+constexpr double kLong = 2;         // seconds after which advice for relocalization is added
 
 const char* WordsFor(Look look) {
   switch (look) {
     case Look::kDark:
-      return "the picture was dark. More light helps";
+      return "the image was dark. Use more light";
     case Look::kBlurred:
-      return "the picture was blurred. More light, or moving more slowly, helps";
+      return "the image was blurred. Move more slowly, or use more light";
     case Look::kBare:
-      return "there was nothing to hold on to, as in front of a bare wall. Keeping something with "
-             "structure in view helps";
+      return "the image had no texture, as in front of a bare wall. Keep something with texture in "
+             "view";
     case Look::kOrdinary:
       break;
   }
@@ -34,7 +34,7 @@ std::string Seconds(double value) {
   return text;
 }
 
-// Frames on end that lie within a stretch of time, cut to it.
+// The spans of frames within a time interval, cut to it.
 std::vector<UntrackedFrames> Within(const std::vector<UntrackedFrames>& all, double from,
                                     double to) {
   std::vector<UntrackedFrames> within;
@@ -50,7 +50,7 @@ std::vector<UntrackedFrames> Within(const std::vector<UntrackedFrames>& all, dou
   return within;
 }
 
-// How most of the frames look that do not look ordinary, when they are enough.
+// The most frequent condition other than ordinary, if it is frequent enough.
 Look LookOf(const std::vector<UntrackedFrames>& frames) {
   std::map<Look, int> counts;
   int all = 0;
@@ -105,13 +105,13 @@ std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& s
     const Look look = LookOf(Within(frames, from, from + kBeginning));
     std::string line = Seconds(from - start) + " to " + Seconds(to - start) + ": ";
     if (frames.empty()) {
-      line += "what was mapped meanwhile did not hold, and was given up";
+      line += "the map of this part was wrong and was dropped";
     } else if (look != Look::kOrdinary) {
       line += WordsFor(look);
     } else if (frames.front().reason == "too few landmarks found") {
       line +=
-          "too little of what was mapped was seen again: a quick turn, or something in the way. "
-          "Moving more slowly helps";
+          "too few landmarks of the map were found: a fast rotation, or an occlusion. Move more "
+          "slowly";
     } else {
       line += frames.front().reason;
       if (const std::string advice = AdviceOn(frames.front().reason); !advice.empty())
@@ -120,8 +120,8 @@ std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& s
     if (to - from > kLong && frames.size() > 1 &&
         MostFrequentReason(frames) == "the place was not recognized") {
       line +=
-          ". It stayed lost as the place was not recognized: going back to where the camera has "
-          "been, and looking the way it did, helps";
+          ". It stayed lost because the place was not recognized: return to a place and viewing "
+          "direction that the camera had before";
     }
     lines.push_back(line + ".");
   }

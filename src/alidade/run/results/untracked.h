@@ -1,4 +1,4 @@
-// Why frames have no pose, and what helps: in words for people.
+// Explains to users why frames have no pose, and what helps.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace alidade {
 
-// Frames on end without a pose that have the same reason and look alike.
+// Consecutive frames without a pose that have the same reason and image condition.
 struct UntrackedFrames {
   double from = 0, to = 0;  // times of the first and the last, seconds
   std::string reason;       // TrackResult::reason
@@ -18,16 +18,16 @@ struct UntrackedFrames {
   int frames = 0;
 };
 
-// As a run goes on. Grows with the changes there are, not with the frames.
+// Collects them during a run. Memory grows with the number of changes, not of frames.
 class UntrackedLog {
  public:
   void set_look(const LookSettings& settings) { look_ = settings; }
 
-  // A keyframe: says how sharp pictures are when all is well.
+  // A keyframe: its sharpness is the reference for blur.
   void AddKeyFrame(const cv::Mat& gray);
-  // A frame without a pose. `corners`: found, as a share of those wanted.
+  // A frame without a pose. `corners`: number found, as a share of those wanted.
   void Add(double time, const std::string& reason, const cv::Mat& gray, double corners);
-  void Tracked() { going_on_ = false; }  // a frame with one
+  void Tracked() { going_on_ = false; }  // a frame with a pose
 
   const std::vector<UntrackedFrames>& all() const { return all_; }
 
@@ -35,19 +35,19 @@ class UntrackedLog {
   std::vector<UntrackedFrames> all_;
   bool going_on_ = false;
   double blur_ = 0;  // sum over keyframes
-  int sharp_ = 0;    // how many
+  int sharp_ = 0;    // number of keyframes
   LookSettings look_;
 };
 
-// "3.10 s to 4.20 s: the picture was blurred. More light, or moving more slowly, helps." Times are
-// told since `start`. Empty spans: empty.
+// "3.10 s to 4.20 s: the image was blurred. Move more slowly, or use more light." Times are
+// relative to `start`. One line per span.
 std::vector<std::string> LostInWords(const std::vector<std::array<double, 2>>& spans,
                                      const std::vector<UntrackedFrames>& untracked, double start);
 
-// Why the first `until` seconds since `start` have no poses; empty: not known.
+// Why the first `until` seconds after `start` have no poses; empty: unknown.
 std::string StartInWords(const std::vector<UntrackedFrames>& untracked, double start, double until);
 
-// What helps against one of TrackResult's reasons, as a sentence; empty: nothing is known.
+// Advice for one of the reasons of TrackResult, as a sentence; empty: none.
 std::string AdviceOn(const std::string& reason);
 
 }  // namespace alidade

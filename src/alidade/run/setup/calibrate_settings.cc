@@ -11,7 +11,7 @@ std::span<const Setting> CalibrateSettings::Table() {
       SameSetting<&T::first_keyframes>("camera.first_keyframes", AtLeast(6)),
       SameSetting<&T::growth>("camera.growth", MoreThan(1)),
       PublicSetting<&T::enabled>("calibrate.enabled", kOnOff, "",
-                                 "One camera: calibrate it first when nothing is known of it."),
+                                 "One camera: calibrate an unknown camera before the run."),
       ExpertSetting<&T::max_seconds>("calibrate.max_seconds", kPositive, "s",
                                      "Length of the recording's part that is used."),
       ExpertSetting<&T::max_passes>("calibrate.max_passes", AtLeast(1), "",

@@ -15,15 +15,13 @@ void CheckThreads(int threads) {
 
 void CheckRunOptions(const RunOptions& options) {
   if (options.semidense && options.localize) {
-    ThrowUsage("--semidense adds depth to a map that grows: localize leaves the map as it is");
+    ThrowUsage("--semidense is not available for localize, which does not extend the map");
   }
-  if (options.host && !options.viewer)
-    ThrowUsage("--host is where the viewer listens: it needs --viewer");
-  if (options.port && !options.viewer)
-    ThrowUsage("--port is where the viewer listens: it needs --viewer");
+  if (options.host && !options.viewer) ThrowUsage("--host requires --viewer");
+  if (options.port && !options.viewer) ThrowUsage("--port requires --viewer");
   if (options.record_to && options.record_to->empty()) ThrowUsage("--record-to must not be empty");
   if (options.detector && options.own_detector)
-    ThrowUsage("a run has one detector: a file's, or the caller's own");
+    ThrowUsage("give one detector: a file or a function");
   CheckThreads(options.threads);
   if (options.repeat < 0) ThrowUsage("--repeat must not be negative");
   if (options.source.empty()) ThrowUsage("SOURCE must not be empty");
@@ -47,8 +45,8 @@ SourceOptions SourceOptionsFrom(const RunOptions& options) {
     source.fov_degrees = ParseNumber(options.fov->substr(source.fov_rough ? 1 : 0));
     if (!source.fov_degrees || !(*source.fov_degrees > 0 && *source.fov_degrees < 180)) {
       ThrowUsage(
-          "--fov is a number of degrees between 0 and 180, with a ~ before it where it is "
-          "only a guess (70 or ~70), not '" +
+          "--fov must be a number of degrees between 0 and 180, with ~ if it is approximate (70 or "
+          "~70), not '" +
           *options.fov + "'");
     }
   }
@@ -78,10 +76,11 @@ RunSettings SettingsFrom(const RunOptions& options) {
   if (mode == DynamicsMode::kFull && !HasDetector(options))
     ThrowUsage("--dynamics full needs --detector MODEL.onnx");
   if (mode != DynamicsMode::kFull && HasDetector(options))
-    ThrowUsage(std::string("--detector is of no use with --dynamics ") + NameOf(mode));
+    ThrowUsage(std::string("--detector cannot be used with --dynamics ") + NameOf(mode));
   if (!LeavesOutFromStart(mode) && options.write_masks)
     ThrowUsage(
-        "--write-masks needs --dynamics geometry or full: else nothing is left out from the start");
+        "--write-masks requires --dynamics geometry or full: otherwise moving objects are not left "
+        "out from the start");
   all.Check();
   return all;
 }
@@ -96,9 +95,9 @@ Rate RateFrom(const RunOptions& options, bool threaded) {
   if (*options.rate == "realtime") return {Rate::Kind::kRealtime, 0};
   if (*options.rate == "max") return {};
   const std::optional<double> fps = ParseNumber(*options.rate);
-  constexpr double kSlowest = 1e-3;  // a frame in 17 minutes; a slip of the keys, below
+  constexpr double kSlowest = 1e-3;  // one frame in 17 minutes; lower values are typing errors
   if (!fps || !(*fps >= kSlowest && *fps <= 1e6)) {
-    ThrowUsage("--rate is realtime, max or frames per second (0.001 to 1000000), not '" +
+    ThrowUsage("--rate must be realtime, max or frames per second (0.001 to 1000000), not '" +
                *options.rate + "'");
   }
   return {Rate::Kind::kFixed, *fps};

@@ -1,4 +1,4 @@
-// What a run can be asked to do.
+// The options of a run.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ struct RunOptions {
   std::string source;
   std::optional<std::string> sensor, camera_file, config, schedule, rate, out, load;
   std::string profile = "desktop";
-  std::optional<std::string> fov;     // degrees, as typed: "70", or "~70" for a guess
-  bool calibrate_first = true;        // find a camera of which nothing is known
+  std::optional<std::string> fov;     // degrees, as typed: "70", or "~70" if approximate
+  bool calibrate_first = true;        // calibrate an unknown camera before the run
   std::vector<std::string> settings;  // "name=value"
   std::optional<uint64_t> seed;
   int threads = 0;  // 0: all cores
@@ -27,60 +27,59 @@ struct RunOptions {
   bool localize = false;  // only find poses in the loaded map
   bool semidense = false;
   std::optional<std::string> dynamics, detector;
-  std::shared_ptr<Detector> own_detector;  // instead of a file's: the caller's own
+  std::shared_ptr<Detector> own_detector;  // detector of the caller instead of a file
   bool write_masks = false;
-  bool overwrite = false;                // replace whatever results are in the folder
-  bool record = false;                   // the stream, as run.stream among the results
+  bool overwrite = false;                // replace any existing results
+  bool record = false;                   // the stream, as run.stream in the result folder
   std::optional<std::string> record_to;  // the stream, to this file instead
   bool viewer = false;                   // show it in a browser
-  std::optional<std::string> port;       // the viewer listens on; 8090 or the next that is free
+  std::optional<std::string> port;       // of the viewer; 8090 or the next free one
   std::optional<std::string> host;       // address the viewer listens on; 127.0.0.1
 };
 
-// More threads than cores only wait for each other, and each has 8 MB of stack to its name; no
-// machine this is meant for has as many cores.
+// Upper bound on threads: more threads than cores do not help, and each reserves 8 MB of stack.
 inline constexpr int kMostThreads = 256;
-// Of --threads: throws Error (usage) for a number that cannot be.
+// Throws Error (usage) for an invalid value of --threads.
 void CheckThreads(int threads);
 
-// A file's, or the caller's own.
+// True for a detector file and for a detector of the caller.
 inline bool HasDetector(const RunOptions& options) {
   return options.detector || options.own_detector;
 }
 
-// File the stream is recorded to; empty: run.stream among the results; nothing: not recorded.
+// File the stream is recorded to; empty: run.stream in the result folder; nullopt: not recorded.
 inline std::optional<std::string> RecordFileOf(const RunOptions& options) {
   if (options.record_to) return options.record_to;
   return options.record ? std::optional<std::string>("") : std::nullopt;
 }
 
-// Throws Error (usage) for flags that do not go together.
+// Throws Error (usage) for contradicting options.
 void CheckRunOptions(const RunOptions& options);
 
-// Throws Error (usage) for a word that names none; `option` is whose word it is.
+// Throws Error (usage) for an unknown word; `option` is the option it was given for.
 Sensor SensorNamed(const std::string& option, const std::string& word);
 
 SourceOptions SourceOptionsFrom(const RunOptions& options);
 
-// Profile, then the file of --config, then each --set, then the flags (--seed, --semidense): the
-// later one holds. The sensor
-// and the schedule are the source's to say. Throws Error (usage, or input for the file).
+// Profile, then the file of --config, then each --set, then the flags (--seed, --semidense): later
+// ones have priority. Sensor and schedule depend on the source. Throws Error (usage, or input for
+// the file).
 RunSettings SettingsFrom(const RunOptions& options);
 
-// Whether stages run on their own threads: as asked, else only for a live camera.
+// True if stages run in their own threads: as requested, by default only for a live camera.
 bool ThreadedFrom(const RunOptions& options, bool live);
 
-// How fast a recording is played.
+// Playback speed of a recording.
 struct Rate {
   enum class Kind {
-    kMax,       // as fast as it goes
-    kRealtime,  // each frame at its own time stamp
+    kMax,       // as fast as possible
+    kRealtime,  // by the time stamps
     kFixed      // `fps` frames per second
   } kind = Kind::kMax;
   double fps = 0;
 };
 
-// Without --rate: realtime when threaded, else as fast as it goes.
+// The default is realtime if threaded, else kMax.
 Rate RateFrom(const RunOptions& options, bool threaded);
 
 }  // namespace alidade

@@ -1,5 +1,5 @@
-// All settings of a run, by name: the system's, those of the stream, of how pictures without a pose
-// are judged, and of what the lens is asked.
+// All settings of a run by name: those of SLAM, of the stream, of image conditions, of the
+// distortion check and of the calibration.
 #pragma once
 
 #include <string>
@@ -22,7 +22,7 @@ struct RunSettings {
   CalibrateSettings calibrate;  // calibrate.…
   void Check() const;           // throws Error (usage) naming the invalid setting
 
-  // Every struct with its table.
+  // All structs with their tables.
   std::vector<SettingsPart> Parts();
   // As SlamSettings::Set() and All().
   void Set(const std::string& name, const std::string& value);

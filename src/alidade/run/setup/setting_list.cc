@@ -15,7 +15,7 @@ std::string RangeOf(const Setting& row) {
   return words;
 }
 
-// The part of a name that settings of one kind share: "tracker" of "tracker.extractor.features".
+// The group of a setting: "tracker" for "tracker.extractor.features".
 std::string GroupOf(const SettingInfo& info) {
   const std::string bare =
       info.is_public ? info.name : info.name.substr(std::string("expert.").size());

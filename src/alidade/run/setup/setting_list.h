@@ -1,4 +1,4 @@
-// The settings as a list for people: `alidade settings`, the reference page, help in Python.
+// The settings as a list for users: `alidade settings`, the reference page, help in Python.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 namespace alidade {
 
 struct SettingInfo {
-  std::string name;      // with "expert." where it is one
-  std::string value;     // of the settings that were asked
-  std::string fallback;  // by default
+  std::string name;      // with "expert." for expert settings
+  std::string value;     // current value
+  std::string fallback;  // default value
   std::string unit, range, meaning;
   bool is_public = false;
 };
 
-// Public ones first, then in the order of the tables, each name once.
+// Public settings first, then in the order of the tables, each name once.
 std::vector<SettingInfo> ListSettings(const RunSettings& settings = {});
 
 // docs/reference/settings.md.

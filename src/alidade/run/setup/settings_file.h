@@ -7,11 +7,11 @@
 
 namespace alidade {
 
-// Sets what the file names, nested (`tracker:` / `  min_tracked: 30`) or dotted
-// (`tracker.min_tracked: 30`). Throws Error with file:line: kInput when it cannot be read or is no
-// YAML, kUsage for a name or value that cannot be.
+// Sets the values of the file, whose names are nested (`tracker:` / `  min_tracked: 30`) or dotted
+// (`tracker.min_tracked: 30`). Throws Error with file:line: kInput if it cannot be read or is not
+// YAML, kUsage for an invalid name or value.
 void ApplySettingsFile(const std::string& path, RunSettings& settings);
-// The same of a file's text; `name` is what it is called in errors.
+// The same for the text of a file; `name` appears in error messages.
 void ApplySettingsText(const std::string& text, const std::string& name, RunSettings& settings);
 
 }  // namespace alidade

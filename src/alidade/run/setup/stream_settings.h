@@ -1,4 +1,4 @@
-// What is sent of a run, how precisely and how often.
+// Contents, precision and rate of the stream of a run.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@ namespace alidade {
 struct StreamFeedSettings {
   StreamSettings stream;
   int picture_width = 400;
-  // 11 to 14 kB at 320 pixels.
+  // 11 to 14 kB per image at 320 pixels.
   int picture_quality = 70;
   double pictures_hz = 10;
   double whole_seconds = 10;
-  // Of MCAP files. The path of an hour is 8 MB.
+  // For MCAP files. The path of an hour has 8 MB.
   double mcap_seconds = 1;
   double mcap_rate = 1e6;
   int max_waiting = 8;

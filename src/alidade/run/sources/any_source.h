@@ -1,4 +1,4 @@
-// A recording, video, camera or rendered scene from what the user typed.
+// Opens a recording, video, camera or rendered scene.
 #pragma once
 
 #include <memory>
@@ -9,12 +9,12 @@
 
 namespace alidade {
 
-// OpenSource(), and `synth:SCENE?…` besides: rendering and file floors meet in the program only.
+// OpenSource(), and also `synth:SCENE?…`: the only place that combines rendering and reading files.
 std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options = {});
 
-// The file or folder of a source: without the ?name=value of a ROS recording. Empty: it has none
-// (rendered scenes, live cameras).
+// The file or folder of a source, without the ?name=value of a ROS recording. Empty: none (rendered
+// scenes, live cameras).
 std::string PathOfSource(const std::string& source);
 
 }  // namespace alidade

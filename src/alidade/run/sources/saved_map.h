@@ -1,4 +1,4 @@
-// Maps as files, for the commands that are given one.
+// Reads map files for the commands that take one.
 #pragma once
 
 #include <string>
@@ -8,19 +8,19 @@
 
 namespace alidade {
 
-// Reads `path`: a map, or the folder `run` left one in. Throws Error (input), beginning with the
-// path, when there is none or it cannot be used.
+// Reads `path`: a map file or a result folder of `run`. Throws Error (input), beginning with the
+// path, if there is no valid map.
 SavedMap ReadSavedMap(const std::string& path);
-// Where it lies: `path` itself, or map.alidade in that folder.
+// Path of the map file: `path` itself, or map.alidade in that folder.
 std::string SavedMapPath(const std::string& path);
 
-// One of the maps in a file: each has a world of its own.
+// One of the maps in a file; each has its own world frame.
 struct MapPart {
   std::vector<KeyFrameId> keyframes;  // by id
   std::vector<LandmarkId> landmarks;  // by id
 };
 
-// The one with the most keyframes first; of equals the older. None in an empty map.
+// Sorted by keyframes, most first; equal ones by age, oldest first. Empty for an empty map.
 std::vector<MapPart> PartsOf(const MapSnapshot& map);
 
 }  // namespace alidade

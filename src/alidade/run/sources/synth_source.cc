@@ -64,7 +64,7 @@ Setter Into(bool SynthSettings::*field) {
   };
 }
 
-// A switch, which stands for `usual`, or a number above 1.
+// A switch with value `usual`, or a number above 1.
 Setter Into(double SynthSettings::*field, double usual) {
   return
       [field, usual](SynthSettings& settings, const std::string& name, const std::string& value) {
@@ -129,11 +129,11 @@ Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
   return calibration;
 }
 
-// What the user says the camera is, where he says so.
+// The camera given by the user, if any.
 Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions& options) {
   const Camera& camera = recording.camera();
   const Calibration own = CalibrationOf(camera, recording.lens());
-  if (options.camera_file && options.fov_degrees) ThrowUsage("give --camera or --fov, not both");
+  if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
   Calibration chosen = own;
   if (options.fov_degrees || !recording.settings().calibrated) {
     const double assumed = AssumedFov({camera.width, camera.height});
@@ -251,7 +251,7 @@ std::unique_ptr<ActorSource> OpenActorSource(const std::string& source,
 std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,
                                              const SourceOptions& options) {
   const SynthSettings settings = ParseSynthSource(source);
-  ChooseSensor(settings, options);  // before anything is painted
+  ChooseSensor(settings, options);  // before anything is rendered
   return Clip(std::make_unique<SynthSource>(settings, options), options.first, options.last);
 }
 

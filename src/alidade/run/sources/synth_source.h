@@ -1,4 +1,4 @@
-// Rendered recordings as sources: `synth:SCENE?frames=600&actors=3&seed=7`, nothing on disk.
+// Rendered recordings as sources: `synth:SCENE?frames=600&actors=3&seed=7`, without files.
 #pragma once
 
 #include <memory>
@@ -12,29 +12,29 @@ namespace alidade {
 
 bool IsSynthSource(const std::string& source);  // starts with "synth:"
 
-// The options are named like the flags of `alidade synth`, with _ for the - in a name. Without
-// `frames`: once round the scene's path. Switches (exposure …) may stand alone or be set to 0 or 1;
-// blur and rolling, too, or to milliseconds. calibrated=0: nothing is told of the camera, and one
-// is assumed as of a video. Throws Error (usage).
+// Options have the names of the flags of `alidade synth`, with _ instead of -. Default of `frames`:
+// once along the path of the scene. Switches (exposure …) may have no value, 0 or 1; blur and
+// rolling also milliseconds. calibrated=0: no calibration; the camera is assumed as for a video.
+// Throws Error (usage).
 SynthSettings ParseSynthSource(const std::string& source);
 
-// Frames are rendered when asked for. Same options as for recordings on disk: a sensor the settings
-// do not give, e.g. stereo without `stereo`, throws Error (usage); rgbd without `stereo` is the
-// default.
+// Frames are rendered on demand. Options as for recordings on disk. Throws Error (usage) for a
+// sensor that the scene does not have, for example stereo without `stereo`; the default is rgbd
+// without `stereo`.
 std::unique_ptr<FrameSource> OpenSynthSource(const std::string& source,
                                              const SourceOptions& options = {});
 
-// A rendered source that tells where the actors are, too.
+// A rendered source that also provides masks of the actors.
 class ActorSource : public FrameSource {
  public:
-  // Of the frame that Next() gave last: CV_8U, 255 = an actor.
+  // For the last frame returned by Next(): CV_8U, 255 = an actor.
   virtual cv::Mat ActorMask() const = 0;
 };
 std::unique_ptr<ActorSource> OpenActorSource(const std::string& source,
-                                             const SourceOptions& options = {});  // from frame 0 on
+                                             // starting at frame 0
+                                             const SourceOptions& options = {});
 
-// Stamps as the source and the files of `alidade synth` have them: seconds with 6 digits after the
-// point.
+// Time stamps as in the files of `alidade synth`: seconds with 6 decimals.
 std::string SynthStamp(double seconds);
 
 }  // namespace alidade

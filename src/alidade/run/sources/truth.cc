@@ -13,9 +13,9 @@
 namespace alidade {
 namespace {
 
-// Seconds between two of `times` from which on nothing is drawn between them.
+// Time between two poses, in seconds, from which no line is drawn between them.
 double GapOf(const std::vector<double>& times) {
-  constexpr double kGap = 10;  // times the median interval: a few frames skipped are no gap
+  constexpr double kGap = 10;  // times the median interval: a few skipped frames are no gap
   std::vector<double> steps;
   for (size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
   if (steps.empty()) return 0;
@@ -24,7 +24,7 @@ double GapOf(const std::vector<double>& times) {
   return kGap * std::abs(*middle);
 }
 
-// Clocks set back are gaps too.
+// A clock that is set back is a gap as well.
 bool GoesOn(double before, double now, double gap) { return now >= before && now - before <= gap; }
 
 }  // namespace
@@ -54,7 +54,7 @@ ChosenAlignment AlignmentFor(const std::string& sensor) {
   if (sensor == NameOf(Sensor::kMono)) return {Alignment::kSim3, "one camera"};
   if (sensor == NameOf(Sensor::kStereo) || sensor == NameOf(Sensor::kRgbd))
     return {Alignment::kSe3, "depth or stereo"};
-  return {Alignment::kSe3, "sensor not known; sim3 is for one camera"};
+  return {Alignment::kSe3, "unknown sensor; sim3 is for one camera"};
 }
 
 ChosenAlignment AlignmentNamed(const std::string& option, const std::string& word,
@@ -85,7 +85,7 @@ std::string InWords(const ChosenAlignment& chosen, double scale, const Trajector
   try {
     return words + "; Sim(3) would scale by " +
            in_digits(EvaluateAte(truth, estimate, similarity).T_truth_estimate.s);
-  } catch (const Error&) {  // poses that no scale fits
+  } catch (const Error&) {  // poses without a common scale
     return words;
   }
 }
@@ -106,7 +106,7 @@ std::optional<TruthErrors> ErrorsAgainst(const Trajectory& truth, const Trajecto
   }
   try {
     errors.rpe = EvaluateRpe(truth, estimate, rpe);
-  } catch (const Error&) {  // no two poses a second apart
+  } catch (const Error&) {  // no two poses are a second apart
   }
   return errors;
 }

@@ -39,7 +39,7 @@ void DetectionFeed::Fail(int number) noexcept {
   }
   try {
     LogWarning("the detector failed at frame " + std::to_string(number) + " (" + WhatOf(failure) +
-               "); going on with geometry alone");
+               "); moving objects are found by geometry alone from now on");
   } catch (...) {  // no memory for the warning: failure() still reports it
   }
 }

@@ -96,7 +96,8 @@ void Workers::Map(KeyFrameId id, const std::atomic<bool>* stop) {
   lens_watch_.Mapped(map_.Snapshot());
   if (mapper_.KeepWithinLimit(id) > 0 && !std::exchange(limit_told_, true))
     LogWarning(
-        "the map has as many keyframes as it may have (mapper.max_keyframes): the least useful go");
+        "the map has reached its limit of keyframes (mapper.max_keyframes): the least useful ones "
+        "are removed");
   AddMapped(id);
 }
 

@@ -25,10 +25,10 @@ Recording ReadKittiRecording(const std::string& folder) {
   const std::string right_folder = folder + "/image_" + std::to_string(left + 1);
   const auto images = ImagesIn(left_folder);
   auto list = ReadStampedList(folder + "/times.txt", StampUnit::kSeconds, false);
-  if (images.empty()) ThrowInput(left_folder + " holds no images");
+  if (images.empty()) ThrowInput(left_folder + " contains no images");
   if (images.size() != list.size()) {
     LogWarning(folder + "/times.txt has " + std::to_string(list.size()) + " times for " +
-               std::to_string(images.size()) + " images: only as many frames as there are of both");
+               std::to_string(images.size()) + " images: frames without one of them are ignored");
     list.resize(std::min(list.size(), images.size()));
   }
   for (size_t i = 0; i < list.size(); ++i) list[i].name = images[i];

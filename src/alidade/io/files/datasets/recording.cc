@@ -89,7 +89,7 @@ class RecordingSource : public FrameSource {
  private:
   cv::Mat Checked(cv::Mat image, const std::string& path) const {
     if (image.size() != raw_size_) {
-      ThrowInput(path + " is " + SizeText(image.size()) + ", the recording is " +
+      ThrowInput(path + " is " + SizeText(image.size()) + ", but the recording has " +
                  SizeText(raw_size_));
     }
     return image;
@@ -128,8 +128,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
                                     const std::string& folder) {
   const auto first_good = std::find_if(
       list.begin(), list.end(), [](const StampedName& item) { return item.problem.empty(); });
-  if (first_good == list.end())
-    ThrowInput(list.front().problem + " (and so it is with every line)");
+  if (first_good == list.end()) ThrowInput(list.front().problem + " (and so are all other lines)");
   const TimeOrder order = OrderOf(list);
   if (order.parts() > 1) {
     LogWarning("the time stamps of " + folder + " go back " + std::to_string(order.parts() - 1) +
@@ -138,7 +137,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
   }
   if (order.sorted) {
     LogWarning("the time stamps of " + folder +
-               " are not in order: the frames were sorted by time");
+               " are not in order; the frames were sorted by time");
   }
   std::vector<RecordedFrame> frames;
   for (const size_t i : order.order) {
@@ -156,7 +155,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
     if (!frame.problem.empty()) continue;
     if (before && frame.part == before->part && frame.time <= before->time) {
       frame.problem =
-          frame.image + " has the time stamp of the frame before it (" + frame.stamp + ")";
+          frame.image + " has the time stamp of the previous frame (" + frame.stamp + ")";
     } else {
       before = &frame;
     }
@@ -167,7 +166,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
 int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
                  const std::vector<StampedName>& list, const std::string& folder, double max_dt) {
   for (const StampedName& item : list) {
-    if (!item.problem.empty()) LogWarning(item.problem + "; this line is left out");
+    if (!item.problem.empty()) LogWarning(item.problem + "; this line is ignored");
   }
   const TimeOrder order = OrderOf(list);
   const int parts = frames.empty() ? 0 : frames.back().part + 1;
@@ -205,7 +204,7 @@ cv::Size SizeOfImages(const Recording& recording) {
       if (problem.empty()) problem = error.what();
     }
   }
-  ThrowInput("not one image can be read: " + problem);
+  ThrowInput("no image can be read: " + problem);
 }
 
 std::unique_ptr<FrameSource> PlayRecording(Recording recording, Sensor sensor,

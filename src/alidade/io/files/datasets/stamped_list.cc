@@ -52,7 +52,7 @@ std::vector<StampedName> ParseStampedList(std::string_view text, const std::stri
     if (!time || !std::isfinite(*time)) {
       item.problem = where + "`" + item.stamp + "` is not a time stamp";
     } else if (with_names && item.name.empty()) {
-      item.problem = where + "there is no file name after the time stamp";
+      item.problem = where + "the file name after the time stamp is missing";
     }
     if (item.problem.empty()) written.push_back(*time);
     list.push_back(std::move(item));

@@ -17,7 +17,7 @@ class ByteCursor {
   size_t Left() const { return rest_.size(); }
 
   std::string_view Take(uint64_t count) {
-    if (count > rest_.size()) ThrowInput("is cut short, or a length in it is wrong");
+    if (count > rest_.size()) ThrowInput("is truncated, or a length in it is wrong");
     const std::string_view taken = rest_.substr(0, count);
     rest_.remove_prefix(count);
     return taken;

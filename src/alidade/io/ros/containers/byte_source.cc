@@ -13,7 +13,7 @@ namespace alidade {
 namespace {
 
 void CheckInside(uint64_t offset, uint64_t count, uint64_t size) {
-  if (offset > size || count > size - offset) ThrowInput("is cut short");
+  if (offset > size || count > size - offset) ThrowInput("is truncated");
 }
 
 class FileSource : public ByteSource {

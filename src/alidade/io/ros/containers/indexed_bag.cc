@@ -19,7 +19,7 @@ size_t IndexedBag::TopicOf(std::string_view name, std::string_view type,
   const auto [found, is_new] =
       known_.try_emplace({std::string(name), std::string(type)}, topics_.size());
   if (is_new) {
-    if (topics_.size() == kMostTopics) ThrowInput("names more topics than any recording has");
+    if (topics_.size() == kMostTopics) ThrowInput("lists an impossible number of topics");
     topics_.push_back({Printable(name), Printable(Ros1TypeOf(type)), serialization, 0});
     messages_.emplace_back();
     wanted_.push_back(serialization != Serialization::kOther && IsWantedType(topics_.back().type));

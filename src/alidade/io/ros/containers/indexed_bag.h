@@ -42,8 +42,7 @@ class IndexedBag : public BagFile {
     } catch (const Error& error) {
       Forget();
       forget();
-      Warn(std::string("has no index that can be used (it ") + error.what() +
-           "): read from its start");
+      Warn(std::string("has no usable index (it ") + error.what() + ") and is read from its start");
       scan();
     }
     SortByTime();

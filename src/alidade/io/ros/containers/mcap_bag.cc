@@ -90,7 +90,7 @@ class McapFile : public IndexedBag {
     const uint64_t size = source_->Size(), end = kMcapRecordHead + kFooter + kMcapMagic.size();
     if (size < kMcapMagic.size() + end ||
         source_->Read(size - kMcapMagic.size(), kMcapMagic.size()) != kMcapMagic)
-      ThrowInput("is cut short, or was never closed");
+      ThrowInput("is truncated, or was never closed");
     const uint64_t footer_at = size - end;
     const McapRecord footer = ReadMcapRecord(*source_, footer_at);
     if (footer.op != McapOp::kFooter || footer.size != kFooter)
@@ -171,7 +171,7 @@ class McapFile : public IndexedBag {
             continue;
           }
         }
-        if (record.End() > source_->Size()) ThrowInput("is cut short");
+        if (record.End() > source_->Size()) ThrowInput("is truncated");
         if (record.op == McapOp::kChunk) {
           ScanChunk(record, at);
         } else if (record.op == McapOp::kMessage) {
@@ -189,15 +189,15 @@ class McapFile : public IndexedBag {
         const std::string where =
             ", at byte " + std::to_string(at) + " of " + std::to_string(source_->Size());
         if (at < chunk_end && chunk_end < source_->Size()) {
-          Warn(std::string(error.what()) + where + "; the rest of this chunk is left out");
+          Warn(std::string(error.what()) + where + "; the rest of this chunk is ignored");
           at = chunk_end;
         } else {
-          Warn(std::string(error.what()) + where + "; read as far as that");
+          Warn(std::string(error.what()) + where + "; the rest of the file is ignored");
           return;
         }
       }
     }
-    Warn("ends without a footer: it was never closed, or cut short");
+    Warn("ends without a footer: it was never closed, or is truncated");
   }
 
   // When a chunk cannot be unpacked, its messages are skipped.
@@ -214,7 +214,7 @@ class McapFile : public IndexedBag {
           {message.log_time, place, static_cast<uint32_t>(offset), 0});
     }
   } catch (const Error& error) {
-    Warn("a chunk at byte " + std::to_string(place) + " " + error.what() + "; it is left out");
+    Warn("a chunk at byte " + std::to_string(place) + " " + error.what() + "; it is ignored");
   }
 
   std::unique_ptr<ByteSource> source_;
@@ -231,7 +231,7 @@ bool LooksLikeMcap(std::string_view start) {
 
 std::unique_ptr<BagFile> OpenMcapFile(std::unique_ptr<ByteSource> source) {
   const uint64_t size = std::min<uint64_t>(source->Size(), kMcapMagic.size());
-  if (!LooksLikeMcap(source->Read(0, size))) ThrowInput("is no MCAP file");
+  if (!LooksLikeMcap(source->Read(0, size))) ThrowInput("is not an MCAP file");
   return std::make_unique<McapFile>(std::move(source));
 }
 

@@ -21,7 +21,7 @@ std::unique_ptr<BagFile> OpenByContent(const std::string& path) {
   if (LooksLikeRos1Bag(start)) return OpenRos1Bag(std::move(source));
   if (LooksLikeMcap(start)) return OpenMcapFile(std::move(source));
   if (LooksLikeDatabase(start)) return OpenRosbag2Database(path);
-  ThrowInput("is no ROS bag, no MCAP file and no database of rosbag2");
+  ThrowInput("is neither a ROS bag, an MCAP file nor a database of rosbag2");
 }
 
 // true when the whole file is compressed (rosbag2's compression mode `file`).
@@ -44,11 +44,11 @@ class SplitBag : public IndexedBag {
         files_.resize(unpacked_.size());
         const std::string problem = path + " " + error.what();
         if (first_problem.empty()) first_problem = problem;
-        if (paths.size() > 1) Warn(problem + "; it is left out");
+        if (paths.size() > 1) Warn(problem + "; it is ignored");
       }
     }
     if (Topics().empty())
-      ThrowInput(first_problem.empty() ? paths.front() + " holds no messages" : first_problem);
+      ThrowInput(first_problem.empty() ? paths.front() + " contains no messages" : first_problem);
     SortByTime();
   }
 

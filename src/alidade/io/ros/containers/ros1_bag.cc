@@ -80,7 +80,7 @@ class Ros1Bag : public IndexedBag {
       at = record.End();
     }
     if (at != source_->Size() || chunks.size() != head.fields.Number<uint32_t>("chunk_count"))
-      ThrowInput("is cut short");
+      ThrowInput("is truncated");
     uint64_t last_end = 0;  // reject overlapping chunks, so that no message is counted twice
     for (const Ros1Fields& chunk : chunks) {
       const auto place = chunk.Number<uint64_t>("chunk_pos");
@@ -125,7 +125,7 @@ class Ros1Bag : public IndexedBag {
           at = record.data_at;
           continue;
         }
-        if (record.End() > source_->Size()) ThrowInput("is cut short");
+        if (record.End() > source_->Size()) ThrowInput("is truncated");
         if (op == Ros1Op::kConnection) {
           AddConnection(record.fields, source_->Read(record.data_at, record.data_size));
         } else if (op == Ros1Op::kMessage) {
@@ -138,10 +138,10 @@ class Ros1Bag : public IndexedBag {
         const std::string where =
             ", at byte " + std::to_string(at) + " of " + std::to_string(source_->Size());
         if (at < chunk_end && chunk_end < source_->Size()) {
-          Warn(std::string(error.what()) + where + "; the rest of this chunk is left out");
+          Warn(std::string(error.what()) + where + "; the rest of this chunk is ignored");
           at = chunk_end;
         } else {
-          Warn(std::string(error.what()) + where + "; read as far as that");
+          Warn(std::string(error.what()) + where + "; the rest of the file is ignored");
           break;
         }
       }
@@ -162,7 +162,7 @@ class Ros1Bag : public IndexedBag {
       }
     }
   } catch (const Error& error) {
-    Warn("a chunk at byte " + std::to_string(place) + " " + error.what() + "; it is left out");
+    Warn("a chunk at byte " + std::to_string(place) + " " + error.what() + "; it is ignored");
   }
 
   std::unique_ptr<ByteSource> source_;
@@ -178,8 +178,8 @@ std::unique_ptr<BagFile> OpenRos1Bag(std::unique_ptr<ByteSource> source) {
   const std::string start = source->Read(0, std::min<uint64_t>(source->Size(), kMagic.size()));
   if (start != kMagic) {
     ThrowInput(LooksLikeRos1Bag(start)
-                   ? "is a ROS bag of another version than 2.0: `rosbag migrate` makes one of it"
-                   : "is no ROS bag");
+                   ? "is a ROS bag of another version than 2.0: `rosbag migrate` converts it"
+                   : "is not a ROS bag");
   }
   return std::make_unique<Ros1Bag>(std::move(source));
 }

@@ -108,8 +108,7 @@ class Rosbag2Database : public IndexedBag {
         "'messages') AND sql NOT LIKE '%VIRTUAL%'");
     if (sqlite3_step(tables.get()) != SQLITE_ROW) ThrowInput(Complaint());
     if (sqlite3_column_int(tables.get(), 0) != 2)
-      ThrowInput(
-          "is a database, but none of rosbag2's: tables `topics` and `messages` are missing");
+      ThrowInput("is a database, but not of rosbag2: tables `topics` and `messages` are missing");
   }
 
   void ReadTopics() {
@@ -150,7 +149,7 @@ class Rosbag2Database : public IndexedBag {
       if (step == 1) {
         Warn((result == SQLITE_ROW ? std::string("is damaged: its messages are out of order")
                                    : Complaint()) +
-             "; what can be read of it is read");
+             "; the readable part is used");
       }
       sqlite3_reset(messages.get());
       if (step > kMostStep || last > kMost - step) return;
@@ -183,7 +182,7 @@ std::unique_ptr<BagFile> OpenRosbag2DatabaseOf(std::string bytes) {
   if (sqlite3_deserialize(database.get(), "main", copy, size, size,
                           SQLITE_DESERIALIZE_FREEONCLOSE | SQLITE_DESERIALIZE_READONLY) !=
       SQLITE_OK)
-    ThrowInput("is no database");
+    ThrowInput("is not a database");
   return std::make_unique<Rosbag2Database>(std::move(database));
 }
 

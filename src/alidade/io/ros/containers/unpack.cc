@@ -42,7 +42,7 @@ class Output {
 };
 
 [[noreturn]] void ThrowDamaged(const std::string& format) {
-  ThrowInput("is damaged: its " + format + " data cannot be unpacked");
+  ThrowInput("is damaged: its " + format + " data cannot be decompressed");
 }
 
 std::string UnpackBz2(std::string_view packed, uint64_t most) {
@@ -113,8 +113,8 @@ std::string Unpack(std::string_view format, std::string_view packed, uint64_t mo
   if (format == "bz2") return UnpackBz2(packed, most);
   if (format == "lz4") return UnpackLz4(packed, most);
   if (format == "zstd") return UnpackZstd(packed, most);
-  ThrowInput("is packed by `" + std::string(format.substr(0, 20)) +
-             "`; known are bz2, lz4 and zstd");
+  ThrowInput("is compressed by `" + std::string(format.substr(0, 20)) +
+             "`; supported are bz2, lz4 and zstd");
 }
 
 uint64_t MostUnpackedFrom(uint64_t packed) {

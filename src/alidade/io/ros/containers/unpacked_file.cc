@@ -23,7 +23,7 @@ int TemporaryFile(std::string& path) {
   const std::string folder = std::filesystem::temp_directory_path(error).string();
   std::string pattern = (error ? "/tmp" : folder) + "/alidade-unpacked-XXXXXX";
   const int fd = ::mkstemp(pattern.data());
-  if (fd < 0) ThrowInput("cannot be unpacked into " + folder + ": " + std::strerror(errno));
+  if (fd < 0) ThrowInput("cannot be decompressed into " + folder + ": " + std::strerror(errno));
   path = pattern;
   return fd;
 }
@@ -33,8 +33,8 @@ void WriteAllTo(int fd, const char* bytes, size_t count) {
     const ssize_t written = ::write(fd, bytes, count);
     if (written < 0 && errno == EINTR) continue;
     if (written < 0)
-      ThrowInput(std::string("cannot be unpacked into the folder for temporary files (TMPDIR "
-                             "names another): ") +
+      ThrowInput(std::string("cannot be decompressed into the folder for temporary files (TMPDIR "
+                             "chooses another): ") +
                  std::strerror(errno));
     bytes += written;
     count -= static_cast<size_t>(written);
@@ -55,7 +55,7 @@ void UnpackInto(int fd, const ByteSource& source) {
     do {
       out.pos = 0;
       hint = ZSTD_decompressStream(stream.get(), &out, &in);
-      if (ZSTD_isError(hint)) ThrowInput("is damaged: its zstd data cannot be unpacked");
+      if (ZSTD_isError(hint)) ThrowInput("is damaged: its zstd data cannot be decompressed");
       WriteAllTo(fd, plain.data(), out.pos);
     } while (in.pos < in.size || out.pos == out.size);
   }

@@ -13,7 +13,7 @@ namespace {
 
 // Pixels, the largest allowed error of the fit; about half the uncertainty of a keypoint.
 constexpr double kMostMisfit = 0.5;
-constexpr char kAdvice[] = " (give a camera file instead: --camera)";
+constexpr char kAdvice[] = " (use a camera file instead: --camera)";
 
 bool AllFinite(const RosCameraInfo& info) {
   const auto finite = [](double value) { return std::isfinite(value); };
@@ -47,7 +47,7 @@ std::array<double, 5> BrownOfRational(const RosCameraInfo& info, const RawCamera
     const double down = 1 + r2 * (info.D[5] + r2 * (info.D[6] + r2 * info.D[7]));
     const double bent = r * up / down;
     if (!(bent > last))
-      ThrowInput("has a lens that folds over within the picture" + std::string(kAdvice));
+      ThrowInput("has a distortion that is not invertible within the image" + std::string(kAdvice));
     last = bent;
     const bool inside = bent <= std::hypot(u, v);  // points outside the image have no weight
     const double weight = inside ? 1 : 0;
@@ -59,8 +59,8 @@ std::array<double, 5> BrownOfRational(const RosCameraInfo& info, const RawCamera
   if (!(misfit <= kMostMisfit)) {
     char text[160];
     PrintTo(text, sizeof text,
-            "has a rational_polynomial lens that five coefficients miss by %.2g pixels: "
-            "undistort the pictures first (image_proc)",
+            "has a rational_polynomial distortion that five coefficients approximate only to "
+            "%.2g pixels: undistort the images first (image_proc)",
             misfit);
     ThrowInput(text);
   }
@@ -84,18 +84,18 @@ void SetLens(const RosCameraInfo& info, RawCamera& camera) {
           info.D.end(), [](double d) { return d == 0; });
     };
     if (!zero_from(8))
-      ThrowInput("has a lens with thin prism or tilt terms" + std::string(kAdvice));
+      ThrowInput("has distortion with thin prism or tilt terms" + std::string(kAdvice));
     if (zero_from(5)) {
       for (size_t i = 0; i < 5; ++i) camera.distortion[i] = Coefficient(info, i);
     } else if (info.D.size() >= 8) {
       camera.distortion = BrownOfRational(info, camera);
     } else {
-      ThrowInput("has a `" + model + "` lens of " + std::to_string(info.D.size()) +
-                 " coefficients; known are 4, 5 and 8" + kAdvice);
+      ThrowInput("has a rational_polynomial distortion with " + std::to_string(info.D.size()) +
+                 " coefficients instead of 8" + kAdvice);
     }
   } else {
     ThrowInput("has the distortion_model `" + model.substr(0, 40) +
-               "`; known are plumb_bob, rational_polynomial and equidistant" + kAdvice);
+               "`; supported are plumb_bob, rational_polynomial and equidistant" + kAdvice);
   }
 }
 
@@ -122,7 +122,7 @@ Eigen::Matrix3d RotationOf(const RosCameraInfo& info) {
       Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.R.data());
   if (R.isZero()) return Eigen::Matrix3d::Identity();
   if (!(R * R.transpose()).isIdentity(1e-3) || R.determinant() < 0)
-    ThrowInput("has an R that is no rotation" + std::string(kAdvice));
+    ThrowInput("has an R that is not a rotation" + std::string(kAdvice));
   return R;
 }
 
@@ -149,7 +149,7 @@ std::optional<RawCamera> CameraOfInfo(const RosCameraInfo& info, bool rectified)
   if (!rectified) SetLens(info, camera);
   ApplyBinning(info, camera);
   if (!(camera.fx > 0 && camera.fy > 0 && camera.width > 0 && camera.height > 0))
-    ThrowInput("has a size or a binning that cannot be" + std::string(kAdvice));
+    ThrowInput("has an impossible size or binning" + std::string(kAdvice));
   return camera;
 }
 

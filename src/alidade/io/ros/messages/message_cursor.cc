@@ -8,7 +8,7 @@ namespace alidade {
 
 MessageCursor::MessageCursor(std::string_view bytes, Serialization serialization) : body_(bytes) {
   if (serialization == Serialization::kRos1) return;
-  if (serialization != Serialization::kCdr) ThrowInput("is neither ROS 1's nor CDR");
+  if (serialization != Serialization::kCdr) ThrowInput("is encoded neither as in ROS 1 nor as CDR");
   cdr_ = true;
   const std::string_view head = Take(4);
   // Representation identifiers: 0 and 1 are plain CDR, big and little endian; 6 and 7 are CDR
@@ -24,7 +24,7 @@ MessageCursor::MessageCursor(std::string_view bytes, Serialization serialization
 }
 
 std::string_view MessageCursor::Take(uint64_t count) {
-  if (count > body_.size() - at_) ThrowInput("is cut short");
+  if (count > body_.size() - at_) ThrowInput("is truncated");
   const std::string_view taken = body_.substr(at_, count);
   at_ += count;
   return taken;

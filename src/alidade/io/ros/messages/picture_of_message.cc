@@ -72,7 +72,7 @@ cv::Mat RawPixels(const RosPicture& picture, int type) {
   // The padding of the last row may be missing.
   if (step < row_bytes || picture.data.size() < row_bytes ||
       (picture.data.size() - row_bytes) / step + 1 < static_cast<size_t>(rows))
-    ThrowInput("is cut short: it has fewer bytes than its width and height ask for");
+    ThrowInput("is truncated: it has fewer bytes than its width and height require");
   return cv::Mat(rows, columns, type, const_cast<char*>(picture.data.data()), step);
 }
 
@@ -101,17 +101,17 @@ cv::Mat Converted(const cv::Mat& raw, int code) try {
 DecodedImage RawPictureOf(const RosPicture& picture, ImageUse use) {
   const auto found = RawEncodings().find(picture.encoding);
   if (found == RawEncodings().end())
-    ThrowInput("is of the encoding `" + picture.encoding.substr(0, 40) + "`, which is not known");
+    ThrowInput("has the encoding `" + picture.encoding.substr(0, 40) + "`, which is not supported");
   const RawEncoding& encoding = found->second;
   const cv::Mat raw = RawPixels(picture, encoding.type);
   DecodedImage decoded;
   if (use == ImageUse::kDepth) {
     if (encoding.type != CV_16UC1 && encoding.type != CV_32FC1)
-      ThrowInput("is no depth image: its encoding is `" + picture.encoding + "`");
+      ThrowInput("is not a depth image: its encoding is `" + picture.encoding + "`");
     decoded.image = InNativeOrder(raw, picture.big_endian);
     return decoded;
   }
-  if (encoding.to_gray == kNone) ThrowInput("is depth, not a picture");
+  if (encoding.to_gray == kNone) ThrowInput("is a depth image, not a camera image");
   decoded.image = encoding.type == CV_16UC1 ? InNativeOrder(raw, picture.big_endian)
                                             : Converted(raw, encoding.to_gray);
   if (use == ImageUse::kGrayAndColor && encoding.to_color != kNone)
@@ -134,11 +134,11 @@ float FloatAt(std::string_view bytes, size_t at) {
 constexpr size_t kCompressedDepthHead = 12;
 
 DecodedImage CompressedDepthOf(const RosPicture& picture) {
-  if (picture.data.size() <= kCompressedDepthHead) ThrowInput("is cut short");
+  if (picture.data.size() <= kCompressedDepthHead) ThrowInput("is truncated");
   const std::string_view packed = picture.data.substr(kCompressedDepthHead);
   if (!LooksLikePng(packed))
-    ThrowInput("is depth packed by another way than PNG (`" + picture.encoding.substr(0, 40) +
-               "`), which is not known");
+    ThrowInput("is depth with a compression other than PNG (`" + picture.encoding.substr(0, 40) +
+               "`), which is not supported");
   DecodedImage decoded = DecodePng(packed, ImageUse::kDepth);
   if (!decoded.problem.empty() || picture.encoding.rfind("32FC1", 0) != 0) return decoded;
   const float a = FloatAt(picture.data, 4), b = FloatAt(picture.data, 8);
@@ -157,13 +157,14 @@ DecodedImage CompressedDepthOf(const RosPicture& picture) {
 
 DecodedImage PictureOf(const RosPicture& picture, ImageUse use) {
   if (!picture.compressed) return RawPictureOf(picture, use);
-  if (IsCompressedDepth(picture) && use != ImageUse::kDepth) ThrowInput("is depth, not a picture");
+  if (IsCompressedDepth(picture) && use != ImageUse::kDepth)
+    ThrowInput("is a depth image, not a camera image");
   DecodedImage decoded =
       IsCompressedDepth(picture) ? CompressedDepthOf(picture) : DecodeImageBytes(picture.data, use);
   if (!decoded.problem.empty()) ThrowInput(decoded.problem);
   const int type = decoded.image.type();
   if (use == ImageUse::kDepth && type != CV_16UC1 && type != CV_32FC1)
-    ThrowInput("is no depth image: it has 8 bits");
+    ThrowInput("is not a depth image: it has 8 bits");
   return decoded;
 }
 

@@ -49,8 +49,8 @@ std::string StemOf(const std::string& name) {
 void CheckIsOne(const std::string& folder, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (StemOf(name) == StemOf(names.front())) continue;
-    ThrowUsage(folder + " holds several recordings: name one of them, " + names.front() + " or " +
-               name + (names.size() > 2 ? " or another" : ""));
+    ThrowUsage(folder + " contains several recordings: choose one of them, " + names.front() +
+               " or " + name + (names.size() > 2 ? " or another" : ""));
   }
 }
 
@@ -110,7 +110,7 @@ BagQuery ParseBagQuery(const std::string& source) {
         ThrowUsage("max_dt=" + value + ": must be seconds, above 0 and at most 1");
     } else {
       ThrowUsage("`" + name +
-                 "` is no option of a ROS recording; there are image, right, depth, "
+                 "` is not an option of a ROS recording; the options are image, right, depth, "
                  "info, right_info (topics) and max_dt (seconds)");
     }
   }

@@ -51,7 +51,7 @@ std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& cho
     calibration.origin = path + ", " + topic;
     const std::optional<RawCamera> camera = CameraOfInfo(left, chosen.image.rectified);
     if (!camera) {
-      LogWarning(calibration.origin + " is of a camera that was never calibrated (K is 0)");
+      LogWarning(calibration.origin + " is of an uncalibrated camera (K is 0)");
       return std::nullopt;
     }
     calibration.left = *camera;
@@ -69,18 +69,17 @@ Sensor SensorFor(const ChosenTopics& chosen, bool has_right, bool has_depth,
   const Sensor best = has_depth ? Sensor::kRgbd : has_right ? Sensor::kStereo : Sensor::kMono;
   const Sensor sensor = options.sensor.value_or(best);
   if (sensor == Sensor::kRgbd && !has_depth) {
-    ThrowUsage("--sensor rgbd: " + path + " has no depth that lies on " + chosen.image.name +
-               " pixel by pixel (or a `depth_factor` of 0); ?depth=TOPIC names one");
+    ThrowUsage("--sensor rgbd: " + path + " has no depth that is registered to " +
+               chosen.image.name + " (or a `depth_factor` of 0); ?depth=TOPIC selects one");
   }
   if (sensor == Sensor::kStereo && !chosen.right) {
     ThrowUsage("--sensor stereo: " + path + " has no camera to the right of " + chosen.image.name +
-               "; ?right=TOPIC names one");
+               "; ?right=TOPIC selects one");
   }
   if (sensor == Sensor::kStereo && !has_right) {
     ThrowInput(path +
-               ": stereo needs the baseline: CameraInfo of both cameras, with P[3] of the "
-               "right one, or a camera file with `baseline` or `right` (--camera); or ask for "
-               "--sensor mono");
+               ": stereo needs the baseline: CameraInfo of both cameras, with P[3] of the right "
+               "one, or a camera file with `baseline` or `right` (--camera); or use --sensor mono");
   }
   return sensor;
 }
@@ -110,7 +109,7 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   if (!options.camera_file) calibration.fps = player->Rate().value_or(calibration.fps);
   const Sensor sensor = SensorFor(chosen, has_right, has_depth, options, query.path);
   if (sensor == Sensor::kMono && chosen.right)
-    chosen.told += "; with one camera, as nothing tells the baseline of the two";
+    chosen.told += "; only one camera is used, because the baseline of the two is unknown";
   ImagePreparation preparation(calibration, sensor);
   SourceInfo info;
   info.name = NameOfRecording(query.path);

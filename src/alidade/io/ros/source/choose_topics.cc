@@ -42,7 +42,7 @@ class Chooser {
   ChosenTopics Choose() {
     if (pictures_.empty()) {
       ThrowInput(query_.path +
-                 " holds no pictures (sensor_msgs Image or CompressedImage); it has " +
+                 " contains no images (sensor_msgs Image or CompressedImage); it has " +
                  AllTopics(bag_));
     }
     ChosenTopics chosen;
@@ -71,7 +71,7 @@ class Chooser {
       if (!picture.problem.empty()) ThrowInput(query_.path + ": " + name + " " + picture.problem);
       return picture;
     }
-    ThrowUsage(option + "=" + name + ": there is no such topic with pictures in " + query_.path +
+    ThrowUsage(option + "=" + name + ": there is no such topic with images in " + query_.path +
                "; there are " + ListOf(pictures_, false) + "; depth: " + ListOf(pictures_, true));
   }
 
@@ -93,7 +93,7 @@ class Chooser {
       PictureTopic depth = Named("depth", *query_.depth);
       if (depth.size != image.size)
         ThrowUsage("depth=" + depth.name + " is of another size than " + image.name +
-                   ": only depth that lies on the picture, pixel by pixel, can be used");
+                   ": only depth that is registered to the image can be used");
       return depth;
     }
     const PictureTopic* best = nullptr;
@@ -170,8 +170,8 @@ class Chooser {
     }
     if (best) return *best;
     if (!problem.empty()) ThrowInput(query_.path + ": " + problem);
-    ThrowInput(query_.path + " holds depth alone (" + ListOf(pictures_, true) +
-               "), and no pictures; it has " + AllTopics(bag_));
+    ThrowInput(query_.path + " contains only depth (" + ListOf(pictures_, true) +
+               "), no images; it has " + AllTopics(bag_));
   }
 
   std::string Told(const ChosenTopics& chosen) const {
@@ -189,7 +189,7 @@ class Chooser {
       if (taken) continue;
       rest += (rest.empty() ? "" : ", ") + picture.name + (picture.depth ? " (depth)" : "");
     }
-    if (!rest.empty()) told += "; not taken: " + rest + " (SOURCE?image=TOPIC&depth=TOPIC chooses)";
+    if (!rest.empty()) told += "; not used: " + rest + " (SOURCE?image=TOPIC&depth=TOPIC selects)";
     return told;
   }
 

@@ -168,7 +168,7 @@ final class CameraFeed {
 
     @Override
     public void onConfigureFailed(CameraCaptureSession session) {
-      gone("the camera gives no pictures of " + size);
+      gone("the camera provides no images of " + size);
     }
   }
 
