@@ -86,7 +86,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
     WarnOfDoubt(found.estimate, found.estimate.camera);
   } else {
     LogWarning("the camera could not be calibrated: " + found.why_not + "; " +
-               AssumedInWords(source) + kBetter);
+               AssumedInWords(source, finding.camera) + kBetter);
   }
   return finding;
 }

@@ -13,6 +13,14 @@
 
 namespace alidade {
 
+// A run as its watchers see it: all of it lives until End() has returned, or Run() throws.
+struct WatchedRun {
+  const Slam& slam;
+  const RunSetup& setup;
+  const CameraFinding& camera;
+  const RunLog& log;
+};
+
 // Called from the thread that plays the frames, except Warn().
 class RunWatcher {
  public:
