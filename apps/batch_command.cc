@@ -126,11 +126,11 @@ std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<Bat
   try {
     const BatchComparison page = RunsToCompare(folder.path(), rows, earlier);
     for (const std::string& line : page.missing)
-      std::printf("Not beside the new one in compare.html: %s\n", line.c_str());
+      std::printf("Not compared in compare.html: %s\n", line.c_str());
     if (page.runs.size() >= 2)
       AtomicWriteFile(folder.path() + "/compare.html", CompareResults(page.runs));
   } catch (const Error& error) {  // the tables are there
-    std::printf("No compare.html: %s\n", error.what());
+    std::printf("compare.html was not written: %s\n", error.what());
   }
   return rows;
 }
@@ -143,7 +143,7 @@ bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
       task.words.push_back(folder.path() + "/" + row.name);
   }
   if (task.words.size() < 4) {
-    std::printf("Not merged: there are fewer than two maps\n");
+    std::printf("Nothing to merge: there are fewer than two maps\n");
     return true;
   }
   task.words.insert(task.words.end(), {"--out", folder.path() + "/merged", "--overwrite"});
@@ -158,7 +158,7 @@ bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
 int RunOnly(const BatchArguments& arguments, BatchFolder& folder,
             const std::vector<BatchWork>& works) {
   if (arguments.only > static_cast<int>(works.size()))
-    ThrowUsage("--only " + std::to_string(arguments.only) + ": the list has " +
+    ThrowUsage("--only " + std::to_string(arguments.only) + ": the list has only " +
                std::to_string(works.size()) + " recordings");
   const BatchWork& work = works[static_cast<size_t>(arguments.only) - 1];
   if (work.done) {
@@ -201,7 +201,7 @@ int Batch(const BatchArguments& arguments) {
     return row.state == "waiting" || row.state == "interrupted";
   });
   std::printf("%zu recordings, %td failed", rows.size(), failed);
-  if (waiting > 0) std::printf(", %td not done: the same command goes on with them", waiting);
+  if (waiting > 0) std::printf(", %td not done: the same command continues with them", waiting);
   std::printf("; tables in %s\n", folder.path().c_str());
   if (Interrupted()) return kInterruptedStatus;
   bool good = failed == 0 && waiting == 0;
@@ -209,7 +209,7 @@ int Batch(const BatchArguments& arguments) {
   if (earlier) {
     const std::vector<std::string> worse = WorseThan(earlier->rows, rows, arguments.worse);
     for (const std::string& line : worse) std::printf("worse: %s\n", line.c_str());
-    if (worse.empty()) std::printf("Nothing got worse than in %s\n", arguments.against.c_str());
+    if (worse.empty()) std::printf("No result is worse than in %s\n", arguments.against.c_str());
     good = good && worse.empty();
   }
   return good ? 0 : kWorseStatus;

@@ -30,7 +30,7 @@ struct CommandEnd {
 CommandEnd OutputOf(const std::string& command) {
   CommandEnd end;
   FILE* pipe = popen(command.c_str(), "r");
-  if (!pipe) ThrowInput("no shell can be started");
+  if (!pipe) ThrowInput("cannot start a shell");
   std::array<char, 4096> buffer{};
   size_t size = 0;
   while ((size = fread(buffer.data(), 1, buffer.size(), pipe)) > 0)
@@ -66,12 +66,12 @@ std::string Script(const std::string& directives, const std::string& command) {
 int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
                   const std::vector<BatchWork>& works) {
   if (OutputOf("command -v sbatch").status != 0)
-    ThrowInput("there is no sbatch on this machine: --slurm needs Slurm (Debian: slurm-client)");
+    ThrowInput("sbatch was not found: --slurm needs Slurm (Debian: slurm-client)");
   const std::string out = fs::absolute(folder.path()).string();
   const std::string slurm = out + "/slurm";
   std::error_code error;
   fs::create_directories(slurm, error);
-  if (error) ThrowInput(slurm + ": cannot be made: " + error.message());
+  if (error) ThrowInput(slurm + ": cannot be created: " + error.message());
   // The list as it is now: who changes it later changes no job.
   std::string list;  // line N is task N
   std::vector<size_t> tasks;
@@ -99,8 +99,8 @@ int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
                                       " --output=" + ForShell(out + "/log/slurm-%A_%a.txt") + " " +
                                       arguments.sbatch + " " + ForShell(slurm + "/array.sh"));
     const std::string job = JobOf(array);
-    if (array.status != 0 || job.empty()) ThrowInput("sbatch did not take the array (see above)");
-    std::printf("%zu of %zu recordings are job %s, an array\n", tasks.size(), works.size(),
+    if (array.status != 0 || job.empty()) ThrowInput("sbatch refused the job array (see above)");
+    std::printf("%zu of %zu recordings submitted as job array %s\n", tasks.size(), works.size(),
                 job.c_str());
     std::fflush(stdout);
     after = " --dependency=afterany:" + job;
@@ -109,9 +109,9 @@ int SubmitToSlurm(const BatchArguments& arguments, const BatchFolder& folder,
                                   " --output=" + ForShell(out + "/log/slurm-table.txt") + " " +
                                   arguments.sbatch + " " + ForShell(slurm + "/table.sh"));
   const std::string job = JobOf(end);
-  if (job.empty()) ThrowInput("sbatch did not take the job of the table (see above)");
+  if (job.empty()) ThrowInput("sbatch refused the job that writes the table (see above)");
   if (!arguments.wait) {
-    std::printf("The table will be in %s/batch.md: job %s, once all have ended\n", out.c_str(),
+    std::printf("Job %s writes the table %s/batch.md when all have ended\n", out.c_str(),
                 job.c_str());
     return 0;
   }

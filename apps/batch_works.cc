@@ -3,23 +3,27 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/folder/earlier_result.h"
 #include "alidade/run/play/loop.h"
 #include "batch_arguments.h"
+#include "old_forms.h"
 #include "program/arguments.h"
 #include "run_flags.h"
 
 namespace alidade {
 namespace {
 
-// A line's words as `alidade run` reads them. Throws Error (usage) for what it would refuse.
-RunOptions OptionsOf(const BatchItem& item) {
+// A line's words as `alidade run` reads them; old forms among them become new ones. Throws Error
+// (usage) for what it would refuse.
+RunOptions OptionsOf(BatchItem& item) {
   RunOptions options;
   CLI::App run("", "alidade run");
   AddRunOptions(run, options);
+  item.words = WithoutOldForms(run, std::move(item.words));
   CheckNames(run, item.words);
   std::vector<std::string> words(item.words.rbegin(), item.words.rend());
   try {
@@ -27,9 +31,9 @@ RunOptions OptionsOf(const BatchItem& item) {
   } catch (const CLI::ParseError& error) {
     ThrowUsage(error.what());
   }
-  if (options.source != SourceOf(item)) ThrowUsage("a line begins with its source");
-  if (options.out) ThrowUsage("--out is for one line: all would have the same folder");
-  if (options.viewer) ThrowUsage("--viewer shows one run; a batch is of many");
+  if (options.source != SourceOf(item)) ThrowUsage("each line must begin with a source");
+  if (options.out) ThrowUsage("--out cannot be given for all lines, which would share the folder");
+  if (options.viewer) ThrowUsage("--viewer shows a single run and cannot be used in a batch");
   CheckRunOptions(options);
   SourceOptionsFrom(options);
   RateFrom(options, ThreadedFrom(options, false));
@@ -78,7 +82,7 @@ bool IsDone(const BatchFolder& folder, const BatchWork& work) {
 std::string OwnProgram() {
   std::error_code error;
   const std::filesystem::path path = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) ThrowInput("this program does not find itself: " + error.message());
+  if (error) ThrowInput("cannot find the path of this program: " + error.message());
   // As the system calls one that was replaced meanwhile, by its successor's name or not.
   const std::string name = path.string(), gone = " (deleted)";
   const bool replaced = name.size() > gone.size() && name.ends_with(gone);

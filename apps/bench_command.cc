@@ -7,13 +7,13 @@
 namespace alidade {
 
 void AddBenchCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("bench", "Now a program of its own: alidade-bench");
+  CLI::App* command = app.add_subcommand("bench", "Moved to the program alidade-bench");
   command->group("");  // hidden
   command->prefix_command();
   command->callback([&action] {
     action = []() -> int {
       ThrowUsage(
-          "the benchmarks are a program of their own now: `scripts/build alidade-bench` builds "
+          "the benchmarks are now a separate program: `scripts/build alidade-bench` builds "
           "build/bin/alidade-bench");
     };
   });

@@ -46,8 +46,8 @@ void CheckIsFree(const CalibrateOptions& options) {
     head.insert(at + 1, "# ");
   if (IsFile(options.out) && ReadFile(options.out).rfind(head, 0) == 0) return;
   ThrowInput(options.out +
-             " is there and is not of these recordings: name another with --out, or give "
-             "--overwrite to replace it");
+             " already exists and is not a calibration of these recordings: choose another file "
+             "with --out, or replace it with --overwrite");
 }
 
 CameraFound Calibrate(const std::string& source, const CalibrateOptions& options,
@@ -56,7 +56,7 @@ CameraFound Calibrate(const std::string& source, const CalibrateOptions& options
   wanted.sensor = Sensor::kMono;
   const SourceInfo info = OpenAnySource(source, wanted)->Info();
   if (info.kind == "camera")
-    ThrowUsage("calibrate takes recordings, not " + source + ": it plays them more than once");
+    ThrowUsage("calibrate plays a source more than once, which is not possible with " + source);
   if (!info.told.empty() && !options.run.quiet) std::printf("%s\n", info.told.c_str());
   // What lies beside the images is not looked at: that is what is asked for.
   if (!wanted.fov_degrees) wanted.fov_degrees = AssumedFov({info.camera.width, info.camera.height});
@@ -109,8 +109,8 @@ int CalibrateCommand(const CalibrateOptions& options) {
     const CameraFound& one = found.back();
     const Camera &camera = one.estimate.camera, &first = found.front().estimate.camera;
     if (camera.width != first.width || camera.height != first.height) {
-      ThrowInput(source + " has pictures of another size than " + options.sources.front() +
-                 ": not of one camera, or cut out otherwise");
+      ThrowInput(source + " has images of another size than " + options.sources.front() +
+                 ": the recordings are not of one camera, or are cropped differently");
     }
     if (options.run.quiet) continue;
     std::printf("%s: %s\n", source.c_str(),
@@ -123,20 +123,18 @@ int CalibrateCommand(const CalibrateOptions& options) {
   const CameraEstimate all = found.size() > 1 ? Together(found, settings) : found.front().estimate;
   const bool usable = found.size() > 1 ? all.known : found.front().usable;
   if (!usable) {
-    throw Error(
-        ErrorKind::kNothingMapped,
-        "the camera stays unknown: move it sideways and turn it, before things near and far "
-        "(docs/guides/calibration.md)");
+    throw Error(ErrorKind::kNothingMapped,
+                "the camera could not be calibrated: record near and far objects while moving "
+                "sideways and turning (docs/guides/calibration.md)");
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
-  AtomicWriteFile(
-      options.out,
-      FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " + CameraInWords(all) +
-                                       (all.known ? "" : "\nnot known for certain")));
+  AtomicWriteFile(options.out, FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " +
+                                                                CameraInWords(all) +
+                                                                (all.known ? "" : "\nuncertain")));
   if (!options.run.quiet)
-    std::printf("Written to %s: alidade run RECORDING --camera %s\n", options.out.c_str(),
-                options.out.c_str());
+    std::printf("Written to %s; to use it: alidade run RECORDING --camera %s\n",
+                options.out.c_str(), options.out.c_str());
   return 0;
 }
 
@@ -144,40 +142,45 @@ int CalibrateCommand(const CalibrateOptions& options) {
 
 void AddCalibrateCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Find a camera's focal length and distortion from what it recorded");
+      "calibrate", "Estimate a camera's focal length and distortion from recordings");
   const auto options = std::make_shared<CalibrateOptions>();
   command
       ->add_option("RECORDING", options->sources,
-                   "Recordings of one camera: anything `alidade run` takes, but for live cameras")
+                   "Recordings of one camera: any source of `alidade run` except live cameras")
       ->required()
       ->type_name("PATH");
-  command->add_option("--out", options->out, "Calibration to write (camera.yaml)")
+  command->add_option("--out", options->out, "Calibration file to write; default: camera.yaml")
       ->type_name("FILE");
   command->add_flag("--overwrite", options->overwrite,
-                    "Replace what is there, even a calibration of other recordings");
+                    "Replace an existing file, even a calibration of other recordings");
   command
       ->add_option("--fov", options->run.fov,
-                   "Horizontal field of view to begin with, degrees (66 along the longer side)")
+                   "Horizontal field of view in degrees with which the estimate starts; default: "
+                   "66 along the longer side of the image")
       ->type_name("DEGREES");
-  command->add_option("--profile", options->run.profile, "As of `alidade run`")
+  command->add_option("--profile", options->run.profile, "As for `alidade run`")
       ->type_name("desktop|phone");
-  command->add_option("--first", options->run.first, "First frame, counted from 0")->type_name("N");
-  command->add_option("--last", options->run.last, "Last frame, included")->type_name("N");
-  command->add_option("--set", options->run.settings, "One setting; may be given many times")
+  command
+      ->add_option("--first", options->run.first,
+                   "Index of the first frame to process, counted from 0")
+      ->type_name("N");
+  command->add_option("--last", options->run.last, "Index of the last frame to process")
+      ->type_name("N");
+  command
+      ->add_option("--set", options->run.settings,
+                   "Change one setting (`alidade settings` lists them); may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command
-      ->add_option("--threads", options->run.threads, "Threads for parallel loops; 0 = all cores")
+      ->add_option("--threads", options->run.threads, "Threads for parallel loops; 0: one per core")
       ->type_name("N");
-  command->add_flag("--quiet", options->run.quiet, "Say nothing but errors");
+  command->add_flag("--quiet", options->run.quiet, "Print errors only");
   command->footer(
-      "\nNo target is needed: a minute of walking about a furnished room, moving sideways and\n"
-      "turning, is enough. What the recording's own calibration says is not looked at.\n"
-      "\nExamples:\n"
-      "  alidade calibrate walk.mp4\n"
-      "  alidade calibrate monday.mp4 tuesday.mp4 --out phone.yaml\n"
-      "  alidade run wednesday.mp4 --camera phone.yaml\n"
-      "\nExit status 4: the camera turned or moved too little to tell.");
+      "\nNo calibration target is needed: a minute of walking in a furnished room, with sideways "
+      "motion\nand turns, is enough. A calibration that belongs to the recording is "
+      "ignored.\n\nExamples:\n  alidade calibrate walk.mp4\n  alidade calibrate monday.mp4 "
+      "tuesday.mp4 --out phone.yaml\n  alidade run wednesday.mp4 --camera phone.yaml\n\nExit "
+      "status 4: the camera moved or turned too little for an estimate.");
   command->callback(
       [options, &action] { action = [options] { return CalibrateCommand(*options); }; });
 }

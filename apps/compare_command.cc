@@ -26,7 +26,9 @@ void CheckIsFree(const std::string& path) {
   const std::string page = ReadFile(path);
   if (page.rfind("<!doctype html>", 0) == 0 && page.find(" runs compared</title>") < page.size())
     return;
-  ThrowInput(path + " is there and is no page of `alidade compare`: name another with --out");
+  ThrowInput(
+      path +
+      " already exists and was not written by `alidade compare`: choose another file with --out");
 }
 
 int Compare(const CompareArguments& arguments) {
@@ -34,27 +36,25 @@ int Compare(const CompareArguments& arguments) {
   std::vector<ComparedFolder> folders;
   for (const std::string& result : arguments.results) folders.push_back({result, ""});
   AtomicWriteFile(arguments.out, CompareResults(folders));
-  std::printf("%zu runs compared in %s\n", arguments.results.size(), arguments.out.c_str());
+  std::printf("Comparison of %zu runs: %s\n", arguments.results.size(), arguments.out.c_str());
   return 0;
 }
 
 }  // namespace
 
 void AddCompareCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("compare", "Several runs beside each other, as a page");
+  CLI::App* command = app.add_subcommand("compare", "Write a page that compares several runs");
   auto arguments = std::make_shared<CompareArguments>();
-  command->add_option("RESULT", arguments->results, "Folders that `run` left, two or more")
+  command->add_option("RESULT", arguments->results, "Result folders of `alidade run`, two or more")
       ->required()
       ->type_name("FOLDER");
-  command->add_option("--out", arguments->out, "The page: one HTML file that needs no other")
+  command->add_option("--out", arguments->out, "Page to write: a single HTML file")
       ->type_name("FILE")
       ->capture_default_str();
   command->footer(
-      "\nExamples:\n"
-      "  alidade compare alidade-out/kitchen alidade-out/kitchen-inline\n"
-      "  alidade compare before after --out change.html\n"
-      "\nErrors are told where the truth is known: groundtruth.txt in the result, or the truth "
-      "beside the recording.");
+      "\nExamples:\n  alidade compare alidade-out/kitchen alidade-out/kitchen-inline\n  alidade "
+      "compare before after --out change.html\n\nErrors are shown if there is ground truth: "
+      "groundtruth.txt in the result folder, or that of the recording.");
   command->callback([arguments, &action] { action = [arguments] { return Compare(*arguments); }; });
 }
 

@@ -61,7 +61,7 @@ DepthFolder ReadDepthFolder(const std::string& folder) {
   const std::vector<int> maps = ListedMaps(folder);
   const json stats = ReadStats(folder + "/stats.json");
   if (maps.empty() && !WasAskedForDepth(stats))
-    ThrowInput(folder + " holds no depth.txt: it is not what `alidade run --semidense` leaves");
+    ThrowInput(folder + " contains no depth.txt: it is not a result of `alidade run --semidense`");
   DepthFolder result;
   result.sensor = SensorOf(stats);
   for (const int map : maps) {
@@ -79,7 +79,7 @@ DepthFolder ReadDepthFolder(const std::string& folder) {
 
 cv::Mat ReadKeyframeDepth(const std::string& path) {
   const cv::Mat stored = ReadDepth(path);
-  if (stored.type() != CV_16UC1) ThrowInput(path + " is no depth image of 16 bit");
+  if (stored.type() != CV_16UC1) ThrowInput(path + " is not a depth image with 16 bits");
   cv::Mat depth;
   stored.convertTo(depth, CV_32F, 1 / kDepthPerUnit);
   return depth;

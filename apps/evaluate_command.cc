@@ -132,11 +132,11 @@ int EvaluateAteCommand(const EvaluateOptions& options) {
     return 0;
   }
   std::printf("absolute trajectory error of %s\n", options.estimate.c_str());
-  std::printf("%d of %zu poses matched to the truth; coverage %.1f %%\n", result.error.n,
+  std::printf("%d of %zu poses matched to the ground truth; coverage %.1f %%\n", result.error.n,
               estimate.size(), 100 * result.coverage);
   PrintAlignment(chosen, result.T_truth_estimate.s, truth, estimate, options);
   PrintHead();
-  PrintRow("metres", result.error);
+  PrintRow("meters", result.error);
   return 0;
 }
 
@@ -178,7 +178,7 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
               options.pairs == "all" ? "overlapping" : "consecutive", 100 * result.coverage);
   PrintAlignment(chosen, result.scale, truth, estimate, options);
   PrintHead();
-  PrintRow("metres", result.trans);
+  PrintRow("meters", result.trans);
   PrintRow("degrees", result.rot);
   return 0;
 }
@@ -186,23 +186,25 @@ int EvaluateRpeCommand(const EvaluateOptions& options) {
 void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
   command
       .add_option("GT", options.truth,
-                  "True trajectory: a TUM file, a EuRoC csv, KITTI poses (times.txt beside them), "
-                  "or the recording")
+                  "Ground truth: a TUM file, a EuRoC csv file, KITTI poses (with times.txt in the "
+                  "same folder), or the recording")
       ->required()
       ->type_name("PATH");
   command
       .add_option("EST", options.estimate,
-                  "Trajectory to judge: a file in the same formats, or the folder `run` left")
+                  "Trajectory to evaluate: a file in one of these formats, or a result folder of "
+                  "`alidade run`")
       ->required()
       ->type_name("PATH");
   command
-      .add_option(
-          "--align", options.align,
-          "se3: rotate and shift; sim3: scale as well; none; auto: sim3 where the estimate's "
-          "stats.json says one camera, else se3")
+      .add_option("--align", options.align,
+                  "Alignment to the ground truth. se3: rotation and translation; sim3: also scale; "
+                  "none; auto: sim3 if stats.json of the estimate says one camera, else se3")
       ->type_name("auto|se3|sim3|none")
       ->capture_default_str();
-  command.add_option("--max-dt", options.max_dt, "Largest difference of matched time stamps")
+  command
+      .add_option("--max-dt", options.max_dt,
+                  "Largest difference between the time stamps of a pair of poses")
       ->type_name("SECONDS")
       ->capture_default_str();
   command.add_flag("--json", options.as_json, "Print JSON instead of a table");
@@ -212,40 +214,40 @@ void AddCommonOptions(CLI::App& command, EvaluateOptions& options) {
 
 void AddEvaluateCommand(CLI::App& app, Action& action) {
   CLI::App* evaluate =
-      app.add_subcommand("evaluate", "How good a trajectory, or depth, is against the truth");
+      app.add_subcommand("evaluate", "Compare a trajectory or depth images with ground truth");
   evaluate->require_subcommand(1);
   const auto options = std::make_shared<EvaluateOptions>();
 
   CLI::App* ate = evaluate->add_subcommand(
-      "ate", "Absolute trajectory error: distance to the truth after alignment");
+      "ate", "Absolute trajectory error (ATE): distance to the ground truth after alignment");
   AddCommonOptions(*ate, *options);
   ate->add_option("--association", options->association,
-                  "tum: one-to-one, best first; evo: nearest for each pose of the shorter list")
+                  "Pairs of poses. tum: one-to-one, smallest time difference first; evo: the "
+                  "nearest for each pose of the shorter trajectory")
       ->type_name("tum|evo")
       ->capture_default_str();
   ate->footer(
-      "\nExamples:\n"
-      "  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n"
-      "  alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n"
-      "\nJSON: n, rmse, mean, median, std, min, max (metres), scale, coverage, align, align_why.");
+      "\nExamples:\n  alidade evaluate ate rgbd/groundtruth.txt alidade-out/rgbd/trajectory.txt\n  "
+      "alidade evaluate ate groundtruth.txt mono.txt --align sim3 --json\n\nJSON: n, rmse, mean, "
+      "median, std, min, max (meters), scale, coverage, align, align_why.");
   ate->callback(
       [options, &action] { action = [options] { return EvaluateAteCommand(*options); }; });
 
-  CLI::App* rpe = evaluate->add_subcommand(
-      "rpe", "Relative pose error: drift over a fixed step of time or frames");
+  CLI::App* rpe =
+      evaluate->add_subcommand("rpe", "Relative pose error (RPE): drift over a fixed interval");
   AddCommonOptions(*rpe, *options);
-  rpe->add_option("--delta", options->delta, "The step: seconds (1s) or frames (30f)")
+  rpe->add_option("--delta", options->delta, "Interval, in seconds (1s) or frames (30f)")
       ->type_name("STEP")
       ->capture_default_str();
   rpe->add_option("--pairs", options->pairs,
-                  "all: from every pose, as TUM's tool; consecutive: without overlap")
+                  "Intervals that are compared. all: one from each pose, as in the TUM tool; "
+                  "consecutive: without overlap")
       ->type_name("all|consecutive")
       ->capture_default_str();
   rpe->footer(
-      "\nExamples:\n"
-      "  alidade evaluate rpe groundtruth.txt trajectory.txt\n"
-      "  alidade evaluate rpe groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n"
-      "\nJSON: trans (metres) and rot (degrees), each as `evaluate ate` prints it.");
+      "\nExamples:\n  alidade evaluate rpe groundtruth.txt trajectory.txt\n  alidade evaluate rpe "
+      "groundtruth.txt trajectory.txt --delta 30f --pairs consecutive\n\nJSON: trans (meters) and "
+      "rot (degrees), each with the same keys as `evaluate ate`.");
   rpe->callback(
       [options, &action] { action = [options] { return EvaluateRpeCommand(*options); }; });
 

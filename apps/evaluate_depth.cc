@@ -49,8 +49,8 @@ bool FitsScale(const Options& options, const DepthFolder& folder) {
   if (scale != Scale::kAuto) return scale == Scale::kFit;
   if (!folder.sensor) {
     ThrowInput(options.result +
-               "/stats.json does not say with which sensor the map was made: give --scale fit for "
-               "one camera, else none");
+               "/stats.json does not say which sensor the map was made with: use --scale fit for "
+               "one camera, else --scale none");
   }
   return *folder.sensor == Sensor::kMono;
 }
@@ -62,7 +62,7 @@ void WarnLeftOut(size_t left_out, size_t listed, const std::string& why) {
 }
 
 Evaluation Evaluate(const Options& options) {
-  if (!(options.max_dt > 0)) ThrowUsage("max-dt must be a positive number of seconds");
+  if (!(options.max_dt > 0)) ThrowUsage("--max-dt must be a positive number of seconds");
   const DepthFolder folder = ReadDepthFolder(options.result);
   Evaluation evaluation;
   evaluation.fit_scale = FitsScale(options, folder);
@@ -87,12 +87,13 @@ Evaluation Evaluate(const Options& options) {
   }
   const size_t listed = folder.files.size();
   if (listed > 0 && without_frame == listed) {
-    ThrowInput("no keyframe of " + options.result + " was taken at a time of " + options.sequence +
-               " (first: " + folder.files.front().stamp + "): are they of the same recording?");
+    ThrowInput("no keyframe of " + options.result + " has the time of a frame of " +
+               options.sequence + " (first: " + folder.files.front().stamp +
+               "): are they of the same recording?");
   }
   if (listed > 0 && evaluation.files.empty())
     ThrowInput(options.sequence + " has no depth for any keyframe of " + options.result);
-  WarnLeftOut(without_frame, listed, "were taken at times the sequence has no frame of");
+  WarnLeftOut(without_frame, listed, "have no frame of the same time in the sequence");
   WarnLeftOut(without_truth, listed, "have no true depth");
   evaluation.result = scorer.Result();
   return evaluation;
@@ -169,7 +170,7 @@ std::string DescribeScales(const Evaluation& evaluation, const Options& options)
 void PrintTable(const Evaluation& evaluation, const Options& options) {
   const DepthErrorResult& result = evaluation.result;
   std::printf("semi-dense depth of %s, against %s\n", options.result.c_str(),
-              evaluation.rendered ? "exact (rendered) depth" : "a sensor's depth");
+              evaluation.rendered ? "exact (rendered) depth" : "depth of a sensor");
   std::printf("%zu keyframes, %s; relative errors and shares in %%\n\n", evaluation.files.size(),
               DescribeScales(evaluation, options).c_str());
   PrintHead("");
@@ -187,43 +188,43 @@ void PrintTable(const Evaluation& evaluation, const Options& options) {
 
 void AddEvaluateDepth(CLI::App& evaluate, Action& action) {
   CLI::App* depth = evaluate.add_subcommand(
-      "depth", "Semi-dense depth against rendered depth or a depth sensor's");
+      "depth", "Compare semi-dense depth with rendered depth or a depth sensor");
   const auto options = std::make_shared<Options>();
   depth
       ->add_option("SEQUENCE", options->sequence,
-                   "The recording, with depth: a TUM RGB-D folder, what `alidade synth` wrote, or "
-                   "synth:SCENE?...")
+                   "The recording with its depth: a TUM RGB-D folder, a folder written by `alidade "
+                   "synth`, or synth:SCENE?...")
       ->required()
       ->type_name("PATH");
   depth
       ->add_option("RESULT", options->result,
-                   "The folder `alidade run SEQUENCE --semidense` left (depth.txt)")
+                   "Result folder of `alidade run SEQUENCE --semidense`, which contains depth.txt")
       ->required()
       ->type_name("FOLDER");
   depth
       ->add_option("--scale", options->scale,
-                   "fit: each map's unit, by the median of truth / estimate; none; auto: fit for "
-                   "one camera")
+                   "fit: scale each map by the median of truth / estimate; none; auto: fit for one "
+                   "camera, else none")
       ->type_name("auto|fit|none")
       ->capture_default_str();
   depth
-      ->add_option("--camera", options->camera_file,
-                   "Calibration (camera.yaml) of the sequence instead of its own, as for `run`")
+      ->add_option(
+          "--camera", options->camera_file,
+          "Calibration file (camera.yaml), used instead of the sequence's own, as for `run`")
       ->type_name("FILE");
-  depth->add_option("--max-dt", options->max_dt, "Largest difference of matched time stamps")
+  depth
+      ->add_option("--max-dt", options->max_dt,
+                   "Largest difference between the time stamps of a pair of images")
       ->type_name("SECONDS")
       ->capture_default_str();
   depth->add_flag("--json", options->as_json, "Print JSON instead of a table");
   depth->footer(
-      "\nExamples:\n"
-      "  alidade run kitchen --sensor mono --semidense --out result\n"
-      "  alidade evaluate depth kitchen result\n"
-      "  alidade evaluate depth \"synth:room?seed=3\" alidade-out/synth-room --json\n"
-      "\nJSON: n, median_rel, p90_rel, within_2, within_5, within_10, rmse_inv (1/m), density,\n"
-      "density_gradient, edge_coverage, scale; of all pixels where the truth is rendered, where "
-      "it\n"
-      "is continuous for a sensor's; both as `all` and `continuous`; each keyframe's in "
-      "`keyframes`.");
+      "\nExamples:\n  alidade run kitchen --sensor mono --semidense --out result\n  alidade "
+      "evaluate depth kitchen result\n  alidade evaluate depth \"synth:room?seed=3\" "
+      "alidade-out/synth-room --json\n\nJSON: n, median_rel, p90_rel, within_2, within_5, "
+      "within_10, rmse_inv (1/m), density,\ndensity_gradient, edge_coverage, scale: for all pixels "
+      "if the true depth is rendered, for pixels with\ncontinuous depth if it is a sensor's. `all` "
+      "and `continuous` have both, `keyframes` those of each keyframe.");
   depth->callback([options, &action] {
     action = [options] {
       const Evaluation evaluation = Evaluate(*options);

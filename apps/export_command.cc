@@ -24,46 +24,47 @@ int ExportCommand(const ExportOptions& options) {
 }  // namespace
 
 void AddExportCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("export", "A map, or a run, as what other programs read");
+  CLI::App* command =
+      app.add_subcommand("export", "Convert a map or a run to a format of other programs");
   const auto options = std::make_shared<ExportOptions>();
   command
       ->add_option("MAP", options->map,
-                   "The map: a file, or the folder `run` left (for mcap also a recorded stream)")
+                   "Map file or result folder of `alidade run`; for mcap also a recorded stream")
       ->required()
       ->type_name("PATH");
   command
-      ->add_option("OUT", options->out,
-                   "File to write; for colmap a folder, new, empty or of an earlier export")
+      ->add_option(
+          "OUT", options->out,
+          "File to write; for colmap a folder, which must be new, empty or from an earlier export")
       ->required()
       ->type_name("PATH");
   command
       ->add_option("--to", options->how.to,
-                   "ply, pcd: the landmarks; tum: the keyframes' trajectory; colmap: a sparse "
-                   "model of both; mcap: the run as it was (if it was recorded), its path and "
-                   "points, for Foxglove, Lichtblick, Rerun and ros2")
+                   "ply, pcd: landmarks; tum: trajectory of the keyframes; colmap: sparse model "
+                   "with both; mcap: trajectory, points and, if recorded, the whole run, for "
+                   "Foxglove, Lichtblick, Rerun and ros2")
       ->required()
       ->type_name("ply|pcd|tum|colmap|mcap");
   command
       ->add_option("--format", options->how.format,
-                   "How numbers are written; by default binary for ply and pcd, text for tum, and "
-                   "both for colmap")
+                   "Number format; default: binary for ply and pcd, text for tum, both for colmap")
       ->type_name("text|binary|both");
   command
-      ->add_option("--part", options->how.part,
-                   "Which map, when the file holds several: 0 is the largest (see `alidade info`)")
+      ->add_option(
+          "--part", options->how.part,
+          "Number of the map, if the file contains several: 0 is the largest (see `alidade info`)")
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--min-observations", options->how.min_observations,
-                   "Leave out landmarks that fewer keyframes see; COLMAP's own bundle adjuster "
-                   "wants 2")
+      ->add_option(
+          "--min-observations", options->how.min_observations,
+          "Omit landmarks that fewer keyframes observe; COLMAP's bundle adjuster requires 2")
       ->type_name("N")
       ->capture_default_str();
   command->footer(
-      "\nExamples:\n"
-      "  alidade export alidade-out/kitchen --to ply kitchen.ply\n"
-      "  alidade export alidade-out/kitchen --to mcap kitchen.mcap      open it in Foxglove\n"
-      "  alidade export map.alidade --to colmap model && colmap model_analyzer --path model");
+      "\nExamples:\n  alidade export alidade-out/kitchen --to ply kitchen.ply\n  alidade export "
+      "alidade-out/kitchen --to mcap kitchen.mcap      to open in Foxglove\n  alidade export "
+      "map.alidade --to colmap model && colmap model_analyzer --path model");
   command->callback([options, &action] { action = [options] { return ExportCommand(*options); }; });
 }
 

@@ -143,9 +143,9 @@ int InfoCommand(const InfoOptions& options) {
 }  // namespace
 
 void AddInfoCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("info", "What is in a map");
+  CLI::App* command = app.add_subcommand("info", "Show what a map contains");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("MAP", options->map, "The map: a file, or the folder `run` left")
+  command->add_option("MAP", options->map, "Map file or result folder of `alidade run`")
       ->required()
       ->type_name("PATH");
   command->add_flag("--json", options->as_json, "Print JSON instead of a table");

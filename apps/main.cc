@@ -3,6 +3,7 @@
 
 #include "alidade/version.h"
 #include "commands.h"
+#include "old_forms.h"
 
 namespace {
 
@@ -27,26 +28,27 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
 void Describe(CLI::App& app, alidade::Action& action) {
   app.name("alidade");
   app.description(
-      "Alidade: from what a moving camera sees to where it is and what the place looks like.");
+      "Alidade: visual SLAM. Estimates the trajectory of a moving camera and a map of the place.");
   app.set_version_flag("--version", "alidade " ALIDADE_VERSION);
   app.set_help_flag("-h,--help", "Show this help; each command has its own");
   app.require_subcommand(1);
-  app.footer(
-      "\nExamples:\n"
-      "  alidade run my_recording                    a TUM, EuRoC or KITTI folder, images or a "
-      "video\n"
-      "  alidade run \"synth:room?frames=300\"         a rendered room, no recording needed\n"
-      "  alidade evaluate ate truth.txt alidade-out/my_recording/trajectory.txt\n"
-      "  alidade run my_recording --viewer           watch it in a browser\n"
-      "  alidade phone --host 0.0.0.0 --tls          the page for phones, for one in this network\n"
-      "  alidade compare result_a result_b           two runs beside each other\n"
-      "  alidade info alidade-out/my_recording       what is in a map\n"
-      "  alidade run --help                          all of a command's options\n"
-      "\nExit status: 0 done, 2 usage, 3 input, 4 nothing could be mapped, 70 a bug of ours, 130 "
-      "interrupted.");
   AddCommands(app, action);
+  // After the commands, which would inherit it.
+  app.footer(
+      "\nExamples:\n  alidade run my_recording                    a TUM, EuRoC or KITTI folder, "
+      "images or a video\n  alidade run \"synth:room?frames=300\"         a rendered room, no "
+      "recording needed\n  alidade evaluate ate truth.txt "
+      "alidade-out/my_recording/trajectory.txt\n  alidade run my_recording --viewer           "
+      "watch the run in a browser\n  alidade phone --host 0.0.0.0 --tls          the page for "
+      "phones in this network\n  alidade compare result_a result_b           a page that compares "
+      "two runs\n  alidade info alidade-out/my_recording       what a map contains\n  alidade run "
+      "--help                          all options of a command\n\nExit status: 0 done, 2 wrong "
+      "usage, 3 invalid input, 4 nothing could be mapped, 70 internal error (a bug), 130 "
+      "interrupted.");
 }
 
 }  // namespace
 
-int main(int argc, char** argv) { return alidade::RunProgram(argc, argv, Describe); }
+int main(int argc, char** argv) {
+  return alidade::RunProgram(argc, argv, Describe, alidade::WithoutOldForms);
+}

@@ -37,9 +37,10 @@ void Tell(const std::vector<MergeInput>& inputs, const MergedMaps& merged,
   for (const MergedWorld& world : worlds) {
     std::vector<std::string> names;
     for (size_t i : world.inputs) names.push_back(inputs[i].name);
-    const char* what = names.size() > 1     ? "show one place, and are one map"
-                       : worlds.size() == 1 ? "is one map"
-                                            : "shows no place of the others, and stays a map apart";
+    const char* what = names.size() > 1 ? "show the same place and are merged into one map"
+                       : worlds.size() == 1
+                           ? "is one map"
+                           : "shares no place with the others and remains a separate map";
     std::printf("%s %s: %d keyframes, %d landmarks\n", AndOf(names).c_str(), what, world.keyframes,
                 world.landmarks);
   }
@@ -51,7 +52,7 @@ void Tell(const std::vector<MergeInput>& inputs, const MergedMaps& merged,
 int Merge(const MergeArguments& arguments) {
   const MergePlaces places = MergePlacesOf(arguments.out);
   if (!arguments.out.empty() && places.map == arguments.out && IsFolder(arguments.out))
-    ThrowUsage("--out " + arguments.out + " is a folder, though it is called as a map is");
+    ThrowUsage("--out " + arguments.out + " is a folder, but has the name of a map file");
   const std::vector<MergeInput> inputs = ReadMergeInputs(arguments.maps);
   CheckMergePlaces(places, inputs, arguments.overwrite);
   Terminal terminal(arguments.quiet);
@@ -76,30 +77,28 @@ int Merge(const MergeArguments& arguments) {
 
 void AddMergeCommand(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("merge", "Make one map of those of several recordings of one place");
+      app.add_subcommand("merge", "Merge the maps of several recordings of one place");
   auto arguments = std::make_shared<MergeArguments>();
   command
       ->add_option("MAP", arguments->maps,
-                   "Maps (map.alidade), or folders that `run` left, two or more")
+                   "Map files (map.alidade) or result folders of `alidade run`, two or more")
       ->required();
   command
-      ->add_option("--out", arguments->out,
-                   "The merged map: a file (.alidade), or a folder for map.alidade and the "
-                   "trajectories")
+      ->add_option(
+          "--out", arguments->out,
+          "Merged map: a file (.alidade), or a folder for map.alidade and the trajectories")
       ->type_name("MAP")
       ->required();
   command->add_flag("--overwrite", arguments->overwrite,
-                    "Replace what is there, even a map of other recordings");
-  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+                    "Replace an existing result, even a map of other recordings");
+  command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "\nExamples:\n"
-      "  alidade merge alidade-out/monday alidade-out/tuesday --out house\n"
-      "  alidade merge a.alidade b.alidade c.alidade --out all.alidade\n"
-      "  alidade localize wednesday --map house/map.alidade\n"
-      "\nWhat shows one place is joined, whatever order it is given in; what does not stays a map "
-      "of its own in the same\nfile, and that is said. The world of the largest map is the common "
-      "one. Trajectories in it: NAME.txt for each\nrecording, of all frames where a folder is "
-      "given, of keyframes where a map is (docs/guides/several-maps.md).");
+      "\nExamples:\n  alidade merge alidade-out/monday alidade-out/tuesday --out house\n  alidade "
+      "merge a.alidade b.alidade c.alidade --out all.alidade\n  alidade localize wednesday --map "
+      "house/map.alidade\n\nMaps that show the same place are merged, in any order. Other maps "
+      "remain separate in the same file, and are listed.\nThe world frame is that of the largest "
+      "map. NAME.txt is the trajectory of each recording in it: all frames for a\nresult folder, "
+      "keyframes for a map file (docs/guides/several-maps.md).");
   command->callback([arguments, &action] { action = [arguments] { return Merge(*arguments); }; });
 }
 

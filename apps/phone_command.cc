@@ -44,12 +44,11 @@ int Phone(const PhoneArguments& arguments) {
   const std::string core = arguments.core.empty() ? FindCoreFolder() : arguments.core;
   if (!arguments.core.empty() && !HasCore(core, "single"))
     ThrowUsage("--core " + core +
-               ": there is no single/alidade.wasm (scripts/wasm/build builds it)");
+               " contains no single/alidade.wasm (scripts/wasm/build builds it)");
   if (core.empty() && !arguments.connected)
     ThrowUsage(
-        "the core for browsers was not built: scripts/wasm/build does it (some minutes, once), or "
-        "let "
-        "this computer do the work with --connected");
+        "the core for browsers has not been built: run scripts/wasm/build (once, some minutes), or "
+        "process the images on this computer with --connected");
   std::unique_ptr<PhoneHost> host;
   if (arguments.connected) {
     PhoneHostSettings serving;
@@ -61,7 +60,8 @@ int Phone(const PhoneArguments& arguments) {
     }
     host = std::make_unique<PhoneHost>(serving);
   } else if (!arguments.out.empty() || !arguments.set.empty()) {
-    ThrowUsage("--out and --set are for --connected: otherwise the phone does the work");
+    ThrowUsage(
+        "--out and --set require --connected: otherwise the phone processes the images itself");
   }
   CatchInterrupts();
   const auto server = StartPhonePage(settings, core, host.get());
@@ -70,19 +70,21 @@ int Phone(const PhoneArguments& arguments) {
                      address.find("//localhost") != std::string::npos ||
                      address.find("//[::1]") != std::string::npos;
   if (!local) std::fputs(QrCode(address).c_str(), stdout);
-  std::printf("The page for phones is at %s (Ctrl-C ends)\n", address.c_str());
+  std::printf("Page for phones: %s (Ctrl-C ends)\n", address.c_str());
   if (arguments.connected)
-    std::printf("Pages may send their images here%s\n",
-                core.empty()
-                    ? "; the core for browsers was not built (scripts/wasm/build), so all do"
-                    : ": Settings, Make the map on the computer that serves this page");
+    std::printf(
+        "Pages may send their images here%s\n",
+        core.empty()
+            ? "; all of them do, because the core for browsers has not been built "
+              "(scripts/wasm/build)"
+            : ": in the page choose Settings, Make the map on the computer that serves this page");
   if (!server->fingerprint().empty())
     std::printf(
-        "The certificate was made just now: the phone's browser asks once whether to go on.\n"
-        "Its SHA-256 fingerprint: %s\n",
+        "The certificate is self-signed, so the phone's browser asks once whether to "
+        "continue.\nIts SHA-256 fingerprint: %s\n",
         server->fingerprint().c_str());
   if (!local && !arguments.tls)
-    std::printf("warning: browsers give no camera to a page that is not secure: add --tls\n");
+    std::printf("warning: browsers deny the camera to pages without https: add --tls\n");
   std::fflush(stdout);
   while (!Interrupted()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -94,45 +96,46 @@ int Phone(const PhoneArguments& arguments) {
 }  // namespace
 
 void AddPhoneCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("phone", "Serve the page for phones: SLAM in the browser");
+  CLI::App* command =
+      app.add_subcommand("phone", "Serve the page that runs SLAM in a phone's browser");
   auto arguments = std::make_shared<PhoneArguments>();
   command
-      ->add_option("--port", arguments->port, "Port to listen on (8090, or the next that is free)")
+      ->add_option("--port", arguments->port,
+                   "Port to listen on; default: 8090, or the next free one")
       ->type_name("PORT");
   command
       ->add_option("--host", arguments->host,
-                   "Address to listen on (127.0.0.1: this machine only; 0.0.0.0: all); any "
-                   "other than this machine's own gives an address with a secret in it")
+                   "Address to listen on; default: 127.0.0.1, reachable from this machine only; "
+                   "0.0.0.0: all addresses. Other machines need the secret in the printed address")
       ->type_name("ADDRESS");
-  command->add_flag("--tls", arguments->tls,
-                    "https, with a certificate made on the spot: phones' browsers give the camera "
-                    "to secure pages only");
-  command->add_flag("--connected", arguments->connected,
-                    "Pages may send their pictures here, and this computer does the work: for old "
-                    "phones");
+  command->add_flag(
+      "--tls", arguments->tls,
+      "Use https with a self-signed certificate: browsers allow the camera only on https pages");
+  command->add_flag(
+      "--connected", arguments->connected,
+      "Let pages send their images to this computer, which processes them: for slow phones");
   command
       ->add_option("--core", arguments->core,
-                   "Folder of the core as WebAssembly (scripts/wasm/build; default: beside the "
-                   "program, or build-wasm of the tree it was built in)")
+                   "Folder of the WebAssembly core that scripts/wasm/build builds; default: that "
+                   "of the installation or of the source tree")
       ->type_name("FOLDER");
   command
-      ->add_option(
-          "--out", arguments->out,
-          "With --connected: folder for results. Each session's map, trajectory and points "
-          "get a new folder in it (session-1, session-2, …), when the page has been away "
-          "for five minutes or the program ends")
+      ->add_option("--out", arguments->out,
+                   "With --connected: folder for the results. The map, trajectory and points of "
+                   "each session are written to a new folder in it (session-1, session-2, …) when "
+                   "the page has been disconnected for five minutes or the program ends")
       ->type_name("FOLDER");
-  command->add_option("--set", arguments->set, "With --connected: a setting, as for run")
+  command
+      ->add_option("--set", arguments->set,
+                   "With --connected: change one setting, as for `alidade run`")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command->footer(
-      "\nExamples:\n"
-      "  alidade phone                                  on this machine: http://127.0.0.1:8090/\n"
-      "  alidade phone --host 0.0.0.0 --tls             for a phone in the same network: scan the "
-      "code\n"
-      "  alidade phone --host 0.0.0.0 --tls --connected --out maps\n"
-      "                                                 the same, and the work is done here\n"
-      "\nPrints the address, and goes on until Ctrl-C. docs/guides/phone.md tells the rest.");
+      "\nExamples:\n  alidade phone                                  on this machine: "
+      "http://127.0.0.1:8090/\n  alidade phone --host 0.0.0.0 --tls             for a phone in the "
+      "same network: scan the code\n  alidade phone --host 0.0.0.0 --tls --connected --out maps\n  "
+      "                                               the same, with processing on this "
+      "computer\n\nPrints the address and runs until Ctrl-C (docs/guides/phone.md).");
   command->callback([arguments, &action] { action = [arguments] { return Phone(*arguments); }; });
 }
 

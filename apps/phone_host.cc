@@ -84,7 +84,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   // A page takes its seat; one that is there leaves.
   int Sit(FrameTell tell, bool resumed) {
     const std::lock_guard lock(mutex_);
-    if (tell_) tell_({Text({{"error", "another page goes on with this session"}})}, true);
+    if (tell_) tell_({Text({{"error", "another page has taken over this session"}})}, true);
     tell_ = std::move(tell);
     tell_({Text({{"welcome", true}, {"last", last_}, {"resumed", resumed}})}, false);
     whole_ = true;
@@ -111,7 +111,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     if (seat != seat_ || !tell_) return;
     SentFrame frame;
     if (bytes.size() <= kFrameHead) {
-      tell_({Text({{"error", "an image is 16 bytes and a JPEG"}})}, true);
+      tell_({Text({{"error", "an image message has 16 bytes of header and a JPEG"}})}, true);
       return;
     }
     std::memcpy(&frame.number, bytes.data(), sizeof(frame.number));  // little endian, as here
@@ -158,10 +158,10 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   // Nothing a page sends ends the session.
   std::vector<FrameMessage> WorkOn(const SentFrame& frame) {
     try {
-      if (!std::isfinite(frame.time)) return {Skipped(frame.number, "its time is no number")};
+      if (!std::isfinite(frame.time)) return {Skipped(frame.number, "its time is not a number")};
       const cv::Size size = JpegSize(frame.jpeg);
       if (size.width != width_ || size.height != height_)
-        return {Skipped(frame.number, "no JPEG of the size that was told")};
+        return {Skipped(frame.number, "it is not a JPEG of the announced size")};
       const DecodedImage decoded = DecodeJpeg(frame.jpeg, ImageUse::kGray);
       if (!decoded.problem.empty()) return {Skipped(frame.number, decoded.problem)};
       const cv::Mat image = decoded.image.isContinuous() ? decoded.image : decoded.image.clone();
@@ -257,7 +257,7 @@ PhoneHost::PhoneHost(PhoneHostSettings settings) : settings_(std::move(settings)
   if (settings_.out.empty()) return;
   std::error_code error;
   std::filesystem::create_directories(settings_.out, error);
-  if (error) ThrowInput(settings_.out + " cannot be made: " + error.message());
+  if (error) ThrowInput(settings_.out + " cannot be created: " + error.message());
 }
 
 PhoneHost::~PhoneHost() = default;
@@ -298,7 +298,8 @@ std::pair<std::shared_ptr<PhoneSession>, bool> PhoneHost::Find(const std::string
         oldest = it;
     }
     if (oldest == sessions_.end())
-      ThrowInput(std::to_string(settings_.max_sessions) + " pages are served already");
+      ThrowInput(std::to_string(settings_.max_sessions) +
+                 " pages are connected already, which is the limit");
     ended.push_back(std::move(oldest->second));
     sessions_.erase(oldest);
   }
@@ -316,10 +317,10 @@ std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell t
     const int height = given.at("height").get<int>();
     const double fov =
         given.contains("fov") && given["fov"].is_number() ? given["fov"].get<double>() : 0;
-    if (!IsName(name)) ThrowInput("a session is 32 hexadecimal digits");
+    if (!IsName(name)) ThrowInput("session must be 32 hexadecimal digits");
     if (width < 1 || height < 1 || width > settings_.max_pixels / height)
       ThrowInput("images of " + std::to_string(width) + "x" + std::to_string(height) +
-                 " pixels are not taken");
+                 " pixels are not accepted");
     Sessions ended, replaced;  // as in EndAbandoned()
     const std::lock_guard lock(mutex_);
     ended = TakeAbandoned();
@@ -329,7 +330,7 @@ std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell t
   } catch (const Error& error) {
     *problem = error.what();
   } catch (const nlohmann::json::exception&) {
-    *problem = "the first message is JSON: session, width, height, fov";
+    *problem = "the first message must be JSON with session, width, height and fov";
   } catch (const std::exception& error) {
     *problem = error.what();
   }

@@ -28,22 +28,22 @@ int RunAndTell(const RunOptions& options) {
   std::vector<RunWatcher*> watchers = {&progress};
   std::optional<StreamFeed> feed;
   std::unique_ptr<ViewerServer> server;
-  if (options.record || options.viewer) {
+  const std::optional<std::string> record = RecordFileOf(options);
+  if (record || options.viewer) {
     CheckRunOptions(options);
-    feed.emplace("alidade " ALIDADE_VERSION, options.record, SettingsFrom(options).stream);
+    feed.emplace("alidade " ALIDADE_VERSION, record, SettingsFrom(options).stream);
     watchers.push_back(&*feed);
   }
   if (options.viewer) {
-    server =
-        StartViewer(ServeSettingsFor(options.viewer, options.host), &*feed, "", options.source);
-    std::printf("Shown at %s\n", server->address().c_str());
+    server = StartViewer(ServeSettingsFor(options.port, options.host), &*feed, "", options.source);
+    std::printf("Viewer: %s\n", server->address().c_str());
     std::fflush(stdout);
   }
   const int status = Run(options, watchers).status;
-  if (options.record && !options.quiet && feed->frames() > 0)
-    std::printf("The stream takes %.1f MB\n", 1e-6 * static_cast<double>(feed->bytes()));
+  if (record && !options.quiet && feed->frames() > 0)
+    std::printf("The recorded stream has %.1f MB\n", 1e-6 * static_cast<double>(feed->bytes()));
   if (server && isatty(STDOUT_FILENO) != 0) {
-    std::printf("Still shown at %s until Ctrl-C\n", server->address().c_str());
+    std::printf("Viewer still at %s; Ctrl-C ends\n", server->address().c_str());
     std::fflush(stdout);
     while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
@@ -53,8 +53,8 @@ int RunAndTell(const RunOptions& options) {
 }  // namespace
 
 void AddRunCommand(CLI::App& app, Action& action) {
-  CLI::App* command =
-      app.add_subcommand("run", "Track a recording, video or camera and map what it sees");
+  CLI::App* command = app.add_subcommand(
+      "run", "Estimate the trajectory of a recording, video or live camera, and a map");
   auto options = std::make_shared<RunOptions>();
   AddRunOptions(*command, *options);
   command->callback([options, &action] { action = [options] { return RunAndTell(*options); }; });
@@ -62,7 +62,7 @@ void AddRunCommand(CLI::App& app, Action& action) {
 
 void AddLocalizeCommand(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("localize", "Find the poses of a recording in a saved map");
+      app.add_subcommand("localize", "Estimate the poses of a recording in a saved map");
   auto options = std::make_shared<RunOptions>();
   AddLocalizeOptions(*command, *options);
   command->callback([options, &action] { action = [options] { return RunAndTell(*options); }; });

@@ -7,20 +7,20 @@ namespace {
 
 constexpr char kExamples[] =
     "\nExamples:\n"
-    "  alidade run my_recording                     best sensor the recording has\n"
+    "  alidade run my_recording                     uses depth or stereo if there is any\n"
     "  alidade run \"synth:desk?seed=3\" --sensor mono\n"
-    "  alidade run walk.mp4                         a video: its camera is found first\n"
-    "  alidade run walk.mp4 --fov 70 --out walk     a video, field of view known\n"
+    "  alidade run walk.mp4                         a video: its camera is calibrated first\n"
+    "  alidade run walk.mp4 --fov 70 --out walk     a video with a known field of view\n"
     "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
-    "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   these topics\n"
-    "  alidade run my_recording --viewer            watch it in a browser\n"
-    "  alidade run my_recording --record run.mcap   for Foxglove, Lichtblick, Rerun, ros2 bag "
+    "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   with these topics\n"
+    "  alidade run my_recording --viewer            watch the run in a browser\n"
+    "  alidade run my_recording --record-to a.mcap  for Foxglove, Lichtblick, Rerun, ros2 bag "
     "play\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
-    "  alidade run my_recording --semidense         the shape of the place as well\n"
+    "  alidade run my_recording --semidense         also estimates semi-dense depth\n"
     "  alidade run more --load alidade-out/my_recording/map.alidade\n"
     "  alidade run my_recording --set tracker.extractor.features=1500 --first 100 --last 400\n"
-    "\nLeaves trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more in "
+    "\nWrites trajectory.txt, keyframes.txt, landmarks.ply, stats.json, report.html and more to "
     "--out;\nwith --semidense also semidense.ply, semidense.png and depth/ "
     "(docs/reference/run-folder.md).";
 
@@ -28,95 +28,103 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
   command
       .add_option(
           "SOURCE", options.source,
-          "Folder (TUM RGB-D, EuRoC, KITTI, images), video file, ROS recording (.bag, .db3, "
-          ".mcap, rosbag2 folder; ?image=TOPIC&depth=TOPIC... chooses), camera:0 or "
-          "synth:SCENE?frames=N&...")
+          "A folder (TUM RGB-D, EuRoC, KITTI, images), a video file, a ROS recording (.bag, .db3, "
+          ".mcap or rosbag2 folder; ?image=TOPIC&depth=TOPIC... selects topics), a live camera "
+          "(camera:0) or a rendered scene (synth:SCENE?frames=N&...)")
       ->required()
       ->type_name("PATH");
   command
       .add_option("--sensor", options.sensor,
-                  "What to use of the recording; default: the best it has")
+                  "Which images to use; default: with depth or stereo if the recording has them")
       ->type_name("mono|stereo|rgbd");
   command
       .add_option("--camera", options.camera_file,
-                  "Calibration (camera.yaml) instead of the recording's own")
+                  "Calibration file (camera.yaml), used instead of the recording's own calibration")
       ->type_name("FILE");
   command
       .add_option("--fov", options.fov,
-                  "Horizontal field of view, degrees, instead of a calibration; ~70: a guess to "
-                  "begin with")
+                  "Horizontal field of view in degrees, used instead of a calibration; ~70: a "
+                  "rough value, with which calibration starts")
       ->type_name("DEGREES");
-  command.add_flag("--calibrate-first,!--no-calibrate-first", options.calibrate_first,
-                   "Find a camera that nothing is known of by playing its recording beforehand, as "
-                   "long as it takes (on; one camera only); live cameras, and with no-, while the "
-                   "map grows");
+  command.add_flag(
+      "--calibrate-first,!--no-calibrate-first", options.calibrate_first,
+      "Estimate an unknown camera from the whole recording before the run (default; one camera "
+      "only). Live cameras, and --no-calibrate-first: estimate it during the run");
   command
       .add_option("--profile", options.profile,
-                  "desktop (1000 features, full size) or phone (500, 400 pixels wide)")
+                  "desktop: 1000 features per image, full size; phone: 500 features, images 400 "
+                  "pixels wide")
       ->type_name("desktop|phone");
-  command.add_option("--config", options.config, "YAML file of settings")->type_name("FILE");
-  command.add_option("--set", options.settings, "One setting; may be given many times")
+  command.add_option("--config", options.config, "YAML file with settings")->type_name("FILE");
+  command
+      .add_option("--set", options.settings,
+                  "Change one setting (`alidade settings` lists them); may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);
   command
       .add_option("--schedule", options.schedule,
-                  "inline (same result every time) or threaded (live); default: inline for "
-                  "recordings")
+                  "inline: every frame is finished before the next one, with the same result each "
+                  "time (default for recordings); threaded: mapping runs in separate threads "
+                  "(default for live cameras)")
       ->type_name("inline|threaded");
   command
       .add_option("--rate", options.rate,
-                  "How fast, FPS in frames per second; default: realtime when threaded")
+                  "Playback speed: realtime, max or frames per second; default: max if inline, "
+                  "realtime if threaded")
       ->type_name("realtime|max|FPS");
-  command.add_option("--repeat", options.repeat, "Play forth and back this many times")
-      ->type_name("N");
-  command.add_option("--threads", options.threads, "Threads for parallel loops; 0 = all cores")
-      ->type_name("N");
-  command.add_option("--seed", options.seed, "Seed of every random choice")->type_name("N");
   command
-      .add_option("--record", options.record,
-                  "Keep what happened, to be looked at again: `alidade view RESULT` (run.stream "
-                  "among the results, or FILE); FILE.mcap is for Foxglove, Rerun and ros2 instead")
-      ->type_name("FILE")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--repeat", options.repeat,
+                  "Play the recording forward, then backward, this many times")
+      ->type_name("N");
+  command.add_option("--threads", options.threads, "Threads for parallel loops; 0: one per core")
+      ->type_name("N");
+  command.add_option("--seed", options.seed, "Seed of all random numbers")->type_name("N");
+  command.add_flag("--record", options.record,
+                   "Record the run for `alidade view`, as run.stream in the result folder");
   command
-      .add_option("--viewer", options.viewer,
-                  "Show the run in a browser while it goes on; prints the address (PORT: 8090, or "
-                  "the next that is free)")
-      ->type_name("PORT")
-      ->expected(0, 1)
-      ->default_str("");
+      .add_option("--record-to", options.record_to,
+                  "Record the run to FILE instead; FILE.mcap: for Foxglove, Rerun and ros2")
+      ->type_name("FILE");
+  command.add_flag("--viewer", options.viewer,
+                   "Show the run in a browser while it is processed, and print the address");
+  command
+      .add_option("--port", options.port,
+                  "Port on which the viewer listens; default: 8090, or the next free one")
+      ->type_name("PORT");
   command
       .add_option("--host", options.host,
-                  "Address the viewer listens on (127.0.0.1: this machine only)")
+                  "Address on which the viewer listens; default: 127.0.0.1, reachable from this "
+                  "machine only")
       ->type_name("ADDRESS");
   command
-      .add_option(
-          "--out", options.out,
-          options.localise
-              ? "Folder for the results (alidade-out/NAME-localized, or -2, -3, … where that "
-                "is another source's)"
-              : "Folder for the results (alidade-out/NAME, or NAME-2, NAME-3, … where that "
-                "is another source's)")
+      .add_option("--out", options.out,
+                  options.localise
+                      ? "Folder for the results; default: alidade-out/NAME-localized, or "
+                        "NAME-localized-2, … if that holds results of another source"
+                      : "Folder for the results; default: alidade-out/NAME, or NAME-2, NAME-3, … "
+                        "if that holds results of another source")
       ->type_name("FOLDER");
   command.add_flag("--overwrite", options.overwrite,
-                   "Replace the results in the folder, even those of another source, of a longer "
-                   "run, or of one that ended better");
-  command.add_option("--first", options.first, "First frame, counted from 0")->type_name("N");
-  command.add_option("--last", options.last, "Last frame, included")->type_name("N");
+                   "Replace existing results, even those of another source, of a longer run or of "
+                   "a more successful one");
+  command
+      .add_option("--first", options.first, "Index of the first frame to process, counted from 0")
+      ->type_name("N");
+  command.add_option("--last", options.last, "Index of the last frame to process")->type_name("N");
   command
       .add_option("--dynamics", options.dynamics,
-                  "auto (as off until much of the picture moves, then as geometry), off, geometry "
-                  "(leave out what moves) or full (and what a detector knows to)")
+                  "Moving objects. off: no special treatment; geometry: found by their motion and "
+                  "left out; full: also found by a detector; auto (default): off until much of the "
+                  "image moves, then geometry")
       ->type_name("auto|off|geometry|full");
   command
       .add_option("--detector", options.detector,
-                  "Network that finds people and other movers (YOLO, .onnx); implies "
-                  "--dynamics full")
+                  "Neural network that detects people and other objects that can move (YOLO, "
+                  ".onnx); implies --dynamics full")
       ->type_name("FILE");
   command.add_flag("--write-masks", options.write_masks,
-                   "What was left out as moving, a picture for every frame, in mask/");
-  command.add_flag("--quiet", options.quiet, "Say nothing but errors");
+                   "Write the mask of moving objects of each frame to mask/");
+  command.add_flag("--quiet", options.quiet, "Print errors only");
 }
 
 }  // namespace
@@ -124,29 +132,25 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
 void AddLocalizeOptions(CLI::App& command, RunOptions& options) {
   options.localise = true;
   AddSharedOptions(command, options);
-  command.add_option("--map", options.load, "Map to find poses in (map.alidade); stays as it is")
+  command.add_option("--map", options.load, "Map to localize in (map.alidade); it is not changed")
       ->required()
       ->type_name("FILE");
   command
-      .add_flag("--semidense", options.semidense,
-                "Of `run` only: nothing is mapped here that could have shape")
+      .add_flag("--semidense", options.semidense, "Not available: localize does not extend the map")
       ->group("");
   command.footer(
-      "\nExamples:\n"
-      "  alidade run monday --out monday_map\n"
-      "  alidade localize tuesday --map monday_map/map.alidade --out tuesday\n"
-      "\nLeaves the files of `alidade run` in --out, but no map. Poses are in the map's frame.");
+      "\nExamples:\n  alidade run monday --out monday_map\n  alidade localize tuesday --map "
+      "monday_map/map.alidade --out tuesday\n\nWrites the files of `alidade run` to --out, except "
+      "a map. The poses refer to the map's world frame.");
 }
 
 void AddRunOptions(CLI::App& command, RunOptions& options) {
   AddSharedOptions(command, options);
-  command
-      .add_option("--load", options.load,
-                  "Go on in a saved map (map.alidade) and add to it what is new")
+  command.add_option("--load", options.load, "Continue a saved map (map.alidade) and extend it")
       ->type_name("FILE");
-  command.add_flag(
-      "--semidense", options.semidense,
-      "Map shape too: depth at every pixel with structure, as semidense.ply and depth/");
+  command.add_flag("--semidense", options.semidense,
+                   "Also estimate semi-dense depth, at all pixels with enough gradient; writes "
+                   "semidense.ply and depth/");
   command.footer(kExamples);
 }
 

@@ -6,6 +6,7 @@
 
 #include "alidade/run/calibration/find_camera.h"
 #include "alidade/run/results/run_results.h"
+#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {
@@ -35,6 +36,13 @@ std::string Clock(double seconds) {
   return text;
 }
 
+// As typed in a shell: in quotes only if needed.
+std::string InShell(const std::string& path) {
+  constexpr char kPlain[] =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+=:,@%";
+  return path.find_first_not_of(kPlain) == std::string::npos ? path : ShellQuoted(path);
+}
+
 }  // namespace
 
 void RunProgress::Begin(const WatchedRun& run, const std::string& folder) {
@@ -46,7 +54,7 @@ void RunProgress::Begin(const WatchedRun& run, const std::string& folder) {
   terminal_.SetProgress("");
   if (!run.setup.source.told.empty()) std::printf("%s\n", run.setup.source.told.c_str());
   if (camera_found)
-    std::printf("Camera found: %s\n", CameraInWords(run.camera.found->estimate).c_str());
+    std::printf("Camera estimated: %s\n", CameraInWords(run.camera.found->estimate).c_str());
   std::fflush(stdout);
 }
 
@@ -55,7 +63,7 @@ void RunProgress::Calibrating(const CalibrateProgress& progress) {
   const double now = clock_.Milliseconds();
   if (now - shown_at_ < kInterval) return;
   shown_at_ = now;
-  std::string line = "finding the camera: pass " + std::to_string(progress.pass) + ", frame " +
+  std::string line = "calibrating the camera: pass " + std::to_string(progress.pass) + ", frame " +
                      std::to_string(progress.frames);
   if (progress.estimate.observations > 0) line += ", " + FovInWords(progress.estimate);
   terminal_.SetProgress(line);
@@ -88,7 +96,7 @@ void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
 void RunProgress::Finishing() {
   if (!terminal_.shows_progress()) return;
   terminal_.SetProgress("finishing: " + std::to_string(run_->slam.Snapshot().keyframe_count()) +
-                        " keyframes are adjusted as a whole");
+                        " keyframes in the final adjustment");
 }
 
 void RunProgress::End(const RunSummary& summary, const std::string& folder) {
@@ -96,9 +104,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
   const SlamSettings& settings = run_->setup.settings.slam;
   std::string shape;
   if (summary.shape_points > 0) {
-    shape = ", " + std::to_string(summary.shape_points) + " points of shape";
+    shape = ", " + std::to_string(summary.shape_points) + " semi-dense points";
   } else if (settings.semidense.enabled && !settings.localise) {
-    shape = ", no shape (too little was seen from new keyframes)";
+    shape = ", no semi-dense depth (too few keyframes with parallax)";
   }
   // Where it began and what went wrong, when it is not all of the recording.
   std::string tracked;
@@ -116,6 +124,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       settings.sensor == Sensor::kMono ? "map units" : "m",
       summary.maps > 1 ? " in the largest" : "",
       run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+  // A localization leaves no map to show.
+  const std::string view = settings.localise ? "" : ", or: alidade view " + InShell(folder);
+  std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
 }
 
 }  // namespace alidade

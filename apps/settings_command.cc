@@ -1,9 +1,13 @@
 // `alidade settings`: what can be set, with value, range, unit and meaning.
+#include <sys/ioctl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -39,29 +43,57 @@ std::vector<SettingInfo> Chosen(const std::vector<SettingInfo>& all,
   }
   if (chosen.empty()) {
     const OldName old = FindOldName(options.name);
-    if (old.dropped) ThrowUsage("setting " + options.name + " has no name any more");
-    ThrowUsage("no setting or group is called '" + options.name + "'" +
+    if (old.dropped) ThrowUsage("setting " + options.name + " no longer exists");
+    ThrowUsage("there is no setting or group '" + options.name + "'" +
                (old.now.empty() ? DidYouMean(options.name, names)
                                 : "; it is now called '" + old.now + "'"));
   }
   return chosen;
 }
 
-void PrintTable(const std::vector<SettingInfo>& settings) {
-  constexpr size_t kWidest = 20;  // columns of a value; lists of classes are longer
-  size_t name = 0, value = 0, range = 0;
-  const auto with_unit = [](const SettingInfo& info) {
-    return info.range + (info.range.empty() || info.unit.empty() ? "" : " ") + info.unit;
-  };
-  for (const SettingInfo& info : settings) {
-    name = std::max(name, info.name.size());
-    value = std::max(value, std::min(info.value.size(), kWidest));
-    range = std::max(range, with_unit(info).size());
+// Columns of the terminal; 100 if the output is a file or a pipe.
+size_t OutputWidth() {
+  constexpr size_t kUnknown = 100, kNarrowest = 60;
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return kUnknown;
+  return std::max<size_t>(size.ws_col, kNarrowest);
+}
+
+// The words of `text` in lines of at most `width` bytes, all but the first one indented.
+std::string Wrapped(const std::string& text, size_t width, size_t indent) {
+  std::string wrapped;
+  size_t used = 0;
+  std::istringstream words(text);
+  for (std::string word; words >> word; used += word.size()) {
+    if (used > 0 && used + 1 + word.size() > width) {
+      wrapped += "\n" + std::string(indent, ' ');
+      used = 0;
+    } else if (used > 0) {
+      wrapped += ' ';
+      ++used;
+    }
+    wrapped += word;
   }
+  return wrapped;
+}
+
+// A line with name, value and range of each setting, and its meaning below.
+void PrintTable(const std::vector<SettingInfo>& settings) {
+  constexpr size_t kIndent = 4, kLongestColumn = 48;
+  size_t name = 0, value = 0;
   for (const SettingInfo& info : settings) {
-    std::printf("%-*s  %-*s  %-*s  %s\n", static_cast<int>(name), info.name.c_str(),
-                static_cast<int>(value), info.value.c_str(), static_cast<int>(range),
-                with_unit(info).c_str(), info.meaning.c_str());
+    name = std::max(name, std::min(info.name.size(), kLongestColumn));
+    value = std::max(value, std::min(info.value.size(), kLongestColumn / 4));
+  }
+  const size_t width = OutputWidth();
+  for (const SettingInfo& info : settings) {
+    const std::string range =
+        info.range + (info.range.empty() || info.unit.empty() ? "" : " ") + info.unit;
+    std::printf("%-*s  %-*s%s%s\n", static_cast<int>(name), info.name.c_str(),
+                range.empty() ? 0 : static_cast<int>(value), info.value.c_str(),
+                range.empty() ? "" : "  ", range.c_str());
+    std::printf("%*s%s\n", static_cast<int>(kIndent), "",
+                Wrapped(info.meaning, width - kIndent, kIndent).c_str());
   }
 }
 
@@ -95,27 +127,28 @@ int SettingsCommand(const SettingsOptions& options) {
 
 void AddSettingsCommand(CLI::App& app, Action& action) {
   CLI::App* command =
-      app.add_subcommand("settings", "What can be set, with value, range, unit and meaning");
+      app.add_subcommand("settings", "List the settings with value, range, unit and meaning");
   const auto options = std::make_shared<SettingsOptions>();
-  command->add_option("NAME", options->name, "A setting, or a group such as tracker")
+  command->add_option("NAME", options->name, "Setting, or group such as tracker")
       ->type_name("NAME");
-  command->add_flag("--all", options->all, "Expert settings as well");
+  command->add_flag("--all", options->all, "Also list expert settings");
   command->add_flag("--json", options->as_json, "Print JSON instead of a table");
-  command->add_option("--profile", options->run.profile, "Values of a profile")
+  command->add_option("--profile", options->run.profile, "Show the values of a profile")
       ->type_name("desktop|phone");
-  command->add_option("--config", options->run.config, "Values with a YAML file of settings")
+  command->add_option("--config", options->run.config, "Show the values after this YAML file")
       ->type_name("FILE");
-  command->add_option("--set", options->run.settings, "Values with one setting changed; repeatable")
+  command
+      ->add_option("--set", options->run.settings,
+                   "Show the values after this change; may be repeated")
       ->type_name("NAME=VALUE")
       ->allow_extra_args(false);  // one value each, so that NAME may follow
   command->add_flag("--markdown", options->markdown, "Print docs/reference/settings.md")->group("");
   command->footer(
-      "\nPublic settings are stable. Those that begin with `expert.` may change in any version.\n"
-      "\nExamples:\n"
-      "  alidade settings                            the public ones\n"
-      "  alidade settings tracker                    all of a group\n"
-      "  alidade settings loop.min_found             one\n"
-      "  alidade settings --config mine.yaml         with the values of a file");
+      "\nPublic settings are stable. Those that begin with `expert.` may change in any "
+      "version.\n\nExamples:\n  alidade settings                            public settings\n  "
+      "alidade settings tracker                    all settings of a group\n  alidade settings "
+      "loop.min_found             one setting\n  alidade settings --config mine.yaml         with "
+      "the values of a file");
   command->callback(
       [options, &action] { action = [options] { return SettingsCommand(*options); }; });
 }

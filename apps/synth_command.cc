@@ -85,9 +85,7 @@ int RenderAll(SynthArguments arguments) {
   CheckThreads(arguments.threads);
   SetThreadCount(arguments.threads);
   if (format == SynthFormat::kKitti && settings.distortion) {
-    ThrowUsage(
-        "--distortion: KITTI recordings are rectified and cannot say how a lens distorts (--format "
-        "tum or euroc)");
+    ThrowUsage("--distortion requires --format tum or euroc: KITTI recordings are rectified");
   }
   if (format != SynthFormat::kTum && settings.fisheye)
     ThrowUsage("--fisheye needs --format tum: the others are stereo");
@@ -128,63 +126,70 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   SynthSettings& settings = arguments->settings;
   std::string names;
   for (const std::string& name : SceneNames()) names += (names.empty() ? "" : "|") + name;
-  command->add_option("SCENE", settings.scene, "The scene")->required()->type_name(names);
+  command->add_option("SCENE", settings.scene, "Scene to render")->required()->type_name(names);
   command
       ->add_option("OUT", arguments->out,
-                   "Folder to write to: new, empty, or an earlier recording of this command")
+                   "Folder to write to: new, empty, or written by this command before")
       ->required()
       ->type_name("FOLDER");
   command
-      ->add_option("--frames", arguments->frames,
-                   "How many; default: once round the scene's path (room 600, street 1080 …)")
+      ->add_option(
+          "--frames", arguments->frames,
+          "Number of frames; default: once along the path of the scene (room 600, street 1080, …)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command
       ->add_option("--path", settings.path,
-                   "walk: the scene's own; turn: on the spot; turn-walk: 4 s on the spot, then "
-                   "the scene's own; still: as on a tripod (walk)")
+                   "Camera motion. walk: the path of the scene; turn: pure rotation; turn-walk: 4 "
+                   "s of pure rotation, then the path of the scene; still: none. Default: walk")
       ->type_name("walk|turn|turn-walk|still");
-  command->add_option("--speed", settings.speed, "Times the scene's own (1)");
-  command->add_option("--arm", settings.arm,
-                      "Metres from the axis to the camera, with --path turn (0)");
-  command->add_option("--actors", settings.actors, "People walking about (0)");
-  command->add_option("--things", settings.things,
-                      "Cups moved about by hand, in scenes with a table: room, desk (0)");
+  command->add_option("--speed", settings.speed,
+                      "Speed of the camera relative to the scene's default; default: 1");
+  command->add_option(
+      "--arm", settings.arm,
+      "With --path turn: distance of the camera from the axis of rotation in meters; default: 0");
+  command->add_option("--actors", settings.actors, "Number of walking people; default: 0");
+  command->add_option(
+      "--things", settings.things,
+      "Number of cups that are moved by hand, in scenes with a table (room, desk); default: 0");
   command->add_option("--noise", settings.noise,
-                      "Standard deviation of the image noise, grey levels (4)");
-  command->add_option("--light", settings.light,
-                      "Share of daylight: below 0.25 pictures are dark; noise shows more (1)");
+                      "Standard deviation of the image noise in gray levels; default: 4");
+  command->add_option(
+      "--light", settings.light,
+      "Brightness as a share of daylight: below 0.25 images are dark and noisier; default: 1");
   command->add_flag("--blur{20}", settings.blur,
-                    "Motion blur of a shutter open for 20 ms, or --blur=MS");
-  command->add_flag("--exposure", settings.exposure, "Brightness and contrast drift slowly");
+                    "Motion blur with an exposure time of 20 ms, or of MS with --blur=MS");
+  command->add_flag("--exposure", settings.exposure, "Let brightness and contrast drift slowly");
   command->add_flag("--distortion", settings.distortion,
-                    "A lens with radial and tangential distortion");
-  command->add_option("--k1", settings.k1, "A lens with radial distortion alone (0)");
-  command->add_flag("--fisheye", settings.fisheye,
-                    "An equidistant lens: as many pixels for each degree (--format tum)");
+                    "Lens with radial and tangential distortion");
+  command->add_option("--k1", settings.k1, "Radial distortion k1 of the lens; default: 0");
+  command->add_flag("--fisheye", settings.fisheye, "Equidistant fisheye lens (--format tum only)");
   command->add_flag("--rolling{16}", settings.rolling_shutter,
-                    "Rolling shutter, 16 ms from first to last row");
+                    "Rolling shutter with a readout time of 16 ms");
   command->add_option("--rolling-shutter", settings.rolling_shutter,
-                      "The same with another number of milliseconds (0)");
-  command->add_flag("--stereo", settings.stereo,
-                    "A second camera, 0.11 m to the right (implied by euroc and kitti)");
-  command->add_option("--format", arguments->format, "Default: tum, with --stereo euroc")
+                      "Rolling shutter with this readout time in milliseconds; default: 0");
+  command->add_flag(
+      "--stereo", settings.stereo,
+      "Add a second camera, 0.11 m to the right (implied by --format euroc and kitti)");
+  command
+      ->add_option("--format", arguments->format,
+                   "Format of the recording; default: tum, with --stereo euroc")
       ->type_name("tum|euroc|kitti");
-  command->add_option("--seed", settings.seed, "Of textures, clutter, shake, noise and people (1)");
-  command->add_option("--width", settings.width, "Pixels (640)");
-  command->add_option("--height", settings.height, "Pixels (480)");
-  command->add_option("--fov", settings.fov, "Horizontal field of view, degrees (62.7)");
-  command->add_option("--fps", settings.fps, "Frames per second (30)");
-  command->add_option("--held", settings.held,
-                      "Share of frames that come .2 to 1 s late, as a busy phone's do (0)");
-  command->add_option("--threads", arguments->threads, "Threads for rendering; 0 = all cores");
-  command->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+  command->add_option("--seed", settings.seed,
+                      "Seed of textures, clutter, shake, noise and people; default: 1");
+  command->add_option("--width", settings.width, "Width of the images in pixels; default: 640");
+  command->add_option("--height", settings.height, "Height of the images in pixels; default: 480");
+  command->add_option("--fov", settings.fov, "Horizontal field of view in degrees; default: 62.7");
+  command->add_option("--fps", settings.fps, "Frames per second; default: 30");
+  command->add_option(
+      "--held", settings.held,
+      "Share of frames that are late by 0.2 to 1 s, as on a busy phone; default: 0");
+  command->add_option("--threads", arguments->threads, "Threads for rendering; 0: one per core");
+  command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
-      "\nExamples:\n"
-      "  alidade synth room my_room --frames 300\n"
-      "  alidade synth corridor people --actors 3 --blur --format euroc\n"
-      "\nThe same scene needs no folder at all as a source: alidade run "
-      "\"synth:room?frames=300\".");
+      "\nExamples:\n  alidade synth room my_room --frames 300\n  alidade synth corridor people "
+      "--actors 3 --blur --format euroc\n\n`alidade run` can also render while it runs, without a "
+      "folder: alidade run \"synth:room?frames=300\".");
   command->callback(
       [arguments, &action] { action = [arguments] { return RenderAll(*arguments); }; });
 }

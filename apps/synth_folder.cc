@@ -74,11 +74,11 @@ SynthFolder::SynthFolder(const std::string& path) : path_(path) {
     ThrowInput(path + " is a file, not a folder");
   if (fs::exists(status) && !fs::exists(path + "/" + kSynthMarker) && !HoldsNothing(path)) {
     ThrowInput(path +
-               " is not empty and holds no earlier recording of `alidade synth`: give another "
-               "folder, or empty this one");
+               " is not empty and was not written by `alidade synth`: choose another folder, or "
+               "empty this one");
   }
   fs::create_directories(path, error);
-  if (error) ThrowInput("cannot make the folder " + path + ": " + error.message());
+  if (error) ThrowInput("cannot create the folder " + path + ": " + error.message());
   lock_.emplace(path + "/" + kSynthLock, path + ": ");
   for (const std::string& left : StaleTemporaries(path + "/" + kSynthDraft))
     fs::remove_all(left, error);

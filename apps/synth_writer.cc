@@ -51,7 +51,7 @@ class FolderWriter : public SynthWriter {
       std::error_code error;
       fs::create_directories(folder_ + "/" + part, error);
       if (error)
-        ThrowInput("cannot make the folder " + folder_ + "/" + part + ": " + error.message());
+        ThrowInput("cannot create the folder " + folder_ + "/" + part + ": " + error.message());
     }
   }
 
@@ -172,9 +172,7 @@ class KittiWriter : public FolderWriter {
   KittiWriter(const std::string& folder, const Camera& camera)
       : FolderWriter(folder, camera, {"image_0", "image_1", "depth", "mask"}) {
     if (camera.HasDistortion())
-      ThrowUsage(
-          "--distortion: KITTI recordings are rectified and cannot say how a lens distorts "
-          "(--format tum or euroc)");
+      ThrowUsage("--distortion requires --format tum or euroc: KITTI recordings are rectified");
   }
 
   void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {

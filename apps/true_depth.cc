@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 // The `synth:` source that gives the frames of a recording of `alidade synth`.
 std::string SynthSourceOf(const std::string& marker) {
   const auto about = nlohmann::json::parse(ReadFile(marker), nullptr, false);
-  const auto damaged = [&] { ThrowInput(marker + " does not say how the frames were rendered"); };
+  const auto damaged = [&] {
+    ThrowInput(marker + " does not contain how the frames were rendered");
+  };
   if (!about.is_object() || !about.contains("settings")) damaged();
   const auto& settings = about["settings"];
   if (!settings.is_object() || !settings.contains("scene") || !settings["scene"].is_string())

@@ -62,10 +62,9 @@ std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& pa
 
 int View(const ViewArguments& arguments) {
   if (IsMcap(arguments.what))
-    ThrowInput(
-        arguments.what +
-        ": MCAP files are for Foxglove, Lichtblick, Rerun and ros2 (docs/guides/mcap.md); `alidade "
-        "view` shows results, run.stream and maps");
+    ThrowInput(arguments.what +
+               ": MCAP files are for Foxglove, Lichtblick, Rerun and ros2 (docs/guides/mcap.md); "
+               "`alidade view` shows result folders, run.stream and maps");
   const std::string recorded = StreamIn(arguments.what);
   std::unique_ptr<StillHub> hub;
   if (recorded.empty()) {
@@ -76,7 +75,7 @@ int View(const ViewArguments& arguments) {
   CatchInterrupts();
   const auto server = StartViewer(ServeSettingsFor(arguments.port, arguments.host), hub.get(),
                                   recorded, arguments.what);
-  std::printf("%s is shown at %s (Ctrl-C ends)\n", arguments.what.c_str(),
+  std::printf("Viewer of %s: %s (Ctrl-C ends)\n", arguments.what.c_str(),
               server->address().c_str());
   std::fflush(stdout);
   while (!Interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -86,27 +85,27 @@ int View(const ViewArguments& arguments) {
 }  // namespace
 
 void AddViewCommand(CLI::App& app, Action& action) {
-  CLI::App* command = app.add_subcommand("view", "Look at a run, or a map, in a browser");
+  CLI::App* command = app.add_subcommand("view", "Show a run or a map in a browser");
   auto arguments = std::make_shared<ViewArguments>();
   command
       ->add_option("WHAT", arguments->what,
-                   "Folder of results, a recorded stream (run.stream) or a map (map.alidade)")
+                   "Result folder, recorded stream (run.stream) or map (map.alidade)")
       ->required()
       ->type_name("PATH");
   command
-      ->add_option("--port", arguments->port, "Port to listen on (8090, or the next that is free)")
+      ->add_option("--port", arguments->port,
+                   "Port to listen on; default: 8090, or the next free one")
       ->type_name("PORT");
   command
       ->add_option("--host", arguments->host,
-                   "Address to listen on (127.0.0.1: this machine only); any other gives an "
-                   "address with a secret in it")
+                   "Address to listen on; default: 127.0.0.1, reachable from this machine only. "
+                   "Other machines need the secret in the printed address")
       ->type_name("ADDRESS");
   command->footer(
-      "\nExamples:\n"
-      "  alidade run kitchen --record && alidade view alidade-out/kitchen     the run, replayed\n"
-      "  alidade view alidade-out/kitchen/map.alidade                         its map\n"
-      "  alidade view alidade-out/kitchen --host 0.0.0.0                      from another device\n"
-      "\nPrints the address, and goes on until Ctrl-C.");
+      "\nExamples:\n  alidade run kitchen --record && alidade view alidade-out/kitchen     replays "
+      "the run\n  alidade view alidade-out/kitchen/map.alidade                         shows the "
+      "map\n  alidade view alidade-out/kitchen --host 0.0.0.0                      for another "
+      "device\n\nPrints the address and runs until Ctrl-C.");
   command->callback([arguments, &action] { action = [arguments] { return View(*arguments); }; });
 }
 

@@ -12,8 +12,8 @@ ServeSettings ServeSettingsFor(const std::optional<std::string>& port,
   if (port && !port->empty()) {
     const std::optional<double> number = ParseNumber(*port);
     if (!number || *number != static_cast<int>(*number) || *number < 0 || *number > 65535)
-      ThrowUsage("the viewer's port is a number from 0 (any free one) to 65535, not '" + *port +
-                 "'");
+      ThrowUsage("the viewer's port must be a number from 0 (any free port) to 65535, not '" +
+                 *port + "'");
     settings.port = static_cast<int>(*number);
     settings.port_given = true;
   }

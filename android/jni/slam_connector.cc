@@ -78,7 +78,7 @@ ALIDADE_NATIVE(void, nativeClose)(JNIEnv* env, jclass, jlong handle) {
 }
 
 ALIDADE_NATIVE(void, nativeOffer)
-(JNIEnv* env, jclass, jlong handle, jobject plane, jint row_stride, jdouble seconds) {
+(JNIEnv* env, jclass, jlong handle, jdouble seconds, jobject plane, jint row_stride) {
   Guarded(env, [&] {
     const void* pixels = plane == nullptr ? nullptr : env->GetDirectBufferAddress(plane);
     if (pixels == nullptr) alidade::ThrowUsage("a picture comes in a direct ByteBuffer");

@@ -35,9 +35,7 @@ void AddBashValues(const CommandText& command, std::ostream& out) {
     for (const std::string& name : option.names)
       pattern += (pattern.empty() ? "" : " | ") + ShellQuoted(command.path + " " + name);
     std::string does = BashOffers(WordsOf(option), IsPath(option));
-    // A value that may be left out may be followed by anything; one that nobody can guess is
-    // offered nothing.
-    if (does.empty() && option.value_optional) continue;
+    // A value that nobody can guess is offered nothing.
     out << "    " << pattern << ") " << (does.empty() ? ";;" : does) << "\n";
   }
   for (const CommandText& sub : command.commands) AddBashValues(sub, out);

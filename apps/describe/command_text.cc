@@ -39,7 +39,6 @@ OptionText DescribeOption(const CLI::Option& option) {
       text.takes_value && (option.get_expected_max() >= CLI::detail::expected_max_vector_size ||
                            option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll);
   if (text.takes_value) {
-    text.value_optional = option.get_expected_min() == 0;
     text.placeholder = option.get_type_name();
     text.fallback = option.get_default_str();
   }

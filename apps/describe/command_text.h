@@ -14,11 +14,10 @@ struct OptionText {
   std::vector<std::string> names;  // "-h", "--help"; of a positional one its name: "SOURCE"
   bool positional = false;
   bool required = false;
-  bool repeats = false;         // may be given, or goes on, more than once
-  bool takes_value = false;     // false: a flag
-  bool value_optional = false;  // a flag that may have a value
-  std::string placeholder;      // what the value is called: "FILE", "mono|stereo|rgbd"
-  std::string fallback;         // what it is by default; empty: not said
+  bool repeats = false;      // may be given, or goes on, more than once
+  bool takes_value = false;  // false: a flag
+  std::string placeholder;   // what the value is called: "FILE", "mono|stereo|rgbd"
+  std::string fallback;      // what it is by default; empty: not said
   std::string help;
   std::string group;  // heading it stands under
 };

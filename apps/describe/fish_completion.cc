@@ -45,7 +45,7 @@ void AddFishCommand(const CommandText& command, std::ostream& out) {
     out << start;
     for (const std::string& name : option.names)
       out << (name.size() > 2 ? " -l " + name.substr(2) : " -s " + name.substr(1));
-    if (option.takes_value && !option.value_optional) out << (IsPath(option) ? " -r" : " -x");
+    if (option.takes_value) out << (IsPath(option) ? " -r" : " -x");
     if (option.takes_value) out << FishValues(option);
     out << " -d " << FishQuoted(ShortHelp(option.help)) << "\n";
   }

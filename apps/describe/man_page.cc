@@ -62,7 +62,7 @@ void AddManOption(const OptionText& option, std::ostream& out) {
   out << names;
   if (option.takes_value && !option.placeholder.empty()) {
     const std::string value = Italic(option.placeholder);
-    out << (option.value_optional ? " [" + value + "]" : " " + value);
+    out << " " << value;
   }
   if (!option.fallback.empty()) out << " (" << Roff(option.fallback) << ")";
   if (option.repeats) out << " ...";

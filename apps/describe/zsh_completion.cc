@@ -37,7 +37,7 @@ std::string ZshAction(const OptionText& option) {
 
 std::string ZshValue(const OptionText& option) {
   const std::string message = option.placeholder.empty() ? "value" : option.placeholder;
-  return (option.value_optional ? "::" : ":") + ZshEscaped(message) + ":" + ZshAction(option);
+  return ":" + ZshEscaped(message) + ":" + ZshAction(option);
 }
 
 void AddZshOption(const OptionText& option, std::ostream& out) {

@@ -15,7 +15,7 @@ std::string StreamOf(const std::string& what) {
   if (!fs::is_directory(what, error)) return what;
   const std::string file = (fs::path(what) / "run.stream").string();
   if (!fs::exists(file, error))
-    ThrowInput(what + ": holds no run.stream (`alidade run --record` leaves one)");
+    ThrowInput(what + " contains no run.stream (`alidade run --record` writes one)");
   return file;
 }
 

@@ -109,9 +109,9 @@ struct Glfw {
   [[noreturn]] static void Refuse() {
     const char* why = nullptr;
     glfwGetError(&why);
-    ThrowInput(std::string("no window with OpenGL ES 3 can be opened (") +
-               (why ? why : "no reason given") +
-               "); without a screen, `alidade view` shows the run in a browser elsewhere");
+    ThrowInput(std::string("cannot open a window with OpenGL ES 3 (") +
+               (why ? why : "unknown reason") +
+               "); without a screen, `alidade view` shows the run in a browser on another device");
   }
 };
 

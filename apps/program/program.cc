@@ -1,12 +1,14 @@
 #include "program/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/base/error.h"
@@ -38,10 +40,11 @@ std::string HelpOf(const CLI::App& app) {
   return "`" + path + " --help`";
 }
 
-int ParseAndRun(CLI::App& app, const Action& action, int argc, char** argv) {
-  CheckNames(app, std::vector<std::string>(argv + 1, argv + argc));
+int ParseAndRun(CLI::App& app, const Action& action, std::vector<std::string> words) {
+  CheckNames(app, words);
+  std::reverse(words.begin(), words.end());  // as parse() wants them
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::Success& success) {  // --help and --version
     return app.exit(success);
   } catch (const CLI::ParseError& error) {
@@ -57,12 +60,15 @@ int ParseAndRun(CLI::App& app, const Action& action, int argc, char** argv) {
 
 }  // namespace
 
-int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action&)>& add) {
+int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action&)>& add,
+               const RenewWords& renew) {
   CLI::App app;
   Action action;
   try {
     add(app, action);
-    return ParseAndRun(app, action, argc, argv);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (renew) words = renew(app, std::move(words));
+    return ParseAndRun(app, action, std::move(words));
   } catch (const Error& error) {
     return Complain(app, error.what(), static_cast<int>(error.kind()));
   } catch (const std::filesystem::filesystem_error& error) {  // a path that cannot be followed
@@ -72,10 +78,10 @@ int RunProgram(int argc, char** argv, const std::function<void(CLI::App&, Action
   } catch (const std::bad_alloc&) {
     return Complain(app, "out of memory", kBugStatus);
   } catch (const std::exception& error) {
-    return Complain(app, std::string("a bug of ours, please report it: ") + error.what(),
+    return Complain(app, std::string("internal error (a bug, please report it): ") + error.what(),
                     kBugStatus);
   } catch (...) {
-    return Complain(app, "a bug of ours, please report it: unknown exception", kBugStatus);
+    return Complain(app, "internal error (a bug, please report it): unknown exception", kBugStatus);
   }
 }
 

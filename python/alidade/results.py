@@ -10,6 +10,7 @@ from typing import Any, Dict, Optional
 import numpy
 
 from . import _core
+from ._renamed import Renamed
 from .camera import PathLike
 from .errors import InputError
 from .maps import Map, _by_ending
@@ -81,8 +82,7 @@ class Result:
     def stats(self) -> Dict[str, Any]:
         """The content of stats.json."""
         with open(self.file("stats.json"), encoding="utf-8") as file:
-            stats: Dict[str, Any] = json.load(file)
-        return stats
+            return Renamed(json.load(file))
 
     @property
     def map(self) -> Map:

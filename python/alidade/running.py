@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Unio
 
 from . import _core
 from ._log import tell_warnings
+from ._renamed import warn
 from .camera import Camera, PathLike
 from .maps import Map
 from .results import Result
@@ -41,8 +42,9 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         config: Optional[PathLike] = None, settings: Optional[Mapping[str, Any]] = None,
         load: Union[None, PathLike, Map] = None, out: Optional[PathLike] = None, schedule: Optional[str] = None,
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
-        first: int = 0, last: int = -1, record: Union[None, bool, PathLike] = None,
-        viewer: Union[None, bool, int] = None, host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
+        first: int = 0, last: int = -1, record: bool = False, record_to: Optional[PathLike] = None,
+        viewer: bool = False, port: Optional[int] = None, host: Optional[str] = None, write_masks: bool = False,
+        overwrite: bool = False,
         progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Runs SLAM on a recording, video or live camera, as ``alidade run`` does: with the same options and names, and
     the same bytes in every file.
@@ -67,9 +69,10 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         repeat: number of times to play forwards and backwards. threads: for parallel loops, 0 = all cores; does not
         change results.
     first, last: frame numbers, both included.
-    record: record the stream for `alidade view` (True: run.stream in the results folder; or a path; as MCAP if it
-        ends in .mcap). viewer: show the run in a browser (True, or a port; Progress.viewer is the URL); host: the
-        address it listens on. write_masks: write images of the excluded moving parts.
+    record: record the stream as run.stream in the results folder, for `alidade view`; record_to: record it to this
+        file instead, as MCAP if it ends in .mcap. viewer: show the run in a browser (Progress.viewer is the URL);
+        port, host: where it listens (8090 or the next free port, 127.0.0.1). write_masks: write images of the
+        excluded moving parts.
     progress: called in this thread with a Progress when it changed, at most 20 times per second; an exception it
         raises ends the run.
 
@@ -80,9 +83,9 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     return _run(dict(
         source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, host=host, write_masks=write_masks,
-        overwrite=overwrite),
-        detector, camera, config, load, out, record, viewer, progress)
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, write_masks=write_masks, overwrite=overwrite,
+        **_watched(record, record_to, viewer, port, host)),
+        detector, camera, config, load, out, progress)
 
 
 def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[str] = None,
@@ -92,21 +95,35 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              settings: Optional[Mapping[str, Any]] = None, out: Optional[PathLike] = None,
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
-             record: Union[None, bool, PathLike] = None, viewer: Union[None, bool, int] = None,
-             host: Optional[str] = None, write_masks: bool = False, overwrite: bool = False,
+             record: bool = False, record_to: Optional[PathLike] = None, viewer: bool = False,
+             port: Optional[int] = None, host: Optional[str] = None, write_masks: bool = False,
+             overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, host=host,
-        write_masks=write_masks, overwrite=overwrite, localise=True),
-        detector, camera, config, map, out, record, viewer, progress)
+        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localise=True,
+        **_watched(record, record_to, viewer, port, host)),
+        detector, camera, config, map, out, progress)
 
 
-def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any, record: Any,
-         viewer: Any, progress: Optional[Callable[[Progress], None]]) -> Result:
+def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Optional[int],
+             host: Optional[str]) -> Dict[str, Any]:
+    """Options of recorder and viewer. Accepts what version 0.1 took, a path as `record` and a port as `viewer`."""
+    if record is not None and not isinstance(record, bool):
+        warn("record=PATH", "record_to=PATH", 4)
+        record, record_to = False, record
+    if viewer is not None and not isinstance(viewer, bool):
+        warn("viewer=PORT", "viewer=True, port=PORT", 4)
+        viewer, port = True, viewer
+    return dict(record=record, record_to=None if record_to is None else os.fspath(record_to), viewer=viewer, port=port,
+                host=host)
+
+
+def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any,
+         progress: Optional[Callable[[Progress], None]]) -> Result:
     scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # deleted with its last reference
     options["detector"] = detector if detector is None or callable(detector) else os.fspath(detector)
     if isinstance(camera, Camera):
@@ -121,10 +138,6 @@ def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load:
         options["load"] = os.fspath(load)
     options["config"] = None if config is None else os.fspath(config)
     options["out"] = os.path.join(scratch.name, "result") if out is None else os.fspath(out)
-    if record is not None and record is not False:
-        options["record"] = "" if record is True else os.fspath(record)
-    if viewer is not None and viewer is not False:
-        options["viewer"] = "" if viewer is True else int(viewer)
 
     outcome: Dict[str, Any] = {}
     last: Dict[str, Any] = {}

@@ -13,6 +13,7 @@ import numpy
 
 from . import _core
 from ._log import tell_warnings
+from ._renamed import Renamed, warn
 from .camera import Camera, PathLike
 from .maps import Map
 from .running import Detector
@@ -81,15 +82,23 @@ class Features:
     """(f,) probability of being static, 0 to 1"""
 
 
+def _is_swapped(right: Any, depth: Any, sensor: str) -> bool:
+    """The order of version 0.1, which a type that the argument cannot have gives away."""
+    if sensor == "stereo":
+        return right is None and getattr(depth, "dtype", None) == numpy.uint8
+    return depth is None and getattr(right, "dtype", None) in (numpy.uint16, numpy.float32)
+
+
 _open: "weakref.WeakSet[Slam]" = weakref.WeakSet()
 
 
 class Slam:
-    """Visual SLAM: images in, poses and a map out.
+    """Visual SLAM: images in, poses and a map out. Call finish() after the last frame, or leave the ``with`` block:
+    without it the last adjustment and the poses of deferred localization are missing.
 
     camera: of the images; a Camera or a camera.yaml. sensor: "mono", "stereo" (camera.baseline) or "rgbd"
     (camera.depth_factor). semidense: also estimate semi-dense depth. dynamics: "auto", "off", "geometry" or "full".
-    profile: "desktop" or "phone". seed: for all random numbers. localise: only estimate poses in the loaded map,
+    profile: "desktop" or "phone". seed: for all random numbers. localize: only estimate poses in the loaded map,
     without changing it.
     schedule: "inline" (default: all work of a frame is done when track() returns; reproducible) or "threaded"
     (track() never waits for mapping).
@@ -113,33 +122,40 @@ class Slam:
                  dynamics: Optional[str] = None, detector: Union[None, PathLike, Detector] = None,
                  profile: str = "desktop", config: Optional[PathLike] = None,
                  settings: Optional[Mapping[str, Any]] = None, schedule: str = "inline",
-                 seed: Optional[int] = None, localise: bool = False, mounting: Optional[numpy.ndarray] = None,
+                 seed: Optional[int] = None, localize: bool = False, mounting: Optional[numpy.ndarray] = None,
                  calibrate: bool = False, **more_settings: Any) -> None:
+        if "localise" in more_settings:
+            warn("localise=", "localize=")
+            localize = more_settings.pop("localise")
         options = dict(
             sensor=sensor, semidense=semidense, dynamics=dynamics, profile=profile, schedule=schedule, seed=seed,
-            localise=localise, settings={**(settings or {}), **more_settings},
+            localise=localize, settings={**(settings or {}), **more_settings},
             detector=detector if detector is None or callable(detector) else os.fspath(detector),
             config=None if config is None else os.fspath(config))
         if not isinstance(camera, Camera):
             camera = Camera.from_yaml(camera, sensor)
+        self._sensor = sensor
         self._core = _core.Slam(camera, options, mounting, calibrate)
         _open.add(self)
 
     # Processing; calls are serialized.
 
-    def track(self, t: float, image: numpy.ndarray, depth: Optional[numpy.ndarray] = None,
-              right: Optional[numpy.ndarray] = None, *, color: Optional[numpy.ndarray] = None,
+    def track(self, t: float, image: numpy.ndarray, right: Optional[numpy.ndarray] = None,
+              depth: Optional[numpy.ndarray] = None, *, color: Optional[numpy.ndarray] = None,
               stamp: str = "") -> TrackResult:
         """Processes one frame. Call in order of time.
 
         t: seconds. image: (h, w) gray or (h, w, 3) blue green red, uint8, of the camera's size (for red green blue
-        pass image[..., ::-1], which costs a copy). depth: RGB-D: (h, w), uint16 with camera.depth_factor per meter or
-        float32 in meters, registered to the image; 0 or NaN = unknown. right: stereo: the rectified right image.
+        pass image[..., ::-1], which costs a copy). right: stereo: the rectified right image. depth: RGB-D: (h, w),
+        uint16 with camera.depth_factor per meter or float32 in meters, registered to the image; 0 or NaN = unknown.
         color: (h, w, 3) blue green red, for clouds, when image is gray. stamp: the time as text for
         save_trajectory().
 
         Raises InputError for an invalid image or a time that does not increase; the state is unchanged then.
         """
+        if _is_swapped(right, depth, self._sensor):
+            warn("track(t, image, depth, right)", "track(t, image, right, depth)")
+            right, depth = depth, right
         try:
             return TrackResult(**self._core.track(t, image, depth, right, color, stamp))
         finally:
@@ -153,13 +169,14 @@ class Slam:
         """Starts a new recording with the next frame, which may have any time; keeps the maps."""
         self._core.reset()
 
-    def finish(self, limit: float = math.inf) -> None:
-        """Completes pending work and adjusts the map, for at most `limit` seconds; Ctrl-C stops it early. More frames
-        may follow."""
+    def finish(self, limit: float = math.inf) -> numpy.ndarray:
+        """Completes pending work and adjusts the map, for at most `limit` seconds; Ctrl-C stops it early. Returns
+        trajectory(). More frames may follow."""
         try:
             self._core.finish(limit)
         finally:
             tell_warnings()
+        return self.trajectory()
 
     def close(self) -> None:
         """Ends all threads and frees all memory."""
@@ -242,8 +259,8 @@ class Slam:
         return self._core.health()
 
     def counts(self) -> Dict[str, int]:
-        """Number of relocalisations, loops, merges, cuts and predicted frames so far, by these names."""
-        return self._core.counts()
+        """Number of relocalizations, loops, merges, cuts and predicted frames so far, by these names."""
+        return Renamed(self._core.counts())
 
     def times(self) -> Dict[str, numpy.ndarray]:
         """Processing times in milliseconds by stage (frame, extract, track, map, ...): one sample per frame; for map,

@@ -89,8 +89,8 @@ class Onlooker : public RunWatcher {
 ServeSettings ViewerSettings(const RunOptions& options) {
   ServeSettings settings;
   if (options.host) settings.host = *options.host;
-  if (options.viewer && !options.viewer->empty()) {
-    settings.port = std::stoi(*options.viewer);
+  if (options.port) {
+    settings.port = std::stoi(*options.port);
     settings.port_given = true;
   }
   settings.Check();
@@ -132,9 +132,10 @@ void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
     SetThreadCount(threads);
   };
   try {
-    if (options.record || options.viewer) {
+    const std::optional<std::string> record = RecordFileOf(options);
+    if (record || options.viewer) {
       CheckRunOptions(options);
-      feed.emplace("alidade " ALIDADE_VERSION, options.record, SettingsFrom(options).stream);
+      feed.emplace("alidade " ALIDADE_VERSION, record, SettingsFrom(options).stream);
       watchers.push_back(&*feed);
     }
     if (options.viewer) {

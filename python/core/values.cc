@@ -36,11 +36,13 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"config", &options.config},     {"schedule", &options.schedule},
       {"rate", &options.rate},         {"out", &options.out},
       {"load", &options.load},         {"fov", &options.fov},
-      {"dynamics", &options.dynamics}, {"record", &options.record},
-      {"viewer", &options.viewer},     {"host", &options.host}};
+      {"dynamics", &options.dynamics}, {"record_to", &options.record_to},
+      {"port", &options.port},         {"host", &options.host}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
                                                  {"localise", &options.localise},
                                                  {"overwrite", &options.overwrite},
+                                                 {"record", &options.record},
+                                                 {"viewer", &options.viewer},
                                                  {"semidense", &options.semidense},
                                                  {"write_masks", &options.write_masks}};
   const std::map<std::string, int*> numbers = {{"threads", &options.threads},

@@ -71,7 +71,7 @@ def test_saved_loaded_and_gone_on_with(slam, desk, tmp_path):
     assert again.sensor == "rgbd" and again.camera == made.camera and again.settings == made.settings
     assert len(again.cloud().points) == 0 and "keyframes" in repr(again)
 
-    with alidade.Slam(recording.camera, sensor="rgbd", localise=True) as found:
+    with alidade.Slam(recording.camera, sensor="rgbd", localize=True) as found:
         found.load(tmp_path / "map.alidade")
         results = play(found, frames[10:])
     assert results[-1].pose is not None and len(found.map().keyframes.ids) == len(made.keyframes.ids)

@@ -64,7 +64,7 @@ def test_a_result_has_what_the_run_left(tmp_path):
 
 
 def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
-    result = alidade.run(DESK, sensor="rgbd", semidense=True, record=tmp_path / "live.mcap", out=tmp_path / "run")
+    result = alidade.run(DESK, sensor="rgbd", semidense=True, record_to=tmp_path / "live.mcap", out=tmp_path / "run")
     assert read(tmp_path, "live.mcap")[:8] == b"\x89MCAP0\r\n" == read(tmp_path, "live.mcap")[-8:]
     said = result.export(tmp_path / "result.mcap")
     assert said.startswith("40 frames, ") and "points of shape" in said
@@ -190,8 +190,32 @@ def test_the_viewer_serves_while_it_runs():
             with urllib.request.urlopen(progress.viewer, timeout=60) as page:
                 answers.append(page.status)
 
-    alidade.run(DESK, sensor="rgbd", last=9, viewer=0, progress=look)
+    alidade.run(DESK, sensor="rgbd", last=9, viewer=True, port=0, progress=look)
     assert answers == [200]
+
+
+def test_the_port_and_the_file_as_version_0_1_had_them_are_accepted_with_a_warning(tmp_path):
+    with pytest.warns(DeprecationWarning, match="record_to=PATH"):
+        alidade.run(DESK, sensor="rgbd", last=3, record=tmp_path / "old.stream")
+    assert read(tmp_path, "old.stream").startswith(b"ALIDSTR1")
+    with pytest.warns(DeprecationWarning, match="port=PORT"), pytest.raises(alidade.Error, match="65535"):
+        alidade.run(DESK, sensor="rgbd", last=3, viewer=70000)
+
+
+def test_keys_of_stats_have_their_new_name_and_are_found_under_the_old_one(tmp_path):
+    result = alidade.run(DESK, sensor="rgbd", last=3, out=tmp_path / "new")
+    assert result.stats["initialized_at"] == 0 and "initialised_at" not in result.stats
+    with pytest.warns(DeprecationWarning, match="initialized_at"):
+        assert result.stats["initialised_at"] == 0
+    old = tmp_path / "old"
+    old.mkdir()
+    (old / "stats.json").write_text('{"initialised_at": 7, "relocalisations": 2}')
+    assert alidade.Result(old).stats["initialized_at"] == 7 and alidade.Result(old).stats["relocalizations"] == 2
+
+
+def test_a_port_without_a_viewer_is_refused():
+    with pytest.raises(alidade.Error, match="--port"):
+        alidade.run(DESK, sensor="rgbd", last=3, port=8090)
 
 
 @pytest.mark.skipif("ALIDADE_DATA" not in os.environ, reason="ALIDADE_DATA names no real recordings")

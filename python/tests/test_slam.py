@@ -54,6 +54,42 @@ def test_a_guessed_camera_is_found(desk):
         alidade.Slam(desk[0].camera, sensor="rgbd", calibrate=True)
 
 
+def test_finish_returns_the_trajectory(desk):
+    recording, frames = desk
+    slam = made(recording)
+    assert slam.finish().shape == (0, 8)
+    play(slam, frames[:10])
+    finished = slam.finish()
+    assert finished.shape == (10, 8) and (finished == slam.trajectory()).all()
+
+
+def test_the_order_of_arguments_is_that_of_other_languages(desk):
+    recording, frames = desk
+    expected = play(made(recording), frames[:3])
+    slam, old = made(recording), made(recording)
+    for frame, result in zip(frames[:3], expected):
+        assert (slam.track(frame.time, frame.image, None, frame.depth).pose == result.pose).all()
+        with pytest.warns(DeprecationWarning, match="image, right, depth"):
+            assert (old.track(frame.time, frame.image, frame.depth).pose == result.pose).all()
+    stereo = alidade.Slam(alidade.Camera(320, 240, 262, 262, 160, 120, baseline=0.1), sensor="stereo")
+    assert stereo.track(0.0, frames[0].image, frames[0].image).reason
+    with pytest.warns(DeprecationWarning, match="image, right, depth"):
+        stereo.track(0.1, frames[0].image, None, frames[0].image)
+    with pytest.raises(alidade.InputError, match="float32"):
+        slam.track(1.0, frames[0].image, depth=frames[0].image)
+
+
+def test_names_of_version_0_1_are_accepted_with_a_warning(desk):
+    recording, frames = desk
+    with pytest.warns(DeprecationWarning, match="localize="):
+        slam = made(recording, localise=True)
+    assert slam.counts()["relocalizations"] == 0
+    with pytest.warns(DeprecationWarning, match="relocalizations"):
+        assert slam.counts()["relocalisations"] == 0
+    with pytest.raises(KeyError):
+        slam.counts()["nothing"]
+
+
 def test_no_pose_says_why(desk):
     recording, frames = desk
     slam = alidade.Slam(recording.camera, sensor="mono")

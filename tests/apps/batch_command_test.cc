@@ -164,7 +164,7 @@ TEST(BatchCommand, AgainstAnEarlierOneWhatIsWorseIsStatus1) {
   ASSERT_EQ(Batch({list, "--out", before}).status, 0);
   const ProgramResult same = Batch({list, "--out", now, "--against", before});
   EXPECT_EQ(same.status, 0) << same.out;
-  EXPECT_THAT(same.out, HasSubstr("Nothing got worse"));
+  EXPECT_THAT(same.out, HasSubstr("No result is worse"));
   // Had it been better before:
   auto json = nlohmann::json::parse(ReadText(before + "/batch.json"));
   const double ate = json["recordings"][0]["ate"].get<double>();
@@ -209,7 +209,7 @@ TEST(BatchCommand, TheEarlierOneIsShownBesideTheNew) {
   const ProgramResult gone = Batch({list, "--out", now, "--against", before + "/batch.json"});
   EXPECT_EQ(gone.status, 0) << gone.err;
   EXPECT_THAT(gone.out, HasSubstr("compare.html: b: "));
-  EXPECT_THAT(gone.out, HasSubstr("Nothing got worse"));
+  EXPECT_THAT(gone.out, HasSubstr("No result is worse"));
   EXPECT_THAT(NamesOnPage(now), ElementsAre("monday/a", "tuesday/a", "tuesday/b", "tuesday/c"));
   // A single recording has its earlier self to be compared with; folders of one name are told
   // apart.
@@ -256,7 +256,7 @@ TEST(BatchCommand, RefusesAWrongListBeforeAnythingIsRun) {
   EXPECT_THAT(complaint("x --sensr mono"), HasSubstr("list.txt:2: unknown option --sensr"));
   EXPECT_THAT(complaint("x --sensor sonar"), HasSubstr("list.txt:2: --sensor"));
   EXPECT_THAT(complaint("x --set tracker.nothing=1"), HasSubstr("list.txt:2: "));
-  EXPECT_THAT(complaint("x --viewer"), HasSubstr("a batch is of many"));
+  EXPECT_THAT(complaint("x --viewer"), HasSubstr("cannot be used in a batch"));
   WriteLines(list, {kRoom + "15"});
   const ProgramResult full = Batch({list, "--out", folder.path()});
   EXPECT_EQ(full.status, 3);  // it holds the list

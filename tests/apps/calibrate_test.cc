@@ -35,7 +35,7 @@ TEST(Calibrate, AnUnknownCameraIsFoundBeforeTheRunAndLeftForTheNext) {
   const ProgramResult run = RunAlidade(
       {"run", std::string(kDesk) + "&calibrated=0", "--sensor", "mono", "--out", out / "found"});
   ASSERT_EQ(run.status, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr("Camera found: "));
+  EXPECT_THAT(run.out, HasSubstr("Camera estimated: "));
   const json stats = Stats(out / "found");
   const json& camera = stats["camera"];
   EXPECT_EQ(camera["known"], "estimated");

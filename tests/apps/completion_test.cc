@@ -1,4 +1,4 @@
-// What shells offer, asked of the shells themselves, and manual pages, shown by their reader.
+// Completions, tested in the shells; manual pages, in their viewer; docs/reference/cli.md.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -197,6 +197,13 @@ TEST(ManPages, ThereIsOneForEachCommandAndTheirReaderHasNothingToComplainOf) {
     EXPECT_GT(options, 0) << page;
   }
   if (!reader) GTEST_SKIP() << "skipped: no groff to read them with";
+}
+
+TEST(CommandLinePage, InTheDocumentationIsWhatTheProgramPrints) {
+  const ProgramResult page = RunAlidade({"cli-page"});
+  EXPECT_EQ(page.status, 0) << page.err;
+  EXPECT_TRUE(page.out == ReadText(ALIDADE_DOCS "/reference/cli.md"))
+      << "regenerate it: scripts/docs";
 }
 
 }  // namespace

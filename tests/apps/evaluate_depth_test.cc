@@ -191,7 +191,7 @@ TEST_F(EvaluateDepth, KeyframesWithoutTruthAreLeftOutAndCounted) {
               {{TinyStamp(1), Plain(1)}, {TinyStamp(2), Plain(1)}, {"300.0", Plain(1)}});
   const json depth = Json(folder_.path());
   EXPECT_EQ(depth["keyframes"].size(), 1u);
-  EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes were taken at times"));
+  EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes have no frame of the same time"));
   EXPECT_THAT(warnings_, HasSubstr("1 of 3 keyframes have no true depth"));
 }
 
@@ -209,7 +209,7 @@ TEST_F(EvaluateDepth, TableIsForPeople) {
 TEST_F(EvaluateDepth, InputThatCannotBeIsOneLineAndStatusThree) {
   WriteTinyTum(folder_);
   const std::string sequence = folder_.path();
-  EXPECT_THAT(Complaint(sequence, folder_ / "nowhere"), HasSubstr("holds no depth.txt"));
+  EXPECT_THAT(Complaint(sequence, folder_ / "nowhere"), HasSubstr("contains no depth.txt"));
   WriteResult(folder_, "rgbd", {{TinyStamp(1), Plain(1)}});
   EXPECT_THAT(Complaint(folder_ / "nowhere", result_), HasSubstr("nowhere"));
 

@@ -75,7 +75,7 @@ TEST_F(FilesKept, ResultsAreNotWrittenOverByOtherCommands) {
   ExpectKept("a/landmarks.ply", {"calibrate", "synth:desk", "--out", "a/landmarks.ply"}, 2,
              "a/landmarks.ply");
   ExpectKept("a/report.html",
-             {"run", "synth:desk?width=320&height=240&frames=3", "--record", "a/report.html"}, 2,
+             {"run", "synth:desk?width=320&height=240&frames=3", "--record-to", "a/report.html"}, 2,
              "a/report.html");
   ExpectDone({"export", "a", "--to", "tum", "a/keyframes_of_the_map.txt"});
 }

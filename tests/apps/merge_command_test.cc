@@ -56,7 +56,8 @@ TEST_F(MergeCommand, TwoVisitsAreOneMapAndOneTrajectory) {
   const std::string out = *folder_ / "both";
   const ProgramResult result = Merge({noon_, evening_ + "/", "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("noon and evening show one place, and are one map"));
+  EXPECT_THAT(result.out,
+              HasSubstr("noon and evening show the same place and are merged into one map"));
   const auto json = nlohmann::json::parse(ReadText(out + "/merge.json"));
   EXPECT_EQ(json["worlds"].size(), 1u);
   EXPECT_EQ(json["joins"].size(), 1u);
@@ -89,7 +90,8 @@ TEST_F(MergeCommand, AnotherPlaceStaysAMapOfItsOwn) {
   const std::string out = *folder_ / "apart.alidade";
   const ProgramResult result = Merge({noon_ + "/map.alidade", desk_, "--out", out});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("desk shows no place of the others, and stays a map apart"));
+  EXPECT_THAT(result.out,
+              HasSubstr("desk shares no place with the others and remains a separate map"));
   EXPECT_THAT(result.out, HasSubstr("2 maps of 2 recordings"));
   EXPECT_THAT(RunAlidade({"info", out}).out, HasSubstr("2"));
   const auto json = nlohmann::json::parse(ReadText(*folder_ / "apart.trajectories/merge.json"));
@@ -115,7 +117,8 @@ TEST_F(MergeCommand, ARoomOfTheSameMakeStaysAMapOfItsOwn) {
     const std::string out = *folder_ / (std::string("rooms_") + sensor);
     const ProgramResult result = Merge({rooms[0], rooms[1], "--out", out});
     ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.out, HasSubstr("shows no place of the others, and stays a map apart"));
+    EXPECT_THAT(result.out,
+                HasSubstr("shares no place with the others and remains a separate map"));
     EXPECT_EQ(nlohmann::json::parse(ReadText(out + "/merge.json"))["worlds"].size(), 2u);
   }
 }

@@ -40,7 +40,7 @@ class SemiDenseRun : public testing::Test {
 TEST_F(SemiDenseRun, LeavesDepthOfKeyFramesACloudAndPicturesOfIt) {
   const ProgramResult result = Run("out");
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr(" points of shape"));
+  EXPECT_THAT(result.out, HasSubstr(" semi-dense points"));
   // Each picture listed is there, named after a keyframe, and no other.
   std::set<std::string> keyframes, listed, found;
   std::istringstream lines(Text("out/keyframes.txt")), list(Text("out/depth.txt"));
@@ -107,7 +107,7 @@ TEST_F(SemiDenseRun, OneWithoutRemovesWhatItLeft) {
 TEST_F(SemiDenseRun, SaysWhenThereIsNoShape) {
   const ProgramResult result = Run("out", {"--semidense", "--last", "1"});
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr(", no shape"));
+  EXPECT_THAT(result.out, HasSubstr(", no semi-dense depth"));
   EXPECT_FALSE(fs::exists(results_ / "out/depth"));
   EXPECT_FALSE(fs::exists(results_ / "out/semidense.ply"));
 }

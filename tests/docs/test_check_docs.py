@@ -74,8 +74,11 @@ class CheckDocs(unittest.TestCase):
     def test_a_moved_page_named_in_a_source_file_is_found(self):
         self.assert_found({"src/a.h": "// docs/formats.md\n"}, "src/a.h:1: names docs/formats.md")
 
-    def test_pages_that_another_step_generates_may_be_missing(self):
-        self.assertEqual(self.problems({"src/a.h": "// docs/reference/cli.md\n"}), [])
+    def test_generated_pages_may_be_long_but_not_missing(self):
+        page = "# Settings\n" + 300 * ("word " * 30 + "\n")
+        self.assertEqual(self.problems({"docs/index.md": SOUND["docs/index.md"] + "[a](reference/settings.md)\n",
+                                        "docs/reference/settings.md": page}), [])
+        self.assert_found({"src/a.h": "// docs/reference/cli.md\n"}, "src/a.h:1: names docs/reference/cli.md")
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ public final class BridgeTest {
   }
 
   private void offer(SlamConnector slam, int i) {
-    slam.offer(frames.plane(i, frames.width), frames.width, frames.time(i));
+    slam.offer(frames.time(i), frames.plane(i, frames.width), frames.width);
   }
 
   private void mapsWhileDrawing() throws Exception {
@@ -123,7 +123,7 @@ public final class BridgeTest {
     for (int gap = 0; gap < 2; ++gap) {
       try (SlamConnector slam = open()) {
         int stride = frames.width + gap * STRIDE_GAP;
-        slam.offer(frames.plane(0, stride), stride, 0);
+        slam.offer(0, frames.plane(0, stride), stride);
         slam.waitUntilIdle();
         found[gap] = slam.numbers().features;
       }
@@ -136,13 +136,13 @@ public final class BridgeTest {
     Class<IllegalArgumentException> bad = IllegalArgumentException.class;
     try (SlamConnector slam = open()) {
       ByteBuffer plane = frames.plane(0, frames.width);
-      Check.refuses(bad, "pixels", () -> slam.offer(plane, frames.width - 1, 0));
-      Check.refuses(bad, "pixels", () -> slam.offer(plane, frames.width + 1, 0));
-      Check.refuses(bad, "pixels", () -> slam.offer(plane, -1, 0));
-      Check.refuses(bad, "pixels", () -> slam.offer(ByteBuffer.allocateDirect(7), frames.width, 0));
-      Check.refuses(bad, "direct", () -> slam.offer(ByteBuffer.allocate(plane.capacity()), frames.width, 0));
-      Check.refuses(bad, "direct", () -> slam.offer(null, frames.width, 0));
-      Check.refuses(bad, "time", () -> slam.offer(plane, frames.width, Double.NaN));
+      Check.refuses(bad, "pixels", () -> slam.offer(0, plane, frames.width - 1));
+      Check.refuses(bad, "pixels", () -> slam.offer(0, plane, frames.width + 1));
+      Check.refuses(bad, "pixels", () -> slam.offer(0, plane, -1));
+      Check.refuses(bad, "pixels", () -> slam.offer(0, ByteBuffer.allocateDirect(7), frames.width));
+      Check.refuses(bad, "direct", () -> slam.offer(0, ByteBuffer.allocate(plane.capacity()), frames.width));
+      Check.refuses(bad, "direct", () -> slam.offer(0, null, frames.width));
+      Check.refuses(bad, "time", () -> slam.offer(Double.NaN, plane, frames.width));
       Check.refuses(bad, "degrees", () -> slam.draw(45));
       offer(slam, 0); // and nothing is lost by it
       slam.waitUntilIdle();
@@ -184,7 +184,7 @@ public final class BridgeTest {
       slam.cameraBack();
       // The clock may begin anew, and the camera looks at what it saw last.
       for (int i = 0; i < 5; ++i) {
-        slam.offer(frames.plane(frames.count - 1, frames.width), frames.width, i / 30.0);
+        slam.offer(i / 30.0, frames.plane(frames.count - 1, frames.width), frames.width);
         slam.waitUntilIdle();
       }
       SlamConnector.Numbers now = slam.numbers();

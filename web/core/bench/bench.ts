@@ -24,7 +24,7 @@ slam.messages(); // hello
 const before = process.cpuUsage();
 for (const time of job.times) {
   if (readSync(frames, picture) !== picture.length) throw new Error('frames.gray is too short');
-  keyframes = slam.track(picture, time).counts.keyframes;
+  keyframes = slam.track(time, picture).counts.keyframes;
   for (const bytes of slam.messages()) {
     const message = decode(bytes);
     if (message.kind !== 'frame') continue;

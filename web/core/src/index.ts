@@ -2,7 +2,7 @@
 //
 //   import { Slam } from 'alidade';
 //   const slam = await Slam.create({ width: 640, height: 480 });
-//   const frame = slam.track(imageData, seconds);
+//   const frame = slam.track(seconds, imageData);
 //   if (frame.pose) console.log(frame.pose.position, frame.counts.keyframes);
 //
 // The core is the C++ library compiled to WebAssembly. Calls are synchronous and take milliseconds; in a page, make
@@ -104,12 +104,20 @@ function frameNumbers(numbers: Float64Array): Record<(typeof FRAME_NUMBERS)[numb
   return Object.fromEntries(FRAME_NUMBERS.map((name, i) => [name, numbers[i]!])) as Record<(typeof FRAME_NUMBERS)[number], number>;
 }
 
+export type Picture = ImageData | Uint8Array | Uint8ClampedArray;
+
 /** An error of the core, with its message. */
 export class AlidadeError extends Error {
   override name = 'AlidadeError';
 }
 
+/**
+ * Visual SLAM: images of one moving camera in, its pose and a map out. Call finish() after the last image: without it
+ * the last adjustment and the poses of deferred localization are missing.
+ */
 export class Slam {
+  static #warned = false; // of the order of version 0.1
+  /** Size of the images, pixels. */
   readonly width: number;
   readonly height: number;
   #core: Core;
@@ -165,7 +173,16 @@ export class Slam {
    * Processes one image: ImageData, or bytes with 4 (red green blue alpha) or 1 (gray) per pixel. `time` in seconds.
    * Throws AlidadeError.
    */
-  track(picture: ImageData | Uint8Array | Uint8ClampedArray, time: number): Frame {
+  track(time: number, picture: Picture): Frame;
+  /** @deprecated The order of version 0.1, accepted in this version only. */
+  track(picture: Picture, time: number): Frame;
+  track(first: number | Picture, second: number | Picture): Frame {
+    if (typeof first === 'number') return this.#track(first, second as Picture);
+    if (!Slam.#warned) console.warn('alidade: track(picture, time) is now track(time, picture)');
+    Slam.#warned = true;
+    return this.#track(second as number, first);
+  }
+  #track(time: number, picture: Picture): Frame {
     const core = this.#live();
     const bytes = 'data' in picture ? picture.data : picture;
     const channels = bytes.length / (this.width * this.height);
@@ -211,7 +228,7 @@ export class Slam {
     return Array.from({ length: count }, (_, i) => ({ x: numbers[3 * i]!, y: numbers[3 * i + 1]!, matched: numbers[3 * i + 2] === 1 }));
   }
 
-  /** The viewer's messages since the previous call: src/alidade/stream, decoded and drawn by web/scene. */
+  /** The messages for the viewer since the previous call, as in run.stream. */
   messages(): Uint8Array[] {
     const all = this.#bytes(Bytes.Messages);
     const view = new DataView(all.buffer, all.byteOffset, all.byteLength);
@@ -231,10 +248,11 @@ export class Slam {
   /** Landmarks as a binary PLY file. */
   cloud(): Uint8Array { return this.#bytes(Bytes.Cloud); }
 
-  /** Completes pending work and adjusts the whole map once more. */
-  finish(): void {
+  /** Completes pending work and adjusts the whole map once more. Returns trajectory(). */
+  finish(): string {
     const core = this.#live();
     if (core._alidade_finish(this.#session) !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
+    return this.trajectory();
   }
 
   /** Frees the session's memory; must be the last call. */

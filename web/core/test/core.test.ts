@@ -44,7 +44,7 @@ test('a real recording: as good as the native core', onKitchen, async () => {
   let messages = slam.messages();
   assert.equal(messages.length, 1); // hello
   for (let i = 0; i < recording.times.length; ++i) {
-    const frame = slam.track(grayOf(recording, i), recording.times[i]!);
+    const frame = slam.track(recording.times[i]!, grayOf(recording, i));
     milliseconds.push(frame.milliseconds);
     assert.equal(frame.state === 'tracking', frame.reason === '');
     assert.equal(frame.state === 'tracking', frame.failure === null);
@@ -52,7 +52,7 @@ test('a real recording: as good as the native core', onKitchen, async () => {
     assert.ok(messages.length >= 1);
   }
   for (const message of messages) assert.ok(decode(message));
-  slam.finish();
+  assert.equal(slam.finish(), slam.trajectory());
   const out = mkdtempSync(join(tmpdir(), 'alidade-'));
   execFileSync(program, ['run', kitchen, '--sensor', 'mono', '--profile', 'phone', '--threads', '1', '--out', join(out, 'native'), '--quiet']);
   const native = JSON.parse(readFileSync(join(out, 'native/stats.json'), 'utf8')) as { tracked: number; ms: { frame: { median: number } } };
@@ -73,9 +73,9 @@ test('a real recording: as good as the native core', onKitchen, async () => {
 test('a camera nobody calibrated is found on the way', onKitchen, async () => {
   const recording = openRecording(kitchen);
   const slam = await create({ width: recording.width, height: recording.height });
-  let frame = slam.track(grayOf(recording, 0), recording.times[0]!);
+  let frame = slam.track(recording.times[0]!, grayOf(recording, 0));
   assert.ok(Math.abs(frame.fov - 66) < 0.1 && frame.fovSigma > 10);
-  for (let i = 1; i < recording.times.length; ++i) frame = slam.track(grayOf(recording, i), recording.times[i]!);
+  for (let i = 1; i < recording.times.length; ++i) frame = slam.track(recording.times[i]!, grayOf(recording, i));
   console.log(`kitchen, nothing known: ${frame.fov.toFixed(1)} ± ${frame.fovSigma.toFixed(1)} degrees (62.5), ${frame.cameraChanges} changes`);
   assert.ok(frame.fovSigma < 2 && Math.abs(frame.fov - 62.5) < 3 * frame.fovSigma);
   assert.equal(frame.state, 'tracking');
@@ -89,7 +89,7 @@ test('a detector that answers late: what it finds is left out', onKitchen, async
   const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, classes: ['person', 'dog'] });
   const box = { class: 0, score: 0.9, x: 160, y: 120, width: 320, height: 300 };
   for (let i = 0; i < 60; ++i) {
-    const frame = slam.track(grayOf(recording, i), recording.times[i]!);
+    const frame = slam.track(recording.times[i]!, grayOf(recording, i));
     assert.equal(frame.number, i);
     if (i >= 10 && i % 5 === 0) slam.detected(i - 10, [box]);
   }
@@ -109,9 +109,9 @@ test('shape: what it costs a keyframe', onKitchen, async () => {
   const cost = async (semidense: boolean) => {
     const slam = await create({ width: recording.width, height: recording.height, fov: 62.5, settings: { 'semidense.enabled': semidense } });
     const before = process.cpuUsage();
-    for (let i = 0; i < frames; ++i) slam.track(pictures[i]!, recording.times[i]!);
+    for (let i = 0; i < frames; ++i) slam.track(recording.times[i]!, pictures[i]!);
     const { user, system } = process.cpuUsage(before);
-    const { keyframes } = slam.track(pictures[frames - 1]!, recording.times[frames - 1]! + 1 / 30).counts;
+    const { keyframes } = slam.track(recording.times[frames - 1]! + 1 / 30, pictures[frames - 1]!).counts;
     slam.delete();
     return { milliseconds: (user + system) / 1000, keyframes };
   };
@@ -126,9 +126,9 @@ test('what cannot be is refused in words, and nothing is lost', options, async (
   await assert.rejects(create({ width: 64, height: 48, fov: 200 }), /field of view/);
   await assert.rejects(create({ width: 64, height: 48, settings: { 'tracker.no_such': 1 } }), /no_such/);
   const slam = await create({ width: 64, height: 48 });
-  assert.throws(() => slam.track(new Uint8Array(10), 0), /10 bytes/);
-  assert.throws(() => slam.track(new Uint8Array(64 * 48), NaN), /time/);
-  const frame = slam.track(new Uint8Array(64 * 48), 1);
+  assert.throws(() => slam.track(0, new Uint8Array(10)), /10 bytes/);
+  assert.throws(() => slam.track(NaN, new Uint8Array(64 * 48)), /time/);
+  const frame = slam.track(1, new Uint8Array(64 * 48));
   assert.equal(frame.state, 'initializing');
   assert.equal(frame.pose, null);
   assert.equal(frame.failure, 'few_corners');
@@ -138,11 +138,23 @@ test('what cannot be is refused in words, and nothing is lost', options, async (
   slam.delete();
 });
 
+test('the order of version 0.1, image then time, is accepted with one warning', options, async (context) => {
+  const warn = context.mock.method(console, 'warn', () => undefined);
+  const slam = await create({ width: 64, height: 48 });
+  assert.equal(slam.track(new Uint8Array(64 * 48), 1).number, 0);
+  assert.equal(slam.track(new Uint8Array(64 * 48), 2).number, 1);
+  assert.equal(slam.track(3, new Uint8Array(64 * 48)).number, 2);
+  assert.equal(slam.finish(), slam.trajectory());
+  assert.equal(warn.mock.callCount(), 1);
+  assert.match(String(warn.mock.calls[0]!.arguments[0]), /track\(time, picture\)/);
+  slam.delete();
+});
+
 test('many sessions on end leave no memory behind', options, async () => {
   const picture = new Uint8Array(320 * 240).map((_, i) => (i * 2654435761) >>> 24);
   for (let i = 0; i < 40; ++i) {
     const slam = await create({ width: 320, height: 240 });
-    for (let k = 0; k < 3; ++k) slam.track(picture, k / 30);
+    for (let k = 0; k < 3; ++k) slam.track(k / 30, picture);
     slam.delete();
   }
   assert.ok(process.memoryUsage().rss < 1.5e9);

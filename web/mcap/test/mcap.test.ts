@@ -26,7 +26,7 @@ let recorded: File;
 
 before(async () => {
   if (NO_BINARY) return;
-  await run('run', ...ROOM, '--record', at('run.mcap'), '--out', at('results'));
+  await run('run', ...ROOM, '--record-to', at('run.mcap'), '--out', at('results'));
   recorded = await readIndexed(at('run.mcap'));
 });
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -201,7 +201,7 @@ test('a recorded stream that is exported gives the same messages', options, asyn
 async function interrupted(signal: NodeJS.Signals, name: string): Promise<number | null> {
   mkdirSync(at(name));
   const child = spawn(BINARY, ['run', 'synth:room?frames=3000&width=320&height=240', '--sensor', 'rgbd', '--quiet', '--set', 'stream.pictures_hz=1000', '--set',
-    'stream.picture_quality=100', '--record', at(`${name}/run.mcap`), '--out', at(`${name}/results`)], { stdio: 'ignore' });
+    'stream.picture_quality=100', '--record-to', at(`${name}/run.mcap`), '--out', at(`${name}/results`)], { stdio: 'ignore' });
   const ended = new Promise<number | null>((done) => child.on('close', done));
   const written = () => readdirSync(at(name)).filter((file) => file.startsWith('run.mcap')).reduce((sum, file) => sum + statSync(at(`${name}/${file}`)).size, 0);
   while (child.exitCode === null && written() < 2e6) await new Promise((done) => setTimeout(done, 20));
@@ -223,7 +223,7 @@ test('Ctrl-C leaves a whole file, kill one that can be repaired beside its place
 });
 
 test('a real pair of cameras: poses are of the camera as mounted, pictures of the rectified one', { ...options, skip: NO_BINARY || (DATA ? false : 'ALIDADE_DATA names no folder of recordings') }, async () => {
-  await run('run', join(DATA ?? '', 'euroc_micro'), '--quiet', '--record', at('euroc.mcap'), '--out', at('euroc'));
+  await run('run', join(DATA ?? '', 'euroc_micro'), '--quiet', '--record-to', at('euroc.mcap'), '--out', at('euroc'));
   const euroc = await readIndexed(at('euroc.mcap'));
   assertFrames(euroc, at('euroc'));
   assertEnd(euroc, at('euroc'));

@@ -29,7 +29,7 @@ function track({ number, time, bitmap, turn }: Picture): void {
     context.drawImage(bitmap, -w / 2, -h / 2, w, h);
   }
   const image = context.getImageData(0, 0, width, height);
-  const frame = slam.track(image, time);
+  const frame = slam.track(time, image);
   const messages = slam.messages();
   scope.postMessage({ kind: 'done', number, time, frame, light: meanGreen(image.data), messages, bitmap, turn }, [bitmap, ...messages.map(({ buffer }) => buffer)]);
   if (!detector || !detectorFree) return;

@@ -49,7 +49,7 @@ for (const [scene, seed] of [['room', 1], ['desk', 2]] as const) {
     let tried = 0;
     for (let i = 0; i < pictures.length; ++i) {
       const { samples, channels } = readPng(readFileSync(join(folder, pictures[i]![1]!)));
-      const frame = slam.track(Uint8Array.from({ length: 400 * 300 }, (_, k) => (channels === 1 ? samples[k]! : (299 * samples[3 * k]! + 587 * samples[3 * k + 1]! + 114 * samples[3 * k + 2]!) / 1000)), Number(pictures[i]![0]));
+      const frame = slam.track(Number(pictures[i]![0]), Uint8Array.from({ length: 400 * 300 }, (_, k) => (channels === 1 ? samples[k]! : (299 * samples[3 * k]! + 587 * samples[3 * k + 1]! + 114 * samples[3 * k + 2]!) / 1000)));
       for (const bytes of slam.messages()) {
         const message = decode(bytes);
         for (const { cube } of cubes) cube.follow(message);

@@ -26,7 +26,7 @@ onmessage = async ({ data: { module, width, height, frames, fov } }) => {
   const milliseconds = [];
   let tracked = 0;
   for (let i = 0; i < frames; ++i) {
-    const frame = slam.track(pictures.subarray(i * width * height, (i + 1) * width * height), i / 30);
+    const frame = slam.track(i / 30, pictures.subarray(i * width * height, (i + 1) * width * height));
     milliseconds.push(frame.milliseconds);
     tracked += frame.pose ? 1 : 0;
   }

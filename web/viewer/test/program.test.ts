@@ -64,7 +64,7 @@ const stateWord = (page: Page) => page.textContent('#state-word');
 
 test(`a run is watched: the same bytes as alone, and the page says when it is over (${BINARY})`, options, async () => {
   recorded = inFolder('watched');
-  const program = await start('run', ROOM, '--viewer', '0', '--record', '', '--out', recorded);
+  const program = await start('run', ROOM, '--viewer', '--port', '0', '--record', '--out', recorded);
   const opened = await open(browser, program.address);
   await assertGrows(opened.page);
   assert.equal(await program.ended, 0);
@@ -82,7 +82,7 @@ test(`a run is watched: the same bytes as alone, and the page says when it is ov
 
 const needsData = NO_PROGRAM || (DATA ? false : 'ALIDADE_DATA names no folder of recordings');
 test('a real recording is watched', { ...options, skip: needsData }, async () => {
-  const program = await start('run', join(DATA ?? '', 'kitchen'), '--sensor', 'rgbd', '--viewer', '0', '--out', inFolder('kitchen'));
+  const program = await start('run', join(DATA ?? '', 'kitchen'), '--sensor', 'rgbd', '--viewer', '--port', '0', '--out', inFolder('kitchen'));
   const opened = await open(browser, program.address);
   await assertGrows(opened.page);
   assertClean(opened, program.address);
@@ -165,7 +165,7 @@ test('a map alone is shown', options, async () => {
 });
 
 test('a program that was killed and started again at the same port is noticed, and the page goes on', options, async () => {
-  const first = await start('run', LONG, '--viewer', '0', '--out', inFolder('first'));
+  const first = await start('run', LONG, '--viewer', '--port', '0', '--out', inFolder('first'));
   const opened = await open(browser, first.address);
   const { page } = opened;
   await frames(page, 20);
@@ -174,7 +174,7 @@ test('a program that was killed and started again at the same port is noticed, a
   assert.match((await page.textContent('#notice'))!, /No connection/);
   assert.ok(await count(page, 'frames') >= 20); // the received messages remain
   await first.ended;
-  const again = await start('run', LONG, '--viewer', String(first.port), '--out', inFolder('again'));
+  const again = await start('run', LONG, '--viewer', '--port', String(first.port), '--out', inFolder('again'));
   assert.equal(again.port, first.port);
   await page.waitForFunction(() => document.body.dataset.connection === 'open', undefined, { timeout: 60e3 });
   await page.waitForSelector('#notice', { state: 'hidden' });
@@ -187,7 +187,7 @@ test('a program that was killed and started again at the same port is noticed, a
 });
 
 test('the program is paused, stepped and let go on', options, async () => {
-  const program = await start('run', LONG, '--viewer', '0', '--out', inFolder('paused'));
+  const program = await start('run', LONG, '--viewer', '--port', '0', '--out', inFolder('paused'));
   const opened = await open(browser, program.address);
   const { page } = opened;
   await frames(page, 5);

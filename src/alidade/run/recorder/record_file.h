@@ -1,4 +1,4 @@
-// What --record writes: the stream as it is (run.stream), or made into an MCAP file.
+// What --record and --record-to write: the stream as it is (run.stream), or made into an MCAP file.
 #pragma once
 
 #include <memory>

@@ -19,6 +19,9 @@ void CheckRunOptions(const RunOptions& options) {
   }
   if (options.host && !options.viewer)
     ThrowUsage("--host is where the viewer listens: it needs --viewer");
+  if (options.port && !options.viewer)
+    ThrowUsage("--port is where the viewer listens: it needs --viewer");
+  if (options.record_to && options.record_to->empty()) ThrowUsage("--record-to must not be empty");
   if (options.detector && options.own_detector)
     ThrowUsage("a run has one detector: a file's, or the caller's own");
   CheckThreads(options.threads);

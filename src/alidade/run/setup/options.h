@@ -29,10 +29,12 @@ struct RunOptions {
   std::optional<std::string> dynamics, detector;
   std::shared_ptr<Detector> own_detector;  // instead of a file's: the caller's own
   bool write_masks = false;
-  bool overwrite = false;             // replace whatever results are in the folder
-  std::optional<std::string> record;  // file for the stream; empty: run.stream among the results
-  std::optional<std::string> viewer;  // show it in a browser: the port; empty: one that is free
-  std::optional<std::string> host;    // address the viewer listens on; 127.0.0.1
+  bool overwrite = false;                // replace whatever results are in the folder
+  bool record = false;                   // the stream, as run.stream among the results
+  std::optional<std::string> record_to;  // the stream, to this file instead
+  bool viewer = false;                   // show it in a browser
+  std::optional<std::string> port;       // the viewer listens on; 8090 or the next that is free
+  std::optional<std::string> host;       // address the viewer listens on; 127.0.0.1
 };
 
 // More threads than cores only wait for each other, and each has 8 MB of stack to its name; no
@@ -44,6 +46,12 @@ void CheckThreads(int threads);
 // A file's, or the caller's own.
 inline bool HasDetector(const RunOptions& options) {
   return options.detector || options.own_detector;
+}
+
+// File the stream is recorded to; empty: run.stream among the results; nothing: not recorded.
+inline std::optional<std::string> RecordFileOf(const RunOptions& options) {
+  if (options.record_to) return options.record_to;
+  return options.record ? std::optional<std::string>("") : std::nullopt;
 }
 
 // Throws Error (usage) for flags that do not go together.

@@ -169,7 +169,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
   @Override
   public void onPicture(Image image) {
     Image.Plane luma = image.getPlanes()[0];
-    connector.offer(luma.getBuffer(), luma.getRowStride(), image.getTimestamp() * NANO);
+    connector.offer(image.getTimestamp() * NANO, luma.getBuffer(), luma.getRowStride());
   }
 
   @Override
@@ -213,7 +213,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
       case SlamConnector.LOST:
         return getString(R.string.lost);
       default:
-        return getString(R.string.initialising);
+        return getString(R.string.initializing);
     }
   }
 }

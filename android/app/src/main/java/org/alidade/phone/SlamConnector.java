@@ -14,12 +14,12 @@ public final class SlamConnector implements AutoCloseable {
     System.loadLibrary("alidade_jni");
   }
 
-  public static final int INITIALISING = 0, TRACKING = 1, LOST = 2;
+  public static final int INITIALIZING = 0, TRACKING = 1, LOST = 2;
 
   /** Status after the last processed image. */
   public static final class Numbers {
     static final int COUNT = 14;
-    public final int state; // INITIALISING, TRACKING, LOST
+    public final int state; // INITIALIZING, TRACKING, LOST
     public final boolean predicted; // lost recently; the pose is extrapolated from the motion
     public final int keyframes, landmarks, matches, features, maps;
     public final double milliseconds; // processing time of the last image
@@ -101,8 +101,8 @@ public final class SlamConnector implements AutoCloseable {
    * Passes the luma plane of one image in a direct buffer, which is copied. Replaces an image that
    * is still waiting.
    */
-  public void offer(ByteBuffer plane, int rowStride, double seconds) {
-    run(session -> nativeOffer(session, plane, rowStride, seconds));
+  public void offer(double seconds, ByteBuffer plane, int rowStride) {
+    run(session -> nativeOffer(session, seconds, plane, rowStride));
   }
 
   public void cameraGone() {
@@ -181,7 +181,7 @@ public final class SlamConnector implements AutoCloseable {
   private static native void nativeClose(long handle);
 
   private static native void nativeOffer(
-      long handle, ByteBuffer plane, int rowStride, double seconds);
+      long handle, double seconds, ByteBuffer plane, int rowStride);
 
   private static native void nativeCameraGone(long handle);
 
