@@ -8,8 +8,8 @@
 #include "alidade/io/files/file.h"
 #include "alidade/run/sources/any_source.h"
 #include "alidade/run/sources/synth_source.h"
-#include "synth_folder.h"
-#include "synth_writer.h"
+#include "synth/synth_folder.h"
+#include "synth/synth_writer.h"
 
 namespace alidade {
 namespace {

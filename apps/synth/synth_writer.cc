@@ -1,4 +1,4 @@
-#include "synth_writer.h"
+#include "synth/synth_writer.h"
 
 #include <array>
 #include <cmath>

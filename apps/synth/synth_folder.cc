@@ -1,4 +1,4 @@
-#include "synth_folder.h"
+#include "synth/synth_folder.h"
 
 #include <algorithm>
 #include <filesystem>

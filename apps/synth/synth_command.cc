@@ -17,8 +17,8 @@
 #include "alidade/synth/statistics.h"
 #include "commands.h"
 #include "program/arguments.h"
-#include "synth_folder.h"
-#include "synth_writer.h"
+#include "synth/synth_folder.h"
+#include "synth/synth_writer.h"
 
 namespace alidade {
 namespace {
