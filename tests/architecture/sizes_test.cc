@@ -56,8 +56,9 @@ std::vector<std::string> TooLarge(const fs::path& root) {
     for (auto entry = fs::recursive_directory_iterator(root / top);
          entry != fs::recursive_directory_iterator(); ++entry) {
       const fs::path path = entry->path();
-      if (entry->is_directory() &&
-          std::find(kNotOurs.begin(), kNotOurs.end(), path.filename().string()) != kNotOurs.end()) {
+      if (entry->is_directory() && (path.filename().string().front() == '.' ||
+                                    std::find(kNotOurs.begin(), kNotOurs.end(),
+                                              path.filename().string()) != kNotOurs.end())) {
         entry.disable_recursion_pending();
         continue;
       }

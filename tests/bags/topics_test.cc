@@ -114,7 +114,7 @@ TEST_F(Topics, TheQueryChooses) {
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { Open(Pair(), "?image=/cam7/image_raw"); }),
               HasSubstr("/cam0/image_raw, /cam1/image_raw"));
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { Open(Pair(), "?picture=/cam0"); }),
-              HasSubstr("`picture` is no option"));
+              HasSubstr("`picture` is not an option"));
   EXPECT_THAT(MessageOf(ErrorKind::kUsage, [&] { Open(Pair(), "?info=/none"); }),
               HasSubstr("CameraInfo"));
 }

@@ -71,7 +71,7 @@ TEST(WorseThan, TellsWhatGrewAndWhatFailed) {
                                Ok("new", 9)};
   EXPECT_THAT(WorseThan(before, now, {}),
               UnorderedElementsAre("b: ATE 0.1110 m, was 0.1000 m",
-                                   "c: failed: no images | none, and was ok"));
+                                   "c: failed: no images | none, and was ok before"));
   WorseSettings by_length;
   by_length.ate = {0, 0.005};
   EXPECT_THAT(WorseThan(before, {Ok("b", 0.104)}, by_length), IsEmpty());
@@ -89,7 +89,7 @@ TEST(WorseThan, FewerFramesAreWorseAndTimesOnlyWhenAsked) {
   EXPECT_THAT(WorseThan({Ok("a", 0.1)}, {now}, times),
               ElementsAre("a: median 20.0 ms, was 10.0 ms"));
   now.ate.reset();
-  EXPECT_THAT(WorseThan({Ok("a", 0.1)}, {now}, {}).front(), HasSubstr("ATE is not known"));
+  EXPECT_THAT(WorseThan({Ok("a", 0.1)}, {now}, {}).front(), HasSubstr("ATE is unknown"));
 }
 
 }  // namespace

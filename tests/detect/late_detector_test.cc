@@ -40,12 +40,12 @@ TEST(LateDetector, WhatCannotBeIsRefusedAndNothingIsLost) {
                         [&] {
                           detector.Bring({2, {{0, 1, {NAN, 0, 9, 9}}}});
                         }),
-              HasSubstr("cannot be"));
+              HasSubstr("impossible numbers"));
   EXPECT_THAT(MessageOf(ErrorKind::kInput,
                         [&] {
                           detector.Bring({2, {{0, 1, {0, 0, -9, 9}}}});
                         }),
-              HasSubstr("cannot be"));
+              HasSubstr("impossible numbers"));
   EXPECT_EQ(detector.TakeAnswer()->number, 1);
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { detector.Detect({}); }),
               HasSubstr("asynchronously"));

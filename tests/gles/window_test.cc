@@ -109,7 +109,7 @@ TEST_F(Window, SaysWhyThereIsNone) {
   Write(Teller(Camera::FromFieldOfView(640, 480, 70)));
   outcome = Run(Path("."), false);
   EXPECT_EQ(outcome.status, 3);
-  EXPECT_NE(outcome.text.find("no window"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("cannot open a window"), std::string::npos) << outcome.text;
   outcome = Run("--help", false);
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.text.find("Examples"), std::string::npos) << outcome.text;

@@ -33,7 +33,7 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
 
 TEST(TimeOrder, ASecondRecordingInTheListIsAnotherPart) {
   const auto list = ListOf(Joined(Steady(100, 30), Steady(0, 30)));
-  const TimeOrder order = OrderOf(list);
+  const ListOrder order = OrderOf(list);
   EXPECT_EQ(order.parts(), 2);
   EXPECT_FALSE(order.sorted);
   EXPECT_EQ(order.part[29], 0);
@@ -59,7 +59,7 @@ TEST(TimeOrder, PartsAreAssociatedEachWithItsOwn) {
 TEST(TimeOrder, NeighborsThatWereWrittenInTheWrongOrderAreSorted) {
   auto times = Steady(0, 30);
   std::swap(times[10], times[12]);
-  const TimeOrder order = OrderOf(ListOf(times));
+  const ListOrder order = OrderOf(ListOf(times));
   EXPECT_EQ(order.parts(), 1);
   EXPECT_TRUE(order.sorted);
   EXPECT_EQ(order.order[10], 12u);
@@ -69,7 +69,7 @@ TEST(TimeOrder, OneDamagedStampIsNoOtherRecording) {
   for (const double wrong : {0.0, 5000.0}) {
     auto times = Steady(100, 40);
     times[20] = wrong;
-    const TimeOrder order = OrderOf(ListOf(times));
+    const ListOrder order = OrderOf(ListOf(times));
     EXPECT_EQ(order.parts(), 1) << wrong;
     EXPECT_EQ(order.order[wrong > 100 ? 39u : 0u], 20u) << wrong;
   }
@@ -78,7 +78,7 @@ TEST(TimeOrder, OneDamagedStampIsNoOtherRecording) {
 TEST(TimeOrder, AListWithoutOrderIsSortedAsAWhole) {
   std::vector<double> times;
   for (int i = 0; i < 40; ++i) times.push_back(static_cast<double>(i * 17 % 40) * 2);
-  const TimeOrder order = OrderOf(ListOf(times));
+  const ListOrder order = OrderOf(ListOf(times));
   EXPECT_EQ(order.parts(), 1);
   for (size_t i = 0; i < times.size(); ++i)
     EXPECT_EQ(times[order.order[i]], 2.0 * static_cast<double>(i));

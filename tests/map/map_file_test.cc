@@ -233,7 +233,7 @@ TEST(MapFile, RefusesAMapThatContradictsItself) {
        }},
       {"parent", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {2}; }},
       {"parent", [](MapCommit& c) { c.Edit(KeyFrameId{1})->parent = {1}; }},
-      {"neighbour", [](MapCommit& c) { c.Edit(KeyFrameId{1})->covisible[0].id = {77}; }},
+      {"neighbor", [](MapCommit& c) { c.Edit(KeyFrameId{1})->covisible[0].id = {77}; }},
       {"reference", [](MapCommit& c) { c.Edit(LandmarkId{0})->reference = {77}; }},
       {"reference", [](MapCommit& c) { c.Edit(LandmarkId{0})->observations.clear(); }},
       {"never existed", [](MapCommit& c) { c.Edit(LandmarkId{0})->born = {77}; }},

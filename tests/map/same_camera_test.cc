@@ -33,12 +33,12 @@ TEST(SameCamera, NamesWhatDiffers) {
     return MessageOf(ErrorKind::kInput, [&] { CheckSameCamera(Saved(), now); });
   };
   EXPECT_THAT(message([](Camera& c) { c.width = 320; }),
-              testing::HasSubstr("another camera: width 640 there, 320 here"));
+              testing::HasSubstr("another camera: width 640 in the map, 320 here"));
   EXPECT_THAT(message([](Camera& c) { c.fx *= 1.01; }), testing::HasSubstr("camera: fx 492.7"));
-  EXPECT_THAT(message([](Camera& c) { c.cy += 1; }), testing::HasSubstr("cy 239.5 there, 240.5"));
+  EXPECT_THAT(message([](Camera& c) { c.cy += 1; }), testing::HasSubstr("cy 239.5 in the map, 240.5"));
   EXPECT_THAT(message([](Camera& c) { c.distortion[1] = 0.15; }), testing::HasSubstr("k2 0.05"));
   EXPECT_THAT(message([](Camera& c) { c.depth_factor = 1000; }),
-              testing::HasSubstr("depth_factor 5000 there, 1000 here"));
+              testing::HasSubstr("depth_factor 5000 in the map, 1000 here"));
   EXPECT_THAT(message([](Camera& c) { c.fy = NAN; }), testing::HasSubstr("another camera"));
 }
 

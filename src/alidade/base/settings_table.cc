@@ -2,6 +2,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <locale>
 #include <optional>
 #include <sstream>
 
@@ -17,6 +18,7 @@ const Value& ValueAt(const Setting& row, const void* settings) {
 
 std::string Digits(double value, int digits) {
   std::ostringstream out;
+  out.imbue(std::locale::classic());
   out.precision(digits);
   out << value;
   return out.str();
@@ -26,7 +28,10 @@ std::string ShortestFloat(float value) {
   std::string text;
   for (int digits = 6; digits <= 9; ++digits) {
     text = Digits(value, digits);
-    if (std::strtof(text.c_str(), nullptr) == value) break;
+    std::istringstream in(text);  // not strtof(), which depends on the program's locale
+    in.imbue(std::locale::classic());
+    float back = 0;
+    if (in >> back && back == value) break;
   }
   return text;
 }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/run/folder/result_folder.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/sources/truth.h"
@@ -23,7 +24,7 @@ constexpr char kAligned[] =
 std::string TextOf(const char* format, const std::optional<double>& value, double factor = 1) {
   if (!value) return "–";
   char text[64];
-  std::snprintf(text, sizeof(text), format, factor * *value);
+  PrintTo(text, sizeof(text), format, factor * *value);
   return text;
 }
 

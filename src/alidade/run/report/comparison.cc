@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "alidade/base/error.h"
+#include "alidade/base/print.h"
 #include "alidade/run/folder/result_folder.h"
 #include "alidade/run/results/run_results.h"
 #include "alidade/run/sources/truth.h"
@@ -18,7 +19,7 @@ constexpr char kNone[] = "–";
 std::string Figure(const char* format, const std::optional<double>& value) {
   if (!value) return kNone;
   char text[64];
-  std::snprintf(text, sizeof(text), format, *value);
+  PrintTo(text, sizeof(text), format, *value);
   return text;
 }
 

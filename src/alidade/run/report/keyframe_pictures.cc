@@ -6,6 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "alidade/base/print.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/map/depth_cloud.h"
 
@@ -95,7 +96,7 @@ std::pair<float, float> Paint(std::vector<DepthDot> dots, int radius, cv::Mat& p
 
 std::string Words(const char* format, double a, double b = 0) {
   char text[64];
-  std::snprintf(text, sizeof(text), format, a, b);
+  PrintTo(text, sizeof(text), format, a, b);
   return text;
 }
 

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/run/report/stats.h"
 #include "alidade/run/sources/truth.h"
@@ -11,7 +12,7 @@ namespace {
 
 std::string Format(const char* format, double value) {
   char text[64];
-  std::snprintf(text, sizeof(text), format, value);
+  PrintTo(text, sizeof(text), format, value);
   return text;
 }
 

@@ -129,7 +129,7 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
   const auto first_good = std::find_if(
       list.begin(), list.end(), [](const StampedName& item) { return item.problem.empty(); });
   if (first_good == list.end()) ThrowInput(list.front().problem + " (and so are all other lines)");
-  const TimeOrder order = OrderOf(list);
+  const ListOrder order = OrderOf(list);
   if (order.parts() > 1) {
     LogWarning("the time stamps of " + folder + " go back " + std::to_string(order.parts() - 1) +
                (order.parts() == 2 ? " time" : " times") +
@@ -168,7 +168,7 @@ int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::
   for (const StampedName& item : list) {
     if (!item.problem.empty()) LogWarning(item.problem + "; this line is ignored");
   }
-  const TimeOrder order = OrderOf(list);
+  const ListOrder order = OrderOf(list);
   const int parts = frames.empty() ? 0 : frames.back().part + 1;
   const bool by_part = parts == order.parts();
   // AssociateByTime() never pairs a NaN.

@@ -11,8 +11,8 @@ constexpr double kMaxStepsBack = 1 / 10.0;  // share of items, in a list of join
 
 }  // namespace
 
-TimeOrder OrderOf(const std::vector<StampedName>& list) {
-  TimeOrder result;
+ListOrder OrderOf(const std::vector<StampedName>& list) {
+  ListOrder result;
   result.part.assign(list.size(), 0);
   std::vector<size_t> good;
   for (size_t i = 0; i < list.size(); ++i) {
