@@ -15,7 +15,7 @@ struct ManPage {
 };
 
 // One page for the program and one for each command: alidade-run.1, alidade-evaluate-ate.1.
-// `version`: "alidade 0.1.0".
+// `version`: "alidade 0.2.0".
 std::vector<ManPage> ManPages(const CommandText& program, const std::string& version);
 
 }  // namespace alidade

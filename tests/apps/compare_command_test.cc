@@ -113,7 +113,7 @@ TEST_F(CompareCommand, WhatCannotBeComparedIsOneLine) {
   const std::vector<Case> cases = {
       {{deep_, "--out", out}, 2, "two results"},
       {{deep_, *folder_ / "empty", "--out", out}, 3, "no stats.json in " + (*folder_ / "empty")},
-      {{deep_, *folder_ / "other", "--out", out}, 3, "other/stats.json is not one"},
+      {{deep_, *folder_ / "other", "--out", out}, 3, "other/stats.json was not written by"},
       {{deep_, *folder_ / "nowhere", "--out", out}, 3, "nowhere"},
       {{deep_, single_, "--out", *folder_ / "no/such/page.html"}, 3, "no/such/page.html"},
       {{deep_, single_, "--out", *folder_ / "empty"}, 3, "empty"}};

@@ -93,7 +93,7 @@ TEST_F(SavedMapCommand, AMapOfAnotherCameraIsRefused) {
   const std::string room = Rendered({"room", "--frames", "20", "--seed", "5"});  // no distortion
   ExpectRefused(
       {"run", room, "--sensor", "rgbd", "--load", Result("rgbd"), "--out", folder_ / "out"}, 3,
-      "made with another camera: k1 -0.22 there, 0 here");
+      "made with another camera: k1 -0.22 in the map, 0 here");
   EXPECT_FALSE(fs::exists(folder_ / "out/trajectory.txt"));
 }
 

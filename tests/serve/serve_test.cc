@@ -84,7 +84,7 @@ TEST(Serve, SaysWhatItShows) {
   CountingHub hub;
   const auto server = StartViewer(AnyPort(), &hub, "", "a \"room\" \xff");
   EXPECT_EQ(BodyOf(PlainClient(server->port()).Ask("GET /info.json")),
-            "{\"mode\":\"live\",\"program\":\"alidade 0.1.0\",\"title\":\"a \\\"room\\\" "
+            "{\"mode\":\"live\",\"program\":\"alidade 0.2.0\",\"title\":\"a \\\"room\\\" "
             "\xef\xbf\xbd\"}");
 }
 

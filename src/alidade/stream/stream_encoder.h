@@ -20,7 +20,7 @@ struct StreamTruth {
 
 // Description of the run, sent in Hello.
 struct StreamSource {
-  std::string program, source, sensor;  // "alidade 0.1.0"; as typed; "mono", "stereo" or "rgbd"
+  std::string program, source, sensor;  // "alidade 0.2.0"; as typed; "mono", "stereo" or "rgbd"
   std::string unit;                     // "m" or "map units"
   int frames = -1;                      // of the recording; -1: unknown
   bool live = false;                    // a live camera

@@ -77,7 +77,7 @@ export class Sample {
   hello(): Message {
     const truth = this.truth.map((T_world_camera, i) => ({ time: i / 30, T_world_camera }));
     return {
-      kind: 'hello', version: 1, program: 'alidade 0.1.0', source: 'synth:room --frames ' + this.frames, sensor: 'rgbd', unit: 'm',
+      kind: 'hello', version: 1, program: 'alidade 0.2.0', source: 'synth:room --frames ' + this.frames, sensor: 'rgbd', unit: 'm',
       frames: this.frames, live: false, camera: CAMERA, truth,
     };
   }

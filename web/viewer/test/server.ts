@@ -62,7 +62,7 @@ export async function startServer(settings: ServerSettings = {}): Promise<Server
     response.setHeader('X-Content-Type-Options', 'nosniff');
     if (name === 'info.json') {
       response.setHeader('Content-Type', 'application/json');
-      return response.end(JSON.stringify({ mode, title: 'sample room', program: 'alidade 0.1.0' }));
+      return response.end(JSON.stringify({ mode, title: 'sample room', program: 'alidade 0.2.0' }));
     }
     if (name === 'run.stream' && file) return response.end(file);
     if (!/^(index\.html|viewer\.js|viewer\.css|favicon\.svg|licences\.txt)$/.test(name)) {

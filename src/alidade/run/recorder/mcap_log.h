@@ -11,7 +11,7 @@ namespace alidade {
 
 class McapLog {
  public:
-  // Throws Error (input) if the file cannot be created. `program`: "alidade 0.1.0".
+  // Throws Error (input) if the file cannot be created. `program`: "alidade 0.2.0".
   McapLog(const std::string& path, const std::string& program);
 
   RosLog& log() { return log_; }

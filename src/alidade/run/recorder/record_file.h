@@ -24,7 +24,7 @@ class RecordFile {
 
 bool IsMcap(const std::string& path);  // by the ending of the name
 
-// Throws Error (input) if the file cannot be created. `program`: "alidade 0.1.0".
+// Throws Error (input) if the file cannot be created. `program`: "alidade 0.2.0".
 std::unique_ptr<RecordFile> MakeRecordFile(const std::string& path, const std::string& program,
                                            const StreamFeedSettings& settings);
 
