@@ -32,7 +32,8 @@ void List(std::string_view bytes) {
   for (const StampUnit unit : {StampUnit::kSeconds, StampUnit::kNanoseconds}) {
     for (const bool with_names : {true, false}) {
       try {
-        Use(ParseStampedList(bytes, "rgb.txt", unit, with_names));
+        const FindUnit find = with_names ? FindUnit::kYes : FindUnit::kNo;
+        Use(ParseStampedList(bytes, "rgb.txt", unit, with_names, find));
         any = true;
       } catch (const Error& error) {
         problem = error.what();

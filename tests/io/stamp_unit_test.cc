@@ -57,15 +57,17 @@ TEST(StampUnit, TextIsConvertedDigitByDigit) {
 TEST(StampUnit, OfAListIsToldWhenItIsNotThatOfTheFormat) {
   WarningCatcher warnings;
   const auto list = ParseStampedList("1403636579000000000 a.png\n1403636579033000000 b.png\n",
-                                     "rgb.txt", StampUnit::kSeconds, true);
+                                     "rgb.txt", StampUnit::kSeconds, true, FindUnit::kYes);
   EXPECT_EQ(list.at(1).stamp, "1403636579.033000000");
   EXPECT_NEAR(list.at(1).time - list.at(0).time, 0.033, 1e-6);
   EXPECT_THAT(warnings.text(), HasSubstr("rgb.txt: the time stamps are read as nanoseconds, one "
                                          "image every 0.033 s"));
   WarningCatcher quiet;
-  EXPECT_EQ(
-      ParseStampedList("0.5 a.png\n0.6 b.png\n", "rgb.txt", StampUnit::kSeconds, true).at(1).stamp,
-      "0.6");
+  EXPECT_EQ(ParseStampedList("0.5 a.png\n0.6 b.png\n", "rgb.txt", StampUnit::kSeconds, true,
+                             FindUnit::kYes)
+                .at(1)
+                .stamp,
+            "0.6");
   EXPECT_EQ(quiet.text(), "");
 }
 

@@ -17,7 +17,7 @@ std::string Mav0Of(const std::string& folder) {
 }
 
 std::vector<StampedName> ListOf(const std::string& camera) {
-  return ReadStampedList(camera + "/data.csv", StampUnit::kNanoseconds, true);
+  return ReadStampedList(camera + "/data.csv", StampUnit::kNanoseconds, true, FindUnit::kYes);
 }
 
 // Frames without a right image are kept; they have no stereo depth.

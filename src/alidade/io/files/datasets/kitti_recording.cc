@@ -24,7 +24,7 @@ Recording ReadKittiRecording(const std::string& folder) {
   const std::string left_folder = folder + "/image_" + std::to_string(left);
   const std::string right_folder = folder + "/image_" + std::to_string(left + 1);
   const auto images = ImagesIn(left_folder);
-  auto list = ReadStampedList(folder + "/times.txt", StampUnit::kSeconds, false);
+  auto list = ReadStampedList(folder + "/times.txt", StampUnit::kSeconds, false, FindUnit::kYes);
   if (images.empty()) ThrowInput(left_folder + " contains no images");
   if (images.size() != list.size()) {
     LogWarning(folder + "/times.txt has " + std::to_string(list.size()) + " times for " +

@@ -30,12 +30,13 @@ void SayUnit(const std::string& name, std::span<const double> stamps, StampUnit 
 
 }  // namespace
 
-std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names) {
-  return ParseStampedList(ReadFile(path), path, unit, with_names);
+std::vector<StampedName> ReadStampedList(const std::string& path, StampUnit unit, bool with_names,
+                                         FindUnit find) {
+  return ParseStampedList(ReadFile(path), path, unit, with_names, find);
 }
 
 std::vector<StampedName> ParseStampedList(std::string_view text, const std::string& name,
-                                          StampUnit unit, bool with_names) {
+                                          StampUnit unit, bool with_names, FindUnit find) {
   CheckIsText(text, name);
   std::vector<StampedName> list;
   std::vector<double> written;
@@ -58,7 +59,7 @@ std::vector<StampedName> ParseStampedList(std::string_view text, const std::stri
     list.push_back(std::move(item));
   }
   if (list.empty()) ThrowInput(name + " lists nothing");
-  const StampUnit in = ProbableUnit(written, unit);
+  const StampUnit in = find == FindUnit::kYes ? ProbableUnit(written, unit) : unit;
   if (in != unit) SayUnit(name, written, unit, in);
   for (StampedName& item : list) {
     if (!item.problem.empty()) continue;

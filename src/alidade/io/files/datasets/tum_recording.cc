@@ -13,7 +13,8 @@ namespace {
 constexpr double kMaxDepthDelay = 0.02;
 
 void AddDepth(Recording& recording, const std::string& folder) {
-  const auto list = ReadStampedList(folder + "/depth.txt", StampUnit::kSeconds, true);
+  const auto list =
+      ReadStampedList(folder + "/depth.txt", StampUnit::kSeconds, true, FindUnit::kYes);
   const int found =
       AttachByTime(recording.frames, &RecordedFrame::depth, list, folder, kMaxDepthDelay);
   const auto good = std::count_if(recording.frames.begin(), recording.frames.end(),
@@ -32,8 +33,8 @@ bool IsTumFolder(const std::string& folder) { return IsThere(folder + "/rgb.txt"
 Recording ReadTumRecording(const std::string& folder) {
   Recording recording;
   recording.kind = "tum";
-  recording.frames =
-      FramesOf(ReadStampedList(folder + "/rgb.txt", StampUnit::kSeconds, true), folder);
+  recording.frames = FramesOf(
+      ReadStampedList(folder + "/rgb.txt", StampUnit::kSeconds, true, FindUnit::kYes), folder);
   recording.default_depth_factor = 5000;
   if (IsThere(folder + "/depth.txt")) AddDepth(recording, folder);
   const std::string camera = folder + "/camera.yaml";
