@@ -35,7 +35,8 @@ TEST(SameCamera, NamesWhatDiffers) {
   EXPECT_THAT(message([](Camera& c) { c.width = 320; }),
               testing::HasSubstr("another camera: width 640 in the map, 320 here"));
   EXPECT_THAT(message([](Camera& c) { c.fx *= 1.01; }), testing::HasSubstr("camera: fx 492.7"));
-  EXPECT_THAT(message([](Camera& c) { c.cy += 1; }), testing::HasSubstr("cy 239.5 in the map, 240.5"));
+  EXPECT_THAT(message([](Camera& c) { c.cy += 1; }),
+              testing::HasSubstr("cy 239.5 in the map, 240.5"));
   EXPECT_THAT(message([](Camera& c) { c.distortion[1] = 0.15; }), testing::HasSubstr("k2 0.05"));
   EXPECT_THAT(message([](Camera& c) { c.depth_factor = 1000; }),
               testing::HasSubstr("depth_factor 5000 in the map, 1000 here"));
