@@ -1,7 +1,11 @@
 // Limits on the number of keyframes and on the time that Finish() takes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "alidade/base/log.h"
@@ -9,6 +13,7 @@
 #include "alidade/map/map_file.h"
 #include "alidade/semidense/semidense_mapper.h"
 #include "alidade/slam.h"
+#include "alidade/system/workers/workers.h"
 #include "support/check_map.h"
 #include "support/rendered_frames.h"
 
@@ -102,6 +107,58 @@ TEST_F(Limits, AFinishThatIsCutShortLeavesTheMapSoundAndTheNextOneDoesTheRest) {
   cut.Finish();
   EXPECT_EQ(Poses(cut), Poses(whole));
   EXPECT_EQ(cut.SemiDense().keyframes, whole.SemiDense().keyframes);
+}
+
+// Two parts of the room whose maps are merged, which starts an adjustment.
+TEST_F(Limits, ACutBeforeFinishDoesNotDisturbTheRunningMap) {
+  SlamSettings settings = Phone();
+  settings.new_map_frames = 8;
+  Slam whole(SmallRoom().camera(), settings), cut(SmallRoom().camera(), settings);
+  cut.CutFinishShort();
+  std::vector<int> numbers;
+  for (int i = 0; i <= 48; i += 3) numbers.push_back(i);
+  for (int i = 330; i <= 640; i += 6) numbers.push_back(i);
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    const RenderedFrame& frame = SmallRoom().Frame(numbers[i]);
+    const FrameInput input{0.1 * static_cast<double>(i), frame.image, {}, frame.depth};
+    whole.Track(input);
+    cut.Track(input);
+  }
+  EXPECT_EQ(whole.Counts().merges, 1);
+  EXPECT_EQ(cut.Snapshot().corrections(), whole.Snapshot().corrections());
+  const std::string before = Poses(cut);
+  EXPECT_EQ(before, Poses(whole));
+  whole.Finish();
+  cut.Finish();
+  EXPECT_EQ(Poses(cut), before);
+  cut.Finish();
+  EXPECT_EQ(Poses(cut), Poses(whole));
+}
+
+TEST_F(Limits, ACutEndsOneFinishAndNoOther) {
+  Workers workers(SmallRoom().camera(), Phone());
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const auto is_cut = [&](double limit) {
+    bool cut = false;
+    workers.FinishWithin(limit, [&] {
+      workers.Drain();
+      cut = workers.cut();
+    });
+    return cut;
+  };
+  workers.CutShort();
+  EXPECT_FALSE(workers.cut());
+  EXPECT_TRUE(is_cut(kNoLimit));
+  EXPECT_FALSE(is_cut(kNoLimit));
+  workers.FinishWithin(kNoLimit, [&] {
+    workers.Drain();
+    workers.CutShort();  // too late to have an effect
+  });
+  EXPECT_FALSE(is_cut(kNoLimit));
+  workers.FinishWithin(0, [&] {
+    while (!workers.cut()) std::this_thread::yield();
+  });
+  EXPECT_FALSE(is_cut(kNoLimit));
 }
 
 TEST_F(Limits, AFinishWithoutTimeReturnsInTheThreadedSchedule) {
