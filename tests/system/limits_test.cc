@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ctime>
 #include <limits>
+#include <memory>
 #include <string>
 #include <thread>
 #include <utility>
@@ -16,6 +18,7 @@
 #include "alidade/system/workers/workers.h"
 #include "support/check_map.h"
 #include "support/rendered_frames.h"
+#include "support/saved_map.h"
 
 namespace alidade::limits_test {
 namespace {
@@ -159,6 +162,27 @@ TEST_F(Limits, ACutEndsOneFinishAndNoOther) {
     while (!workers.cut()) std::this_thread::yield();
   });
   EXPECT_FALSE(is_cut(kNoLimit));
+}
+
+// As after weeks of operation: few objects exist for the number of ids issued. Visiting all ids
+// takes ten seconds.
+TEST_F(Limits, ACameraIsChangedInAMapOfManyIds) {
+  SavedMap saved = MakeSavedMap({.second_map = false, .loops = false, .places = false});
+  saved.camera.distortion = {};
+  MapState state = saved.map.state();
+  state.next_keyframe = state.next_landmark = 0xfffffff0u;
+  saved.map = MapSnapshot(std::make_shared<const MapState>(std::move(state)));
+  Workers workers(saved.camera, Phone());
+  workers.Restore(saved);
+  Camera camera = saved.camera;
+  camera.fx *= 1.001;
+  camera.fy *= 1.001;
+  const std::clock_t start = std::clock();
+  workers.ChangeCamera(saved.camera, camera);
+  EXPECT_LT(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, 4);
+  const MapSnapshot map = workers.map().Snapshot();
+  ExpectConsistent(map);
+  EXPECT_GT(map.landmark_count(), saved.map.landmark_count() / 2);
 }
 
 TEST_F(Limits, AFinishWithoutTimeReturnsInTheThreadedSchedule) {

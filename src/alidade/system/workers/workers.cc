@@ -159,9 +159,7 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
     }
     mapper_.SetCamera(to);
     map_.Commit([&](MapCommit& commit) {
-      for (uint32_t i = 0; i < commit.next_landmark(); ++i) {
-        if (commit.Find(LandmarkId{i})) commit.RefreshLandmark(LandmarkId{i});
-      }
+      for (LandmarkId id : map_.Snapshot().Landmarks()) commit.RefreshLandmark(id);
     });
     if (Apart(from, to) > lens_watch_.settings().rework) {
       for (KeyFrameId id : map_.Snapshot().KeyFrames()) MapKeyFrame(id, nullptr);
