@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "support/expect_error.h"
 
@@ -49,6 +51,22 @@ TEST(LateDetector, WhatCannotBeIsRefusedAndNothingIsLost) {
   EXPECT_EQ(detector.TakeAnswer()->number, 1);
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { detector.Detect({}); }),
               HasSubstr("asynchronously"));
+}
+
+TEST(LateDetector, KeepsTheBestOfTooMany) {
+  const WarningCatcher warnings;
+  LateDetector detector({"person"});
+  for (int number : {1, 2}) {
+    std::vector<Detection> many(100000, Detection{0, 0.5f, {1, 2, 3, 4}});
+    many.back().score = 0.9f;
+    detector.Bring({number, many});
+    const auto answer = detector.TakeAnswer();
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->detections.size(), static_cast<size_t>(kMostDetections));
+    EXPECT_EQ(answer->detections[0].score, 0.9f);
+  }
+  EXPECT_THAT(warnings.text(), HasSubstr("100000 objects"));
+  EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
 }
 
 }  // namespace

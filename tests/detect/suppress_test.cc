@@ -1,6 +1,12 @@
 #include "alidade/detect/suppress.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/expect_error.h"
 
 namespace alidade::suppress_test {
 namespace {
@@ -29,6 +35,41 @@ TEST(SuppressOverlaps, LeavesOutOnlyWhatAKeptOneCovers) {
       {{0, 0.9f, {0, 0, 10, 10}}, {0, 0.8f, {3, 0, 10, 10}}, {0, 0.7f, {6, 0, 10, 10}}}, 0.45f);
   ASSERT_EQ(kept.size(), 2u);
   EXPECT_EQ(kept[1].score, 0.7f);
+}
+
+// As many boxes as the test wants, side by side, the best last.
+std::vector<Detection> SideBySide(int count) {
+  std::vector<Detection> all;
+  for (int i = 0; i < count; ++i)
+    all.push_back(
+        {0, static_cast<float>(i) / static_cast<float>(count), {static_cast<float>(i), 0, 1, 1}});
+  return all;
+}
+
+TEST(SuppressOverlaps, EndsWhenThereAreMoreThanAreUsed) {
+  const std::vector<Detection> kept = SuppressOverlaps(SideBySide(100000), 0.45f);
+  ASSERT_EQ(kept.size(), kMostDetections + 1u);
+  EXPECT_EQ(kept[0].box.x, 99999);
+}
+
+TEST(KeepBest, KeepsThoseWithTheHighestScoresAndWarnsOnce) {
+  const WarningCatcher warnings;
+  bool told = false;
+  std::vector<Detection> few = SideBySide(kMostDetections);
+  KeepBest(few, told);
+  ASSERT_EQ(few.size(), static_cast<size_t>(kMostDetections));
+  EXPECT_EQ(few[0].box.x, 0);  // unchanged
+  EXPECT_EQ(warnings.text(), "");
+  for (int i = 0; i < 2; ++i) {
+    std::vector<Detection> many = SideBySide(1000);
+    many[5].score = NAN;
+    KeepBest(many, told);
+    ASSERT_EQ(many.size(), static_cast<size_t>(kMostDetections));
+    EXPECT_EQ(many.front().box.x, 999);
+    EXPECT_EQ(many.back().box.x, 1000 - kMostDetections);
+  }
+  EXPECT_THAT(warnings.text(), testing::HasSubstr("1000 objects"));
+  EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
 }
 
 }  // namespace

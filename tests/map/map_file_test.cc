@@ -86,6 +86,30 @@ TEST(MapFile, ReadsBackWhatWasWritten) {
   }
 }
 
+// A loaded map continues as the saved one would.
+TEST(MapFile, KeepsWhatIsKnownOfTheDepthOfLandmarks) {
+  SavedMap saved = MakeSavedMap();
+  const std::string as_in_older_files = EncodeMap(saved);  // a field is absent at its default
+  MapStore store;
+  store.Restore(saved.map);
+  const std::vector<LandmarkId> ids = saved.map.Landmarks();
+  saved.map = store.Commit([&](MapCommit& commit) {
+    commit.Edit(ids[3])->scale_known = false;
+    commit.Edit(ids[5])->scale_known = false;
+    commit.Edit(ids[5])->depth_assumed = true;
+  });
+  const std::string bytes = EncodeMap(saved);
+  EXPECT_GT(bytes.size(), as_in_older_files.size());
+  const SavedMap read = DecodeMap(bytes), old = DecodeMap(as_in_older_files);
+  for (LandmarkId id : ids) {
+    EXPECT_EQ(read.map.Find(id)->scale_known, id != ids[3] && id != ids[5]);
+    EXPECT_EQ(read.map.Find(id)->depth_assumed, id == ids[5]);
+    EXPECT_TRUE(old.map.Find(id)->scale_known);
+    EXPECT_FALSE(old.map.Find(id)->depth_assumed);
+  }
+  EXPECT_TRUE(EncodeMap(read) == bytes);
+}
+
 // An invalid landmark must not prevent saving the map.
 TEST(MapFile, ALandmarkThatIsNoNumberIsLeftOut) {
   SavedMap saved = MakeSavedMap();

@@ -128,6 +128,27 @@ TEST_F(InlineFeed, ADetectorThatFailsIsToldOfOnceAndNotAskedAgain) {
   EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
 }
 
+TEST_F(InlineFeed, OfTooManyTheBestAreHandedOver) {
+  settings_.detector_every_frames = 1;
+  settings_.detector_latency_frames = 0;
+  const auto detector = std::make_shared<ScriptedDetector>([&](const cv::Mat&) {
+    std::vector<Detection> many(100000, Detection{0, 0.5f, {1, 2, 3, 4}});
+    many.back().score = 0.9f;
+    return many;
+  });
+  const WarningCatcher warnings;
+  DetectionFeed feed(detector, settings_, false, 1);
+  for (int number = 0; number < 3; ++number) {
+    feed.Offer(number, Picture(number));
+    const auto answer = feed.Take(number);
+    ASSERT_TRUE(answer.has_value());
+    EXPECT_EQ(answer->detections.size(), static_cast<size_t>(kMostDetections));
+    EXPECT_EQ(answer->detections[0].score, 0.9f);
+  }
+  EXPECT_THAT(warnings.text(), HasSubstr("100000 objects"));
+  EXPECT_EQ(std::count(warnings.text().begin(), warnings.text().end(), '\n'), 1);
+}
+
 TEST_F(InlineFeed, WithoutADetectorThereAreNoAnswers) {
   for (bool threaded : {false, true}) {
     DetectionFeed feed(nullptr, settings_, threaded, 1);

@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/core.hpp>
+#include <string>
+
+#include "alidade/slam.h"
+#include "support/expect_error.h"
 
 namespace alidade::prepare_test {
 namespace {
@@ -47,6 +51,44 @@ TEST(Prepare, ScalesThePicture) {
   const FrameInput prepared = Prepare(input, given, CameraInUse(given, settings), settings);
   EXPECT_EQ(prepared.image.size(), cv::Size(1920, 1080));
   EXPECT_EQ(cv::mean(prepared.image)[0], 90);
+}
+
+TEST(Prepare, AnImageOfAnotherNumberOfChannelsIsRefusedAndNotCounted) {
+  const Camera camera = Camera::FromFieldOfView(320, 240, 60);
+  SlamSettings stereo;
+  stereo.sensor = Sensor::kStereo;
+  Camera pair = camera;
+  pair.baseline = 0.1;
+  const cv::Mat gray(240, 320, CV_8UC1, cv::Scalar(90));
+  for (int channels : {2, 5}) {
+    const cv::Mat image(240, 320, CV_8UC(channels));
+    Slam one(camera, {}), two(pair, stereo);
+    EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                          [&] {
+                            one.Track({0, image, {}, {}});
+                          }),
+                testing::HasSubstr("not " + std::to_string(channels)));
+    EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                          [&] {
+                            two.Track({0, gray, image, {}});
+                          }),
+                testing::HasSubstr("channels"));
+    EXPECT_EQ(one.frames() + two.frames(), 0);
+    one.Track({0, gray, {}, {}});  // so its time is free
+    EXPECT_EQ(one.frames(), 1);
+  }
+}
+
+TEST(Prepare, AColorImageOfAnotherNumberOfChannelsIsRefused) {
+  const Camera camera = Camera::FromFieldOfView(320, 240, 60);
+  SlamSettings settings;
+  settings.dynamics.mode = DynamicsMode::kFull;
+  ASSERT_TRUE(settings.WantsColor());
+  FrameInput input;
+  input.image = cv::Mat(240, 320, CV_8UC1, cv::Scalar(90));
+  input.color = cv::Mat(240, 320, CV_8UC(5));
+  EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { Prepare(input, camera, camera, settings); }),
+              testing::HasSubstr("three or four"));
 }
 
 }  // namespace

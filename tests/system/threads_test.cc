@@ -129,6 +129,44 @@ TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
   ExpectConsistent(slam.Snapshot());
 }
 
+// The answers of one frame come from one frame, also where the camera is changed beside them.
+TEST(Threads, AnyMayAskWhileTheCameraIsChanged) {
+  SynthSettings synth;
+  synth.scene = "desk";
+  synth.width = 400;
+  synth.height = 300;
+  synth.speed = 2;
+  RenderedFrames& desk = FramesOf(synth);
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  settings.image_width = 0;
+  settings.readout.enabled = false;
+  settings.refine.enabled = true;
+  settings.dynamics.mode = DynamicsMode::kGeometry;
+  Slam slam(Camera::FromFieldOfView(400, 300, 85), settings);
+  {
+    std::atomic<int> masks{0};
+    std::atomic<bool> done{false};
+    std::thread asker([&] {
+      while (!done) {
+        const cv::Mat mask = slam.MoverMask();
+        masks += !mask.empty();
+        EXPECT_TRUE(mask.empty() || mask.size() == cv::Size(400, 300));
+        EXPECT_EQ(slam.camera().height, 300);
+        slam.Features();
+      }
+    });
+    for (int i = 0; i < 180 && slam.camera_changes() == 0; ++i) {
+      const RenderedFrame& frame = desk.Frame(i);
+      slam.Track({frame.time, frame.image, {}, {}});
+    }
+    done = true;
+    asker.join();
+    EXPECT_GT(masks, 0);
+  }
+  EXPECT_GT(slam.camera_changes(), 0);
+}
+
 // Driving calls from several threads run one at a time.
 TEST(Threads, DrivingCallsTakeTurns) {
   const std::vector<RenderedFrame> frames = TwoParts();

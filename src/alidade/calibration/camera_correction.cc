@@ -24,6 +24,12 @@ std::vector<float> InverseDepths(const MapCommit& commit, const KeyFrame& keyfra
   return inverse_depths;
 }
 
+std::vector<KeyFrameId> LiveKeyFrames(const MapCommit& commit) {
+  std::vector<KeyFrameId> ids;
+  commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) { ids.push_back(keyframe.id); });
+  return ids;
+}
+
 }  // namespace
 
 Vector6d MotionOf(const KeyFrame& keyframe) {
@@ -33,9 +39,9 @@ Vector6d MotionOf(const KeyFrame& keyframe) {
 }
 
 void CommitShutter(MapCommit& commit, const Camera& camera) {
-  for (uint32_t i = 0; i < commit.next_keyframe(); ++i) {
-    const KeyFrame* keyframe = commit.Find(KeyFrameId{i});
-    if (!keyframe || keyframe->frame->motion.isZero(0)) continue;
+  for (KeyFrameId id : LiveKeyFrames(commit)) {
+    const KeyFrame* keyframe = commit.Find(id);
+    if (keyframe->frame->motion.isZero(0)) continue;
     const std::vector<float> inverse_depths = InverseDepths(commit, *keyframe);
     std::vector<float> known;
     for (float w : inverse_depths) {
@@ -46,17 +52,15 @@ void CommitShutter(MapCommit& commit, const Camera& camera) {
     UndoRollingShutter(camera, MotionOf(*keyframe), inverse_depths,
                        known.empty() ? 0 : UpperMedian(known), *frame);
     frame->motion = motion;  // stays in map units at the keyframe's creation
-    commit.Edit(KeyFrameId{i})->frame = std::move(frame);
+    commit.Edit(id)->frame = std::move(frame);
   }
 }
 
 void CommitCamera(MapCommit& commit, const Camera& camera) {
-  for (uint32_t i = 0; i < commit.next_keyframe(); ++i) {
-    const KeyFrame* keyframe = commit.Find(KeyFrameId{i});
-    if (!keyframe) continue;
-    auto frame = std::make_shared<Frame>(*keyframe->frame);
+  for (KeyFrameId id : LiveKeyFrames(commit)) {
+    auto frame = std::make_shared<Frame>(*commit.Find(id)->frame);
     UndistortKeypoints(camera, *frame);
-    commit.Edit(KeyFrameId{i})->frame = std::move(frame);
+    commit.Edit(id)->frame = std::move(frame);
   }
   if (camera.RollingShutter()) CommitShutter(commit, camera);
 }

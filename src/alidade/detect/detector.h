@@ -24,13 +24,17 @@ struct FrameDetections {
   std::vector<Detection> detections;
 };
 
+// Detections of one frame that are used. A picture hardly holds more objects; it is also the limit
+// of YOLOv5's own program.
+inline constexpr int kMostDetections = 300;
+
 // Use each instance from one thread at a time.
 class Detector {
  public:
   virtual ~Detector() = default;
   // `image`: CV_8UC3 (blue green red) or CV_8UC1, any size. Returns detections sorted by descending
-  // score, with overlapping ones suppressed. Throws Error (input) when the network's output is
-  // unusable.
+  // score, with overlapping ones suppressed; the best kMostDetections are used. Throws Error
+  // (input) when the network's output is unusable.
   virtual std::vector<Detection> Detect(const cv::Mat& image) = 0;
   virtual const std::vector<std::string>& ClassNames() const = 0;
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/detect/suppress.h"
 
 namespace alidade {
 
@@ -18,6 +19,7 @@ void LateDetector::Bring(FrameDetections answer) {
   }
   const std::lock_guard<std::mutex> lock(mutex_);
   if (answer.number <= last_) return;
+  KeepBest(answer.detections, told_);
   last_ = answer.number;
   newest_ = std::move(answer);
 }

@@ -19,8 +19,8 @@ class LateDetector : public Detector {
       : class_names_(std::move(class_names)) {}
 
   // Any thread. `answer.number` is the frame's number as counted by Slam::Track(), starting at
-  // Slam::first_number(). A result that is not newer than the previous one is ignored. Throws Error
-  // (input) for an invalid detection.
+  // Slam::first_number(). A result that is not newer than the previous one is ignored. The best
+  // kMostDetections are kept. Throws Error (input) for an invalid detection.
   void Bring(FrameDetections answer);
   std::optional<FrameDetections> TakeAnswer() override;
 
@@ -33,7 +33,8 @@ class LateDetector : public Detector {
   const std::vector<std::string> class_names_;
   std::mutex mutex_;
   std::optional<FrameDetections> newest_;
-  int last_ = -1;  // number of the last accepted result
+  int last_ = -1;      // number of the last accepted result
+  bool told_ = false;  // the user was warned of too many detections
 };
 
 }  // namespace alidade

@@ -33,10 +33,10 @@ struct Landmark {
   // Probability of being static, 0 to 1; weight of its observations in poses and adjustments.
   float static_probability = 1;
   // Monocular: true if it was measured between keyframes whose baseline is known
-  // (mapping/scale_hold.h). Not saved; true for loaded maps.
+  // (mapping/scale_hold.h). True for maps saved before 0.2.
   bool scale_known = true;
-  // Its depth is an assumption, because it was created during a pure rotation (MapTurn()). Not
-  // saved.
+  // Its depth is an assumption, because it was created during a pure rotation (MapTurn()). False
+  // for maps saved before 0.2.
   bool depth_assumed = false;
   // Newest keyframe at its creation; recent landmarks are on probation (mapping/cull.h).
   KeyFrameId born;

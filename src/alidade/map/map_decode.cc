@@ -162,6 +162,8 @@ class Decoder {
     landmark.min_distance = from.min_distance();
     landmark.max_distance = from.max_distance();
     landmark.static_probability = from.static_probability();
+    landmark.scale_known = from.scale_known();
+    landmark.depth_assumed = from.depth_assumed();
     landmark.born = {from.born()};
     landmark.reference = {from.reference()};
     if (const char* complaint = ComplaintOf(landmark)) Require(false, complaint);

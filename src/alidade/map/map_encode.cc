@@ -65,10 +65,10 @@ Offset<fb::Landmark> EncodeLandmark(FlatBufferBuilder& builder, const Landmark& 
   const fb::Vec3 p_world = Encode(landmark.p_world);
   const fb::Vec3f normal(landmark.normal.x(), landmark.normal.y(), landmark.normal.z());
   const fb::Descriptor descriptor = Encode(landmark.descriptor);
-  return fb::CreateLandmark(builder, landmark.id.value, &p_world, observations,
-                            landmark.reference.value, landmark.born.value, &descriptor, &normal,
-                            landmark.min_distance, landmark.max_distance,
-                            landmark.static_probability);
+  return fb::CreateLandmark(
+      builder, landmark.id.value, &p_world, observations, landmark.reference.value,
+      landmark.born.value, &descriptor, &normal, landmark.min_distance, landmark.max_distance,
+      landmark.static_probability, landmark.scale_known, landmark.depth_assumed);
 }
 
 Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera) {

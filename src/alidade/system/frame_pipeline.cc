@@ -356,19 +356,24 @@ void FramePipeline::Load(const SavedMap& saved) {
 }
 
 void FramePipeline::Finish(double limit) {
+  const bool limited = std::isfinite(limit);
+  workers_.FinishWithin(limit, [&] { FinishWork(limited); });
+}
+
+void FramePipeline::FinishWork(bool limited) {
   EndFrame();
-  workers_.Drain(limit);
+  workers_.Drain();
   PresentFrame last;
   TakeNews();
   DropUnknownScale(last);
-  if (last.map_left) workers_.Drain(limit);
+  if (last.map_left) workers_.Drain();
   if (session_.has_pose() && young_.WantsGlance(NumberOf(log_.size() - 1)) && young_.StoodStill()) {
     session_.Apply(SessionEvent::kMapRefused);
-    workers_.Drain(limit);
+    workers_.Drain();
   }
   // The camera that all frames together support. Not where time is limited.
-  const bool use_camera = settings_.refine.enabled && !std::isfinite(limit);
-  for (int i = 0; i < kLastCameraQueries && use_camera; ++i) {
+  const bool use_camera = settings_.refine.enabled && !limited;
+  for (int i = 0; i < kLastCameraQueries && use_camera && !workers_.cut(); ++i) {
     workers_.AskForCamera();
     TakeNews();
     if (!news_.camera || session_.state() == SessionState::kConfirming) break;

@@ -63,6 +63,7 @@ class FramePipeline {
  private:
   void UseNews(PresentFrame& now);
   void TakeNews();
+  void FinishWork(bool limited);
   void UseCamera();
   void DropUnknownScale(PresentFrame& now);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);

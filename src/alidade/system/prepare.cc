@@ -54,7 +54,8 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
   }
   if (!prepared.color.empty()) {
     check(prepared.color, "color image");
-    if (prepared.color.depth() != CV_8U || prepared.color.channels() < 3)
+    if (prepared.color.depth() != CV_8U ||
+        (prepared.color.channels() != 3 && prepared.color.channels() != 4))
       ThrowInput("color images must have three or four channels of 8 bits");
     if (prepared.color.channels() == 4)
       cv::cvtColor(prepared.color, prepared.color, cv::COLOR_BGRA2BGR);
@@ -64,6 +65,8 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
   for (cv::Mat* image : {&prepared.image, &prepared.right}) {
     if (image->empty()) continue;
     if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");
+    if (const int n = image->channels(); n != 1 && n != 3 && n != 4)
+      ThrowInput("images must have one, three or four channels, not " + std::to_string(n));
     if (image->channels() == 3) cv::cvtColor(*image, *image, cv::COLOR_BGR2GRAY);
     if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2GRAY);
     if (used.width != given.width)

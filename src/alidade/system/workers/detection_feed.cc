@@ -6,6 +6,7 @@
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
 #include "alidade/base/timing.h"
+#include "alidade/detect/suppress.h"
 #include "alidade/system/health.h"
 
 namespace alidade {
@@ -53,6 +54,7 @@ std::optional<FrameDetections> DetectionFeed::Detect(int number, const cv::Mat& 
   const Stopwatch watch;
   try {
     FrameDetections answer{number, detector_->Detect(image)};
+    KeepBest(answer.detections, told_);
     milliseconds_.Add(watch.Milliseconds());
     std::lock_guard<std::mutex> lock(mutex_);
     if (random_.Uniform() < settings_.drop_detections) return {};
@@ -81,7 +83,9 @@ void DetectionFeed::Offer(int number, const cv::Mat& image) {
 std::optional<FrameDetections> DetectionFeed::Take(int number) {
   if (late_) {
     std::optional<FrameDetections> answer = detector_->TakeAnswer();
-    return answer && answer->number <= number ? answer : std::nullopt;
+    if (!answer || answer->number > number) return {};
+    KeepBest(answer->detections, told_);
+    return answer;
   }
   std::lock_guard<std::mutex> lock(mutex_);
   std::optional<FrameDetections> newest;

@@ -47,6 +47,7 @@ class DetectionFeed {
   DynamicsSettings settings_;
   bool late_;  // Detector::AnswersLate()
   bool threaded_;
+  bool told_ = false;  // of too many detections; used by the thread that asks the detector
   Random random_;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

@@ -159,9 +159,7 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
     }
     mapper_.SetCamera(to);
     map_.Commit([&](MapCommit& commit) {
-      for (uint32_t i = 0; i < commit.next_landmark(); ++i) {
-        if (commit.Find(LandmarkId{i})) commit.RefreshLandmark(LandmarkId{i});
-      }
+      for (LandmarkId id : map_.Snapshot().Landmarks()) commit.RefreshLandmark(id);
     });
     if (Apart(from, to) > lens_watch_.settings().rework) {
       for (KeyFrameId id : map_.Snapshot().KeyFrames()) MapKeyFrame(id, nullptr);
@@ -172,21 +170,39 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
   });
 }
 
-void Workers::CutShort() {
+void Workers::CutNow() {
   cut_short_ = true;
   for (Stage* stage : {&mapping_, &looping_, &adjusting_, &semidense_}) stage->GiveUp();
 }
 
-void Workers::Drain(double limit) {
+void Workers::CutShort() {
+  const std::lock_guard<std::mutex> lock(cut_mutex_);
+  cut_next_ = !finishing_;
+  if (finishing_) CutNow();
+}
+
+void Workers::FinishWithin(double limit, const std::function<void()>& finish) {
+  struct Ending {
+    Workers& workers;
+    ~Ending() {
+      const std::lock_guard<std::mutex> lock(workers.cut_mutex_);
+      workers.finishing_ = workers.cut_short_ = false;
+    }
+  };
+  {
+    const std::lock_guard<std::mutex> lock(cut_mutex_);
+    finishing_ = true;
+    if (std::exchange(cut_next_, false)) CutNow();
+  }
+  const Ending ending{*this};
   // Without a limit there is no timer: the result does not depend on the clock.
   std::optional<Alarm> alarm;
   if (std::isfinite(limit)) alarm.emplace(limit, [this] { CutShort(); });
-  DrainStages();
-  alarm.reset();
-  cut_short_ = false;
+  finish();
 }
 
-void Workers::DrainStages() {
+void Workers::Drain() {
+  if (cut_short_) CutNow();  // work added since
   mapping_.Drain();
   looping_.Drain();
   adjusting_.Drain();

@@ -61,11 +61,16 @@ class Workers {
   // runs. Not while a map is unconfirmed: an adjustment needs three keyframes.
   void ChangeCamera(const Camera& from, const Camera& to);
   int backlog() const { return mapping_.backlog(); }  // keyframes queued or being mapped
+  // Calls finish(). `limit` seconds after the start, or with CutShort(), cut() becomes true, and
+  // Drain() returns early until the end of finish().
+  void FinishWithin(double limit, const std::function<void()>& finish);
   // Returns when no work is left; maps get a full adjustment if any keyframe was added since the
-  // last call. After `limit` seconds, or CutShort(), drops the remaining work and returns as soon
-  // as work in progress has ended. Does not throw what a worker throws; see health().
-  void Drain(double limit = std::numeric_limits<double>::infinity());
-  void CutShort();  // ends the running Drain(), or else the next one, early; any thread
+  // last call. When cut() becomes true, drops the remaining work and returns as soon as work in
+  // progress has ended. Does not throw what a worker throws; see health().
+  void Drain();
+  bool cut() const { return cut_short_; }
+  // Cuts the running FinishWithin() short, or else the next one; any thread.
+  void CutShort();
   void Restore(const SavedMap& saved);  // before the first keyframe
   void BeginRecording();                // the times of keyframes from now on are of another clock
   // Removes a map and its places. Threaded: returns earlier; the loop closer's thread removes it.
@@ -88,7 +93,7 @@ class Workers {
   void MapKeyFrame(KeyFrameId id, const std::atomic<bool>* stop);
   void Map(KeyFrameId id, const std::atomic<bool>* stop);
   void Loop(KeyFrameId id);
-  void DrainStages();
+  void CutNow();
   void AdjustAll(KeyFrameId id, const std::atomic<bool>* stop);
   void WhileAllRest(const std::function<void()>& action);
 
@@ -100,7 +105,10 @@ class Workers {
   LoopCloser loop_closer_;
   SemiDenseMapper semidense_mapper_;
   bool dense_;  // semi-dense mapping is on
-  std::atomic<bool> cut_short_{false};
+  std::mutex cut_mutex_;
+  bool finishing_ = false;              // FinishWithin() is running
+  bool cut_next_ = false;               // CutShort() was called before it
+  std::atomic<bool> cut_short_{false};  // true only while finishing_
   std::mutex news_mutex_;
   std::vector<MapId> unknown_scale_;  // WorkerNews::unknown_scale
   bool limit_told_ = false;      // the user was warned of mapper.max_keyframes; used by mapping_
