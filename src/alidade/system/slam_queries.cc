@@ -86,9 +86,14 @@ cv::Mat Slam::MoverMask() const {
 
 SlamCounts Slam::Counts() const {
   const FramePipeline& pipeline = impl_->pipeline();
-  return {pipeline.counts().relocalizations, pipeline.workers().loops(),
-          pipeline.workers().merges(),       impl_->cuts(),
-          pipeline.counts().predicted,       pipeline.trajectory().let_go()};
+  SlamCounts counts;
+  counts.relocalizations = pipeline.counts().relocalizations;
+  counts.loops = pipeline.workers().loops();
+  counts.merges = pipeline.workers().merges();
+  counts.cuts = impl_->cuts();
+  counts.predicted = pipeline.counts().predicted;
+  counts.let_go = pipeline.trajectory().let_go();
+  return counts;
 }
 
 SemiDenseReport Slam::SemiDense() const { return impl_->pipeline().workers().SemiDense(); }
