@@ -12,6 +12,7 @@ import textwrap
 import alidade
 
 WIDTH = 100  # columns of code
+PROSE = 120  # and of text
 HEAD = """# Python reference
 
 This page lists all classes and functions of the package `alidade`. `scripts/docs` generates it from the docstrings; do
@@ -59,7 +60,13 @@ def paragraphs(doc, names):
         out += text
         if items:
             out.append("\n".join(items))
-    return "\n\n".join(out)
+    return "\n\n".join(wrapped(one) for one in out)
+
+
+def wrapped(text):
+    """Lines of at most PROSE columns; items of a list are indented by two."""
+    return "\n".join(textwrap.fill(line, PROSE, subsequent_indent="  " if line.startswith("- ") else "",
+                                   break_long_words=False, break_on_hyphens=False) for line in text.split("\n"))
 
 
 def signature(name, function, skip_self):

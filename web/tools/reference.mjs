@@ -19,6 +19,17 @@ function commentOf(node) {
     .map((comment) => ts.getTextOfJSDocComment(comment.comment)?.replace(/\s+/g, ' ') ?? '').join(' ');
 }
 
+// Lines of at most 120 columns.
+function wrapped(text) {
+  const lines = [''];
+  for (const word of text.split(' ')) {
+    const last = lines.at(-1);
+    if (last && last.length + 1 + word.length > 120) lines.push(word);
+    else lines[lines.length - 1] = last ? `${last} ${word}` : word;
+  }
+  return lines.join('\n');
+}
+
 const has = (node, kind) => node.modifiers?.some((modifier) => modifier.kind === kind) ?? false;
 const isHidden = (member) => (member.name && ts.isPrivateIdentifier(member.name)) || has(member, ts.SyntaxKind.PrivateKeyword);
 
@@ -31,12 +42,12 @@ function headOf(node, file) {
 function classText(node, file) {
   const parts = [`### ${node.name.text}`];
   const comment = commentOf(node);
-  if (comment) parts.push(comment);
+  if (comment) parts.push(wrapped(comment));
   for (const member of node.members) {
     if (isHidden(member) || has(member, ts.SyntaxKind.OverrideKeyword)) continue;
     parts.push(code(headOf(member, file)));
     const words = commentOf(member);
-    if (words) parts.push(words);
+    if (words) parts.push(wrapped(words));
   }
   return parts;
 }
@@ -46,7 +57,7 @@ function declarationText(node, file, name) {
   const comment = commentOf(node);
   const after = ts.getTrailingCommentRanges(file.text, node.end)?.at(-1);
   const text = file.text.slice(node.getStart(file), after?.end ?? node.end).replace(/^export /, '');
-  return [`### ${name}`, ...(comment ? [comment] : []), code(text)];
+  return [`### ${name}`, ...(comment ? [wrapped(comment)] : []), code(text)];
 }
 
 // The names and words of the failures, from their generated source.

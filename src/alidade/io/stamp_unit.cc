@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "alidade/base/median.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
@@ -44,9 +45,7 @@ std::optional<double> MedianStep(std::span<const double> stamps) {
     if (sorted[i] > sorted[i - 1]) steps.push_back(sorted[i] - sorted[i - 1]);
   }
   if (steps.empty()) return std::nullopt;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return UpperMedian(steps);
 }
 
 StampUnit ProbableUnit(std::span<const double> stamps, StampUnit declared) {

@@ -20,9 +20,9 @@ constexpr double kWidestPair = 3;        // meters: stereo cameras have a smalle
 constexpr double kMostOffCenter = 0.08;  // of the image's side; lenses are centered to 5 %
 constexpr double kMostStretched = 1.05;  // fx / fy; pixels are square
 
-std::string Metres(double metres) {
+std::string Meters(double meters) {
   char text[32];
-  PrintTo(text, sizeof(text), metres < 10 ? "%.2g" : "%.0f", metres);
+  PrintTo(text, sizeof(text), meters < 10 ? "%.2g" : "%.0f", meters);
   return text;
 }
 
@@ -64,7 +64,7 @@ void InspectDepth(FrameSource& source, SourceFindings& findings) {
   const auto at = [&](double share) {
     return depths[static_cast<size_t>(share * static_cast<double>(depths.size() - 1))];
   };
-  findings.told = "Depth from " + Metres(at(kTail)) + " to " + Metres(at(1 - kTail)) + " m";
+  findings.told = "Depth from " + Meters(at(kTail)) + " to " + Meters(at(1 - kTail)) + " m";
   char factor[80] = "";
   if (stored) {
     PrintTo(factor, sizeof(factor), ", %g units per meter%s", info.camera.depth_factor,
@@ -72,17 +72,17 @@ void InspectDepth(FrameSource& source, SourceFindings& findings) {
     findings.told += factor;
   }
   if (at(0.5) < kNearest || at(0.5) > kFarthest) {
-    LogWarning("the depth images show distances from " + Metres(at(kTail)) + " to " +
-               Metres(at(1 - kTail)) + " m, which no depth camera measures: is `depth_factor` " +
-               "right (1000 for millimeters)? The trajectory has the same wrong scale");
+    LogWarning("the depth images show distances from " + Meters(at(kTail)) + " to " +
+               Meters(at(1 - kTail)) + " m, which no depth camera measures: is `depth_factor` " +
+               "right (1000 for millimeters)? It sets the scale of the trajectory");
   }
 }
 
 void InspectCamera(const SourceInfo& info) {
   const Camera& camera = info.camera;
   if (camera.baseline > kWidestPair) {
-    LogWarning("the two cameras are " + Metres(camera.baseline) +
-               " m apart: is the baseline in millimeters? The trajectory has the same scale");
+    LogWarning("the two cameras are " + Meters(camera.baseline) +
+               " m apart: is the baseline in millimeters? It sets the scale of the trajectory");
   }
   const double off_x = (camera.cx - (camera.width - 1) / 2.0) / camera.width;
   const double off_y = (camera.cy - (camera.height - 1) / 2.0) / camera.height;
@@ -90,16 +90,16 @@ void InspectCamera(const SourceInfo& info) {
   char text[160];
   if (info.sensor != Sensor::kStereo && std::abs(off) > kMostOffCenter) {
     PrintTo(text, sizeof(text),
-            "the principal point lies %.0f %% of the image's side off its center: is the "
-            "calibration of a cropped image, or of another one?",
+            "the principal point lies %.0f %% of the image's side off its center: does "
+            "the calibration belong to a cropped image, or to another camera?",
             100 * std::abs(off));
     LogWarning(text);
   }
   const double stretched = std::max(camera.fx / camera.fy, camera.fy / camera.fx);
   if (stretched > kMostStretched) {
     PrintTo(text, sizeof(text),
-            "the focal lengths fx and fy differ by %.0f %%: is the calibration of these "
-            "images?",
+            "the focal lengths fx and fy differ by %.0f %%: does the calibration belong to "
+            "these images?",
             100 * (stretched - 1));
     LogWarning(text);
   }

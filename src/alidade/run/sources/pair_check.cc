@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "alidade/base/median.h"
 #include "alidade/features/extractor.h"
 #include "alidade/features/matching.h"
 
@@ -14,20 +15,32 @@ constexpr int kPairs = 16;
 constexpr int kMostDelay = 8;        // frames, either way
 constexpr int kLeastMatches = 30;    // of a pair
 constexpr double kRowNoise = 1.5;    // pixels of the keypoint's level, three standard deviations
-constexpr double kMeanScale = 1.6;   // of the keypoints' levels
 constexpr double kUsualShare = 0.7;  // of matches that agree, in a sound pair; wrong matches do not
 constexpr double kMostWrong = 0.1;   // share of matches with a wrong disparity, in a sound pair
 constexpr double kMostUnusual = 0.25;  // share of the pairs with fewer, in a sound recording
 constexpr double kDelayGain = 1.25;
 
-// What the matches of one pair say.
+struct RowOffset {
+  double row;    // right minus left, pixels
+  double noise;  // three standard deviations, pixels
+};
+
+// Counts of matches, of one pair or of several.
 struct PairMatches {
   int count = 0;
   int in_row = 0;                   // corresponding rows agree
   int forwards = 0, backwards = 0;  // of these: the right camera's lies to the left, or the right
   int in_column = 0;                // columns agree, rows do not
-  std::vector<double> rows;         // right minus left, pixels
+  std::vector<RowOffset> rows;
   int sound() const { return in_row - backwards; }
+  void Add(const PairMatches& other) {
+    count += other.count;
+    in_row += other.in_row;
+    forwards += other.forwards;
+    backwards += other.backwards;
+    in_column += other.in_column;
+    rows.insert(rows.end(), other.rows.begin(), other.rows.end());
+  }
   bool usual() const { return in_row >= kUsualShare * count && backwards <= kMostWrong * in_row; }
 };
 
@@ -70,7 +83,7 @@ PairMatches Compare(const Frame& left, const Frame& right) {
     const double noise = kRowNoise * ScaleOfLevel(std::max(a.level, b.level));
     const double row = b.y - a.y, disparity = a.x - b.x;
     ++result.count;
-    result.rows.push_back(row);
+    result.rows.push_back({row, noise});
     if (std::abs(row) <= noise) {
       ++result.in_row;
       result.forwards += disparity > noise;
@@ -80,13 +93,6 @@ PairMatches Compare(const Frame& left, const Frame& right) {
     }
   }
   return result;
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // The delay, in frames, at which most matches agree.
@@ -122,12 +128,7 @@ PairVerdict CheckPairs(FrameSource& source) {
     const PairMatches pair = Compare(*left, *right);
     if (pair.count < kLeastMatches) continue;
     ++verdict.pairs;
-    all.count += pair.count;
-    all.in_row += pair.in_row;
-    all.forwards += pair.forwards;
-    all.backwards += pair.backwards;
-    all.in_column += pair.in_column;
-    all.rows.insert(all.rows.end(), pair.rows.begin(), pair.rows.end());
+    all.Add(pair);
     if (!pair.usual()) unusual.push_back(index);
   }
   if (static_cast<double>(unusual.size()) <= kMostUnusual * verdict.pairs) return verdict;
@@ -140,17 +141,19 @@ PairVerdict CheckPairs(FrameSource& source) {
     return verdict;
   }
   // The same distance of the rows at all times and places is the calibration's.
-  const double rows = Median(all.rows);
-  const auto same = std::count_if(all.rows.begin(), all.rows.end(), [&](double row) {
-    return std::abs(row - rows) <= kRowNoise * kMeanScale;
+  std::vector<double> rows;
+  for (const RowOffset& offset : all.rows) rows.push_back(offset.row);
+  const double usual_row = UpperMedian(rows);
+  const auto same = std::count_if(all.rows.begin(), all.rows.end(), [&](const RowOffset& offset) {
+    return std::abs(offset.row - usual_row) <= offset.noise;
   });
   if (static_cast<double>(same) < kUsualShare * all.count) verdict.delay = DelayOf(reader, unusual);
   if (verdict.delay != 0) {
     verdict.fault = PairFault::kDelayed;
   } else if (!all.usual()) {
     verdict.fault = PairFault::kRowsOff;
-    for (double& row : all.rows) row = std::abs(row);
-    verdict.rows = Median(std::move(all.rows));
+    for (double& row : rows) row = std::abs(row);
+    verdict.rows = UpperMedian(rows);
   }
   return verdict;
 }
@@ -170,7 +173,8 @@ std::string PairInWords(const PairVerdict& verdict) {
     case PairFault::kRowsOff:
       return "corresponding points of the left and right images lie " +
              std::to_string(std::lround(verdict.rows)) +
-             " rows apart: the calibration is of another pair, or the images are not of one moment";
+             " rows apart: the calibration does not fit this pair, or the images were not taken "
+             "together";
   }
   return "";
 }

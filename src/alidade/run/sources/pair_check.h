@@ -29,7 +29,9 @@ struct PairVerdict {
 // without regard to geometry, those of a rectified pair lie in one row, and the left one not to the
 // left of the right one. Where they do not, the right images of up to 8 frames before and after are
 // compared as well; the delay with most agreeing matches holds if it has a quarter more than none.
-// `source` is rectified and can seek, otherwise nothing is compared; its position is lost.
+// Where everything is far away, disparities of a few pixels say little: delays and stacked cameras
+// may pass, and rows that differ look like a stacked camera. `source` is rectified and can seek,
+// otherwise nothing is compared; its position is lost.
 PairVerdict CheckPairs(FrameSource& source);
 
 // For users: what is wrong, without a full stop; empty for kNone.

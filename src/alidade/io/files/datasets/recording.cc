@@ -8,7 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/association.h"
-#include "alidade/io/files/datasets/time_order.h"
+#include "alidade/io/files/datasets/list_order.h"
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/gray_levels.h"
 

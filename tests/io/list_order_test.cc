@@ -1,4 +1,4 @@
-#include "alidade/io/files/datasets/time_order.h"
+#include "alidade/io/files/datasets/list_order.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include "alidade/io/files/datasets/recording.h"
 #include "support/expect_error.h"
 
-namespace alidade::time_order_test {
+namespace alidade::list_order_test {
 namespace {
 
 using testing::ElementsAre;
@@ -31,7 +31,7 @@ std::vector<double> Joined(std::vector<double> a, const std::vector<double>& b) 
   return a;
 }
 
-TEST(TimeOrder, ASecondRecordingInTheListIsAnotherPart) {
+TEST(ListOrder, ASecondRecordingInTheListIsAnotherPart) {
   const auto list = ListOf(Joined(Steady(100, 30), Steady(0, 30)));
   const ListOrder order = OrderOf(list);
   EXPECT_EQ(order.parts(), 2);
@@ -46,7 +46,7 @@ TEST(TimeOrder, ASecondRecordingInTheListIsAnotherPart) {
   EXPECT_THAT(warnings.text(), HasSubstr("go back 1 time by more than a second"));
 }
 
-TEST(TimeOrder, PartsAreAssociatedEachWithItsOwn) {
+TEST(ListOrder, PartsAreAssociatedEachWithItsOwn) {
   // The times of both parts are the same: only their order tells them apart.
   const auto list = ListOf(Joined(Steady(0, 30), Steady(0, 30)));
   auto frames = FramesOf(list, "rgb");
@@ -56,7 +56,7 @@ TEST(TimeOrder, PartsAreAssociatedEachWithItsOwn) {
   EXPECT_EQ(frames[35].depth, "depth/35.png");
 }
 
-TEST(TimeOrder, NeighborsThatWereWrittenInTheWrongOrderAreSorted) {
+TEST(ListOrder, NeighborsThatWereWrittenInTheWrongOrderAreSorted) {
   auto times = Steady(0, 30);
   std::swap(times[10], times[12]);
   const ListOrder order = OrderOf(ListOf(times));
@@ -65,7 +65,7 @@ TEST(TimeOrder, NeighborsThatWereWrittenInTheWrongOrderAreSorted) {
   EXPECT_EQ(order.order[10], 12u);
 }
 
-TEST(TimeOrder, OneDamagedStampIsNoOtherRecording) {
+TEST(ListOrder, OneDamagedStampIsNoOtherRecording) {
   for (const double wrong : {0.0, 5000.0}) {
     auto times = Steady(100, 40);
     times[20] = wrong;
@@ -75,7 +75,7 @@ TEST(TimeOrder, OneDamagedStampIsNoOtherRecording) {
   }
 }
 
-TEST(TimeOrder, AListWithoutOrderIsSortedAsAWhole) {
+TEST(ListOrder, AListWithoutOrderIsSortedAsAWhole) {
   std::vector<double> times;
   for (int i = 0; i < 40; ++i) times.push_back(static_cast<double>(i * 17 % 40) * 2);
   const ListOrder order = OrderOf(ListOf(times));
@@ -85,4 +85,4 @@ TEST(TimeOrder, AListWithoutOrderIsSortedAsAWhole) {
 }
 
 }  // namespace
-}  // namespace alidade::time_order_test
+}  // namespace alidade::list_order_test

@@ -1,4 +1,4 @@
-#include "alidade/io/files/datasets/time_order.h"
+#include "alidade/io/files/datasets/list_order.h"
 
 #include <algorithm>
 #include <numeric>
