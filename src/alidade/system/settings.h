@@ -49,6 +49,10 @@ struct EarlyFrameSettings {
 };
 
 struct SlamSettings {
+  // User-provided: for a struct with a union, clang 14 refuses `const SlamSettings settings;`
+  // otherwise.
+  SlamSettings() {}
+
   Sensor sensor = Sensor::kMono;
   bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
   // 1920 x 1080 takes 22 ms on two cores, 4K takes 90 ms, and 1000 features are no better placed

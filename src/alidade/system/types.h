@@ -121,6 +121,8 @@ struct LetGoFrames {
 };
 
 struct SlamCounts {
+  SlamCounts() {}  // user-provided, as in SlamSettings
+
   union {
     int relocalizations = 0;
     int relocalisations [[deprecated("use relocalizations")]];
