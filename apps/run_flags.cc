@@ -122,6 +122,13 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
                   "Neural network that detects people and other objects that can move (YOLO, "
                   ".onnx); implies --dynamics full")
       ->type_name("FILE");
+  command
+      .add_option(
+          "--mask", options.mask,
+          "Image of the shape of the frames: what is white in it is left out of all of them "
+          "(a hood, a gripper, a caption). Without it, what moves with the camera is found "
+          "within about a second")
+      ->type_name("FILE");
   command.add_flag("--write-masks", options.write_masks,
                    "Write the mask of moving objects of each frame to mask/");
   command.add_flag("--quiet", options.quiet, "Print errors only");

@@ -43,8 +43,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         load: Union[None, PathLike, Map] = None, out: Optional[PathLike] = None, schedule: Optional[str] = None,
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
         first: int = 0, last: int = -1, record: bool = False, record_to: Optional[PathLike] = None,
-        viewer: bool = False, port: Optional[int] = None, host: Optional[str] = None, write_masks: bool = False,
-        overwrite: bool = False,
+        viewer: bool = False, port: Optional[int] = None, host: Optional[str] = None, mask: Optional[PathLike] = None,
+        write_masks: bool = False, overwrite: bool = False,
         progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Runs SLAM on a recording, video or live camera, as ``alidade run`` does: with the same options and names, and
     the same bytes in every file.
@@ -71,7 +71,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     first, last: frame numbers, both included.
     record: record the stream as run.stream in the results folder, for `alidade view`; record_to: record it to this
         file instead, as MCAP if it ends in .mcap. viewer: show the run in a browser (Progress.viewer is the URL);
-        port, host: where it listens (8090 or the next free port, 127.0.0.1). write_masks: write images of the
+        port, host: where it listens (8090 or the next free port, 127.0.0.1). mask: an image of
+        the shape of the frames; what is white in it is left out of all of them. write_masks: write images of the
         excluded moving parts.
     progress: called in this thread with a Progress when it changed, at most 20 times per second; an exception it
         raises ends the run.
@@ -83,8 +84,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     return _run(dict(
         source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, write_masks=write_masks, overwrite=overwrite,
-        **_watched(record, record_to, viewer, port, host)),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask),
+        write_masks=write_masks, overwrite=overwrite, **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, load, out, progress)
 
 
@@ -96,17 +97,21 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              schedule: Optional[str] = None, rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0,
              seed: Optional[int] = None, first: int = 0, last: int = -1,
              record: bool = False, record_to: Optional[PathLike] = None, viewer: bool = False,
-             port: Optional[int] = None, host: Optional[str] = None, write_masks: bool = False,
-             overwrite: bool = False,
+             port: Optional[int] = None, host: Optional[str] = None, mask: Optional[PathLike] = None,
+             write_masks: bool = False, overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
         source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, write_masks=write_masks, overwrite=overwrite, localize=True,
+        first=first, last=last, mask=_path(mask), write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
+
+
+def _path(path: Optional[PathLike]) -> Optional[str]:
+    return None if path is None else os.fspath(path)
 
 
 def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Optional[int],
@@ -118,7 +123,7 @@ def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Opti
     if viewer is not None and not isinstance(viewer, bool):
         warn("viewer=PORT", "viewer=True, port=PORT", 4)
         viewer, port = True, viewer
-    return dict(record=record, record_to=None if record_to is None else os.fspath(record_to), viewer=viewer, port=port,
+    return dict(record=record, record_to=_path(record_to), viewer=viewer, port=port,
                 host=host)
 
 

@@ -165,6 +165,12 @@ class Slam:
         """Loads a map to continue (a Map, or its path). Call before the first frame."""
         self._core.load((map if isinstance(map, Map) else Map.load(map))._core)
 
+    def leave_out(self, mask: numpy.ndarray) -> None:
+        """Leaves parts of the image out of all frames: a hood, a gripper, a caption. mask: (h, w), uint8, of the shape of
+        the frames; nonzero = left out. Call before the first frame. Parts that move with the camera are found without
+        it, too; counts["left_out"] is the share of the image that is left out."""
+        self._core.leave_out(mask)
+
     def reset(self) -> None:
         """Starts a new recording with the next frame, which may have any time; keeps the maps."""
         self._core.reset()
@@ -258,8 +264,9 @@ class Slam:
         why it failed."""
         return self._core.health()
 
-    def counts(self) -> Dict[str, int]:
-        """Number of relocalizations, loops, merges, cuts and predicted frames so far, by these names."""
+    def counts(self) -> Dict[str, float]:
+        """Number of relocalizations, loops, merges, cuts and predicted frames so far, by these names; left_out: the share
+        of the image that leave_out() and what moves with the camera exclude."""
         return Renamed(self._core.counts())
 
     def times(self) -> Dict[str, numpy.ndarray]:

@@ -63,6 +63,7 @@ void BindSlam(py::module_& core) {
              return FieldsOf(slam.Track(time, image, depth, right, color, stamp));
            })
       .def("load", &SlamObject::Load)
+      .def("leave_out", &SlamObject::LeaveOut)
       .def("reset", &SlamObject::Reset)
       .def("finish", &SlamObject::Finish)
       .def("close", &SlamObject::Close)

@@ -89,6 +89,13 @@ void SlamObject::Load(const MapHolder& map) {
   held->slam.Load(*map);
 }
 
+void SlamObject::LeaveOut(const py::object& mask) {
+  const std::shared_ptr<Held> held = Get();
+  const WrappedImage marked = WrapImage(mask, "mask");
+  const py::gil_scoped_release release;
+  held->slam.LeaveOut(marked.image);
+}
+
 void SlamObject::Reset() {
   const std::shared_ptr<Held> held = Get();
   const py::gil_scoped_release release;
@@ -173,7 +180,7 @@ py::dict SlamObject::Counts() const {
   const SlamCounts counts = Get()->slam.Counts();
   return py::dict("relocalizations"_a = counts.relocalizations, "loops"_a = counts.loops,
                   "merges"_a = counts.merges, "cuts"_a = counts.cuts,
-                  "predicted"_a = counts.predicted);
+                  "predicted"_a = counts.predicted, "left_out"_a = counts.left_out);
 }
 
 py::dict SlamObject::Times() const {

@@ -31,6 +31,7 @@ class SlamObject {
   TrackedFrame Track(double time, const py::object& image, const py::object& depth,
                      const py::object& right, const py::object& color, const std::string& stamp);
   void Load(const MapHolder& map);
+  void LeaveOut(const py::object& mask);
   void Reset();
   void Finish(double limit);
   void Close() { held_.reset(); }

@@ -37,7 +37,8 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"rate", &options.rate},         {"out", &options.out},
       {"load", &options.load},         {"fov", &options.fov},
       {"dynamics", &options.dynamics}, {"record_to", &options.record_to},
-      {"port", &options.port},         {"host", &options.host}};
+      {"port", &options.port},         {"host", &options.host},
+      {"mask", &options.mask}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
                                                  {"localize", &options.localize},
                                                  {"overwrite", &options.overwrite},

@@ -79,6 +79,21 @@ def test_the_order_of_arguments_is_that_of_other_languages(desk):
         slam.track(1.0, frames[0].image, depth=frames[0].image)
 
 
+def test_what_a_mask_marks_is_left_out(desk):
+    recording, frames = desk
+    mask = numpy.zeros((24, 32), numpy.uint8)
+    mask[:, 16:] = 1
+    slam = made(recording)
+    slam.leave_out(mask)
+    play(slam, frames[:3])
+    assert slam.counts()["left_out"] == 0.5
+    assert slam.features().pixels[:, 0].max() < 160
+    with pytest.raises(alidade.UsageError, match="before the first frame"):
+        slam.leave_out(mask)
+    with pytest.raises(alidade.Error, match="gray"):
+        made(recording).leave_out(numpy.zeros((24, 32, 3), numpy.uint8))
+
+
 def test_names_of_version_0_1_are_accepted_with_a_warning(desk):
     recording, frames = desk
     with pytest.warns(DeprecationWarning, match="localize="):

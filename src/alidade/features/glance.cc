@@ -57,7 +57,7 @@ double StillShare(const cv::Mat& a, const cv::Mat& b, const GlanceSettings& sett
         for (int x = left; x < left + settings.cell; ++x) {
           const Eigen::Vector2d before = GradientAt(a, x, y);
           const double strength = before.norm();
-          if (strength < settings.min_gradient) continue;
+          if (!(strength >= settings.min_gradient)) continue;  // or left out: not a number
           ++pixels;
           stayed += (GradientAt(b, x, y) - before).norm() <= settings.same * strength;
           T += before * before.transpose() / (strength * strength);

@@ -16,6 +16,7 @@
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/results/mask_writer.h"
+#include "alidade/run/setup/mask_file.h"
 #include "alidade/run/sources/inspect.h"
 #include "alidade/run/sources/saved_map.h"
 
@@ -173,6 +174,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::shared_ptr<Detector> detector = options.own_detector;
   if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
   Slam slam(finding.camera, settings, detector);
+  if (options.mask) slam.LeaveOut(ReadMaskFile(*options.mask, finding.camera));
   SayScaledDown(finding.camera, slam.camera(), settings);
   if (saved) slam.Load(*saved);
 

@@ -2,13 +2,12 @@
 // Used by the driving thread.
 #pragma once
 
-#include <functional>
-
+#include "alidade/system/left_out.h"
 #include "alidade/system/mover_watch.h"
-#include "alidade/system/present_frame.h"
 #include "alidade/system/published.h"
 #include "alidade/system/revisit/early_frames.h"
 #include "alidade/system/revisit/kept_frames.h"
+#include "alidade/system/revisit/map_replay.h"
 #include "alidade/system/session.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/start/young_map.h"
@@ -30,14 +29,13 @@ struct CameraUpdateParts {
   KeptFrames& kept;
   Tracker& tracker;
   MoverWatch& movers;
+  LeftOut& left_out;
+  MapReplay& replay;
 };
 
 class CameraUpdate {
  public:
-  // Processes a kept frame as if it were the present one.
-  using Replay = std::function<TrackResult(PresentFrame&)>;
-  CameraUpdate(const CameraUpdateParts& parts, Replay replay)
-      : parts_(parts), replay_(std::move(replay)) {}
+  explicit CameraUpdate(const CameraUpdateParts& parts) : parts_(parts) {}
 
   // Uses `camera` everywhere from now on. The newest map is rebuilt from its frames' features if it
   // was started with a camera too far from this one and all its frames are kept; otherwise all maps
@@ -47,11 +45,8 @@ class CameraUpdate {
  private:
   void ChangeEverywhere(const Camera& camera);
   void Rebuild(const Camera& camera);
-  void ReplayFrame(const KeptFrames::Kept& kept);
 
   CameraUpdateParts parts_;
-  Replay replay_;
-  int rebuilt_ = 0;
 };
 
 }  // namespace alidade

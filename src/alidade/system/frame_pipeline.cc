@@ -1,14 +1,10 @@
 #include "alidade/system/frame_pipeline.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <new>
 #include <utility>
 
-#include "alidade/base/error.h"
 #include "alidade/features/glance.h"
-#include "alidade/map/map_file.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
 #include "alidade/system/start/unknown_scale.h"
@@ -16,8 +12,10 @@
 namespace alidade {
 namespace {
 
-constexpr int kLastCameraQueries = 3;  // in Finish(): each change makes the next one smaller
-constexpr int kReanchorFrames = 300;   // period of Reanchor(): 10 s at 30 frames per second
+// With depth, a map may be made anew from that many frames without a part fixed to the camera: 3 s
+// at 30 frames per second. One camera keeps frames for another camera only.
+constexpr int kFixedPartsFrames = 90;
+constexpr int kReanchorFrames = 300;  // period of Reanchor(): 10 s at 30 frames per second
 
 TrackState PublicState(SessionState state) {
   switch (state) {
@@ -52,17 +50,20 @@ FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
       workers_(camera, settings),
       tracker_(camera, settings.tracker),
       movers_(camera, settings, detector),
+      left_out_(camera, settings.fixed_parts),
       young_(camera, settings, workers_),
       early_(settings.early),
-      kept_(settings.refine.keep_frames),
+      kept_(settings.sensor == Sensor::kMono ? settings.refine.keep_frames : kFixedPartsFrames),
       log_(settings.trajectory),
       session_({young_, early_, kept_, tracker_, movers_}),
       placer_(workers_, tracker_, movers_, log_),
       relocalizer_(settings, workers_, tracker_, log_),
       start_({settings, workers_, session_, young_, early_, kept_, tracker_, movers_, placer_}),
+      replay_(
+          {workers_, session_, young_, early_, kept_, tracker_, settings.sensor == Sensor::kMono},
+          [this](PresentFrame& now) { return Localize(now); }),
       camera_update_({settings, camera_, camera_shown_, workers_, session_, young_, early_, kept_,
-                      tracker_, movers_},
-                     [this](PresentFrame& now) { return Localize(now); }) {
+                      tracker_, movers_, left_out_, replay_}) {
   camera_shown_.Set(camera);
 }
 
@@ -78,6 +79,7 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);
   movers_.End(*now.placed.frame, result);
+  more_left_out_ = left_out_.See(prepared.image, now.frame) || more_left_out_;
   Publish(now);
   log_.End();
   if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitializing)
@@ -107,6 +109,7 @@ void FramePipeline::UseNews(PresentFrame& now) {
   TakeNews();
   // An unconfirmed map is too small to be changed to another camera.
   if (news_.camera && session_.state() != SessionState::kConfirming) UseCamera();
+  if (std::exchange(more_left_out_, false)) LeaveOutFixedParts(NumberOf(now.index));
   DropUnknownScale(now);
 }
 
@@ -120,6 +123,19 @@ void FramePipeline::UseCamera() {
   camera_update_.Apply(*std::exchange(news_.camera, std::nullopt));
   ++counts_.camera_changes;
   TakeNews();  // of keyframes that were mapped again
+}
+
+// Poses of the newest map may have followed the part: a young map of one camera is dropped, and one
+// with depth is made anew without it.
+void FramePipeline::LeaveOutFixedParts(int number) {
+  movers_.Restart();
+  workers_.mapper().SetYoungStatic(settings_.mapper.young_static);
+  if (settings_.sensor == Sensor::kMono) {
+    if (session_.has_pose() && young_.WantsGlance(number))
+      session_.Apply(SessionEvent::kMapRefused);
+  } else if (replay_.Possible() && !movers_.on()) {
+    replay_.Run([] {}, [this](Frame& frame) { left_out_.RemoveFrom(frame, camera_); });
+  }
 }
 
 // Drops maps that one camera made while their scale was unknown, and the poses in them
@@ -142,12 +158,13 @@ void FramePipeline::ExtractFeatures(const FrameInput& prepared, double time, Pre
   tracker_.SetReadout(workers_.readout());
   const Stopwatch watch;
   now.frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
-                               movers_.Expected());
+                               left_out_.With(movers_.Expected()));
   extract_ms_.Add(watch.Milliseconds());
   if (dense_) now.frame->picture = PictureOf(prepared);
   if (settings_.sensor == Sensor::kMono &&
       (!tracked || young_.WantsGlance(number) || CollectsForRebuild()))
     now.frame->glance = Glance(prepared.image);
+  left_out_.RemoveFrom(*now.frame, camera_);
   now.placed.frame = now.frame;
 }
 
@@ -168,6 +185,11 @@ bool FramePipeline::TrustsFocalLength() const {
 bool FramePipeline::CollectsForRebuild() const {
   return settings_.refine.enabled && settings_.sensor == Sensor::kMono && kept_.keeps() &&
          !movers_.on() && first_number_ == 0;
+}
+
+bool FramePipeline::KeepsForFixedParts() const {
+  return settings_.sensor != Sensor::kMono && settings_.fixed_parts && !settings_.localize &&
+         kept_.keeps() && first_number_ == 0;
 }
 
 // Pose from an even motion and the local map (ORB-SLAM §V-B to D).
@@ -283,7 +305,7 @@ TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const 
 // What later steps may need of the frame; its images are released otherwise.
 void FramePipeline::KeepForLater(PresentFrame& now, const TrackResult& result) {
   const bool seeking = session_.state() == SessionState::kSeeking;
-  if (CollectsForRebuild()) kept_.Add(*now.frame, now.index, seeking);
+  if (CollectsForRebuild() || KeepsForFixedParts()) kept_.Add(*now.frame, now.index, seeking);
   if (!seeking) now.frame->glance.release();
   // While seeking, the frame may become the first keyframe of a map, which needs its images.
   now.frame->picture = dense_ && seeking ? Copied(*now.frame->picture) : nullptr;
@@ -333,54 +355,6 @@ void FramePipeline::EndFrame() noexcept {
     log_.End();
   } catch (...) {  // no memory: tried again with the next frame, and by Finish()
   }
-}
-
-void FramePipeline::BeginRecording() {
-  log_.BeginRecording();
-  workers_.BeginRecording();
-}
-
-void FramePipeline::Load(const SavedMap& saved) {
-  if (!log_.empty()) ThrowUsage("a map must be loaded before the first frame");
-  CheckSameCamera(saved.camera, camera_);
-  if (saved.sensor != NameOf(settings_.sensor)) {
-    ThrowInput("the map was made with a " + saved.sensor + " camera, but this is " +
-               NameOf(settings_.sensor));
-  }
-  workers_.Restore(saved);
-  const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
-  int number = first_number_;
-  for (KeyFrameId id : keyframes) number = std::max(number, saved.map.Find(id)->frame->number + 1);
-  first_number_ = number;
-  if (!keyframes.empty()) session_.Apply(SessionEvent::kMapLoaded);
-}
-
-void FramePipeline::Finish(double limit) {
-  const bool limited = std::isfinite(limit);
-  workers_.FinishWithin(limit, [&] { FinishWork(limited); });
-}
-
-void FramePipeline::FinishWork(bool limited) {
-  EndFrame();
-  workers_.Drain();
-  PresentFrame last;
-  TakeNews();
-  DropUnknownScale(last);
-  if (last.map_left) workers_.Drain();
-  if (session_.has_pose() && young_.WantsGlance(NumberOf(log_.size() - 1)) && young_.StoodStill()) {
-    session_.Apply(SessionEvent::kMapRefused);
-    workers_.Drain();
-  }
-  // The camera that all frames together support. Not where time is limited.
-  const bool use_camera = settings_.refine.enabled && !limited;
-  for (int i = 0; i < kLastCameraQueries && use_camera && !workers_.cut(); ++i) {
-    workers_.AskForCamera();
-    TakeNews();
-    if (!news_.camera || session_.state() == SessionState::kConfirming) break;
-    UseCamera();
-  }
-  DropUnknownScale(last);
-  LocalizeEarlierFrames(settings_.early.max_frames, std::numeric_limits<int>::max());
 }
 
 }  // namespace alidade

@@ -9,11 +9,13 @@
 #include "alidade/system/camera_update.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
+#include "alidade/system/left_out.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
 #include "alidade/system/published.h"
 #include "alidade/system/revisit/early_frames.h"
 #include "alidade/system/revisit/kept_frames.h"
+#include "alidade/system/revisit/map_replay.h"
 #include "alidade/system/revisit/relocalizer.h"
 #include "alidade/system/session.h"
 #include "alidade/system/start/map_start.h"
@@ -41,9 +43,14 @@ class FramePipeline {
 
   // Before the first frame. Throws Error (input) when the map is of another camera or sensor.
   void Load(const SavedMap& saved);
+  // See Slam::LeaveOut().
+  void LeaveOut(const cv::Mat& mask) { left_out_.Name(mask); }
   // The next frame need not continue the last one.
   // `steady`: the time of that frame on the steady clock, seconds.
-  void Cut(double steady) { session_.Apply(SessionEvent::kCut, steady); }
+  void Cut(double steady) {
+    session_.Apply(SessionEvent::kCut, steady);
+    left_out_.Cut();
+  }
   void BeginRecording();
   // Waits for the workers, `limit` seconds at most, and uses what they found.
   void Finish(double limit);
@@ -52,6 +59,7 @@ class FramePipeline {
   const Workers& workers() const { return workers_; }
   Workers& workers() { return workers_; }
   const MoverWatch& movers() const { return movers_; }
+  const LeftOut& left_out() const { return left_out_; }
   const FrameLog& trajectory() const { return log_; }
   const Published<Camera>& camera() const { return camera_shown_; }
   const Published<std::shared_ptr<const LastFrame>>& last_frame() const { return last_frame_; }
@@ -65,6 +73,7 @@ class FramePipeline {
   void TakeNews();
   void FinishWork(bool limited);
   void UseCamera();
+  void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);
   TrackResult Localize(PresentFrame& now);
@@ -80,6 +89,7 @@ class FramePipeline {
   void LocalizeEarlierFrames(int count, int number);
   void Reanchor();
   bool CollectsForRebuild() const;
+  bool KeepsForFixedParts() const;
   bool TrustsFocalLength() const;
   int NumberOf(int index) const { return first_number_ + index; }  // Frame::number
 
@@ -90,6 +100,7 @@ class FramePipeline {
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;
+  LeftOut left_out_;
   YoungMap young_;     // one camera only
   EarlyFrames early_;  // one camera only
   KeptFrames kept_;
@@ -98,9 +109,11 @@ class FramePipeline {
   FramePlacer placer_;
   Relocalizer relocalizer_;
   MapStart start_;
+  MapReplay replay_;
   CameraUpdate camera_update_;
-  WorkerNews news_;    // not used yet
-  double steady_ = 0;  // time of the present frame on the steady clock, seconds
+  WorkerNews news_;             // not used yet
+  bool more_left_out_ = false;  // a part fixed to the camera was found; not used yet
+  double steady_ = 0;           // time of the present frame on the steady clock, seconds
   std::atomic<int> first_number_{
       0};  // Frame::number of the first frame: larger than those of a loaded map
   SampleLog extract_ms_, track_ms_;

@@ -111,7 +111,9 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!counts_) frame.static_probability.clear();
   if (counts_ && frame.picture) {
     Picture picture = *frame.picture;
+    const cv::Mat left_out = picture.mask;
     picture.mask = filter_->Mask();
+    if (!left_out.empty()) cv::bitwise_or(picture.mask, left_out, picture.mask);
     frame.picture = std::make_shared<Picture>(picture);
   }
   present_ms_ += watch.Milliseconds();
@@ -170,6 +172,12 @@ void MoverWatch::Recover() noexcept {
     failure_ = std::current_exception();
     filter_failed_ = true;
   }
+}
+
+void MoverWatch::Restart() noexcept {
+  Recover();
+  moved_.clear();
+  used_ = !filter_failed_ && LeavesOutFromStart(settings_.mode);
 }
 
 std::vector<StageHealth> MoverWatch::health() const {

@@ -71,6 +71,8 @@ class MoverWatch {
   // An exception ended a frame: drops everything. If the filter cannot be created again, dynamics
   // stop; see health().
   void Recover() noexcept;
+  // A part of the image that seemed to move was fixed to the camera: everything begins again.
+  void Restart() noexcept;
 
   // As DynamicFilter::BeliefOfCells(); valid after End(); empty when off.
   cv::Mat BeliefOfCells() const {

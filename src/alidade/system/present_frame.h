@@ -19,11 +19,12 @@ struct Reattachment {
 
 struct PresentFrame {
   std::shared_ptr<Frame> frame;
-  int index = 0;          // in the trajectory
-  bool replayed = false;  // a kept frame that is processed again with another camera
-  PlacedFrame placed;     // as tracked; `placed.frame` is set without a pose, too
-  KeyFrameId keyframe;    // the keyframe it became
-  bool map_left = false;  // the map it was expected in was dropped: its scale is unknown
+  int index = 0;             // in the trajectory
+  bool replayed = false;     // a kept frame that is processed again
+  double features_left = 1;  // share of its features that were not removed after the extraction
+  PlacedFrame placed;        // as tracked; `placed.frame` is set without a pose, too
+  KeyFrameId keyframe;       // the keyframe it became
+  bool map_left = false;     // the map it was expected in was dropped: its scale is unknown
   std::optional<Reattachment> reattachment;
 };
 

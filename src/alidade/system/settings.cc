@@ -112,6 +112,9 @@ std::span<const Setting> SlamSettings::Table() {
       PublicSetting<&T::seed>("seed", kNotNegative, "", "Seed of every random choice."),
       PublicSetting<&T::new_map_seconds>("new_map_seconds", kNotNegative, "s",
                                          "A lost camera starts a new map only after this time."),
+      ExpertSetting<&T::fixed_parts>("fixed_parts", kOnOff, "",
+                                     "Look for parts of the image that move with the camera (a "
+                                     "hood, a hand), and leave them out."),
       PublicSetting<&T::new_map_frames>(
           "new_map_frames", kPositive, "frames",
           "A lost camera starts a new map only after as many frames with enough keypoints."),

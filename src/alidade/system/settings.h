@@ -76,6 +76,7 @@ struct SlamSettings {
     bool localize = false;  // only find poses in the map that was loaded, and leave it as it is
     bool localise [[deprecated("use localize")]];
   };
+  bool fixed_parts = true;  // see dynamics/fixed_parts.h
   // With depth a new map could start at once, always sooner than a place is recognized.
   double new_map_seconds = 1.0;
   int new_map_frames = 15;

@@ -112,6 +112,13 @@ void Slam::Impl::Load(const SavedMap& saved) {
   pipeline_.Load(saved);
 }
 
+void Slam::Impl::LeaveOut(const cv::Mat& mask) {
+  const std::lock_guard<std::mutex> driving(driving_);
+  if (mask.empty() || mask.type() != CV_8UC1) ThrowUsage("a mask must be an 8-bit gray image");
+  if (!pipeline_.trajectory().empty()) ThrowUsage("a mask must be given before the first frame");
+  pipeline_.LeaveOut(mask);
+}
+
 void Slam::Impl::Reset() {
   const std::lock_guard<std::mutex> driving(driving_);
   if (pipeline_.trajectory().empty() || restarted_) return;
@@ -130,6 +137,7 @@ Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<D
     : impl_(std::make_unique<Impl>(camera, settings, detector)) {}
 Slam::~Slam() = default;
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
+void Slam::LeaveOut(const cv::Mat& mask) { impl_->LeaveOut(mask); }
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Reset() { impl_->Reset(); }
 std::vector<FramePose> Slam::Finish(double limit) {

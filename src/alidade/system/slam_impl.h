@@ -18,6 +18,7 @@ class Slam::Impl {
        const std::shared_ptr<Detector>& detector);
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
+  void LeaveOut(const cv::Mat& mask);
   void Reset();
   void Finish(double limit);
 

@@ -92,6 +92,7 @@ SlamCounts Slam::Counts() const {
   counts.merges = pipeline.workers().merges();
   counts.cuts = impl_->cuts();
   counts.predicted = pipeline.counts().predicted;
+  counts.left_out = pipeline.left_out().share();
   counts.let_go = pipeline.trajectory().let_go();
   return counts;
 }

@@ -128,8 +128,9 @@ struct SlamCounts {
     int relocalisations [[deprecated("use relocalizations")]];
   };
   int loops = 0, merges = 0;
-  int cuts = 0;       // gaps and backward jumps of the time stamps, and calls of Reset()
-  int predicted = 0;  // frames with TrackResult::predicted
+  int cuts = 0;         // gaps and backward jumps of the time stamps, and calls of Reset()
+  int predicted = 0;    // frames with TrackResult::predicted
+  double left_out = 0;  // share of the image left out of every frame: Slam::LeaveOut(), fixed_parts
   LetGoFrames let_go;
 };
 

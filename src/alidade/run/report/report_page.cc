@@ -111,6 +111,9 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
   if (counts.relocalizations > 0)
     facts.push_back({"relocalizations", std::to_string(counts.relocalizations)});
   if (counts.merges > 0) facts.push_back({"maps merged", std::to_string(counts.merges)});
+  if (counts.left_out > 0)
+    facts.push_back(
+        {"left out of every frame", Format("%.0f %% of the image", 100 * counts.left_out)});
   if (results.maps.size() > 1) {
     facts.push_back({"separate maps", std::to_string(results.maps.size()) +
                                           ", which share no place; the first one has the most "

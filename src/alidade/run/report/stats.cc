@@ -138,6 +138,7 @@ std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const 
       {"loops", results.counts.loops},
       {"merges", results.counts.merges},
       {"cuts", results.counts.cuts},
+      {"left_out", results.counts.left_out},
       {"maps", results.map.Maps().size()},
       {"map_files", MapFiles(results)},
       {"keyframes", results.map.keyframe_count()},

@@ -81,14 +81,15 @@ TrackResult MapStart::StartWithDepth(PresentFrame& now, const Camera& camera) {
     with_depth += keypoint.has_depth();
     landmarks += mapper.MakesLandmark(keypoint);
   }
-  const double enough =
-      parts_.settings.start.min_depth_landmarks * parts_.settings.start.match_scale;
+  const double enough = parts_.settings.start.min_depth_landmarks *
+                        parts_.settings.start.match_scale * now.features_left;
   if (landmarks < enough)
     return Refused(with_depth < enough ? TrackFailure::kFewDepths : TrackFailure::kFewNearDepths);
   PlacedFrame placed;
   placed.frame = now.frame;
   placed.inliers = landmarks;
   parts_.session.Apply(SessionEvent::kDepthStart);
+  parts_.kept.MapStarted(camera);
   parts_.placer.InsertKeyFrame(now, placed, Anchor{}, camera);
   return Started(landmarks, placed.T_camera_world.Inverse());
 }

@@ -1,0 +1,66 @@
+// What comes before the first and after the last frame of FramePipeline.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "alidade/base/error.h"
+#include "alidade/map/map_file.h"
+#include "alidade/system/frame_pipeline.h"
+#include "alidade/system/prepare.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kLastCameraQueries = 3;  // in Finish(): each change makes the next one smaller
+
+}  // namespace
+
+void FramePipeline::BeginRecording() {
+  log_.BeginRecording();
+  workers_.BeginRecording();
+}
+
+void FramePipeline::Load(const SavedMap& saved) {
+  if (!log_.empty()) ThrowUsage("a map must be loaded before the first frame");
+  CheckSameCamera(saved.camera, camera_);
+  if (saved.sensor != NameOf(settings_.sensor)) {
+    ThrowInput("the map was made with a " + saved.sensor + " camera, but this is " +
+               NameOf(settings_.sensor));
+  }
+  workers_.Restore(saved);
+  const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
+  int number = first_number_;
+  for (KeyFrameId id : keyframes) number = std::max(number, saved.map.Find(id)->frame->number + 1);
+  first_number_ = number;
+  if (!keyframes.empty()) session_.Apply(SessionEvent::kMapLoaded);
+}
+
+void FramePipeline::Finish(double limit) {
+  const bool limited = std::isfinite(limit);
+  workers_.FinishWithin(limit, [&] { FinishWork(limited); });
+}
+
+void FramePipeline::FinishWork(bool limited) {
+  EndFrame();
+  workers_.Drain();
+  PresentFrame last;
+  TakeNews();
+  DropUnknownScale(last);
+  if (last.map_left) workers_.Drain();
+  if (session_.has_pose() && young_.WantsGlance(NumberOf(log_.size() - 1)) && young_.StoodStill()) {
+    session_.Apply(SessionEvent::kMapRefused);
+    workers_.Drain();
+  }
+  // The camera that all frames together support. Not where time is limited.
+  const bool use_camera = settings_.refine.enabled && !limited;
+  for (int i = 0; i < kLastCameraQueries && use_camera && !workers_.cut(); ++i) {
+    workers_.AskForCamera();
+    TakeNews();
+    if (!news_.camera || session_.state() == SessionState::kConfirming) break;
+    UseCamera();
+  }
+  DropUnknownScale(last);
+  LocalizeEarlierFrames(settings_.early.max_frames, std::numeric_limits<int>::max());
+}
+
+}  // namespace alidade
