@@ -1,6 +1,7 @@
 // Depth of keypoints from a registered depth image.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "alidade/base/error.h"
 #include "alidade/features/depth_image.h"
@@ -31,6 +32,30 @@ float DepthAt(const DepthImage& depth, int x, int y) {
   return farthest - nearest > kEdgeSpread * centre ? Keypoint::kNoDepth : centre;
 }
 
+// Frame::nearest. Every second pixel in both directions is read.
+cv::Mat NearestOfCells(const DepthImage& depth) {
+  constexpr int kCell = Frame::kDepthCell, kStep = 2;
+  const cv::Size size = depth.size();
+  cv::Mat nearest(size.height / kCell, size.width / kCell, CV_32F);
+  for (int row = 0; row < nearest.rows; ++row) {
+    for (int column = 0; column < nearest.cols; ++column) {
+      int known = 0;
+      float smallest = std::numeric_limits<float>::max();
+      for (int y = row * kCell; y < (row + 1) * kCell; y += kStep) {
+        for (int x = column * kCell; x < (column + 1) * kCell; x += kStep) {
+          const float z = depth.At(x, y);
+          if (z == 0) continue;
+          ++known;
+          smallest = std::min(smallest, z);
+        }
+      }
+      const bool enough = 8 * known >= (kCell / kStep) * (kCell / kStep);
+      nearest.at<float>(row, column) = enough ? smallest : 0;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
@@ -52,6 +77,7 @@ void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, doubl
     if (k.depth > range || bf > kMostDisparity * k.depth) k.depth = Keypoint::kNoDepth;
     k.right_x = k.has_depth() ? k.x - bf / k.depth : Keypoint::kNoDepth;
   }
+  frame.nearest = NearestOfCells(image);
 }
 
 }  // namespace alidade

@@ -10,6 +10,7 @@ Frame KeypointSubset(const Frame& frame, std::span<const int> kept, const Camera
   subset.pyramid = frame.pyramid;
   subset.picture = frame.picture;
   subset.motion = frame.motion;
+  subset.nearest = frame.nearest;
   for (int k : kept) {
     subset.keypoints.push_back(frame.keypoints[k]);
     subset.descriptors.push_back(frame.descriptors[k]);

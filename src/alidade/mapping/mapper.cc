@@ -1,10 +1,14 @@
 #include "alidade/mapping/mapper.h"
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
+#include "alidade/base/log.h"
 #include "alidade/base/log_odds.h"
 #include "alidade/base/median.h"
 #include "alidade/map/view.h"
+#include "alidade/mapping/free_space.h"
 #include "alidade/mapping/fuse.h"
 #include "alidade/mapping/limit.h"
 #include "alidade/mapping/local_window.h"
@@ -13,6 +17,11 @@
 
 namespace alidade {
 namespace {
+
+// Seconds after which something that appeared in free space counts as standing there.
+constexpr double kSettled = 3;
+// Share of a keyframe's features on what passes from which the user is told.
+constexpr double kLargePassing = 0.2;
 
 // Number of keyframes of a map, counting stops at `most`.
 size_t CountUpTo(size_t most, const MapSnapshot& map, MapId within) {
@@ -53,9 +62,11 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
         commit.AddObservation(matches[i], id, static_cast<int>(i));
     }
     const Se3 T_world_camera = T_camera_world.Inverse();
+    const std::vector<uint8_t> appeared = Appeared(commit.state(), id);
+    TellOfPassing(appeared);
     for (size_t i = 0; i < frame->keypoints.size(); ++i) {
       const Keypoint& keypoint = frame->keypoints[i];
-      if (!MakesLandmark(keypoint)) continue;
+      if (!MakesLandmark(keypoint) || (!appeared.empty() && appeared[i])) continue;
       if (commit.Find(id)->landmarks[i].valid()) continue;
       Landmark landmark;
       landmark.static_probability = young_static_;
@@ -67,6 +78,23 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     commit.RefreshCovisibility(id);
   });
   return id;
+}
+
+// HasAppeared(), or empty if that does not matter: there is no depth, or the dynamic filter weighs
+// all landmarks from the first frame on.
+std::vector<uint8_t> Mapper::Appeared(const MapState& map, KeyFrameId keyframe) const {
+  if (!has_depth_ || settings_.young_static < 1) return {};
+  return HasAppeared(map, camera_, keyframe, kSettled);
+}
+
+void Mapper::TellOfPassing(std::span<const uint8_t> appeared) {
+  const auto count = std::count(appeared.begin(), appeared.end(), uint8_t{1});
+  const double share = static_cast<double>(count) / static_cast<double>(appeared.size());
+  if (passing_told_ || !(share > kLargePassing)) return;
+  passing_told_ = true;
+  LogWarning("something large moves through the image (" +
+             std::to_string(std::lround(100 * share)) +
+             " % of the features): it is left out of the map");
 }
 
 bool Mapper::MakesLandmark(const Keypoint& keypoint) const {
@@ -225,6 +253,9 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
   if (!has_depth_) {
     const std::vector<NewLandmark> turned = MapTurn(map, id, made, camera_, settings_);
     made.insert(made.end(), turned.begin(), turned.end());
+  }
+  if (const std::vector<uint8_t> appeared = Appeared(map.state(), id); !appeared.empty()) {
+    std::erase_if(made, [&](const NewLandmark& entry) { return appeared[entry.second.keypoint]; });
   }
   report.triangulated = static_cast<int>(made.size());
   map = map_.Commit([&](MapCommit& commit) {

@@ -72,7 +72,9 @@ class Mapper {
   int KeepWithinLimit(KeyFrameId newest);
 
  private:
-  void Remove(std::span<const KeyFrameId> keyframes);  // with landmarks that only they observe
+  std::vector<uint8_t> Appeared(const MapState& map, KeyFrameId keyframe) const;
+  void TellOfPassing(std::span<const uint8_t> appeared);  // the user, once
+  void Remove(std::span<const KeyFrameId> keyframes);     // with landmarks that only they observe
   // Returns the new map if keyframes were split off: MapperSettings::min_known_scale.
   MapId SplitWhereScaleIsUnknown(KeyFrameId id);
   std::vector<std::pair<LandmarkId, float>> TakeBelief();
@@ -82,6 +84,7 @@ class Mapper {
   Camera camera_;
   MapperSettings settings_;
   bool has_depth_;
+  bool passing_told_ = false;  // TellOfPassing() has told
   std::atomic<float> young_static_;
   std::vector<LandmarkId> young_;  // on probation
   std::mutex tallies_mutex_;
