@@ -159,7 +159,7 @@ void RunFor(const py::dict& values, const py::object& progress, py::dict outcome
     if (!progress.is_none()) progress(onlooker.Told());
   };
   const auto report = [&] {
-    if (!onlooker.folder().empty()) outcome["folder"] = onlooker.folder();
+    if (!onlooker.folder().empty()) outcome["folder"] = PathText(onlooker.folder());
     outcome["map"] = onlooker.map();
   };
   try {
