@@ -65,6 +65,23 @@ def test_a_detector_may_drive_another_slam():
     assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
 
 
+def test_the_detector_of_a_run_cannot_start_another():
+    done = run("""
+        desk = "synth:desk?frames=20&width=320&height=240&seed=3"
+        seen = []
+        def detect(picture):
+            try:
+                alidade.run(desk, sensor="rgbd")
+            except alidade.UsageError as error:
+                seen.append(str(error))
+            return []
+        alidade.run(desk, sensor="rgbd", detector=detect)
+        assert "detector" in seen[0], seen
+        print("done")
+    """)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "done\n", "")
+
+
 def test_a_threaded_slam_in_a_forked_process():
     done = run("""
         one = slam(schedule="threaded", detector=lambda picture: [])
