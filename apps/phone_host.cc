@@ -1,6 +1,8 @@
 #include "phone_host.h"
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <condition_variable>
@@ -13,6 +15,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_codec.h"
 
@@ -50,9 +53,9 @@ std::filesystem::path MakeSessionFolder(const std::filesystem::path& out) {
   }
 }
 
-std::vector<FrameMessage> Binary(std::vector<std::string> messages) {
+std::vector<FrameMessage> Binary(std::vector<std::string> messages, bool of_whole = false) {
   std::vector<FrameMessage> all;
-  for (std::string& message : messages) all.push_back({std::move(message), false});
+  for (std::string& message : messages) all.push_back({std::move(message), false, of_whole});
   return all;
 }
 
@@ -67,18 +70,24 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
         width_(width),
         height_(height),
         out_(settings.out),
+        finish_seconds_(settings.finish_seconds),
         slam_(width, height, fov, settings.phone),
         left_(SessionClock::now()),
         thread_([this] { Work(); }) {}
 
   ~PhoneSession() {
-    {
-      const std::lock_guard lock(mutex_);
-      end_ = true;
-    }
-    wake_.notify_all();
+    End();
     thread_.join();
   }
+
+  // Lets the thread finish and write the map. Does not wait for it.
+  void End() {
+    const std::lock_guard lock(mutex_);
+    end_ = true;
+    wake_.notify_all();
+  }
+
+  bool HasEnded() const { return ended_; }  // the results are written
 
   bool SameSize(int width, int height) const { return width == width_ && height == height_; }
 
@@ -141,7 +150,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
       wake_.wait(lock, [this] { return end_ || whole_ || waiting_; });
       if (end_) break;
       if (std::exchange(whole_, false)) {
-        if (tell_) tell_(Binary(slam_.WholeState()), false);
+        if (tell_) tell_(Binary(slam_.WholeState(), true), false);
         continue;
       }
       const SentFrame frame = std::move(*waiting_);
@@ -154,6 +163,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
     }
     lock.unlock();
     Write();
+    ended_ = true;
   }
 
   // No message of a page ends the session.
@@ -205,7 +215,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   void Write() {
     if (out_.empty()) return;
     try {
-      slam_.Finish();
+      slam_.Finish(finish_seconds_);
       if (slam_.slam().Snapshot().keyframe_count() == 0) return;
       const std::filesystem::path folder = MakeSessionFolder(out_);
       AtomicWriteFile((folder / "map.alidade").string(), slam_.slam().SaveMap());
@@ -221,6 +231,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   const std::string name_;
   const int width_, height_;
   const std::string out_;
+  const double finish_seconds_;
   PhoneSlam slam_;  // used by the thread only
   std::mutex mutex_;
   std::condition_variable wake_;
@@ -230,6 +241,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   int seat_ = 0;
   bool whole_ = false;  // the page needs the complete state
   bool end_ = false;
+  std::atomic<bool> ended_ = false;
   SessionClock::time_point left_;
   std::thread thread_;
 };
@@ -261,30 +273,38 @@ PhoneHost::PhoneHost(PhoneHostSettings settings) : settings_(std::move(settings)
   if (error) ThrowInput(settings_.out + " cannot be created: " + error.message());
 }
 
-PhoneHost::~PhoneHost() = default;
+PhoneHost::~PhoneHost() {
+  // All are finished at the same time, then waited for.
+  for (const auto& [name, session] : sessions_) session->End();
+}
 
-PhoneHost::Sessions PhoneHost::TakeAbandoned() {
-  Sessions taken;
-  for (auto it = sessions_.begin(); it != sessions_.end();) {
-    if (it->second->Alone() <= settings_.keep_seconds) {
-      ++it;
-      continue;
-    }
-    taken.push_back(std::move(it->second));
-    it = sessions_.erase(it);
-  }
-  return taken;
+void PhoneHost::Warn(const std::string& message) { LogWarning(message); }
+
+bool PhoneHost::MayEnd() {
+  ending_.erase(std::remove_if(ending_.begin(), ending_.end(),
+                               [](const auto& session) { return session->HasEnded(); }),
+                ending_.end());
+  return static_cast<int>(ending_.size()) < settings_.max_sessions;
+}
+
+PhoneHost::Sessions::iterator PhoneHost::End(Sessions::iterator session) {
+  session->second->End();
+  ending_.push_back(std::move(session->second));
+  return sessions_.erase(session);
 }
 
 void PhoneHost::EndAbandoned() {
-  Sessions ended;  // written when destroyed, after the lock is released: other pages need not wait
   const std::lock_guard lock(mutex_);
-  ended = TakeAbandoned();
+  EndAbandonedLocked();
+}
+
+void PhoneHost::EndAbandonedLocked() {
+  for (auto it = sessions_.begin(); it != sessions_.end() && MayEnd();)
+    it = it->second->Alone() <= settings_.keep_seconds ? std::next(it) : End(it);
 }
 
 std::pair<std::shared_ptr<PhoneSession>, bool> PhoneHost::Find(const std::string& name, int width,
-                                                               int height, double fov,
-                                                               Sessions& ended) {
+                                                               int height, double fov) {
   if (const auto found = sessions_.find(name); found != sessions_.end()) {
     if (!found->second->SameSize(width, height))
       ThrowInput("this session has images of another size");
@@ -301,8 +321,10 @@ std::pair<std::shared_ptr<PhoneSession>, bool> PhoneHost::Find(const std::string
     if (oldest == sessions_.end())
       ThrowInput(std::to_string(settings_.max_sessions) +
                  " pages are connected already, which is the limit");
-    ended.push_back(std::move(oldest->second));
-    sessions_.erase(oldest);
+    if (!MayEnd())
+      ThrowInput("the computer is finishing the maps of " + std::to_string(settings_.max_sessions) +
+                 " earlier pages: try again in a minute");
+    End(oldest);
   }
   auto made = std::make_shared<PhoneSession>(name, width, height, fov, settings_);
   sessions_.emplace(name, made);
@@ -322,10 +344,9 @@ std::unique_ptr<FrameSeat> PhoneHost::Join(const std::string& hello, FrameTell t
     if (width < 1 || height < 1 || width > settings_.max_pixels / height)
       ThrowInput("images of " + std::to_string(width) + "x" + std::to_string(height) +
                  " pixels are not accepted");
-    Sessions ended, replaced;  // as in EndAbandoned()
     const std::lock_guard lock(mutex_);
-    ended = TakeAbandoned();
-    const auto [session, resumed] = Find(name, width, height, fov, replaced);
+    EndAbandonedLocked();
+    const auto [session, resumed] = Find(name, width, height, fov);
     const int seat = session->Sit(std::move(tell), resumed);
     return std::make_unique<Seat>(session, seat);
   } catch (const Error& error) {

@@ -16,8 +16,10 @@ namespace alidade {
 class PhoneSession;
 
 struct PhoneHostSettings {
-  int max_sessions = 4;        // each has a thread, and some 200 MB for a large map
-  double keep_seconds = 300;   // how long a session waits for a disconnected page
+  int max_sessions = 4;       // each has a thread, and some 200 MB for a large map
+  double keep_seconds = 300;  // how long a session waits for a disconnected page
+  // Of the last adjustment of a map, seconds: that of a large one takes less.
+  double finish_seconds = 60;
   int max_pixels = 4'000'000;  // of an image
   // Folder for the results: at its end each session writes to a new folder session-N in it. Empty:
   // no results.
@@ -29,22 +31,27 @@ class PhoneHost : public FrameHost {
  public:
   explicit PhoneHost(PhoneHostSettings settings);
   ~PhoneHost() override;  // ends and writes all sessions
-  // Ends and writes the sessions whose page has been disconnected for longer than keep_seconds.
+  // Ends the sessions whose page has been disconnected for longer than keep_seconds. Does not wait:
+  // each is finished and written in its own thread, at most max_sessions at a time.
   void EndAbandoned();
   std::unique_ptr<FrameSeat> Join(const std::string& hello, FrameTell tell,
                                   std::string* problem) override;
+  void Warn(const std::string& message) override;
 
  private:
-  using Sessions = std::vector<std::shared_ptr<PhoneSession>>;
-  Sessions TakeAbandoned();  // removes them from sessions_; requires mutex_
-  // Returns the session of this name, and whether it existed; may move others to `ended` to make
-  // room. Requires mutex_.
+  using Sessions = std::map<std::string, std::shared_ptr<PhoneSession>>;
+  // All require mutex_.
+  Sessions::iterator End(Sessions::iterator session);  // returns the next one
+  void EndAbandonedLocked();
+  bool MayEnd();  // fewer than max_sessions are being finished
+  // Returns the session of this name, and whether it existed; may end another to make room.
   std::pair<std::shared_ptr<PhoneSession>, bool> Find(const std::string& name, int width,
-                                                      int height, double fov, Sessions& ended);
+                                                      int height, double fov);
 
   PhoneHostSettings settings_;
   std::mutex mutex_;
-  std::map<std::string, std::shared_ptr<PhoneSession>> sessions_;  // keys are chosen by the pages
+  Sessions sessions_;                                  // keys are chosen by the pages
+  std::vector<std::shared_ptr<PhoneSession>> ending_;  // being finished and written
 };
 
 }  // namespace alidade

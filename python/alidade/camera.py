@@ -9,8 +9,9 @@ from typing import Optional, Sequence, Tuple, Union
 import numpy
 
 from . import _core
+from ._paths import coded
 
-PathLike = Union[str, "os.PathLike[str]"]
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -60,11 +61,11 @@ class Camera:
     def from_yaml(cls, path: PathLike, sensor: str = "mono") -> Camera:
         """Reads a camera.yaml (docs/reference/camera.md). ``sensor``: its use, "mono", "stereo" or "rgbd".
         Fisheye cameras and unrectified stereo pairs require a Rectifier. Raises InputError."""
-        return _core.read_camera(os.fspath(path), sensor)
+        return _core.read_camera(coded(path), sensor)
 
     def to_yaml(self, path: PathLike) -> None:
         """Writes a camera.yaml for from_yaml() and the program's ``--camera``."""
-        _core.write_camera(os.fspath(path), self)
+        _core.write_camera(coded(path), self)
 
 
 class Rectifier:
@@ -74,7 +75,7 @@ class Rectifier:
     """
 
     def __init__(self, path: PathLike, sensor: str = "mono") -> None:
-        self._core = _core.Rectifier(os.fspath(path), sensor)
+        self._core = _core.Rectifier(coded(path), sensor)
 
     @property
     def camera(self) -> Camera:

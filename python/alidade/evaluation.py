@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Any, List, Optional, Sequence, Tuple, Union
 
 import numpy
 
 from . import _core
+from ._paths import coded
 from .camera import PathLike
 from .errors import UsageError
 from .results import Result
@@ -160,11 +160,11 @@ def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndar
 def read_trajectory(path: PathLike) -> numpy.ndarray:
     """Reads a trajectory, (n, 8), from a file in TUM, EuRoC or KITTI format, or the ground truth in a recording's
     folder. Raises InputError."""
-    return _core.read_trajectory(os.fspath(path))
+    return _core.read_trajectory(coded(path))
 
 
 def write_trajectory(path: PathLike, trajectory: numpy.ndarray) -> None:
     """Writes a trajectory, (n, 8), in TUM format."""
     text = _core.format_trajectory(trajectory)
-    with open(path, "w", encoding="ascii", newline="\n") as file:
+    with open(coded(path), "w", encoding="ascii", newline="\n") as file:
         file.write(text)

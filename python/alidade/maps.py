@@ -9,6 +9,7 @@ from typing import Dict, List, Optional, Tuple
 import numpy
 
 from . import _core
+from ._paths import coded, decoded
 from .camera import Camera, PathLike
 from .errors import UsageError
 
@@ -135,7 +136,7 @@ class Map:
     @classmethod
     def load(cls, path: PathLike) -> Map:
         """Reads a map.alidade, or the one in the folder of a run. Raises InputError."""
-        return cls(_core.read_map(os.fspath(path)))
+        return cls(_core.read_map(coded(path)))
 
     @classmethod
     def from_bytes(cls, data: bytes) -> Map:
@@ -148,7 +149,7 @@ class Map:
 
     def save(self, path: PathLike) -> None:
         """Writes a map.alidade; the file is complete or absent."""
-        self._core.save(os.fspath(path))
+        self._core.save(coded(path))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
                min_observations: int = 1) -> str:
@@ -159,8 +160,7 @@ class Map:
         format: "text", "binary", "both" (colmap) or "default". part: index into ``parts``.
         min_observations: omits points observed by fewer keyframes.
         """
-        where = os.fspath(path)
-        return self._core.export(where, to or _by_ending(where), format, part, min_observations)
+        return self._core.export(coded(path), to or _by_ending(decoded(path)), format, part, min_observations)
 
     @property
     def parts(self) -> List[MapPart]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
-import os
 from typing import Iterator, Optional
 
 import numpy
 
 from . import _core
 from ._log import tell_warnings
+from ._paths import coded
 from .camera import Camera, PathLike
 
 
@@ -92,6 +92,6 @@ def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[Pat
 
     Raises InputError or UsageError.
     """
-    options = {"source": os.fspath(source), "sensor": sensor, "fov": fov, "first": first, "last": last,
-               "camera_file": None if camera is None else os.fspath(camera)}
+    options = {"source": coded(source), "sensor": sensor, "fov": fov, "first": first, "last": last,
+               "camera_file": None if camera is None else coded(camera)}
     return Recording(_core.open(options, color))

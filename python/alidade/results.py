@@ -10,6 +10,7 @@ from typing import Any, Dict, Optional
 import numpy
 
 from . import _core
+from ._paths import coded, decoded
 from ._renamed import Renamed
 from .camera import PathLike
 from .errors import InputError
@@ -29,7 +30,7 @@ class Result:
     """
 
     def __init__(self, folder: PathLike, *, _map: Optional[Map] = None, _keeper: Any = None) -> None:
-        self.folder = os.fspath(folder)
+        self.folder = decoded(folder)
         """Folder of the files. Without ``out=`` a temporary folder that is deleted with this object."""
         if not os.path.isfile(self.file("stats.json")):
             raise InputError(f"{self.folder} holds no stats.json: it is not what a run leaves")
@@ -42,7 +43,7 @@ class Result:
 
     def save(self, folder: PathLike) -> None:
         """Copies all files to a new folder."""
-        shutil.copytree(self.folder, os.fspath(folder))
+        shutil.copytree(self.folder, decoded(folder))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
                min_observations: int = 1) -> str:
@@ -53,8 +54,8 @@ class Result:
             the path.
         format, part, min_observations: as in Map.export(), not for "mcap".
         """
-        where = os.fspath(path)
-        return _core.export_path(self.folder, where, to or _by_ending(where), format, part, min_observations)
+        return _core.export_path(coded(self.folder), coded(path), to or _by_ending(decoded(path)), format, part,
+                                 min_observations)
 
     @property
     def trajectory(self) -> numpy.ndarray:

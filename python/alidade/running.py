@@ -9,6 +9,7 @@ from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Unio
 
 from . import _core
 from ._log import tell_warnings
+from ._paths import coded
 from ._renamed import warn
 from .camera import Camera, PathLike
 from .maps import Map
@@ -82,7 +83,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     time; others wait.
     """
     return _run(dict(
-        source=os.fspath(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
+        source=coded(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
         repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask),
         write_masks=write_masks, overwrite=overwrite, **_watched(record, record_to, viewer, port, host)),
@@ -103,15 +104,15 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
-        source=os.fspath(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
+        source=coded(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
         first=first, last=last, mask=_path(mask), write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
 
 
-def _path(path: Optional[PathLike]) -> Optional[str]:
-    return None if path is None else os.fspath(path)
+def _path(path: Optional[PathLike]) -> Optional[bytes]:
+    return None if path is None else coded(path)
 
 
 def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Optional[int],
@@ -130,19 +131,19 @@ def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Opti
 def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any,
          progress: Optional[Callable[[Progress], None]]) -> Result:
     scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # deleted with its last reference
-    options["detector"] = detector if detector is None or callable(detector) else os.fspath(detector)
+    options["detector"] = detector if detector is None or callable(detector) else coded(detector)
     if isinstance(camera, Camera):
         options["camera_file"] = os.path.join(scratch.name, "camera.yaml")
         camera.to_yaml(options["camera_file"])
     elif camera is not None:
-        options["camera_file"] = os.fspath(camera)
+        options["camera_file"] = coded(camera)
     if isinstance(load, Map):
         options["load"] = os.path.join(scratch.name, "map.alidade")
         load.save(options["load"])
     elif load is not None:
-        options["load"] = os.fspath(load)
-    options["config"] = None if config is None else os.fspath(config)
-    options["out"] = os.path.join(scratch.name, "result") if out is None else os.fspath(out)
+        options["load"] = coded(load)
+    options["config"] = None if config is None else coded(config)
+    options["out"] = os.path.join(scratch.name, "result") if out is None else coded(out)
 
     outcome: Dict[str, Any] = {}
     last: Dict[str, Any] = {}

@@ -5,7 +5,6 @@ from __future__ import annotations
 import atexit
 import dataclasses
 import math
-import os
 import weakref
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
@@ -13,6 +12,7 @@ import numpy
 
 from . import _core
 from ._log import tell_warnings
+from ._paths import coded
 from ._renamed import Renamed, warn
 from .camera import Camera, PathLike
 from .maps import Map
@@ -112,10 +112,13 @@ class Slam:
     returns a list of (class, score, x, y, width, height). class: a name ("person"; for other names set the function's
     attribute ``class_names``) or its number; x y: the box's top-left corner in pixels. With schedule "threaded" it is
     called in a separate thread with the newest frame whenever it is idle. If it raises, SLAM continues without it and
-    logs a warning; see health(). Implies dynamics="full".
+    logs a warning; see health(). Implies dynamics="full". The function cannot call track(), load(), reset(), finish(),
+    close() and trajectory() of its own Slam, which would wait for it: they raise UsageError there.
+
+    A forked process has no copy of the threads of schedule "threaded": there, all methods but close() raise UsageError.
 
     All methods may be called from any thread. track(), load(), reset() and finish() are serialized; the others do not
-    wait for them. Input images are copied only if their pixels are not contiguous within rows; none is kept.
+    wait for them, but for trajectory(), which waits for a running track(). Input images are copied only if their pixels are not contiguous within rows; none is kept.
     """
 
     def __init__(self, camera: Union[Camera, PathLike], *, sensor: str = "mono", semidense: bool = False,
@@ -130,8 +133,8 @@ class Slam:
         options = dict(
             sensor=sensor, semidense=semidense, dynamics=dynamics, profile=profile, schedule=schedule, seed=seed,
             localize=localize, settings={**(settings or {}), **more_settings},
-            detector=detector if detector is None or callable(detector) else os.fspath(detector),
-            config=None if config is None else os.fspath(config))
+            detector=detector if detector is None or callable(detector) else coded(detector),
+            config=None if config is None else coded(config))
         if not isinstance(camera, Camera):
             camera = Camera.from_yaml(camera, sensor)
         self._sensor = sensor
@@ -208,7 +211,7 @@ class Slam:
         """Writes the trajectory in TUM format. With the `stamp` arguments of track() it has the same bytes as
         trajectory.txt of ``alidade run``."""
         text = self._core.trajectory_text(part)
-        with open(path, "w", encoding="ascii", newline="\n") as file:
+        with open(coded(path), "w", encoding="ascii", newline="\n") as file:
             file.write(text)
 
     def frame_poses(self, since: int = 0) -> List[FramePose]:

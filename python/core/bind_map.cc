@@ -180,16 +180,24 @@ ExportSettings HowToExport(const std::string& to, const std::string& format, int
   return settings;
 }
 
-std::string Export(const MapHolder& saved, const std::string& out, const std::string& to,
-                   const std::string& format, int part, int min_observations) {
-  const py::gil_scoped_release release;
-  return ExportMap(*saved, HowToExport(to, format, part, min_observations), out);
+py::str Export(const MapHolder& saved, const std::string& out, const std::string& to,
+               const std::string& format, int part, int min_observations) {
+  std::string told;
+  {
+    const py::gil_scoped_release release;
+    told = ExportMap(*saved, HowToExport(to, format, part, min_observations), out);
+  }
+  return PathText(told);
 }
 
-std::string ExportFrom(const std::string& path, const std::string& out, const std::string& to,
-                       const std::string& format, int part, int min_observations) {
-  const py::gil_scoped_release release;
-  return ExportPath(path, HowToExport(to, format, part, min_observations), out);
+py::str ExportFrom(const std::string& path, const std::string& out, const std::string& to,
+                   const std::string& format, int part, int min_observations) {
+  std::string told;
+  {
+    const py::gil_scoped_release release;
+    told = ExportPath(path, HowToExport(to, format, part, min_observations), out);
+  }
+  return PathText(told);
 }
 
 }  // namespace

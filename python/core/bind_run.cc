@@ -17,6 +17,7 @@
 #include "alidade/serve/viewer_server.h"
 #include "alidade/version.h"
 #include "arrays.h"
+#include "detector.h"
 #include "errors.h"
 #include "interruptible.h"
 #include "map_value.h"
@@ -97,6 +98,9 @@ ServeSettings ViewerSettings(const RunOptions& options) {
   return settings;
 }
 
+// That of the run that executes; null: none. Only its address is used.
+std::atomic<const Detector*> detector_of_run = nullptr;
+
 // A run that can be stopped while it waits for its turn.
 class OneOfMany {
  public:
@@ -120,6 +124,7 @@ void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
   if (asked_) return;
   ForgetInterrupts();
   running_ = true;
+  detector_of_run = options.own_detector.get();
   if (asked_) RequestInterrupt();
   const int opencv_threads = cv::getNumThreads(), threads = ThreadCount();
   std::vector<RunWatcher*> watchers = {&onlooker};
@@ -127,6 +132,7 @@ void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
   std::unique_ptr<ViewerServer> server;
   const auto leave = [&] {
     running_ = false;
+    detector_of_run = nullptr;
     CollectWarnings();
     cv::setNumThreads(opencv_threads);
     SetThreadCount(threads);
@@ -152,6 +158,8 @@ void OneOfMany::Run(const RunOptions& options, Onlooker& onlooker) {
 
 // Sets `outcome` ("folder" once known, "map"), also when it raises.
 void RunFor(const py::dict& values, const py::object& progress, py::dict outcome) {
+  if (const Detector* detector = detector_of_run; detector != nullptr && IsCalledBy(detector))
+    ThrowUsage("a detector cannot start a run, which would wait for the detector's own");
   const RunOptions options = OptionsFrom(values);
   Onlooker onlooker;
   OneOfMany run;
@@ -159,7 +167,7 @@ void RunFor(const py::dict& values, const py::object& progress, py::dict outcome
     if (!progress.is_none()) progress(onlooker.Told());
   };
   const auto report = [&] {
-    if (!onlooker.folder().empty()) outcome["folder"] = onlooker.folder();
+    if (!onlooker.folder().empty()) outcome["folder"] = PathText(onlooker.folder());
     outcome["map"] = onlooker.map();
   };
   try {

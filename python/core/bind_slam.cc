@@ -1,4 +1,5 @@
 #include "slam_object.h"
+#include "values.h"
 
 namespace alidade::python {
 namespace {
@@ -42,13 +43,13 @@ py::object FailureOf(const TrackedFrame& frame) {
 // Keyword arguments of alidade.TrackResult.
 py::dict FieldsOf(const TrackedFrame& frame) {
   const TrackResult& result = frame.result;
-  return py::dict("frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
-                  "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame),
-                  "reason"_a = result.reason(), "matches"_a = result.matches,
-                  "covariance"_a = CovarianceOf(frame), "keyframe"_a = result.keyframe,
-                  "predicted"_a = PredictedOf(frame), "cut"_a = result.cut,
-                  "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,
-                  "found_share"_a = result.quality.found_share, "warning"_a = result.warning);
+  return py::dict(
+      "frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
+      "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame), "reason"_a = result.reason(),
+      "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
+      "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame), "cut"_a = result.cut,
+      "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,
+      "found_share"_a = result.quality.found_share, "warning"_a = PathText(result.warning));
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
+#include <unistd.h>
+
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
 
+#include "alidade/base/error.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/run/sources/any_source.h"
 #include "arrays.h"
@@ -19,19 +22,30 @@ class Source {
   ~Source() { Close(); }
 
   std::optional<SourceFrame> Next() {
+    if (IsForked())
+      ThrowUsage(
+          "this recording is read by a thread, which a forked process does not have: open it in "
+          "the "
+          "process that uses it");
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!source_) return std::nullopt;
     return source_->Next();
   }
   void Close() {
+    if (IsForked()) {
+      static_cast<void>(source_.release());  // its thread, which would have to end, is not here
+      return;
+    }
     const py::gil_scoped_release release;
     const std::lock_guard<std::mutex> lock(mutex_);
     source_.reset();
   }
   const SourceInfo& info() const { return info_; }
+  bool IsForked() const { return process_ != getpid(); }
 
  private:
+  const pid_t process_ = getpid();  // that has the thread
   std::mutex mutex_;
   std::unique_ptr<ReadAhead> source_;  // null after Close()
   SourceInfo info_;
@@ -55,16 +69,16 @@ py::object NextFrame(Source& source) {
   return py::dict("time"_a = frame->time, "stamp"_a = frame->stamp, "number"_a = frame->number,
                   "image"_a = ArrayOf(frame->image), "right"_a = ArrayOf(frame->right),
                   "depth"_a = ArrayOf(frame->depth), "color"_a = ArrayOf(frame->color),
-                  "problem"_a = frame->problem, "true_pose"_a = pose,
+                  "problem"_a = PathText(frame->problem), "true_pose"_a = pose,
                   "true_depth"_a = ArrayOf(frame->true_depth));
 }
 
 py::dict InfoOf(const Source& source) {
   const SourceInfo& info = source.info();
   using py::literals::operator""_a;
-  return py::dict("name"_a = info.name, "kind"_a = info.kind, "sensor"_a = NameOf(info.sensor),
-                  "camera"_a = CameraObject(info.camera), "camera_guessed"_a = info.camera_guessed,
-                  "frames"_a = info.frames,
+  return py::dict("name"_a = PathText(info.name), "kind"_a = info.kind,
+                  "sensor"_a = NameOf(info.sensor), "camera"_a = CameraObject(info.camera),
+                  "camera_guessed"_a = info.camera_guessed, "frames"_a = info.frames,
                   "mounting"_a = PoseArray(Se3{info.R_camera_rectified, Eigen::Vector3d::Zero()}));
 }
 

@@ -12,6 +12,21 @@
 namespace alidade::python {
 namespace {
 
+// The functions that run in this thread, the innermost first: one may drive the Slam of another.
+struct RunningDetector {
+  explicit RunningDetector(const Detector* of) : detector(of), outer(innermost) {
+    innermost = this;
+  }
+  ~RunningDetector() { innermost = outer; }
+  RunningDetector(const RunningDetector&) = delete;
+  RunningDetector& operator=(const RunningDetector&) = delete;
+
+  const Detector* const detector;
+  RunningDetector* const outer;
+  static thread_local RunningDetector* innermost;
+};
+thread_local RunningDetector* RunningDetector::innermost = nullptr;
+
 class CallableDetector : public Detector {
  public:
   explicit CallableDetector(py::object callable) : callable_(std::move(callable)) {
@@ -28,6 +43,7 @@ class CallableDetector : public Detector {
 
   std::vector<Detection> Detect(const cv::Mat& image) override {
     const py::gil_scoped_acquire acquire;
+    const RunningDetector running(this);
     try {
       std::vector<Detection> found;
       for (const py::handle& thing : callable_(ArrayOf(image)))
@@ -76,6 +92,13 @@ class CallableDetector : public Detector {
 };
 
 }  // namespace
+
+bool IsCalledBy(const Detector* detector) {
+  for (const auto* one = RunningDetector::innermost; one != nullptr; one = one->outer) {
+    if (one->detector == detector) return true;
+  }
+  return false;
+}
 
 std::shared_ptr<Detector> DetectorOf(py::object callable) {
   return std::make_shared<CallableDetector>(std::move(callable));

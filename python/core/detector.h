@@ -14,4 +14,7 @@ namespace alidade::python {
 // Construction and destruction do not require the GIL.
 std::shared_ptr<Detector> DetectorOf(py::object callable);
 
+// true in a call that `detector`'s function makes, in this thread.
+bool IsCalledBy(const Detector* detector);
+
 }  // namespace alidade::python

@@ -1,11 +1,13 @@
 #include "slam_object.h"
 
 #include <limits>
+#include <thread>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/run/setup/run_settings.h"
+#include "detector.h"
 #include "interruptible.h"
 #include "values.h"
 
@@ -33,15 +35,6 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   const RunOptions wanted = OptionsFrom(options);
   const Camera given = CameraFrom(camera);
   const Eigen::Matrix3d R = RotationFrom(mounting);
-  // the last reference may be dropped with or without the GIL
-  const auto without_gil = [](Held* held) {
-    if (PyGILState_Check() != 0) {
-      const py::gil_scoped_release release;
-      delete held;
-    } else {
-      delete held;
-    }
-  };
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localize)
     ThrowUsage("semidense extends the map, which localize must not change: use one of them");
@@ -52,18 +45,50 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   if (calibrate) settings.EnableSelfCalibration();
   std::shared_ptr<Detector> detector = wanted.own_detector;
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
-  held_ = std::shared_ptr<Held>(new Held(given, R, settings, std::move(detector)), without_gil);
+  held_ = std::shared_ptr<Held>(new Held(given, R, settings, std::move(detector)), Delete);
+}
+
+// The last reference may be dropped with or without the GIL.
+void SlamObject::Delete(Held* held) {
+  if (held->IsForked()) return;  // its threads, which would have to end, are not in this process
+  if (held->settings.threaded && IsCalledBy(held->own_detector)) {
+    // This is one of the threads that will be waited for.
+    std::thread([held] { delete held; }).detach();
+  } else if (PyGILState_Check() != 0) {
+    const py::gil_scoped_release release;
+    delete held;
+  } else {
+    delete held;
+  }
 }
 
 std::shared_ptr<SlamObject::Held> SlamObject::Get() const {
   if (!held_) ThrowUsage("this Slam was closed");
+  if (held_->IsForked())
+    ThrowUsage(
+        "this Slam has threads, which a forked process does not: create it in the process that "
+        "uses it, start processes by multiprocessing's \"spawn\", or use schedule=\"inline\"");
   return held_;
+}
+
+std::shared_ptr<SlamObject::Held> SlamObject::GetTurn() const {
+  std::shared_ptr<Held> held = Get();
+  if (held->own_detector != nullptr && IsCalledBy(held->own_detector))
+    ThrowUsage(
+        "a detector cannot call this method of its own Slam, which waits for the detector: return "
+        "the detections, and call it after track()");
+  return held;
+}
+
+void SlamObject::Close() {
+  if (held_ && !held_->IsForked()) GetTurn();
+  held_.reset();
 }
 
 TrackedFrame SlamObject::Track(double time, const py::object& image, const py::object& depth,
                                const py::object& right, const py::object& color,
                                const std::string& stamp) {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   const WrappedImage seen = WrapImage(image, "image"), beside = WrapImage(right, "right"),
                      far = WrapDepth(depth, "depth"), colored = WrapImage(color, "color");
   const py::gil_scoped_release release;
@@ -84,26 +109,26 @@ TrackedFrame SlamObject::Track(double time, const py::object& image, const py::o
 }
 
 void SlamObject::Load(const MapHolder& map) {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   const py::gil_scoped_release release;
   held->slam.Load(*map);
 }
 
 void SlamObject::LeaveOut(const py::object& mask) {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   const WrappedImage marked = WrapImage(mask, "mask");
   const py::gil_scoped_release release;
   held->slam.LeaveOut(marked.image);
 }
 
 void SlamObject::Reset() {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   const py::gil_scoped_release release;
   held->slam.Reset();
 }
 
 void SlamObject::Finish(double limit) {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   WorkInterruptibly([&] { held->slam.Finish(limit); }, [&] { held->slam.CutFinishShort(); });
 }
 
@@ -123,7 +148,7 @@ py::dict SlamObject::settings() const {
 int SlamObject::frames() const { return Get()->slam.frames(); }
 
 MapResults SlamObject::ResultsOfMap(size_t number) const {
-  const std::shared_ptr<Held> held = Get();
+  const std::shared_ptr<Held> held = GetTurn();
   const py::gil_scoped_release release;
   const std::lock_guard<std::mutex> lock(held->turn);
   RunResults results = ResultsOf(held->slam, held->log, held->R_camera_rectified);
@@ -172,7 +197,7 @@ py::object SlamObject::Health() const {
   py::dict all;
   for (const StageHealth& stage : Get()->slam.Health().stages)
     all[py::str(stage.name)] =
-        stage.running ? py::object(py::none()) : py::object(py::str(stage.failure));
+        stage.running ? py::object(py::none()) : py::object(PathText(stage.failure));
   return all;
 }
 

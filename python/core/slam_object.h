@@ -1,6 +1,8 @@
 // Slam as held by Python objects.
 #pragma once
 
+#include <unistd.h>
+
 #include <memory>
 #include <mutex>
 #include <string>
@@ -21,7 +23,9 @@ struct TrackedFrame {
 
 // All methods may be called from any thread. Calls that change the state are serialized; the GIL is
 // released while the library works. Calls after Close() throw Error (usage). Close() does not wait:
-// running calls end normally, and the last one ends the threads.
+// running calls end normally, and the last one ends the threads. Calls throw Error (usage), too,
+// where they would wait for ever: those that change the state or wait for it in the function that
+// is the detector, and all in a forked process, which has no copy of the threads.
 class SlamObject {
  public:
   // `options`: those of a run. `mounting`: R_camera_rectified of the source as (4, 4), or None.
@@ -34,7 +38,7 @@ class SlamObject {
   void LeaveOut(const py::object& mask);
   void Reset();
   void Finish(double limit);
-  void Close() { held_.reset(); }
+  void Close();
   bool closed() const { return held_ == nullptr; }
 
   py::object camera() const;
@@ -59,14 +63,21 @@ class SlamObject {
          std::shared_ptr<Detector> detector)
         : R_camera_rectified(R_rectified),
           settings(used),
+          process(getpid()),
+          own_detector(detector.get()),
           slam(camera, used, std::move(detector)) {}
     std::mutex turn;  // serializes Track(), so that stamps and frames correspond
     RunLog log;       // stamps and numbers, for ResultsOf()
     const Eigen::Matrix3d R_camera_rectified;
     const SlamSettings settings;
+    const pid_t process;                 // that has the threads
+    const Detector* const own_detector;  // null: none
     Slam slam;
+    bool IsForked() const { return settings.threaded && process != getpid(); }
   };
-  std::shared_ptr<Held> Get() const;  // throws Error (usage) after Close()
+  static void Delete(Held* held);
+  std::shared_ptr<Held> Get() const;  // throws Error (usage) after Close() and in a forked process
+  std::shared_ptr<Held> GetTurn() const;  // also in the detector's function
   MapResults ResultsOfMap(size_t number) const;
 
   std::shared_ptr<Held> held_;

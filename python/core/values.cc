@@ -19,10 +19,17 @@ T Value(const std::string& name, const py::handle& value) {
   }
 }
 
-// Numbers and bools as they are written on the command line.
+// Numbers and bools as they are written on the command line; paths as bytes.
 std::string Word(const py::handle& value) {
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "1" : "0";
-  return py::str(value).cast<std::string>();
+  if (py::isinstance<py::bytes>(value)) return value.cast<std::string>();
+  const auto bytes =
+      py::reinterpret_steal<py::object>(PyUnicode_EncodeFSDefault(py::str(value).ptr()));
+  if (!bytes) {
+    PyErr_Clear();
+    ThrowUsage(py::repr(value).cast<std::string>() + " has no encoding");
+  }
+  return bytes.cast<std::string>();
 }
 
 template <typename T>
@@ -77,6 +84,13 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
 }
 
 }  // namespace
+
+py::str PathText(const std::string& text) {
+  PyObject* decoded =
+      PyUnicode_DecodeFSDefaultAndSize(text.data(), static_cast<Py_ssize_t>(text.size()));
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
 
 Camera CameraFrom(const py::handle& value) {
   Camera camera;

@@ -14,6 +14,10 @@ namespace alidade::python {
 Camera CameraFrom(const py::handle& value);
 py::object CameraObject(const Camera& camera);
 
+// Text that may hold a path: bytes that are not UTF-8 become surrogate escapes, as in
+// os.fsdecode().
+py::str PathText(const std::string& text);
+
 // Options by RunOptions' field names; None keeps the default. Throws Error (usage) for an unknown
 // name or a value of the wrong type.
 RunOptions OptionsFrom(const py::dict& values);

@@ -1,10 +1,14 @@
 #include "alidade/base/parallel.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdint>
+#include <cstdlib>
 #include <mutex>
 #include <set>
 #include <stdexcept>
@@ -98,6 +102,25 @@ TEST_P(ParallelForTest, FollowsAChangeOfThreadCount) {
     EXPECT_EQ(sum, 2016);
   }
 }
+
+#ifndef __SANITIZE_THREAD__
+// The child has no copy of the threads; it runs loops, and ends as usual.
+TEST_P(ParallelForTest, WorksInAForkedProcess) {
+  ParallelFor(64, [](int) {});
+  const pid_t child = fork();
+  if (child == 0) {
+    std::atomic<int> sum{0};
+    for (int round = 0; round < 10; ++round) ParallelFor(64, [&](int i) { sum += i; });
+    std::exit(sum == 20160 ? 7 : 1);
+  }
+  int status = 0, waited = 0;
+  while (waitpid(child, &status, WNOHANG) == 0 && ++waited < 6000)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  if (waited == 6000) kill(child, SIGKILL);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7)
+      << "after " << waited << " times 10 ms";
+}
+#endif
 
 INSTANTIATE_TEST_SUITE_P(Threads, ParallelForTest, testing::Values(1, 2, 4));
 

@@ -87,6 +87,13 @@ std::vector<std::string> Names(const fs::path& folder) {
   return names;
 }
 
+// Waits until the session's last file is there.
+bool IsWritten(const fs::path& folder) {
+  for (int i = 0; i < 6000 && !fs::exists(folder / "landmarks.ply"); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  return fs::exists(folder / "landmarks.ply");
+}
+
 class PhoneHostTest : public ::testing::Test {
  protected:
   PhoneHostSettings Settings() const {
@@ -110,6 +117,7 @@ TEST_F(PhoneHostTest, APageThatComesBackTooLateDoesNotOverwriteItsFirstMap) {
     {
       Page back(host, kPage, room_.camera);
       EXPECT_THAT(back.Last(), HasSubstr("\"resumed\":false"));
+      ASSERT_TRUE(IsWritten(fs::path(out_) / "session-1"));
       first = Read(fs::path(out_) / "session-1" / "trajectory.txt");
       EXPECT_NE(first, "");
       back.Send(room_, 0, 30);
@@ -141,7 +149,23 @@ TEST_F(PhoneHostTest, WhatAPageLeftIsWrittenWithoutWaitingForAnotherPage) {
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   host.EndAbandoned();
+  EXPECT_TRUE(IsWritten(fs::path(out_) / "session-1"));
   EXPECT_THAT(Names(out_), ::testing::ElementsAre("session-1"));
+}
+
+// Finishing takes a good part of a second, joining none of it.
+TEST_F(PhoneHostTest, NoPageWaitsWhileTheMapOfAnotherIsFinished) {
+  PhoneHostSettings settings = Settings();
+  settings.max_sessions = 2;
+  PhoneHost host(settings);
+  Page(host, kPage, room_.camera).Send(room_, 0, 60);
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  Page other(host, "f" + std::string(31, '0'), room_.camera);
+  EXPECT_FALSE(fs::exists(fs::path(out_) / "session-1" / "landmarks.ply"))
+      << "the page waited until the other's map was written";
+  EXPECT_EQ(other.problem(), "");
+  other.Send(room_, 0, 2);
+  EXPECT_TRUE(IsWritten(fs::path(out_) / "session-1"));
 }
 
 TEST_F(PhoneHostTest, ASessionWithoutAMapLeavesNoFolder) {

@@ -1,6 +1,7 @@
 #include "alidade/base/parallel.h"
 
 #ifdef __linux__
+#include <pthread.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -10,6 +11,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <system_error>
@@ -131,9 +133,24 @@ void Pool::Run() {
   }
 }
 
-Pool& ThePool() {
-  static Pool pool;
+std::unique_ptr<Pool>& PoolOfProcess() {
+  static auto pool = std::make_unique<Pool>();
   return pool;
+}
+
+Pool& ThePool() {
+#ifdef __linux__
+  // A forked process has no copy of the threads. It gets a pool of its own and never destroys the
+  // other one, which would wait for them.
+  [[maybe_unused]] static const int registered = [] {
+    PoolOfProcess();  // before the first fork
+    return pthread_atfork(nullptr, nullptr, [] {
+      static_cast<void>(PoolOfProcess().release());
+      PoolOfProcess() = std::make_unique<Pool>();
+    });
+  }();
+#endif
+  return *PoolOfProcess();
 }
 
 }  // namespace

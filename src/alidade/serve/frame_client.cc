@@ -1,5 +1,6 @@
 #include "alidade/serve/frame_client.h"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/buffers_to_string.hpp>
 #include <boost/beast/websocket/error.hpp>
@@ -15,6 +16,9 @@ namespace frame_websocket = boost::beast::websocket;
 
 // Bytes of a message: a JPEG of about 4 megapixels.
 constexpr size_t kMostPicture = size_t{4} << 20;
+constexpr size_t kMostHello = 1024;  // bytes of the first message; valid ones have about 100
+// Bytes of memory that a waiting message needs besides its own: the object, and the allocator's 16.
+constexpr size_t kMessageOverhead = 80;
 constexpr size_t kFrameClientFrame = size_t{64} << 10;  // bytes of a WebSocket frame
 
 // Replaces quotes, backslashes and control characters, for use in a JSON string.
@@ -27,13 +31,17 @@ std::string Harmless(const std::string& text) {
 }  // namespace
 
 FrameClient::FrameClient(frame_beast::tcp_stream stream, boost::asio::io_context& io,
-                         FrameHost& host, const ServeSettings& settings)
-    : io_(io), host_(host), socket_(std::move(stream)) {
+                         FrameHost& host, const ServeSettings& settings, bool& warned)
+    : io_(io),
+      host_(host),
+      socket_(std::move(stream)),
+      most_counted_(settings.client_bytes),
+      warned_(warned) {
   const auto patience = std::chrono::duration_cast<std::chrono::steady_clock::duration>(
       std::chrono::duration<double>(settings.patience));
   frame_beast::get_lowest_layer(socket_).expires_never();  // the WebSocket has its own timers
   socket_.set_option(frame_websocket::stream_base::timeout{patience, patience, true});
-  socket_.read_message_max(kMostPicture);
+  socket_.read_message_max(kMostHello);
   socket_.write_buffer_bytes(kFrameClientFrame);
   socket_.auto_fragment(true);
 }
@@ -74,24 +82,70 @@ void FrameClient::Hear(std::string bytes, bool text) {
   // thread.
   seat_ = host_.Join(
       bytes,
-      [io = &io_, client = weak_from_this()](std::vector<FrameMessage> messages, bool last) {
-        boost::asio::post(*io, [client, told = std::move(messages), last]() mutable {
-          if (const auto self = client.lock()) self->Add(std::move(told), last);
+      [told = told_, io = &io_, client = weak_from_this()](std::vector<FrameMessage> messages,
+                                                           bool last) {
+        {
+          const std::lock_guard lock(told->mutex);
+          if (told->last) return;
+          told->batches.push_back(std::move(messages));
+          told->last = last;
+        }
+        boost::asio::post(*io, [client] {
+          if (const auto self = client.lock()) self->TakeTold();
         });
       },
       &problem);
-  if (!seat_) Refuse(problem);
+  if (!seat_) return Refuse(problem);
+  socket_.read_message_max(kMostPicture);
 }
 
 void FrameClient::Refuse(const std::string& why) {
-  Add({{"{\"error\":\"" + Harmless(why) + "\"}", true}}, true);
+  if (last_) return;
+  Add({{"{\"error\":\"" + Harmless(why) + "\"}", true}});
+  last_ = true;
+  Pump();
 }
 
-void FrameClient::Add(std::vector<FrameMessage> messages, bool last) {
+void FrameClient::TakeTold() {
+  std::vector<std::vector<FrameMessage>> batches;
+  bool last = false;
+  {
+    const std::lock_guard lock(told_->mutex);
+    batches.swap(told_->batches);
+    last = told_->last;
+  }
   if (last_) return;
-  for (FrameMessage& message : messages) waiting_.push_back(std::move(message));
+  for (std::vector<FrameMessage>& messages : batches) {
+    Add(std::move(messages));
+    if (counted_ > most_counted_) return Drop();
+  }
   last_ = last;
   Pump();
+}
+
+// Does not count the messages for a page that has read everything before: a slow page gets a reply
+// of any size.
+void FrameClient::Add(std::vector<FrameMessage> messages) {
+  const bool reads = waiting_.empty();
+  for (FrameMessage& message : messages) {
+    const size_t counts = reads || message.of_whole ? 0 : message.bytes.size() + kMessageOverhead;
+    counted_ += counts;
+    waiting_.push_back({std::move(message), counts});
+  }
+}
+
+void FrameClient::Drop() {
+  if (!std::exchange(warned_, true)) {
+    host_.Warn(
+        "a page sends images and does not read the answers: it was disconnected when more "
+        "than " +
+        std::to_string(most_counted_ >> 20) +
+        " MB waited for it (said once; the page may connect again)");
+  }
+  last_ = true;
+  waiting_.erase(waiting_.begin() + (sending_ ? 1 : 0), waiting_.end());
+  counted_ = 0;
+  End();
 }
 
 void FrameClient::Pump() {
@@ -105,10 +159,12 @@ void FrameClient::Pump() {
     return;
   }
   sending_ = true;
-  socket_.text(waiting_.front().text);
-  socket_.async_write(boost::asio::buffer(waiting_.front().bytes),
+  const FrameMessage& next = waiting_.front().message;
+  socket_.text(next.text);
+  socket_.async_write(boost::asio::buffer(next.bytes),
                       [self = shared_from_this()](frame_beast::error_code error, size_t) {
                         self->sending_ = false;
+                        self->counted_ -= std::min(self->counted_, self->waiting_.front().counts);
                         self->waiting_.pop_front();
                         if (error) return self->End();
                         self->Pump();

@@ -10,21 +10,24 @@
 #include <boost/beast/websocket/stream.hpp>
 #include <deque>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "alidade/serve/frame_host.h"
 #include "alidade/serve/viewer_server.h"
 
 namespace alidade {
 
-// Runs in the thread of the io_context, except for the callback that the host calls. The page sends
-// at most two images ahead of their replies, which bounds the outgoing queue.
+// Runs in the thread of the io_context, except for the callback that the host calls. A page that
+// sends images and does not read the replies is disconnected when more than
+// ServeSettings::client_bytes wait for it; its session stays, so that it can come back.
 class FrameClient : public std::enable_shared_from_this<FrameClient> {
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
   FrameClient(boost::beast::tcp_stream stream, boost::asio::io_context& io, FrameHost& host,
-              const ServeSettings& settings);
+              const ServeSettings& settings, bool& warned);
   FrameClient(const FrameClient&) = delete;
   FrameClient& operator=(const FrameClient&) = delete;
 
@@ -32,11 +35,25 @@ class FrameClient : public std::enable_shared_from_this<FrameClient> {
   void Finish();  // closes the connection gracefully
 
  private:
+  // What the host has told from any thread, in order. asio::post() alone would not keep the order
+  // of two threads.
+  struct Told {
+    std::mutex mutex;
+    std::vector<std::vector<FrameMessage>> batches;
+    bool last = false;
+  };
+  struct Waiting {
+    FrameMessage message;
+    size_t counts;  // bytes
+  };
+
   void Read();
   void Hear(std::string bytes, bool text);
-  void Add(std::vector<FrameMessage> messages, bool last);
+  void TakeTold();
+  void Add(std::vector<FrameMessage> messages);
   void Refuse(const std::string& why);
   void Pump();  // sends the next message unless one is being sent
+  void Drop();  // the page does not read
   void End();
 
   boost::asio::io_context& io_;
@@ -44,7 +61,11 @@ class FrameClient : public std::enable_shared_from_this<FrameClient> {
   boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
   boost::beast::flat_buffer heard_;
   std::unique_ptr<FrameSeat> seat_;
-  std::deque<FrameMessage> waiting_;
+  const std::shared_ptr<Told> told_ = std::make_shared<Told>();
+  std::deque<Waiting> waiting_;  // the first one is being sent
+  size_t counted_ = 0;           // sum of `counts`
+  const size_t most_counted_;
+  bool& warned_;  // of the server: a dropped page was reported
   bool open_ = false, sending_ = false, last_ = false;
 };
 

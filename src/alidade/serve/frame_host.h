@@ -12,6 +12,8 @@ namespace alidade {
 struct FrameMessage {
   std::string bytes;
   bool text = true;  // false: binary, a message of the stream
+  // Part of the whole state, which a page gets once, when it joins.
+  bool of_whole = false;
 };
 
 // Sends messages to the page, in order, from any thread. `last`: closes the connection afterwards.
@@ -33,6 +35,8 @@ class FrameHost {
   // `tell` may be called until the seat is destroyed and for a short time afterwards.
   virtual std::unique_ptr<FrameSeat> Join(const std::string& hello, FrameTell tell,
                                           std::string* problem) = 0;
+  // Passes a warning of the server on to the user. Any thread.
+  virtual void Warn(const std::string& message) = 0;
 };
 
 }  // namespace alidade

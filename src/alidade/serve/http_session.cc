@@ -37,23 +37,33 @@ HttpSession::HttpSession(asio::ip::tcp::socket socket, ServerCore& core)
     : core_(core),
       stream_(std::move(socket)),
       buffer_(kMostBuffered),
-      active_(std::chrono::steady_clock::now()) {}
+      active_(std::chrono::steady_clock::now()),
+      accepted_(active_) {}
 
 void HttpSession::Start() { Read(); }
 
 void HttpSession::Close() { stream_.close(); }
 
-void HttpSession::Wake() {
+void HttpSession::Wake() { Wake(core_.task.settings.patience); }
+
+void HttpSession::Wake(double seconds) {
   active_ = std::chrono::steady_clock::now();
   stream_.expires_after(std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(core_.task.settings.patience)));
+      std::chrono::duration<double>(seconds)));
+}
+
+double HttpSession::Age() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - accepted_).count();
 }
 
 void HttpSession::Read() {
   parser_.emplace();
   parser_->header_limit(kMostHeader);
   parser_->body_limit(0);
-  Wake();
+  if (admitted_)
+    Wake();
+  else
+    Wake(core_.task.settings.ArrivalLimit());
   http::async_read(stream_, buffer_, *parser_,
                    [self = shared_from_this()](beast::error_code error, size_t) {
                      if (error) return self->OnBadRequest(error);
@@ -110,10 +120,15 @@ void HttpSession::OnRequest() {
   const bool is_file = path == "/run.stream" && task.hub == nullptr && !task.phone;
   // Compiled-in files are public; the page requests them without the token.
   const bool is_own = path == "/" || path == "/index.html" || path == "/info.json";
-  if ((is_stream || is_frames || is_file || is_own) && !core_.gate->HasToken(target)) {
-    return Send(403, kText,
-                "the token is missing, with which the address printed by the program ends\n");
+  if (is_stream || is_frames || is_file || is_own) {
+    if (!core_.gate->HasToken(target)) {
+      return Send(403, kText,
+                  "the token is missing, with which the address printed by the program ends\n");
+    }
+    admitted_ = true;
   }
+  // Browsers use several connections, some of them only for files that need no token.
+  if (!admitted_ && Age() > core_.task.settings.ArrivalLimit()) keep_alive_ = false;
   if (is_stream) return Upgrade();
   if (is_frames) return UpgradeFrames();
   if (is_file) return SendFile(task.replay_path, "application/octet-stream");
@@ -144,7 +159,7 @@ void HttpSession::UpgradeFrames() {
     return Send(400, kText, "this address is a WebSocket\n");
   if (!core_.MayJoin()) return Send(503, kText, "too many pages\n");
   auto client = std::make_shared<FrameClient>(std::move(stream_), core_.io, *core_.task.frames,
-                                              core_.task.settings);
+                                              core_.task.settings, core_.warned_of_page);
   core_.pages.push_back(client);
   client->Start(request);
 }

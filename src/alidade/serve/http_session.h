@@ -27,6 +27,8 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Close();
   // Time of the last activity.
   std::chrono::steady_clock::time_point active() const { return active_; }
+  // A request had the token; without a token: there was a request for what would need it.
+  bool admitted() const { return admitted_; }
 
  private:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -43,12 +45,15 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   void Sent(boost::beast::error_code error);
   void Linger();
   void Wake();  // restarts the timeout
+  void Wake(double seconds);
+  double Age() const;  // seconds since the connection was accepted
 
   ServerCore& core_;
   boost::beast::tcp_stream stream_;
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
-  std::chrono::steady_clock::time_point active_;
+  std::chrono::steady_clock::time_point active_, accepted_;
+  bool admitted_ = false;
   bool keep_alive_ = false;
   bool head_only_ = false;
   std::string head_;

@@ -83,7 +83,10 @@ bool ServerCore::MayConnect() {
   std::shared_ptr<HttpSession> oldest;
   for (const auto& one : sessions) {
     const auto session = one.lock();
-    if (session && (!oldest || session->active() < oldest->active())) oldest = session;
+    if (!session) continue;
+    if (!oldest || std::pair(session->admitted(), session->active()) <
+                       std::pair(oldest->admitted(), oldest->active()))
+      oldest = session;
   }
   if (!oldest) return false;
   oldest->Close();
@@ -147,7 +150,7 @@ void Server::OpenTls(const asio::ip::address& host, const std::string& name) {
   fingerprint_ = certificate.fingerprint;
   const ServeSettings& settings = core_.task.settings;
   door_ = std::make_unique<TlsDoor>(core_.io, std::move(outer), acceptor_.local_endpoint().port(),
-                                    certificate, settings.max_connections, settings.patience);
+                                    certificate, settings.max_connections, settings.ArrivalLimit());
 #else
   static_cast<void>(host);
   static_cast<void>(name);

@@ -42,11 +42,12 @@ struct ServerCore {
   std::vector<std::weak_ptr<HttpSession>> sessions;
   std::vector<std::weak_ptr<StreamClient>> clients;
   std::vector<std::weak_ptr<FrameClient>> pages;  // pages that send images
+  bool warned_of_page = false;                    // that it does not read
   std::shared_ptr<std::atomic<int>> viewers = std::make_shared<std::atomic<int>>(0);
 
   bool MayJoin();  // false when the maximum number of viewers is reached
-  // Makes room for a connection by closing the one that was idle longest and is not a viewer.
-  // Returns false when all are viewers.
+  // Makes room for a connection by closing the one that was idle longest and is not a viewer, first
+  // among those that have not shown the token. Returns false when all are viewers.
   bool MayConnect();
 };
 

@@ -18,22 +18,24 @@ class TlsRelay;
 
 class TlsDoor {
  public:
-  // `acceptor` is already listening. At most `max_connections` connections; a handshake may take
-  // `patience` seconds. Other timeouts are enforced by the plain server.
+  // `acceptor` is already listening. The plain server has at most `max_connections` connections and
+  // enforces its own timeouts. Besides these there are at most a quarter as many without a complete
+  // handshake, which may take `handshake` seconds; a new connection closes the oldest of them.
   TlsDoor(boost::asio::io_context& io, boost::asio::ip::tcp::acceptor acceptor, int inner_port,
-          const TlsCertificate& certificate, int max_connections, double patience);
+          const TlsCertificate& certificate, int max_connections, double handshake);
   void Close();
 
  private:
   void Accept();
+  void MakeRoom();
 
   boost::asio::io_context& io_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::ssl::context context_;
   boost::asio::steady_timer rest_;  // delays accepting after a failure
   std::vector<std::weak_ptr<TlsRelay>> relays_;
-  const int inner_port_, max_connections_;
-  const double patience_;
+  const int inner_port_, max_waiting_;
+  const double handshake_;  // seconds
 };
 
 }  // namespace alidade

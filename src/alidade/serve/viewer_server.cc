@@ -46,6 +46,7 @@ void ServeSettings::Check() const {
         "above max_clients, 100000 at most");
   check(client_bytes >= 1024, "client_bytes", "at least 1024");
   check(patience >= 0.1 && patience <= 3600, "patience", "within 0.1…3600");
+  check(arrival >= 0.1 && arrival <= 3600, "arrival", "within 0.1…3600");
 }
 
 namespace {

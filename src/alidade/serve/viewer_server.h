@@ -2,6 +2,7 @@
 // module (serve_module.h), loaded on first use.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -19,8 +20,8 @@ struct ServeSettings {
   bool port_given = false;  // by the user: taken as it is; else the next free one will do as well
   // Viewers at a time: each costs at most the whole state and `client_bytes`.
   int max_clients = 64;
-  // Sockets at a time, viewers included; beyond, the one that has been silent longest is closed.
-  // Leaves three quarters of the usual 1024 descriptors to the run.
+  // Sockets at a time, viewers included; beyond, the one that has been silent longest is closed,
+  // those without the token first. Leaves three quarters of the usual 1024 descriptors to the run.
   int max_connections = 256;
   // What waits for a viewer at most, besides the state it began with: 2 s of the stream with
   // pictures. Who falls behind further is given the whole state instead.
@@ -28,6 +29,10 @@ struct ServeSettings {
   // Seconds in which a request must have come, a part of a file must have been taken, and a viewer
   // must have given some sign of life (it is asked for one after half of that).
   double patience = 10;
+  // Seconds in which a new connection must have completed its TLS handshake, and again as many in
+  // which it must have shown the token. Phones in a weak wireless network need about one.
+  double arrival = 5;
+  double ArrivalLimit() const { return std::min(arrival, patience); }
   bool tls = false;    // https, with a certificate made on the spot
   void Check() const;  // throws Error (usage) naming the field that cannot be
 };

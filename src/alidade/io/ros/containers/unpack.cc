@@ -118,8 +118,12 @@ std::string Unpack(std::string_view format, std::string_view packed, uint64_t mo
 }
 
 uint64_t MostUnpackedFrom(uint64_t packed) {
-  constexpr uint64_t kAlways = uint64_t{1} << 26, kRatio = 1024;
-  return std::min(kMostUnpacked, std::max(kAlways, packed * kRatio));
+  return std::min(kMostUnpacked, MostUnpackedFileFrom(packed));
+}
+
+uint64_t MostUnpackedFileFrom(uint64_t packed) {
+  constexpr uint64_t kAlways = uint64_t{1} << 26;
+  return std::max(kAlways, packed * kMostFileRatio);
 }
 
 bool LooksLikeZstd(std::string_view bytes) { return bytes.substr(0, 4) == "\x28\xb5\x2f\xfd"; }

@@ -20,6 +20,11 @@ std::string Unpack(std::string_view format, std::string_view packed, uint64_t mo
 // and at most kMostUnpacked. Even black images compress to no less than about a thousandth.
 uint64_t MostUnpackedFrom(uint64_t packed);
 
+// The same for a whole file, which may have any size: kMostFileRatio times as many, but at least 64
+// MB.
+inline constexpr uint64_t kMostFileRatio = 1024;
+uint64_t MostUnpackedFileFrom(uint64_t packed);
+
 bool LooksLikeZstd(std::string_view bytes);
 
 }  // namespace alidade

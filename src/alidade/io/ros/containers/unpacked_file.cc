@@ -1,6 +1,7 @@
 #include "alidade/io/ros/containers/unpacked_file.h"
 
 #include <fcntl.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 #include <zstd.h>
 
@@ -8,11 +9,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <new>
 
 #include "alidade/base/error.h"
 #include "alidade/io/ros/containers/byte_source.h"
+#include "alidade/io/ros/containers/unpack.h"
 
 namespace alidade {
 namespace {
@@ -41,7 +44,48 @@ void WriteAllTo(int fd, const char* bytes, size_t count) {
   }
 }
 
+// Bytes that `fd`'s file system has besides the twentieth that is left free, at most 1 GB of it:
+// other programs use the folder for temporary files, too.
+uint64_t RoomAt(int fd) {
+  struct statvfs disk {};
+  if (::fstatvfs(fd, &disk) != 0) return std::numeric_limits<uint64_t>::max();
+  const uint64_t block = disk.f_frsize, all = block * disk.f_blocks, free = block * disk.f_bavail;
+  const uint64_t left = std::min<uint64_t>(all / 20, uint64_t{1} << 30);
+  return free > left ? free - left : 0;
+}
+
+// Limits the size of the unpacked file: by its ratio to the packed one, and by the free disk.
+class Budget {
+ public:
+  Budget(int fd, uint64_t packed) : fd_(fd), most_(MostUnpackedFileFrom(packed)) {}
+  // Throws Error (input) when `count` more bytes are too many.
+  void Take(uint64_t count) {
+    used_ += count;
+    if (used_ > most_) {
+      ThrowInput(
+          "unpacks to more than " + std::to_string(most_ >> 20) + " MB, over " +
+          std::to_string(kMostFileRatio) +
+          " times its size: it is damaged, or made to fill the disk. If it is to be trusted, "
+          "unpack it with `zstd -d` and open the result");
+    }
+    if (used_ <= checked_) return;
+    checked_ = used_ + kCheckEvery;
+    if (RoomAt(fd_) < kCheckEvery) {
+      ThrowInput(
+          "unpacks to more than is free in the folder for temporary files, of which a "
+          "twentieth is left free (TMPDIR chooses another folder)");
+    }
+  }
+
+ private:
+  static constexpr uint64_t kCheckEvery = uint64_t{1} << 20;  // bytes
+  const int fd_;
+  const uint64_t most_;
+  uint64_t used_ = 0, checked_ = 0;
+};
+
 void UnpackInto(int fd, const ByteSource& source) {
+  Budget budget(fd, source.Size());
   const std::unique_ptr<ZSTD_DStream, size_t (*)(ZSTD_DStream*)> stream(ZSTD_createDStream(),
                                                                         ZSTD_freeDStream);
   if (!stream) throw std::bad_alloc();
@@ -56,6 +100,7 @@ void UnpackInto(int fd, const ByteSource& source) {
       out.pos = 0;
       hint = ZSTD_decompressStream(stream.get(), &out, &in);
       if (ZSTD_isError(hint)) ThrowInput("is damaged: its zstd data cannot be decompressed");
+      budget.Take(out.pos);
       WriteAllTo(fd, plain.data(), out.pos);
     } while (in.pos < in.size || out.pos == out.size);
   }

@@ -8,8 +8,8 @@ namespace alidade {
 
 class UnpackedFile {
  public:
-  // Unpacks into the folder for temporary files. Throws Error (input) when the file is damaged or
-  // the disk is full.
+  // Unpacks into the folder for temporary files. Throws Error (input) when the file is damaged, the
+  // result exceeds MostUnpackedFileFrom(), or it would take the last twentieth of the disk.
   explicit UnpackedFile(const std::string& packed);
   ~UnpackedFile();
   UnpackedFile(const UnpackedFile&) = delete;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/text.h"
 
@@ -78,7 +79,11 @@ std::optional<SourceFrame> BagPlayer::Next() {
   if (next_ >= info_.frames) return std::nullopt;
   SourceFrame frame;
   frame.number = next_++;
-  const auto i = static_cast<size_t>(frame.number);
+  const size_t i = order_.At(static_cast<size_t>(frame.number));
+  if (i != static_cast<size_t>(frame.number) && !std::exchange(told_order_, true)) {
+    LogWarning("the time stamps of " + path_ + ", " + image_.name +
+               ", are not in order; the frames are sorted by time");
+  }
   frame.stamp = StampText(frames_.Stamp(i));
   // The same value that a text list of these stamps would give.
   frame.time = ParseNumber(frame.stamp).value_or(0);
@@ -88,8 +93,8 @@ std::optional<SourceFrame> BagPlayer::Next() {
     frame.image = preparation_->Left(levels_.To8Bit(read.image, frame.time));
     if (!read.color.empty()) frame.color = preparation_->Left(read.color);
   } catch (const Error& error) {
-    frame.problem = path_ + ": message " + std::to_string(frame.number) + " of " + image_.name +
-                    " " + error.what();
+    frame.problem =
+        path_ + ": message " + std::to_string(i) + " of " + image_.name + " " + error.what();
     return frame;
   }
   // A frame whose right or depth image is bad is still used as a monocular frame.

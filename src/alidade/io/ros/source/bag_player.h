@@ -1,4 +1,5 @@
-// Plays the chosen topics of a ROS recording: one frame per message of the image topic.
+// Plays the chosen topics of a ROS recording: one frame per message of the image topic, in order of
+// time.
 #pragma once
 
 #include <memory>
@@ -10,6 +11,7 @@
 #include "alidade/io/frame_source.h"
 #include "alidade/io/gray_levels.h"
 #include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/play_order.h"
 #include "alidade/io/ros/source/topic_stamps.h"
 
 namespace alidade {
@@ -31,8 +33,8 @@ class BagPlayer : public FrameSource {
 
  private:
   DecodedImage Read(const PictureTopic& topic, const BagMessage& message, ImageUse use);
-  // The right or depth image of `frame`, whose index is `i`; empty when there is none. One that
-  // cannot be read sets SourceFrame::incomplete.
+  // The right or depth image of `frame`, which is message `i` of its topic; empty when there is
+  // none. One that cannot be read sets SourceFrame::incomplete.
   cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
                   TopicStamps& stamps, size_t i, ImageUse use, SourceFrame& frame);
 
@@ -41,12 +43,14 @@ class BagPlayer : public FrameSource {
   PictureTopic image_;
   std::optional<PictureTopic> right_, depth_;
   TopicStamps frames_;
+  PlayOrder order_{frames_};
   std::optional<TopicStamps> right_stamps_, depth_stamps_;
   std::optional<PartnerFinder> right_finder_, depth_finder_;
   std::optional<ImagePreparation> preparation_;
   SourceInfo info_;
   GrayLevels levels_;
   bool color_ = false;
+  bool told_order_ = false;  // a warning said that the messages are not in order
   int next_ = 0;
 };
 
