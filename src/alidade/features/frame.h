@@ -69,8 +69,8 @@ struct Frame {
   // Edge thumbnail (Glance() of the image) while a monocular map is being initialized; otherwise
   // empty.
   cv::Mat glance;
-  // With a depth image: the smallest depth in each cell of kDepthCell x kDepthCell raw pixels, CV_32F,
-  // meters; 0: less than an eighth of the cell has depth. Otherwise empty.
+  // With a depth image: the smallest depth in each cell of kDepthCell x kDepthCell raw pixels,
+  // CV_32F, meters; 0: less than an eighth of the cell has depth. Otherwise empty.
   cv::Mat nearest;
   static constexpr int kDepthCell = 16;
   // Camera motion during the image readout, if known: T_camera_world at s seconds after the middle
