@@ -70,10 +70,12 @@ TEST_F(FixedPartsTest, AHandInAMovingImageIsFoundWithinTwoSeconds) {
 TEST_F(FixedPartsTest, AMovingImageHasNone) {
   for (int i = 0; i < 30; ++i)
     EXPECT_FALSE(See(View(500 + 18 * i, 700 + 40 * std::sin(0.3 * i)))) << i;
+  EXPECT_TRUE(parts_.mask().empty());
 }
 
 TEST_F(FixedPartsTest, TheFocusOfExpansionIsNone) {
   for (int i = 0; i < 30; ++i) EXPECT_FALSE(See(View(800, 800, 1 + 0.06 * i))) << i;
+  EXPECT_TRUE(parts_.mask().empty());
 }
 
 TEST_F(FixedPartsTest, ASceneBehindAPassingObjectIsNone) {

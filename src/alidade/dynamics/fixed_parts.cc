@@ -49,7 +49,9 @@ bool FixedParts::See(const cv::Mat& image, const std::shared_ptr<const Frame>& f
   const bool nothing = stayed < 0;
   // The scene stands still, or the camera does while something passes: then staying says nothing.
   const bool rests = stayed > settings_.most_stay || StillShare(then_, now) > settings_.most_still;
-  if (!nothing && (rests || !Weigh(corners, stayed, *frame))) {
+  const bool unknown = !nothing && !rests && !Weigh(corners, stayed, *frame);
+  if (unknown) looked_ += settings_.interval;  // to look for the motion takes milliseconds
+  if (!nothing && (rests || unknown)) {
     if (frame->time - time_ > settings_.longest) Renew(now, frame);
     return false;
   }
@@ -61,6 +63,11 @@ void FixedParts::Renew(const cv::Mat& thumbnail, const std::shared_ptr<const Fra
   then_ = thumbnail;
   frame_then_ = frame;
   time_ = frame->time;
+}
+
+void FixedParts::SetCamera(const Camera& camera) {
+  camera_ = camera;
+  Cut();  // the keypoints of the earlier frame are those of the other camera
 }
 
 void FixedParts::Cut() { frame_then_ = nullptr; }
@@ -129,10 +136,13 @@ bool FixedParts::Weigh(const Corners& corners, double stayed, const Frame& frame
   const float common = std::clamp(static_cast<float>(stayed), kLeastChance, kMostChance);
   // The motion is needed only where the evidence would otherwise suffice.
   int close = 0;
+  const float unproven = LogOdds(settings_.unproven), certain = LogOdds(settings_.certain);
   for (int y = 0; y < log_odds_.rows; ++y) {
-    for (int x = 0; x < log_odds_.cols; ++x)
-      close += corners.stayed.at<uint8_t>(y, x) &&
-               log_odds_.at<float>(y, x) + std::log(found / common) > LogOdds(settings_.unproven);
+    for (int x = 0; x < log_odds_.cols; ++x) {
+      const float log_odds = log_odds_.at<float>(y, x);
+      close += corners.stayed.at<uint8_t>(y, x) && log_odds < certain &&
+               log_odds + std::log(found / common) > unproven;
+    }
   }
   cv::Mat chance;
   const double scale = static_cast<double>(camera_.width) / then_.cols;
@@ -155,7 +165,7 @@ bool FixedParts::Weigh(const Corners& corners, double stayed, const Frame& frame
       log_odds += corners.stayed.at<uint8_t>(y, x)
                       ? std::log(found / scene)
                       : std::log((1 - found) / (1 - std::min(scene, found)));
-      const float most = chance.empty() ? std::max(before, LogOdds(settings_.unproven)) : kLimit;
+      const float most = chance.empty() ? std::max(before, unproven) : kLimit;
       log_odds = std::clamp(log_odds, -kLimit, most);
     }
   }
@@ -180,9 +190,9 @@ bool FixedParts::Decide() {
     share_ = 0;
     return false;
   }
-  if (!told_ && !whole) return false;
-  const bool more = !told_ || share > kGrows * share_;
-  told_ = true;
+  if (told_ == 0 && !whole) return false;
+  const bool more = whole && share > kGrows * told_;
+  if (more) told_ = share;
   mask_ = certain;
   share_ = share;
   return more;

@@ -42,7 +42,7 @@ class FixedParts {
   // nothing is.
   const cv::Mat& mask() const { return mask_; }
   double share() const { return share_; }  // of the image that mask() leaves out
-  void SetCamera(const Camera& camera) { camera_ = camera; }
+  void SetCamera(const Camera& camera);
   void Cut();  // the next frame need not continue the last one
 
  private:
@@ -66,7 +66,7 @@ class FixedParts {
   double time_ = 0;        // of the last comparison, seconds
   double looked_ = 0;      // when a comparison was last tried, seconds
   double candidates_ = 0;  // share of the image that was certain at the last comparison
-  bool told_ = false;      // mask_ was found
+  double told_ = 0;        // the largest share that See() has reported
   cv::Mat mask_;
   double share_ = 0;
 };

@@ -7,9 +7,11 @@
 namespace alidade {
 namespace {
 
-constexpr size_t kMost = 12;      // keyframes; more are thinned out evenly
-constexpr double kPixels = 4;     // of disparity
-constexpr float kNeighbors = 48;  // pixels: distance of keypoints that may be on the same surface
+constexpr size_t kMost = 12;   // keyframes that are compared; more are thinned out evenly
+constexpr int kVisited = 200;  // keyframes that are looked through
+constexpr double kPixels = 4;  // of disparity
+constexpr float kNeighbors =
+    48;  // pixels, of the cells of keypoints that may be on the same surface
 
 enum class Verdict : uint8_t { kUnknown, kOccupied, kFree };
 
@@ -29,14 +31,17 @@ float NearestAround(const cv::Mat& nearest, const Eigen::Vector2d& raw) {
 std::vector<const KeyFrame*> KeyFramesBefore(const MapState& map, const KeyFrame& present,
                                              double seconds) {
   std::vector<const KeyFrame*> all;
+  int visited = 0;
   map.keyframes.ForEachFromLast([&](const KeyFrame& keyframe) {
+    if (++visited > kVisited) return false;
+    if (keyframe.map != present.map || keyframe.id == present.id) return true;
     const double before = present.frame->time - keyframe.frame->time;
-    if (keyframe.map != present.map || !(before > 0)) return true;
+    if (!(before > 0)) return false;  // of another recording
     if (!keyframe.frame->nearest.empty()) all.push_back(&keyframe);
     return before < seconds;
   });
   std::vector<const KeyFrame*> some;
-  const size_t step = all.size() / kMost + 1;
+  const size_t step = std::max<size_t>(1, (all.size() + kMost - 1) / kMost);
   for (size_t i = 0; i < all.size(); i += step) some.push_back(all[all.size() - 1 - i]);
   return some;
 }

@@ -13,8 +13,8 @@ namespace alidade {
 // are the keyframes of its map up to `seconds` before it, and the last one before that, so that
 // what has stood still since can be mapped. One of them saw through a keypoint if everything in the
 // cells around its image (at least 16 pixels) was farther away, by more than 4 pixels of disparity
-// (four standard deviations). Keypoints of similar depth within 48 pixels decide together. All 0
-// for a camera without depth images.
+// (four standard deviations). Keypoints of similar depth, in the cells of the grid within 48
+// pixels, decide together. All 0 for a camera without depth images.
 std::vector<uint8_t> HasAppeared(const MapState& map, const Camera& camera, KeyFrameId keyframe,
                                  double seconds);
 

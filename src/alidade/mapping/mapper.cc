@@ -48,6 +48,7 @@ Mapper::Mapper(MapStore& map, const Camera& camera, MapperSettings settings)
 KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anchor,
                           std::span<const LandmarkId> matches) {
   KeyFrameId id;
+  std::vector<uint8_t> appeared;
   map_.Commit([&](MapCommit& commit) {
     const Se3 T_camera_world = PoseOf(commit.state(), anchor);
     KeyFrame keyframe;
@@ -62,8 +63,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
         commit.AddObservation(matches[i], id, static_cast<int>(i));
     }
     const Se3 T_world_camera = T_camera_world.Inverse();
-    const std::vector<uint8_t> appeared = Appeared(commit.state(), id);
-    TellOfPassing(appeared);
+    appeared = Appeared(commit.state(), id);
     for (size_t i = 0; i < frame->keypoints.size(); ++i) {
       const Keypoint& keypoint = frame->keypoints[i];
       if (!MakesLandmark(keypoint) || (!appeared.empty() && appeared[i])) continue;
@@ -77,6 +77,7 @@ KeyFrameId Mapper::Insert(std::shared_ptr<const Frame> frame, const Anchor& anch
     }
     commit.RefreshCovisibility(id);
   });
+  TellOfPassing(appeared);
   return id;
 }
 

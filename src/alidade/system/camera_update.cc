@@ -39,6 +39,7 @@ void CameraUpdate::Rebuild(const Camera& camera) {
       },
       [&](Frame& frame) {
         UndistortKeypoints(parts_.camera, frame);
+        parts_.left_out.RemoveFrom(frame, parts_.camera);
         frame.motion.setZero();
       });
 }

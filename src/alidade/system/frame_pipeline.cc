@@ -12,8 +12,8 @@
 namespace alidade {
 namespace {
 
-// With depth, a map may be made anew from that many frames without a part fixed to the camera: 3 s
-// at 30 frames per second. One camera keeps frames for another camera only.
+// With depth, this many frames are kept, so that the map can be made anew when a part fixed to the
+// camera is found: 3 s at 30 frames per second.
 constexpr int kFixedPartsFrames = 90;
 constexpr int kReanchorFrames = 300;  // period of Reanchor(): 10 s at 30 frames per second
 
@@ -126,14 +126,17 @@ void FramePipeline::UseCamera() {
 }
 
 // Poses of the newest map may have followed the part: a young map of one camera is dropped, and one
-// with depth is made anew without it.
+// with depth is made anew without it. What was believed to move was the rest of the image.
 void FramePipeline::LeaveOutFixedParts(int number) {
+  const bool one_camera = settings_.sensor == Sensor::kMono;
+  const bool in_young = session_.has_pose() && young_.WantsGlance(number) &&
+                        workers_.map().Snapshot().MapOf(tracker_.reference()) == young_.map();
+  if (one_camera ? !in_young : !replay_.Possible()) return;
   movers_.Restart();
   workers_.mapper().SetYoungStatic(settings_.mapper.young_static);
-  if (settings_.sensor == Sensor::kMono) {
-    if (session_.has_pose() && young_.WantsGlance(number))
-      session_.Apply(SessionEvent::kMapRefused);
-  } else if (replay_.Possible() && !movers_.on()) {
+  if (one_camera) {
+    session_.Apply(SessionEvent::kMapRefused);
+  } else if (!movers_.on()) {  // they need images, which are not kept
     replay_.Run([] {}, [this](Frame& frame) { left_out_.RemoveFrom(frame, camera_); });
   }
 }

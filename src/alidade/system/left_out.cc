@@ -41,16 +41,23 @@ double ShareOf(const cv::Mat& mask) {
 
 void LeftOut::Name(const cv::Mat& mask) {
   cv::compare(mask, 0, named_, cv::CMP_NE);
+  if (named_.total() > static_cast<size_t>(size_.area()))
+    cv::resize(named_, named_, size_, 0, 0, cv::INTER_NEAREST);
+  Update();
+}
+
+void LeftOut::Update() {
   all_ = Union(named_, fixed_.mask());
   share_ = ShareOf(all_);
 }
 
 bool LeftOut::See(const cv::Mat& image, const std::shared_ptr<const Frame>& frame) {
   if (!look_) return false;
-  const double before = share_;
+  const cv::Mat known = fixed_.mask();
   const bool found = fixed_.See(image, frame);
-  all_ = Union(named_, fixed_.mask());
-  share_ = ShareOf(all_);
+  if (fixed_.mask().data == known.data) return false;
+  const double before = share_;
+  Update();
   const bool more = found && share_ > before + kLeastMore;  // else it was named
   if (more) {
     LogWarning(std::to_string(std::lround(100 * fixed_.share())) +

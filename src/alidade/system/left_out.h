@@ -15,7 +15,8 @@ namespace alidade {
 class LeftOut {
  public:
   // `look`: whether fixed parts are looked for.
-  LeftOut(const Camera& camera, bool look) : fixed_(camera), look_(look) {}
+  LeftOut(const Camera& camera, bool look)
+      : fixed_(camera), look_(look), size_(camera.width, camera.height) {}
 
   // `mask`: CV_8U, nonzero = left out, stretched over the image. Before the first frame.
   void Name(const cv::Mat& mask);
@@ -33,8 +34,11 @@ class LeftOut {
   double share() const { return share_; }
 
  private:
+  void Update();
+
   FixedParts fixed_;
   bool look_;
+  cv::Size size_;  // of the camera
   cv::Mat named_;
   cv::Mat all_;  // CV_8U, 255 = left out; empty: nothing is
   std::atomic<double> share_{0};

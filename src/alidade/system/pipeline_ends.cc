@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/map/map_file.h"
@@ -45,6 +46,8 @@ void FramePipeline::FinishWork(bool limited) {
   workers_.Drain();
   PresentFrame last;
   TakeNews();
+  if (std::exchange(more_left_out_, false) && !limited)
+    LeaveOutFixedParts(NumberOf(log_.size() - 1));
   DropUnknownScale(last);
   if (last.map_left) workers_.Drain();
   if (session_.has_pose() && young_.WantsGlance(NumberOf(log_.size() - 1)) && young_.StoodStill()) {

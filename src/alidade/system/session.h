@@ -30,7 +30,7 @@ enum class SessionEvent {
   kLostForLong,     // lost for settings.new_map_seconds: another map may start
   kMapLeft,         // the map the camera was in is dropped, because its scale is unknown
   kCut,             // the next frame need not continue the last one (gap in time, new recording)
-  kRebuildStarted,  // the map is dropped, to be rebuilt from kept frames with another camera
+  kRebuildStarted,  // the map is dropped, to be rebuilt from kept frames
   kFrameFailed      // an exception ended the frame
 };
 
@@ -43,7 +43,7 @@ struct Erasure {
   bool moving_objects = false;  // beliefs about what moves in the image
   bool dynamics = false;        // everything the dynamic filter holds, which may be inconsistent
   bool waiting_frames = false;  // frames without a pose that would be localized in the next map
-  bool kept_frames = false;     // frames kept to rebuild the map with another camera
+  bool kept_frames = false;     // frames kept to rebuild the map
 };
 
 struct Transition {

@@ -116,6 +116,9 @@ void Slam::Impl::LeaveOut(const cv::Mat& mask) {
   const std::lock_guard<std::mutex> driving(driving_);
   if (mask.empty() || mask.type() != CV_8UC1) ThrowUsage("a mask must be an 8-bit gray image");
   if (!pipeline_.trajectory().empty()) ThrowUsage("a mask must be given before the first frame");
+  constexpr double kMost = 0.9;  // of the image: too little is left for poses
+  if (cv::countNonZero(mask) > kMost * static_cast<double>(mask.total()))
+    ThrowUsage("the mask leaves out more than 90 % of the image");
   pipeline_.LeaveOut(mask);
 }
 

@@ -53,8 +53,9 @@ class Slam {
   // Throws Error (input) if the map was made with another camera or sensor.
   void Load(const SavedMap& saved);
   // Leaves parts of the image out, in all frames: a hood, a gripper, a caption. `mask`: CV_8U of
-  // any size, stretched over the image; nonzero = left out. Before the first frame; the last call
-  // counts. Parts that move with the camera are found without it (settings.fixed_parts), too.
+  // any size, stretched over the image; nonzero = left out, at most 90 %. Before the first frame;
+  // the last call counts. Parts that move with the camera are found without it
+  // (settings.fixed_parts), too.
   void LeaveOut(const cv::Mat& mask);
   // Processes one frame; frames come in order of time. Throws Error (input) if an image has the
   // wrong size or type, or if the time does not increase. A jump of the time is treated as a cut

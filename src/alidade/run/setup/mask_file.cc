@@ -1,6 +1,7 @@
 #include "alidade/run/setup/mask_file.h"
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/image_file.h"
@@ -25,6 +26,7 @@ cv::Mat ReadMaskFile(const std::string& path, const Camera& camera) {
     ThrowInput(path + ": a mask of " + Size(mask.cols, mask.rows) + " does not fit images of " +
                Size(camera.width, camera.height));
   }
+  cv::threshold(mask, mask, 127, 255, cv::THRESH_BINARY);  // JPEG's black is not quite black
   const double share = cv::countNonZero(mask) / static_cast<double>(mask.total());
   if (share == 0) ThrowInput(path + ": the mask is black, which leaves out nothing (white does)");
   if (share > kMost) {

@@ -8,8 +8,9 @@
 
 namespace alidade {
 
-// Reads it for Slam::LeaveOut(): CV_8U, nonzero = left out. Throws Error (input) if it is no image,
-// if its shape is not that of the camera's images, or if it leaves out everything or nothing.
+// Reads it for Slam::LeaveOut(): CV_8U, 255 = left out, 0 = used (gray values below 128). Throws
+// Error (input) if it is no image, if its shape is not that of the camera's images, or if it leaves
+// out everything or nothing.
 cv::Mat ReadMaskFile(const std::string& path, const Camera& camera);
 
 }  // namespace alidade

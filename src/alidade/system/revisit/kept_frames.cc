@@ -19,8 +19,9 @@ void KeptFrames::Add(const Frame& frame, int index, bool seeking) {
   frames_.push_back({std::move(kept), index});
 }
 
-void KeptFrames::MapStarted(const Camera& camera) {
+void KeptFrames::MapStarted(const Camera& camera, MapId map) {
   started_with_ = camera;
+  map_ = map;
   complete_ = true;
 }
 

@@ -1,10 +1,12 @@
 // Frames since before the start of the newest map, kept to rebuild that map when its camera turns
-// out to be another. A bounded number, features only; used by the driving thread.
+// out to be another, or when a part of the image turns out to be fixed to the camera. A bounded
+// number, features only; used by the driving thread.
 #pragma once
 
 #include <deque>
 #include <memory>
 
+#include "alidade/base/ids.h"
 #include "alidade/features/frame.h"
 #include "alidade/geometry/camera.h"
 
@@ -23,8 +25,8 @@ class KeptFrames {
   // While `seeking` a start, the oldest frames give way to newer ones. Once a map exists, the first
   // frame beyond the capacity ends the keeping for good: the map can no longer be rebuilt.
   void Add(const Frame& frame, int index, bool seeking);
-  // A map was started with `camera` from frames kept here.
-  void MapStarted(const Camera& camera);
+  // `map` was started with `camera` from frames kept here.
+  void MapStarted(const Camera& camera, MapId map);
   // That map was dropped. Its frames may serve the next one.
   void MapDropped() { complete_ = false; }
   // The frames so far are useless: the newest map, if there is one, cannot be rebuilt any more.
@@ -35,6 +37,7 @@ class KeptFrames {
   bool CanRebuild() const { return keeps() && complete_ && !frames_.empty(); }
   const std::deque<Kept>& frames() const { return frames_; }  // oldest first, consecutive
   const Camera& started_with() const { return started_with_; }
+  MapId map() const { return map_; }  // the one that was started last
 
  private:
   int capacity_;
@@ -42,6 +45,7 @@ class KeptFrames {
   bool keeps_ = true;
   bool complete_ = false;
   Camera started_with_;
+  MapId map_;
 };
 
 }  // namespace alidade

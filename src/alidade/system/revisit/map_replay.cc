@@ -6,19 +6,26 @@
 namespace alidade {
 namespace {
 
-constexpr int kMost = 3;  // per run: each time the camera is nearer to the true one
+constexpr int kMost = 3;  // per run: each time what is known of the camera is nearer to the truth
 
 }  // namespace
 
-bool MapReplay::Possible() const { return parts_.kept.CanRebuild() && count_ < kMost; }
+bool MapReplay::Possible() const {
+  if (!parts_.kept.CanRebuild() || count_ >= kMost) return false;
+  const MapSnapshot map = parts_.workers.map().Snapshot();
+  const MapId newest = map.MapOf(parts_.tracker.reference());
+  if (!newest.valid() || newest != parts_.kept.map()) return false;
+  // An older map may have been merged into it.
+  const int first = map.Find(map.KeyFramesOf(newest).front())->frame->number;
+  return first >= parts_.kept.frames().front().frame->number;
+}
 
 void MapReplay::Run(const std::function<void()>& change, const std::function<void(Frame&)>& adapt) {
   ++count_;
   const MapId newest = parts_.workers.map().Snapshot().MapOf(parts_.tracker.reference());
   parts_.session.Apply(SessionEvent::kRebuildStarted);
-  if (!parts_.one_camera && newest.valid())
-    parts_.workers.Drop(newest);  // YoungMap drops those of one camera
-  parts_.workers.AwaitDrop();     // so that the dropped map is not adjusted to another camera
+  if (!parts_.one_camera) parts_.workers.Drop(newest);  // YoungMap drops those of one camera
+  parts_.workers.AwaitDrop();  // so that the dropped map is not adjusted to another camera
   change();
   try {
     const auto frames = parts_.kept.frames();  // a copy: an event during the replay may erase them

@@ -32,9 +32,10 @@ class MapReplay {
   MapReplay(const MapReplayParts& parts, Process process)
       : parts_(parts), process_(std::move(process)) {}
 
-  // The frames of the newest map are kept, and no map was made anew too often.
+  // The tracker is in the newest map, all of whose frames are kept, and fewer than three maps were
+  // made anew.
   bool Possible() const;
-  // Drops the newest map, calls `change`, and processes the kept frames, each changed by `adapt`.
+  // Drops that map, calls `change`, and processes the kept frames, each changed by `adapt`.
   // The images are gone, so keyframes among these frames have no dense depth. If memory runs out,
   // the map ends there and goes on with new frames.
   void Run(const std::function<void()>& change, const std::function<void(Frame&)>& adapt);

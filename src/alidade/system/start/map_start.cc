@@ -89,8 +89,8 @@ TrackResult MapStart::StartWithDepth(PresentFrame& now, const Camera& camera) {
   placed.frame = now.frame;
   placed.inliers = landmarks;
   parts_.session.Apply(SessionEvent::kDepthStart);
-  parts_.kept.MapStarted(camera);
   parts_.placer.InsertKeyFrame(now, placed, Anchor{}, camera);
+  parts_.kept.MapStarted(camera, parts_.workers.map().Snapshot().MapOf(now.keyframe));
   return Started(landmarks, placed.T_camera_world.Inverse());
 }
 
@@ -107,7 +107,7 @@ TrackResult MapStart::StartWithMotion(PresentFrame& now, const Camera& camera) {
   }
   parts_.tracker.KeyFrameInserted(now.frame->number);
   parts_.early.Begin(begun->map.MapOf(begun->id), now.frame->number);
-  parts_.kept.MapStarted(camera);
+  parts_.kept.MapStarted(camera, begun->map.MapOf(begun->id));
   parts_.placer.Place(now, begun->placed, begun->id, begun->map);
   now.keyframe = begun->id;
   return Started(begun->placed.inliers, begun->placed.T_camera_world.Inverse());
