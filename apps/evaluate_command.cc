@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include "alidade/base/log.h"
 #include "alidade/evaluation/ate.h"
 #include "alidade/evaluation/rpe.h"
 #include "alidade/io/files/file.h"
@@ -111,10 +112,18 @@ void PrintHead() {
               "max");
 }
 
+ChosenAlignment AlignmentOf(const EvaluateOptions& options) {
+  const std::string sensor = SensorOf(options.estimate);
+  if (sensor.empty() && !SensorOf(options.truth).empty()) {
+    LogWarning("are the two trajectories swapped? " + options.truth +
+               " is a result of `alidade run`, and the ground truth comes first");
+  }
+  return AlignmentNamed("--align", options.align, sensor);
+}
+
 int EvaluateAteCommand(const EvaluateOptions& options) {
   AteSettings settings;
-  const ChosenAlignment chosen =
-      AlignmentNamed("--align", options.align, SensorOf(options.estimate));
+  const ChosenAlignment chosen = AlignmentOf(options);
   settings.align = chosen.align;
   settings.association =
       Choice<Association>("--association", options.association,
@@ -152,8 +161,7 @@ void ParseDelta(const std::string& word, RpeSettings& settings) {
 
 int EvaluateRpeCommand(const EvaluateOptions& options) {
   RpeSettings settings;
-  const ChosenAlignment chosen =
-      AlignmentNamed("--align", options.align, SensorOf(options.estimate));
+  const ChosenAlignment chosen = AlignmentOf(options);
   settings.align = chosen.align;
   settings.pairs = Choice<PairSelection>(
       "--pairs", options.pairs,

@@ -70,7 +70,6 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
         width_(width),
         height_(height),
         out_(settings.out),
-        finish_seconds_(settings.finish_seconds),
         slam_(width, height, fov, settings.phone),
         left_(SessionClock::now()),
         thread_([this] { Work(); }) {}
@@ -215,7 +214,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   void Write() {
     if (out_.empty()) return;
     try {
-      slam_.Finish(finish_seconds_);
+      slam_.Finish();
       if (slam_.slam().Snapshot().keyframe_count() == 0) return;
       const std::filesystem::path folder = MakeSessionFolder(out_);
       AtomicWriteFile((folder / "map.alidade").string(), slam_.slam().SaveMap());
@@ -231,7 +230,6 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   const std::string name_;
   const int width_, height_;
   const std::string out_;
-  const double finish_seconds_;
   PhoneSlam slam_;  // used by the thread only
   std::mutex mutex_;
   std::condition_variable wake_;

@@ -16,10 +16,8 @@ namespace alidade {
 class PhoneSession;
 
 struct PhoneHostSettings {
-  int max_sessions = 4;       // each has a thread, and some 200 MB for a large map
-  double keep_seconds = 300;  // how long a session waits for a disconnected page
-  // Of the last adjustment of a map, seconds: that of a large one takes less.
-  double finish_seconds = 60;
+  int max_sessions = 4;        // each has a thread, and some 200 MB for a large map
+  double keep_seconds = 300;   // how long a session waits for a disconnected page
   int max_pixels = 4'000'000;  // of an image
   // Folder for the results: at its end each session writes to a new folder session-N in it. Empty:
   // no results.

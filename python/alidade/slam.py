@@ -117,8 +117,9 @@ class Slam:
 
     A forked process has no copy of the threads of schedule "threaded": there, all methods but close() raise UsageError.
 
-    All methods may be called from any thread. track(), load(), reset() and finish() are serialized; the others do not
-    wait for them, but for trajectory(), which waits for a running track(). Input images are copied only if their pixels are not contiguous within rows; none is kept.
+    All methods may be called from any thread. track(), load(), leave_out(), reset() and finish() take turns, and
+    trajectory() waits for a running track(); the others do not wait. Input images are copied only if their pixels are
+    not contiguous within rows; none is kept.
     """
 
     def __init__(self, camera: Union[Camera, PathLike], *, sensor: str = "mono", semidense: bool = False,

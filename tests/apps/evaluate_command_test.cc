@@ -13,6 +13,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 // A circle of radius 1, ten poses a second, drawn `scale` times as large.
 std::string Circle(int poses, double scale = 1) {
@@ -72,6 +73,14 @@ TEST_F(EvaluateCommand, CoverageKnowsTheRecordingBesideTheTruth) {
   // What `run` says of the part it was given goes before.
   folder_.Write("result/stats.json", R"({"span": [0, 2.9]})");
   EXPECT_EQ(Json({"ate", truth_, half})["coverage"], 1);
+}
+
+TEST_F(EvaluateCommand, AResultBeforeTheTruthIsTold) {
+  const std::string mono = folder_.Write("mono/trajectory.txt", Circle(60, 2));
+  folder_.Write("mono/stats.json", R"({"sensor": "mono"})");
+  EXPECT_THAT(RunAlidade({"evaluate", "ate", mono, truth_}).err, HasSubstr("swapped?"));
+  EXPECT_THAT(RunAlidade({"evaluate", "ate", truth_, mono}).err, Not(HasSubstr("swapped")));
+  EXPECT_THAT(RunAlidade({"evaluate", "ate", mono, mono}).err, Not(HasSubstr("swapped")));
 }
 
 // What `run` notes of its sensor says whether the estimate has a scale of its own.

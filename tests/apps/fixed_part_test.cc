@@ -27,20 +27,20 @@ class FixedPart : public testing::Test {
     return Rendered({"room", "--frames", std::to_string(kFrames), "--seed", "4", "--width", "320",
                      "--height", "240"});
   }
-  // A room, 320 × 240, with a gripper 0.3 m from the camera in every frame.
-  std::string WithGripper() {
+  // A room, 320 × 240, with a thing 0.3 m from the camera in every frame.
+  std::string With(const cv::Rect& part) {
     const std::string room = CopyOf(RoomWithout(), folder_);
-    const cv::Mat gripper = MakeTexture(kGripper.width, kGripper.height, 3);
+    const cv::Mat thing = MakeTexture(part.width, part.height, 3);
     for (const auto& entry : fs::directory_iterator(room + "/rgb")) {
       cv::Mat image = ReadImageColor(entry.path().string());
       cv::Mat color;
-      cv::cvtColor(gripper, color, cv::COLOR_GRAY2BGR);
-      color.copyTo(image(kGripper));
+      cv::cvtColor(thing, color, cv::COLOR_GRAY2BGR);
+      color.copyTo(image(part));
       WriteImage(entry.path().string(), image);
     }
     for (const auto& entry : fs::directory_iterator(room + "/depth")) {
       cv::Mat depth = ReadDepth(entry.path().string());
-      depth(kGripper).setTo(0.3 * 5000);
+      depth(part).setTo(0.3 * 5000);
       WriteImage(entry.path().string(), depth);
     }
     return room;
@@ -71,7 +71,7 @@ class FixedPart : public testing::Test {
 };
 
 TEST_F(FixedPart, IsFoundToldAndLeftOutOfAllPoses) {
-  const std::string room = WithGripper();
+  const std::string room = With(kGripper);
   for (const char* sensor : {"rgbd", "mono"}) {
     const double undisturbed = Undisturbed(sensor);
     const ProgramResult result = Run(room, {"--sensor", sensor});
@@ -84,8 +84,16 @@ TEST_F(FixedPart, IsFoundToldAndLeftOutOfAllPoses) {
   }
 }
 
+TEST_F(FixedPart, AHoodOverAQuarterOfTheImageIsFound) {
+  const std::string room = With({0, 180, 320, 60});
+  const ProgramResult result = Run(room, {"--sensor", "rgbd"});
+  EXPECT_THAT(result.err, HasSubstr("of the image moves with the camera"));
+  EXPECT_NEAR(LeftOut(), 0.25, 0.04);
+  EXPECT_LT(Ate(room).value("rmse", 1e9), 0.02);
+}
+
 TEST_F(FixedPart, IsNotLookedForWhenTheSettingIsOff) {
-  const std::string room = WithGripper();
+  const std::string room = With(kGripper);
   const ProgramResult result =
       Run(room, {"--sensor", "rgbd", "--set", "expert.fixed_parts=false", "--dynamics", "off"});
   EXPECT_THAT(result.err, Not(HasSubstr("moves with the camera")));
@@ -93,7 +101,7 @@ TEST_F(FixedPart, IsNotLookedForWhenTheSettingIsOff) {
 }
 
 TEST_F(FixedPart, AMaskNamesItFromTheFirstFrameOn) {
-  const std::string room = WithGripper();
+  const std::string room = With(kGripper);
   cv::Mat mask(480, 640, CV_8U, cv::Scalar(0));  // of the shape, not of the size, of the images
   mask(cv::Rect(2 * kGripper.x - 6, 2 * kGripper.y - 6, 2 * kGripper.width + 12,
                 2 * kGripper.height + 6))

@@ -48,7 +48,10 @@ bool FixedParts::See(const cv::Mat& image, const std::shared_ptr<const Frame>& f
   const double stayed = ShareThatStayed(corners);
   const bool nothing = stayed < 0;
   // The scene stands still, or the camera does while something passes: then staying says nothing.
-  const bool rests = stayed > settings_.most_stay || StillShare(then_, now) > settings_.most_still;
+  GlanceSettings glance;
+  glance.min_area = settings_.still_area;
+  const bool rests =
+      stayed > settings_.most_stay || StillShare(then_, now, glance) > settings_.most_still;
   const bool unknown = !nothing && !rests && !Weigh(corners, stayed, *frame);
   if (unknown) looked_ += settings_.interval;  // to look for the motion takes milliseconds
   if (!nothing && (rests || unknown)) {

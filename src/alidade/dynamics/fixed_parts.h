@@ -21,9 +21,12 @@ struct FixedPartsSettings {
   double prior = 0.01;       // P(fixed)
   double unproven = 0.09;    // P(fixed) up to which the motion of the camera need not be known
   double certain = 0.88;     // P(fixed) from which a pixel is left out
-  double most_stay = 0.45;   // share of the image that may stay while "everything else" moves
+  double most_stay = 0.55;   // share of the image that may stay while "everything else" moves
   double most_still = 0.25;  // StillShare() from which the camera may be the one that stands
-  double least = 0.01;       // share of the image; smaller parts do no harm
+  // GlanceSettings::min_area for it: what stays in place lies about in as much of the image as
+  // everything. A band over half of the image has 0.7 (root of the share of the height).
+  double still_area = 0.7;
+  double least = 0.01;  // share of the image; smaller parts do no harm
 };
 
 // Per pixel p of a thumbnail, the log-odds that it is fixed. Each time most of the image has moved

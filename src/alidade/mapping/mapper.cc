@@ -255,8 +255,11 @@ MapperReport Mapper::Process(KeyFrameId id, const std::atomic<bool>* stop) {
     const std::vector<NewLandmark> turned = MapTurn(map, id, made, camera_, settings_);
     made.insert(made.end(), turned.begin(), turned.end());
   }
-  if (const std::vector<uint8_t> appeared = Appeared(map.state(), id); !appeared.empty()) {
-    std::erase_if(made, [&](const NewLandmark& entry) { return appeared[entry.second.keypoint]; });
+  if (!made.empty()) {
+    const std::vector<uint8_t> appeared = Appeared(map.state(), id);
+    if (!appeared.empty())
+      std::erase_if(made,
+                    [&](const NewLandmark& entry) { return appeared[entry.second.keypoint]; });
   }
   report.triangulated = static_cast<int>(made.size());
   map = map_.Commit([&](MapCommit& commit) {

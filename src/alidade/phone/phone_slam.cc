@@ -130,8 +130,8 @@ void PhoneSlam::Detected(int number, std::vector<Detection> detections) {
   detector_->Bring({slam_->first_number() + number, std::move(detections)});
 }
 
-void PhoneSlam::Finish(double limit) {
-  slam_->Finish(limit);
+void PhoneSlam::Finish() {
+  slam_->Finish();
   if (encoder_) Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
 }
 

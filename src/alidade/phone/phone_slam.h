@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -53,8 +52,7 @@ class PhoneSlam {
   // Processes one image: 1 (gray) or 4 (red green blue alpha) bytes per pixel, rows without
   // padding. `time` in seconds. Throws Error as Slam::Track() does.
   PhoneFrame Track(double time, const uint8_t* pixels, int channels);
-  void Finish(
-      double limit = std::numeric_limits<double>::infinity());  // seconds, as Slam::Finish()
+  void Finish();
   // Passes the detections in an earlier image (PhoneFrame::number), in its pixels. They may be many
   // images late. Throws Error (input) for a class that is not in PhoneSettings::detector_classes.
   // Ignored without detector_classes.
