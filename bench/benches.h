@@ -10,6 +10,7 @@ void AddWildBench(CLI::App& app, Action& action);
 void AddDynamicBench(CLI::App& app, Action& action);
 void AddSemiDenseBench(CLI::App& app, Action& action);
 void AddPhoneBench(CLI::App& app, Action& action);
+void AddReliabilityBench(CLI::App& app, Action& action);
 void AddScaleBenches(CLI::App& app, Action& action);  // lasting, large-map
 
 }  // namespace alidade::bench

@@ -20,6 +20,7 @@ void Describe(CLI::App& app, alidade::Action& action) {
   AddDynamicBench(app, action);
   AddSemiDenseBench(app, action);
   AddPhoneBench(app, action);
+  AddReliabilityBench(app, action);
   AddScaleBenches(app, action);
   app.footer(  // after its benchmarks, which would show it as well
       "\nExamples:\n"

@@ -52,6 +52,8 @@ class TrackResult:
     """of these, the number found consistent with the pose"""
     found_share: float
     """inliers / expected; a third is usual"""
+    probability: float
+    """that the pose is right, and not of another place that looks alike; 0: not tracking"""
     warning: str
     """which part of the system has failed, repeated with every frame; empty: none"""
 

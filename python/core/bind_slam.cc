@@ -49,7 +49,8 @@ py::dict FieldsOf(const TrackedFrame& frame) {
       "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
       "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame), "cut"_a = result.cut,
       "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,
-      "found_share"_a = result.quality.found_share, "warning"_a = PathText(result.warning));
+      "found_share"_a = result.quality.found_share, "probability"_a = result.quality.probability,
+      "warning"_a = PathText(result.warning));
 }
 
 }  // namespace

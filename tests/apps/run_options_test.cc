@@ -77,14 +77,14 @@ TEST_F(RunOptions, SettingsOfTheStreamThatCannotBeAreRefused) {
 
 TEST_F(RunOptions, NamesOfTheLastVersionAreAcceptedWithAWarning) {
   const std::string file = results_.Write(
-      "old.yaml", "tracker:\n  torn_share: 0.3\n  keyframe_max_gap: 25\nloop.group: 8\n");
+      "old.yaml", "tracker:\n  unproven_frames: 3\n  keyframe_max_gap: 25\nloop.group: 8\n");
   const ProgramResult result = Run({"--last", "3", "--config", file, "--set", "early.most=9"});
   ASSERT_EQ(result.status, 0) << result.err;
   const nlohmann::json settings = Settings();
-  EXPECT_EQ(settings["expert.tracker.cut_inlier_share"], 0.3);
+  EXPECT_EQ(settings["expert.tracker.unconfirmed_frames"], 3);
   EXPECT_EQ(settings["tracker.max_keyframe_gap"], 25);
   EXPECT_EQ(settings["early.max_frames"], 9);
-  for (const char* part : {"tracker.torn_share is now called expert.tracker.cut_inlier_share",
+  for (const char* part : {"tracker.unproven_frames is now called expert.tracker.unconfirmed_frames",
                            "loop.group no longer exists", "early.most is now called"})
     EXPECT_THAT(result.err, HasSubstr(part));
 }
@@ -129,11 +129,11 @@ TEST_F(RunOptions, LocalizeMapsNoShape) {
 
 TEST_F(RunOptions, ConfigFileErrorsSayFileAndLine) {
   const std::string file =
-      results_.Write("settings.yaml", "tracker:\n  min_tracked: 20\n  min_relocalizd: 30\n");
+      results_.Write("settings.yaml", "tracker:\n  min_tracked: 20\n  min_keyframe_gp: 3\n");
   ExpectError(2, {"--config", file},
               file +
-                  ":3: unknown setting 'tracker.min_relocalizd'; did you mean "
-                  "'tracker.min_relocalized'");
+                  ":3: unknown setting 'tracker.min_keyframe_gp'; did you mean "
+                  "'tracker.min_keyframe_gap'");
   ExpectError(2, {"--config", results_.Write("b.yaml", "seed: 1\ntracker.min_tracked: [1, 2]\n")},
               "b.yaml:2: setting tracker.min_tracked needs one value");
   ExpectError(2, {"--config", results_.Write("c.yaml", "\nimage_width: wide\n")}, "c.yaml:2: ");

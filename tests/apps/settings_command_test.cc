@@ -66,8 +66,8 @@ TEST(SettingsCommand, AnUnknownNameIsAUsageErrorThatSuggestsOne) {
   const ProgramResult result = RunAlidade({"settings", "loop.min_fond"});
   EXPECT_EQ(result.status, 2);
   EXPECT_THAT(result.err, HasSubstr("did you mean 'loop.min_found'"));
-  EXPECT_THAT(RunAlidade({"settings", "tracker.torn_share"}).err,
-              HasSubstr("it is now called 'tracker.cut_inlier_share'"));
+  EXPECT_THAT(RunAlidade({"settings", "tracker.unproven_frames"}).err,
+              HasSubstr("it is now called 'tracker.unconfirmed_frames'"));
   EXPECT_THAT(RunAlidade({"settings", "places.rounds"}).err, HasSubstr("no longer exists"));
 }
 

@@ -54,9 +54,9 @@ TEST(SettingNames, EveryNumberWithARangeIsHeldToIt) {
 TEST(SettingNames, NamesOfTheLastVersionAreAcceptedWithAWarning) {
   WarningCatcher warnings;
   SlamSettings settings;
-  settings.Set("tracker.torn_share", "0.25");
-  EXPECT_EQ(settings.tracker.cut_inlier_share, 0.25);
-  EXPECT_THAT(warnings.text(), HasSubstr("now called expert.tracker.cut_inlier_share"));
+  settings.Set("tracker.unproven_frames", "3");
+  EXPECT_EQ(settings.tracker.unconfirmed_frames, 3);
+  EXPECT_THAT(warnings.text(), HasSubstr("now called expert.tracker.unconfirmed_frames"));
   settings.Set("loop.score_share", "0.3");
   EXPECT_EQ(settings.loop.score_share, 0.3);
   EXPECT_THAT(warnings.text(), HasSubstr("now called expert.loop.score_share"));

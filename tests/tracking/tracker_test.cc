@@ -156,7 +156,6 @@ TEST_P(TrackerTest, DoesNotRelocaliseByOnePosterAlone) {
     }
   });
   TrackerSettings settings;
-  settings.min_relocalized = 20;  // so that the number of matches suffices
   EXPECT_FALSE(
       Tracker(world_.camera, settings).Relocalise(view.frame, map, made_.keyframes).tracked);
   settings.min_relocalized_spread = 0;

@@ -32,6 +32,7 @@ TrackState PublicState(SessionState state) {
 
 PoseQuality QualityOf(const TrackEstimate& estimate) {
   PoseQuality quality;
+  quality.probability = Probability(estimate.placed.log_odds);
   quality.covariance = estimate.placed.covariance;
   quality.expected = static_cast<int>(estimate.sightings.size());
   quality.inliers = estimate.placed.inliers;

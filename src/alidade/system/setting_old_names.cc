@@ -42,12 +42,9 @@ constexpr struct {
     {"tracker.keyframe_min_gap", "tracker.min_keyframe_gap"},
     {"tracker.match_scale", "match_scale"},
     {"tracker.min_found_share", "tracker.min_inlier_share"},
-    {"tracker.min_relocalised", "tracker.min_relocalized"},
-    {"tracker.min_relocalised_share", "tracker.min_relocalized_share"},
     {"tracker.min_relocalised_spread", "tracker.min_relocalized_spread"},
     {"tracker.sigma_px", "noise.tracking_sigma"},
     {"tracker.sigma_right_px", "noise.disparity_sigma"},
-    {"tracker.torn_share", "tracker.cut_inlier_share"},
     {"tracker.unproven_frames", "tracker.unconfirmed_frames"},
     {"tracker.unproven_seconds", "tracker.max_motion_age"},
 };
@@ -102,7 +99,11 @@ constexpr std::string_view kDropped =
     "start.min_beyond_lens start.min_motion start.min_still_area start.min_still_peak "
     "start.references start.still_memory start.still_pixels start.turn_sigma "
     "time.agree_frames tracker.bad_frame_sigma tracker.good_agreement "
-    "tracker.local_ratio tracker.relocalise_radius tracker.time_jitter ";
+    "tracker.cut_inlier_share tracker.local_ratio "
+    "tracker.min_late_agreement tracker.min_relocalised tracker.min_relocalised_share "
+    "tracker.min_relocalized tracker.min_relocalized_share tracker.relocalise_radius "
+    "tracker.time_jitter "
+    "tracker.torn_share ";
 #endif
 
 }  // namespace

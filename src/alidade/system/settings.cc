@@ -10,6 +10,7 @@ std::vector<SettingsPart> SlamSettings::Parts() {
           PartOf(tracker),
           PartOf(tracker.extractor),
           PartOf(tracker.motion),
+          PartOf(tracker.evidence),
           PartOf(mapper),
           PartOf(loop),
           PartOf(loop.reach),

@@ -35,6 +35,10 @@ struct FrameInput {
 
 // How reliable a pose is.
 struct PoseQuality {
+  // That the pose is right, and not of another place that looks alike: from what was found of the
+  // landmarks expected in the image, and where, and from the poses before (PoseEvidence). Of a
+  // frame that starts a map: what is assumed of it (0.993).
+  double probability = 0;
   // Covariance of the pose error in the camera frame: T_world_camera * Exp(xi) is the true pose
   // with xi = (translation; rotation) ~ N(0, covariance); m², m rad, rad² (one camera: map units).
   // From the normal equations of the pose, scaled by the residuals, so it includes the noise of

@@ -18,6 +18,7 @@ constexpr float kHeadOnRadius = 0.625;
 struct Candidate {
   const Landmark* landmark;
   Sighting sighting;
+  ExpectedLandmark expected;
   bool visible = false;
 };
 
@@ -25,6 +26,8 @@ void LookFor(Candidate& candidate, const PlacedFrame& placed, const Camera& came
   const auto view = ViewLandmark(*candidate.landmark, camera, placed.T_camera_world);
   if (!view) return;
   candidate.visible = true;
+  candidate.expected = {candidate.landmark->id, static_cast<float>(view->pixel.x()),
+                        static_cast<float>(view->pixel.y()), view->level};
   Sought sought;
   sought.descriptor = &candidate.landmark->descriptor;
   sought.x = static_cast<float>(view->pixel.x());
@@ -51,7 +54,7 @@ LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, con
   std::vector<Candidate> candidates;
   candidates.reserve(local.landmarks.size());
   for (const Landmark* landmark : local.landmarks) {
-    if (!known.Contains(landmark->id)) candidates.push_back({landmark, {}, false});
+    if (!known.Contains(landmark->id)) candidates.push_back({landmark, {}, {}, false});
   }
   // Search in parallel; conflicts are resolved afterwards, in order.
   const float radius =
@@ -64,7 +67,7 @@ LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, con
 
   std::vector<int> holder(found.matches.size(), -1);  // index of the candidate, by keypoint
   for (int i = 0; i < count; ++i) {
-    if (candidates[i].visible) found.visible.push_back(candidates[i].landmark->id);
+    if (candidates[i].visible) found.visible.push_back(candidates[i].expected);
     const Sighting& s = candidates[i].sighting;
     if (s.keypoint < 0 || s.distance > settings.max_distance) continue;
     const bool rival = s.level == s.second_level;

@@ -10,10 +10,17 @@
 
 namespace alidade {
 
+// A landmark expected in the image, at the pose of the search.
+struct ExpectedLandmark {
+  LandmarkId landmark;
+  float u = 0, v = 0;  // undistorted pixels
+  int level = 0;       // of the pyramid
+};
+
 struct LocalMatches {
   std::vector<LandmarkId> matches;  // one per keypoint: existing and new matches
   // Landmarks expected to be visible and therefore searched, in order.
-  std::vector<LandmarkId> visible;
+  std::vector<ExpectedLandmark> visible;
 };
 
 // Projects the landmarks that are not matched yet and searches them near their predicted positions.

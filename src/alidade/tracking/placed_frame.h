@@ -26,6 +26,11 @@ struct PlacedFrame {
   int inliers = 0;                         // matches consistent with the pose
   std::vector<PassingMatch> passing;       // temporary points used for the pose
   Matrix6d covariance = Matrix6d::Zero();  // of the pose (see PoseOnlyResult); zero: unknown
+  // The guess was found by descriptors in the whole image, not where the motion leads.
+  bool by_looks = false;
+  // Log-odds that the pose is right (PoseEvidence). A frame that starts a map is right by
+  // definition: its successors decide.
+  double log_odds = 5;
 };
 
 }  // namespace alidade

@@ -21,9 +21,6 @@ std::span<const Setting> TrackerSettings::Table() {
       PublicSetting<&T::predict_seconds>(
           "tracker.predict_seconds", kNotNegative, "s",
           "How long the pose of a lost camera is still predicted from its motion."),
-      PublicSetting<&T::min_relocalized>(
-          "tracker.min_relocalized", AtLeast(10), "inliers",
-          "Landmarks that must fit before a lost camera counts as relocalized."),
       PublicSetting<&T::depth_range>("tracker.depth_range", kPositive, "m",
                                      "Readings of a depth camera beyond this are ignored."),
       PublicSetting<&T::keyframe_share_mono>("tracker.keyframe_share_mono", kPositive, "",
@@ -47,10 +44,6 @@ std::span<const Setting> TrackerSettings::Table() {
       ExpertSetting<&T::min_inlier_share>(
           "tracker.min_inlier_share", kShareBelowOne, "",
           "A frame is lost below this ratio of inliers to landmarks expected in view."),
-      ExpertSetting<&T::cut_inlier_share>(
-          "tracker.cut_inlier_share", kShareBelowOne, "",
-          "Below this share of the last frame's inliers, the pose must pass the test of a "
-          "relocalization: the recording may have been cut."),
       ExpertSetting<&T::unconfirmed_frames>(
           "tracker.unconfirmed_frames", kNotNegative, "frames",
           "Stereo and RGB-D: frames after a start or relocalization whose predicted motion is "
@@ -58,9 +51,6 @@ std::span<const Setting> TrackerSettings::Table() {
       ExpertSetting<&T::max_motion_age>(
           "tracker.max_motion_age", kNotNegative, "s",
           "After a longer time without a pose, the predicted motion is not trusted."),
-      ExpertSetting<&T::min_late_agreement>(
-          "tracker.min_late_agreement", kShareBelowOne, "",
-          "Mean fit of the matches after such a time: 1 without error, 0 at the 95 % gate."),
       ExpertSetting<&T::min_agreement>("tracker.min_agreement", kShareBelowOne, "",
                                        "Share of a frame's matches that must fit one pose."),
       ExpertSetting<&T::max_distance>(
@@ -78,13 +68,10 @@ std::span<const Setting> TrackerSettings::Table() {
                                             "The same for stereo and RGB-D."),
       ExpertSetting<&T::local_keyframes>("tracker.local_keyframes", kPositive, "keyframes",
                                          "Most keyframes in the local map."),
-      ExpertSetting<&T::min_relocalized_share>(
-          "tracker.min_relocalized_share", kZeroToOne, "",
-          "Share of the landmarks expected in view that a relocalization must find."),
       ExpertSetting<&T::min_relocalized_spread>(
           "tracker.min_relocalized_spread", {.min = 0, .max = 0.5, .open_max = true}, "",
-          "Root mean square distance of these landmarks from their center, as a share of the image "
-          "diagonal."),
+          "Root mean square distance of the landmarks of a relocalization from their center, as a "
+          "share of the image diagonal."),
   };
   return kRows;
 }
@@ -92,6 +79,7 @@ std::span<const Setting> TrackerSettings::Table() {
 void TrackerSettings::Check() const {
   extractor.Check();
   motion.Check();
+  CheckRanges(evidence);
   CheckRanges(*this);
   if (max_keyframe_gap <= min_keyframe_gap)
     ThrowUsage("setting tracker.max_keyframe_gap must exceed tracker.min_keyframe_gap");

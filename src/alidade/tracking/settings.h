@@ -7,6 +7,7 @@
 #include "alidade/features/extractor.h"
 #include "alidade/map/measurement.h"
 #include "alidade/tracking/motion.h"
+#include "alidade/tracking/pose_evidence.h"
 
 namespace ALIDADE_API alidade {
 
@@ -19,16 +20,13 @@ struct TrackerSettings {
   int min_predicted = 20;
   int min_after_prediction = 10;
   int min_tracked = 20;
-  // Correct poses have at least twice as many.
+  // Where a moving object hides nearly the whole image, what is found may be of the object.
   double min_inlier_share = 0.085;
-  double cut_inlier_share = 0.33;
   // With depth. After a start or a relocalization the speed is unknown, and near a wrong place many
   // far landmarks still agree.
   int unconfirmed_frames = 5;
   // Hands can turn a camera by 20 degrees in that time (decision 0023-late-frames).
   double max_motion_age = 0.2;
-  // Correct poses have 0.4 to 0.8, wrong ones 0.15 to 0.3.
-  double min_late_agreement = 0.3;
   double min_agreement = 0.4;
   int max_distance = 100;
   // Highest ratio of best to second-best descriptor distance on the same level.
@@ -42,8 +40,7 @@ struct TrackerSettings {
   float local_radius_depth = 12;
   // Pixels on level 0, search radius around a place found by descriptors alone.
   float relocalize_radius = 10;
-  int min_relocalized = 40;
-  double min_relocalized_share = 0.15;
+  // Matches in a small region (one poster) do not tell translation from rotation.
   double min_relocalized_spread = 0.1;
   int local_keyframes = 40;
   // The range of structured light and time of flight in rooms. Stereo pairs have no such limit:
@@ -59,6 +56,7 @@ struct TrackerSettings {
   int min_keyframe_gap = 1;
   int max_keyframe_gap = 30;
   MotionSettings motion;
+  PoseEvidenceSettings evidence;
   // Hands turn a camera back within a second.
   double predict_seconds = 0.5;
   // Of the random samples of a relocalization; the system's.

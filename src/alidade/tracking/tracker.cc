@@ -112,6 +112,12 @@ Tracker::InverseDepthsSeen Tracker::InverseDepths(const PlacedFrame& placed,
 TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                                   std::span<const KeyFrameId> candidates,
                                   const std::function<bool(const TrackEstimate&)>& may_be) {
+  return FindIn(frame, map, candidates, LogOdds(settings_.evidence.found_again), may_be);
+}
+
+TrackEstimate Tracker::FindIn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                              std::span<const KeyFrameId> candidates, double prior,
+                              const std::function<bool(const TrackEstimate&)>& may_be) {
   TrackEstimate lost;
   lost.placed.frame = frame;
   for (KeyFrameId id : candidates) {
@@ -120,37 +126,28 @@ TrackEstimate Tracker::Relocalise(const std::shared_ptr<const Frame>& frame, con
     MatchKeyFrame(guess, map, id);
     if (guess.inliers < Scaled(settings_.min_after_prediction)) continue;
     FindAround(guess, map, kRelocaliseKeyFrames);
-    TrackEstimate estimate = Estimate(std::move(guess), map);
-    estimate.tracked = estimate.tracked && IsCertain(estimate) && (!may_be || may_be(estimate));
+    TrackEstimate estimate = Compare(std::move(guess), map);
+    Judge(estimate, prior, map);
+    estimate.tracked = estimate.tracked &&
+                       Spread(estimate.placed) >= settings_.min_relocalized_spread &&
+                       (!may_be || may_be(estimate));
     if (estimate.tracked) return estimate;
     passing_.Clear();  // of a rejected pose
   }
   return lost;
 }
 
-TrackEstimate Tracker::GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map) {
-  TrackEstimate estimate = Estimate(Predict(frame, map), map);
-  estimate.tracked = estimate.tracked && IsCertain(estimate);
-  if (!estimate.tracked) passing_.Clear();
-  return estimate;
-}
-
 TrackEstimate Tracker::PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                                   KeyFrameId near) {
   const int most = most_inliers_;
-  TrackEstimate estimate = Relocalise(frame, map, {&near, 1});
+  const KeyFrame* keyframe = map.Find(near);
+  if (!keyframe) return {};
+  const double seconds = std::abs(frame->time - keyframe->frame->time);
+  const double prior =
+      AfterSeconds(LogOdds(settings_.evidence.min_probability), seconds, settings_.evidence);
+  TrackEstimate estimate = FindIn(frame, map, {&near, 1}, prior, {});
   most_inliers_ = most;
   return estimate;
-}
-
-// A place that merely looks similar shares some landmarks but leaves most of the expected ones
-// unmatched. Matches in a small region (one poster) do not distinguish translation from rotation,
-// hence the minimum spread.
-bool Tracker::IsCertain(const TrackEstimate& estimate) const {
-  const auto expected = static_cast<double>(estimate.sightings.size());
-  return estimate.placed.inliers >= Scaled(settings_.min_relocalized) &&
-         estimate.placed.inliers >= settings_.min_relocalized_share * expected &&
-         Spread(estimate.placed) >= settings_.min_relocalized_spread;
 }
 
 // Root mean square distance of the matched keypoints from their mean, relative to the image
@@ -167,6 +164,40 @@ double Tracker::Spread(const PlacedFrame& placed) const {
   if (count == 0) return 0;
   const double variance = squares / count - (sum / count).squaredNorm();
   return std::sqrt(std::max(0.0, variance)) / std::hypot(camera_.width, camera_.height);
+}
+
+double Tracker::EvidenceOf(const PlacedFrame& placed, const LocalMatches& found,
+                           const MapSnapshot& map) const {
+  // σ: a frame whose noise is bad_frame_sigma times as large has matches up to this error.
+  constexpr double kWidestError = 7.3;
+  const double window = has_depth_ ? std::min<double>(settings_.local_radius_depth, kWidestError)
+                                   : settings_.local_radius;
+  PoseEvidence evidence(*placed.frame, camera_.width, camera_.height, settings_.noise, window,
+                        has_depth_, settings_.evidence);
+  IdSet<LandmarkId> counted;
+  for (size_t k = 0; k < found.matches.size(); ++k) {
+    const LandmarkId id = found.matches[k];
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    counted.Enter(id);
+    const Keypoint& keypoint = placed.frame->keypoints[k];
+    if (!placed.matches[k].valid()) {
+      evidence.Missed(keypoint.x, keypoint.y, keypoint.level);
+      continue;
+    }
+    const Measurement m = Measure(keypoint, settings_.noise);
+    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
+    const double chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
+    const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());  // NaN: unknown
+    const bool known = has_depth_ && std::isfinite(disparity);
+    evidence.Found(keypoint.x, keypoint.y, keypoint.level, chi2,
+                   known ? disparity * disparity * m.inv_sigma2_right : -1);
+  }
+  for (const ExpectedLandmark& expected : found.visible) {
+    if (!counted.Contains(expected.landmark))
+      evidence.Missed(expected.u, expected.v, expected.level);
+  }
+  return evidence.LogLikelihoodRatio();
 }
 
 double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
@@ -214,6 +245,32 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
 }
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
+  return Continue(std::move(guess), map);
+}
+
+TrackEstimate Tracker::GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map) {
+  TrackEstimate estimate = Continue(Predict(frame, map), map);
+  estimate.tracked =
+      estimate.tracked && Spread(estimate.placed) >= settings_.min_relocalized_spread;
+  return estimate;
+}
+
+TrackEstimate Tracker::Continue(PlacedFrame guess, const MapSnapshot& map) {
+  TrackEstimate estimate = Compare(std::move(guess), map);
+  const double time = estimate.placed.frame->time;
+  // Where the motion leads, the camera is probably; what looks alike elsewhere must be shown to be.
+  const double prior =
+      estimate.placed.by_looks
+          ? LogOdds(settings_.evidence.found_again)
+          : AfterSeconds(belief_.log_odds, time - belief_.time, settings_.evidence);
+  Judge(estimate, prior, map);
+  // What was not found is evidence that the camera is elsewhere.
+  if (!estimate.tracked)
+    belief_ = {std::max(estimate.placed.log_odds, LogOdds(settings_.evidence.found_again)), time};
+  return estimate;
+}
+
+TrackEstimate Tracker::Compare(PlacedFrame guess, const MapSnapshot& map) {
   TrackEstimate estimate;
   // Drop matches of the guess whose keypoints were classified as moving since.
   for (size_t k = 0; k < guess.matches.size(); ++k) {
@@ -240,31 +297,29 @@ TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
     counted.Enter(found.matches[k]);
     estimate.sightings.push_back({found.matches[k], guess.matches[k].valid()});
   }
-  for (LandmarkId id : found.visible) {
-    if (!counted.Contains(id)) estimate.sightings.push_back({id, false});
+  for (const ExpectedLandmark& expected : found.visible) {
+    if (!counted.Contains(expected.landmark))
+      estimate.sightings.push_back({expected.landmark, false});
   }
   estimate.reference = local.reference;
-  // A wrong pose matches only few of the landmarks that it predicts to be visible.
-  estimate.tracked =
-      guess.inliers >= Scaled(settings_.min_tracked) &&
-      guess.inliers >= settings_.min_inlier_share * static_cast<double>(estimate.sightings.size());
-  // After an abrupt change of view (a cut), chance matches can be as many as in the hardest valid
-  // frame: apply the relocalization test.
-  const bool torn = motion_.known() && guess.inliers < settings_.cut_inlier_share * last_.inliers;
+  estimate.evidence = EvidenceOf(guess, found, map);
   estimate.placed = std::move(guess);
-  if (torn) estimate.tracked = estimate.tracked && IsCertain(estimate);
-  // Wide search windows find matches for most landmarks at any nearby pose; at a wrong pose they
-  // fit badly.
-  if (estimate.tracked && IsLate(*estimate.placed.frame)) {
-    estimate.tracked =
-        Agreement(estimate.placed, map) >= settings_.min_late_agreement * estimate.placed.inliers;
-  }
-  if (estimate.tracked) {
-    most_inliers_ = std::max(most_inliers_, estimate.placed.inliers);
-    estimate.wants_keyframe = WantsKeyFrame(estimate.placed, share);
-    if (has_depth_) passing_.Update(estimate.placed, map.corrections());
-  }
+  estimate.agreement = share;
   return estimate;
+}
+
+void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& map) {
+  PlacedFrame& placed = estimate.placed;
+  placed.log_odds = prior + estimate.evidence;
+  const double expected = static_cast<double>(estimate.sightings.size());
+  estimate.tracked = placed.inliers >= Scaled(settings_.min_tracked) &&
+                     placed.inliers >= settings_.min_inlier_share * expected &&
+                     placed.log_odds >= LogOdds(settings_.evidence.min_probability);
+  if (!estimate.tracked) return passing_.Clear();
+  most_inliers_ = std::max(most_inliers_, placed.inliers);
+  estimate.wants_keyframe = placed.log_odds >= LogOdds(settings_.evidence.min_keyframe) &&
+                            WantsKeyFrame(placed, estimate.agreement);
+  if (has_depth_) passing_.Update(placed, map.corrections());
 }
 
 bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
@@ -300,6 +355,7 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   }
   last_ = std::move(copy);
   last_anchor_ = anchor;
+  belief_ = {placed.log_odds, placed.frame->time};
 }
 
 void Tracker::Reanchor(const MapSnapshot& map) {

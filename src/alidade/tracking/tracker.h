@@ -14,6 +14,7 @@
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
 #include "alidade/tracking/local_map.h"
+#include "alidade/tracking/local_search.h"
 #include "alidade/tracking/motion.h"
 #include "alidade/tracking/passing_points.h"
 #include "alidade/tracking/placed_frame.h"
@@ -33,6 +34,8 @@ struct TrackEstimate {
   PlacedFrame placed;
   KeyFrameId reference;                  // keyframe that shares the most landmarks with the frame
   std::vector<SightingCount> sightings;  // landmarks expected to be visible
+  double agreement = 0;                  // share of the matches that fit the pose
+  double evidence = 0;  // log-likelihood ratio of a right to a wrong pose (PoseEvidence)
   bool wants_keyframe = false;
 };
 
@@ -62,8 +65,8 @@ class Tracker {
   // Pose from the local map, starting at the guess.
   TrackEstimate Estimate(PlacedFrame guess, const MapSnapshot& map);
   // Pose without a previous frame (Mur-Artal et al. 2015, §V-C): descriptor matches with each
-  // candidate keyframe, RANSAC, then the surrounding landmarks. `tracked` only if certain and
-  // accepted by `may_be` (empty: always).
+  // candidate keyframe, RANSAC, then the surrounding landmarks. `tracked` only if the pose is right
+  // with settings.evidence.min_probability and accepted by `may_be` (empty: always).
   TrackEstimate Relocalise(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            std::span<const KeyFrameId> candidates,
                            const std::function<bool(const TrackEstimate&)>& may_be = {});
@@ -73,8 +76,8 @@ class Tracker {
   TrackEstimate PlaceAgain(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                            KeyFrameId near);
 
-  // Pose of a frame after frames without a pose, near PredictedPose(). `tracked` only if certain,
-  // as in Relocalise().
+  // Pose of a frame after frames without a pose, near PredictedPose(). `tracked` only if it is
+  // right with settings.evidence.min_probability.
   TrackEstimate GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map);
 
   // Sets the last frame: its pose in `map` and its matches (perhaps with the landmarks of a new
@@ -118,7 +121,18 @@ class Tracker {
   void MatchKeyFrame(PlacedFrame& guess, const MapSnapshot& map, KeyFrameId id) const;
   // Returns the share of matches consistent with the optimized pose; the others are removed.
   double Optimise(PlacedFrame& placed, const MapSnapshot& map) const;
-  bool IsCertain(const TrackEstimate& estimate) const;
+  // Relocalise() with another probability (log-odds) of the candidates.
+  TrackEstimate FindIn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
+                       std::span<const KeyFrameId> candidates, double prior,
+                       const std::function<bool(const TrackEstimate&)>& may_be);
+  double EvidenceOf(const PlacedFrame& placed, const LocalMatches& found,
+                    const MapSnapshot& map) const;
+  // Estimate() or GoOn(): the frame follows the last one.
+  TrackEstimate Continue(PlacedFrame guess, const MapSnapshot& map);
+  // Pose and evidence from the local map, not judged yet.
+  TrackEstimate Compare(PlacedFrame guess, const MapSnapshot& map);
+  // Sets `tracked` and the pose's log-odds, which are `prior` and the evidence together.
+  void Judge(TrackEstimate& estimate, double prior, const MapSnapshot& map);
   double Spread(const PlacedFrame& placed) const;
   bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
@@ -133,7 +147,12 @@ class Tracker {
   PlacedFrame last_;
   Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
   Motion motion_;       // up to the last frame, in the anchor's scale
-  int unproven_ = 0;    // remaining frames in which the motion model is not trusted (settings)
+  // That the camera is where the motion since the last frame leads.
+  struct {
+    double log_odds = 0;
+    double time = 0;
+  } belief_;
+  int unproven_ = 0;  // remaining frames in which the motion model is not trusted (settings)
   int last_keyframe_number_ = 0;
   int most_inliers_ = 0;  // largest number of inliers since the last keyframe
 };

@@ -25,6 +25,7 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
 PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
   PlacedFrame other;
   other.frame = guess.frame;
+  other.by_looks = true;
   MatchKeyFrame(other, map, reference());
   const int enough = Scaled(settings_.min_after_prediction);
   PlacedFrame guess_around = guess, other_around = other;
