@@ -84,8 +84,9 @@ TEST_F(RunOptions, NamesOfTheLastVersionAreAcceptedWithAWarning) {
   EXPECT_EQ(settings["expert.tracker.unconfirmed_frames"], 3);
   EXPECT_EQ(settings["tracker.max_keyframe_gap"], 25);
   EXPECT_EQ(settings["early.max_frames"], 9);
-  for (const char* part : {"tracker.unproven_frames is now called expert.tracker.unconfirmed_frames",
-                           "loop.group no longer exists", "early.most is now called"})
+  for (const char* part :
+       {"tracker.unproven_frames is now called expert.tracker.unconfirmed_frames",
+        "loop.group no longer exists", "early.most is now called"})
     EXPECT_THAT(result.err, HasSubstr(part));
 }
 
