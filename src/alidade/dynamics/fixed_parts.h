@@ -26,7 +26,7 @@ struct FixedPartsSettings {
   // GlanceSettings::min_area for it: what stays in place lies about in as much of the image as
   // everything. A band over half of the image has 0.7 (root of the share of the height).
   double still_area = 0.7;
-  double least = 0.01;  // share of the image; smaller parts do no harm
+  double least = 0.02;  // share of the image; smaller parts do no harm
 };
 
 // Per pixel p of a thumbnail, the log-odds that it is fixed. Each time most of the image has moved
