@@ -18,6 +18,10 @@ struct PassingMatch {
   Eigen::Vector3d p_world = Eigen::Vector3d::Zero();
 };
 
+// Of a frame that starts a map, whose pose is right by definition; whether the map is, its
+// successors decide.
+inline constexpr double kStartLogOdds = 5;
+
 // A frame with its pose in the map.
 struct PlacedFrame {
   std::shared_ptr<const Frame> frame;
@@ -26,11 +30,7 @@ struct PlacedFrame {
   int inliers = 0;                         // matches consistent with the pose
   std::vector<PassingMatch> passing;       // temporary points used for the pose
   Matrix6d covariance = Matrix6d::Zero();  // of the pose (see PoseOnlyResult); zero: unknown
-  // The guess was found by descriptors in the whole image, not where the motion leads.
-  bool by_looks = false;
-  // Log-odds that the pose is right (PoseEvidence). A frame that starts a map is right by
-  // definition: its successors decide.
-  double log_odds = 5;
+  double log_odds = kStartLogOdds;         // that the pose is right (PoseEvidence)
 };
 
 }  // namespace alidade

@@ -13,7 +13,7 @@ namespace ALIDADE_API alidade {
 
 struct Setting;
 
-// Shares, rates and probabilities of the world, none fitted to a recording.
+// Shares, rates and probabilities of the world.
 struct PoseEvidenceSettings {
   double occluded =
       0.2;  // P(a part of the image, a twelfth, does not show the map at a right pose)
@@ -21,7 +21,6 @@ struct PoseEvidenceSettings {
   double jump_rate = 0.2;     // cuts of the recording and the like per second
   double found_again = 0.05;  // P(right) of a candidate of place recognition before it is compared
   double min_probability = 0.99;  // a frame whose pose is less probably right has none
-  double min_keyframe = 0.99;     // and becomes no keyframe
 
   static std::span<const Setting> Table();
 };

@@ -166,38 +166,36 @@ double Tracker::Spread(const PlacedFrame& placed) const {
   return std::sqrt(std::max(0.0, variance)) / std::hypot(camera_.width, camera_.height);
 }
 
-double Tracker::EvidenceOf(const PlacedFrame& placed, const LocalMatches& found,
-                           const MapSnapshot& map) const {
-  // σ: a frame whose noise is bad_frame_sigma times as large has matches up to this error.
-  constexpr double kWidestError = 7.3;
-  const double window = has_depth_ ? std::min<double>(settings_.local_radius_depth, kWidestError)
-                                   : settings_.local_radius;
-  PoseEvidence evidence(*placed.frame, camera_.width, camera_.height, settings_.noise, window,
-                        has_depth_, settings_.evidence);
+void Tracker::CountExpected(const LocalMatches& found, const MapSnapshot& map,
+                            TrackEstimate& estimate) const {
+  const PlacedFrame& placed = estimate.placed;
+  // The largest error of a match, σ: the search radius, or the gate of a bad frame.
+  constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
+  const double radius = has_depth_ ? settings_.local_radius_depth : settings_.local_radius;
+  PoseEvidence evidence(*placed.frame, camera_.width, camera_.height, settings_.noise,
+                        std::min(radius, kGate * settings_.bad_frame_sigma), has_depth_,
+                        settings_.evidence);
   IdSet<LandmarkId> counted;
   for (size_t k = 0; k < found.matches.size(); ++k) {
     const LandmarkId id = found.matches[k];
-    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (!landmark) continue;
+    if (!id.valid()) continue;
     counted.Enter(id);
+    estimate.sightings.push_back({id, placed.matches[k].valid()});
     const Keypoint& keypoint = placed.frame->keypoints[k];
-    if (!placed.matches[k].valid()) {
+    const Landmark* landmark = placed.matches[k].valid() ? map.Find(id) : nullptr;
+    if (landmark) {
+      const MatchError error = ErrorOf(placed, k, *landmark);
+      evidence.Found(keypoint.x, keypoint.y, keypoint.level, error.chi2, error.chi2_disparity);
+    } else {
       evidence.Missed(keypoint.x, keypoint.y, keypoint.level);
-      continue;
     }
-    const Measurement m = Measure(keypoint, settings_.noise);
-    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
-    const double chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
-    const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());  // NaN: unknown
-    const bool known = has_depth_ && std::isfinite(disparity);
-    evidence.Found(keypoint.x, keypoint.y, keypoint.level, chi2,
-                   known ? disparity * disparity * m.inv_sigma2_right : -1);
   }
   for (const ExpectedLandmark& expected : found.visible) {
-    if (!counted.Contains(expected.landmark))
-      evidence.Missed(expected.u, expected.v, expected.level);
+    if (counted.Contains(expected.landmark)) continue;
+    estimate.sightings.push_back({expected.landmark, false});
+    evidence.Missed(expected.u, expected.v, expected.level);
   }
-  return evidence.LogLikelihoodRatio();
+  estimate.evidence = evidence.LogLikelihoodRatio();
 }
 
 double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
@@ -245,28 +243,20 @@ double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
 }
 
 TrackEstimate Tracker::Estimate(PlacedFrame guess, const MapSnapshot& map) {
-  return Continue(std::move(guess), map);
-}
-
-TrackEstimate Tracker::GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map) {
-  TrackEstimate estimate = Continue(Predict(frame, map), map);
-  estimate.tracked =
-      estimate.tracked && Spread(estimate.placed) >= settings_.min_relocalized_spread;
-  return estimate;
-}
-
-TrackEstimate Tracker::Continue(PlacedFrame guess, const MapSnapshot& map) {
   TrackEstimate estimate = Compare(std::move(guess), map);
   const double time = estimate.placed.frame->time;
-  // Where the motion leads, the camera is probably; what looks alike elsewhere must be shown to be.
-  const double prior =
-      estimate.placed.by_looks
-          ? LogOdds(settings_.evidence.found_again)
-          : AfterSeconds(belief_.log_odds, time - belief_.time, settings_.evidence);
-  Judge(estimate, prior, map);
+  Judge(estimate, AfterSeconds(belief_.log_odds, time - belief_.time, settings_.evidence), map);
   // What was not found is evidence that the camera is elsewhere.
   if (!estimate.tracked)
     belief_ = {std::max(estimate.placed.log_odds, LogOdds(settings_.evidence.found_again)), time};
+  return estimate;
+}
+
+TrackEstimate Tracker::GoOn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map) {
+  TrackEstimate estimate = Estimate(Predict(frame, map), map);
+  estimate.tracked =
+      estimate.tracked && Spread(estimate.placed) >= settings_.min_relocalized_spread;
+  if (!estimate.tracked) passing_.Clear();  // of a rejected pose
   return estimate;
 }
 
@@ -291,19 +281,9 @@ TrackEstimate Tracker::Compare(PlacedFrame guess, const MapSnapshot& map) {
     guess.passing = passing_.Find(guess, settings_.local_radius_depth, settings_.max_distance);
   const double share = Optimise(guess, map);
 
-  IdSet<LandmarkId> counted;
-  for (size_t k = 0; k < found.matches.size(); ++k) {
-    if (!found.matches[k].valid()) continue;
-    counted.Enter(found.matches[k]);
-    estimate.sightings.push_back({found.matches[k], guess.matches[k].valid()});
-  }
-  for (const ExpectedLandmark& expected : found.visible) {
-    if (!counted.Contains(expected.landmark))
-      estimate.sightings.push_back({expected.landmark, false});
-  }
   estimate.reference = local.reference;
-  estimate.evidence = EvidenceOf(guess, found, map);
   estimate.placed = std::move(guess);
+  CountExpected(found, map, estimate);
   estimate.agreement = share;
   return estimate;
 }
@@ -317,8 +297,7 @@ void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& ma
                      placed.log_odds >= LogOdds(settings_.evidence.min_probability);
   if (!estimate.tracked) return passing_.Clear();
   most_inliers_ = std::max(most_inliers_, placed.inliers);
-  estimate.wants_keyframe = placed.log_odds >= LogOdds(settings_.evidence.min_keyframe) &&
-                            WantsKeyFrame(placed, estimate.agreement);
+  estimate.wants_keyframe = WantsKeyFrame(placed, estimate.agreement);
   if (has_depth_) passing_.Update(placed, map.corrections());
 }
 

@@ -125,10 +125,14 @@ class Tracker {
   TrackEstimate FindIn(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map,
                        std::span<const KeyFrameId> candidates, double prior,
                        const std::function<bool(const TrackEstimate&)>& may_be);
-  double EvidenceOf(const PlacedFrame& placed, const LocalMatches& found,
-                    const MapSnapshot& map) const;
-  // Estimate() or GoOn(): the frame follows the last one.
-  TrackEstimate Continue(PlacedFrame guess, const MapSnapshot& map);
+  struct MatchError {
+    double chi2 = 0;             // of the pixel, with the nominal noise
+    double chi2_disparity = -1;  // < 0: unknown
+  };
+  MatchError ErrorOf(const PlacedFrame& placed, size_t keypoint, const Landmark& landmark) const;
+  // Sets the sightings of the placed frame, and the evidence in them.
+  void CountExpected(const LocalMatches& found, const MapSnapshot& map,
+                     TrackEstimate& estimate) const;
   // Pose and evidence from the local map, not judged yet.
   TrackEstimate Compare(PlacedFrame guess, const MapSnapshot& map);
   // Sets `tracked` and the pose's log-odds, which are `prior` and the evidence together.

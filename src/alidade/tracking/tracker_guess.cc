@@ -25,7 +25,6 @@ PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapsh
 PlacedFrame Tracker::BetterByLooks(PlacedFrame guess, const MapSnapshot& map) {
   PlacedFrame other;
   other.frame = guess.frame;
-  other.by_looks = true;
   MatchKeyFrame(other, map, reference());
   const int enough = Scaled(settings_.min_after_prediction);
   PlacedFrame guess_around = guess, other_around = other;
@@ -47,6 +46,19 @@ void Tracker::FindAround(PlacedFrame& placed, const MapSnapshot& map, int keyfra
   Optimise(placed, map);
 }
 
+Tracker::MatchError Tracker::ErrorOf(const PlacedFrame& placed, size_t keypoint,
+                                     const Landmark& landmark) const {
+  const Measurement m = Measure(placed.frame->keypoints[keypoint], settings_.noise);
+  const Eigen::Vector3d p = placed.T_camera_world * landmark.p_world;
+  MatchError error;
+  error.chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
+  if (has_depth_ && std::isfinite(m.pixel.z())) {
+    const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());
+    error.chi2_disparity = disparity * disparity * m.inv_sigma2_right;
+  }
+  return error;
+}
+
 // Sum over matches of 1 (no error) to 0 (at the 95 % gate of chi²), with the nominal noise, even if
 // the pose was found with a wider gate.
 double Tracker::Agreement(const PlacedFrame& placed, const MapSnapshot& map) const {
@@ -54,16 +66,10 @@ double Tracker::Agreement(const PlacedFrame& placed, const MapSnapshot& map) con
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
     if (!landmark) continue;
-    const Measurement m = Measure(placed.frame->keypoints[i], settings_.noise);
-    const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
-    double chi2 = (camera_.Project(p) - m.pixel.head<2>()).squaredNorm() * m.inv_sigma2;
-    double gate = kChiSquared2;
-    if (has_depth_ && std::isfinite(m.pixel.z())) {
-      const double disparity = camera_.bf() / p.z() - (m.pixel.x() - m.pixel.z());
-      chi2 += disparity * disparity * m.inv_sigma2_right;
-      gate = kChiSquared3;
-    }
-    sum += std::max(0.0, 1 - chi2 / gate);
+    const MatchError error = ErrorOf(placed, i, *landmark);
+    const bool deep = error.chi2_disparity >= 0;
+    const double chi2 = error.chi2 + (deep ? error.chi2_disparity : 0);
+    sum += std::max(0.0, 1 - chi2 / (deep ? kChiSquared3 : kChiSquared2));
   }
   return sum;
 }

@@ -26,7 +26,7 @@ TrackResult Started(int matches, const Se3& T_world_camera) {
   result.T_world_camera = T_world_camera;
   result.quality.expected = result.quality.inliers = matches;
   result.quality.found_share = 1;
-  result.quality.probability = Probability(PlacedFrame{}.log_odds);
+  result.quality.probability = Probability(kStartLogOdds);
   return result;
 }
 
