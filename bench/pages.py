@@ -66,6 +66,11 @@ TABLES = {
     "semidense_cost": Table({"dataset": "Recording"},
                             {"without": ("Without, ms", ".1f"), "with": ("With, ms", ".1f"), "ratio": ("Ratio", ".2f"),
                              "behind": ("Behind", ".0f"), "cpu": ("Added CPU per keyframe, ms", ".0f")}),
+    "probability": Table({"sensor": "Camera", "case": "Probability"},
+                         {"predicted": ("Predicted", ".3f"), "right": ("Right", ".3f"), "poses": ("Poses", ".0f")}),
+    "covariance": Table({"sensor": "Camera", "case": "Age of the map"},
+                        {"normalized_rms": ("RMS", ".2f"), "normalized_median": ("Median", ".2f"),
+                         "pairs": ("Pairs", ".0f")}),
     "wild": Table({"case": "Case"}, WILD, verdict=True),
     "kitchen_people": Table({"case": "People, camera"}, {"ate": ("ATE, cm", ".2f")}, across="variant"),
     "ablation": Table({"sensor": "Camera"}, {"ate": ("ATE, cm", ""), "tracked": ("frames", "")}, across="variant"),
@@ -85,7 +90,8 @@ TABLES = {
                             provenance=False),
 }
 # Tables that show rows stored under other tables' names.
-ROWS_OF = {"depth_room": ["depth"], "depth_desk": ["depth"], "depth_wall": ["depth"], "depth_kitchen": ["depth"],
+ROWS_OF = {"probability": ["reliability"], "covariance": ["reliability"],
+           "depth_room": ["depth"], "depth_desk": ["depth"], "depth_wall": ["depth"], "depth_kitchen": ["depth"],
            "readme": ["recordings", "published_mono"]}
 
 
@@ -148,7 +154,7 @@ def provenance_of(rows):
 def render(name, rows):
     """A table of TABLES as Markdown."""
     table = TABLES[name]
-    rows = [row for row in rows if row["table"] in ROWS_OF.get(name, [name])
+    rows = [row for row in rows if row["table"] in ROWS_OF.get(name, [name]) and row["metric"] in table.metrics
             and row["dataset"].startswith(table.datasets)
             and all(row.get(key, value) == value for key, value in table.only.items())]
     first = {}                                   # lines of one data set stand together

@@ -9,6 +9,7 @@
 
 #include "alidade/slam.h"
 #include "alidade/synth/recording.h"
+#include "bench/reliability/covariance.h"
 
 namespace alidade::bench {
 namespace {
@@ -41,6 +42,26 @@ SynthRecording Place(int recording, int place, int seed, int width) {
   settings.seed = static_cast<uint64_t>(seed);
   settings.width = width;
   settings.height = width * 3 / 4;
+  // Six conditions in turns.
+  switch ((recording + seed) % 6) {
+    case 1:
+      settings.blur = SynthSettings::kUsualBlur;
+      break;
+    case 2:
+      settings.light = 0.2;
+      break;
+    case 3:
+      settings.actors = 3;
+      break;
+    case 4:
+      settings.speed = 2;
+      break;
+    case 5:
+      settings.noise = 10;
+      break;
+    default:
+      break;
+  }
   return SynthRecording(settings);
 }
 
@@ -93,6 +114,7 @@ void Run(int recording, int seed, int width, Sensor sensor, std::array<Bin, kBin
 Section BenchReliability(int seeds, int first_seed) {
   Section section;
   section.name = "reliability";
+  section.tables.push_back(CovarianceTable(seeds, first_seed));
   for (const Sensor sensor : {Sensor::kMono, Sensor::kRgbd}) {
     std::array<Bin, kBins.size()> bins;
     for (int seed = first_seed; seed < first_seed + seeds; ++seed) {

@@ -44,6 +44,9 @@ struct Se3 {
   friend Eigen::Vector3d operator*(const Se3& a, const Eigen::Vector3d& p) { return a.R * p + a.t; }
 };
 
+// Ad of X: X Exp(xi) X⁻¹ = Exp(Ad xi) (Solà et al. 2018, example 6).
+Matrix6d Adjoint(const Se3& X);
+
 // Angle of the relative rotation, radians.
 double RotationAngle(const Se3& a, const Se3& b);
 

@@ -74,11 +74,24 @@ void AssumeDepth(const MapSnapshot& map, const KeyFrame& reference, double error
                                   1 / (sigma * sigma)});
 }
 
+// Of camera `newest` relative to camera `anchor`, the only one held: `cameras` and all points are
+// unknown. Virtual observations are left out. Zero: not determined.
+Matrix6d CovarianceOf(BundleProblem problem, const BundleSettings& settings, int cameras,
+                      int newest, int anchor) {
+  std::erase_if(problem.observations,
+                [&](const BundleObservation& o) { return o.camera >= cameras; });
+  problem.T_camera_world.resize(cameras);
+  problem.fixed.assign(cameras, 0);
+  problem.fixed[anchor] = 1;
+  return CameraCovariance(problem, settings, newest).value_or(Matrix6d::Zero());
+}
+
 }  // namespace
 
 Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
                            const std::vector<KeyFrameId>& fixed, const Camera& camera,
-                           const AdjustSettings& settings, const std::atomic<bool>* stop) {
+                           const AdjustSettings& settings, const std::atomic<bool>* stop,
+                           KeyFrameId newest) {
   BundleProblem problem;
   problem.camera = camera;
   IdMap<KeyFrameId, int> camera_index;
@@ -132,6 +145,13 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     bundle.redescending = bundle.redescending || share < 1;
   }
   result.report = AdjustBundle(problem, bundle, stop);
+  const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
+  if (index && !(stop && *stop)) {
+    const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
+    result.newest = newest;
+    result.covariance = CovarianceOf(problem, bundle, static_cast<int>(cameras.size()), *index,
+                                     static_cast<int>(oldest));
+  }
   for (size_t i = 0; i < free.size(); ++i)
     result.poses.push_back({free[i], problem.T_camera_world[i]});
   for (size_t i = 0; i < points.size(); ++i)
@@ -154,6 +174,8 @@ void CommitAdjustment(MapCommit& commit, const MapSnapshot& base, const Adjustme
     moved.push_back({id, T_camera_world.Inverse() * keyframe->T_camera_world});
     keyframe->T_camera_world = T_camera_world;
   }
+  if (KeyFrame* newest = result.newest.valid() ? commit.Edit(result.newest) : nullptr)
+    newest->covariance = result.covariance;
   const auto correction = [&](KeyFrameId id) -> std::optional<Se3> {
     const auto it =
         std::lower_bound(moved.begin(), moved.end(), id,

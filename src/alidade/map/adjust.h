@@ -37,13 +37,18 @@ struct Adjustment {
   // Observations rejected by the chi² test.
   std::vector<std::pair<LandmarkId, KeyFrameId>> outliers;
   BundleReport report;
+  // Covariance of `newest` (KeyFrame::covariance), if it was asked for.
+  KeyFrameId newest;
+  Matrix6d covariance = Matrix6d::Zero();
 };
 
 // Adjusts the poses of `free` and all landmarks they observe; the poses of `fixed` are constant.
-// Both lists are sorted. `map` is not changed. `stop` (may be null) ends it early.
+// Both lists are sorted. `map` is not changed. `stop` (may be null) ends it early. `newest`: one of
+// `free` whose covariance is wanted.
 Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
                            const std::vector<KeyFrameId>& fixed, const Camera& camera,
-                           const AdjustSettings& settings, const std::atomic<bool>* stop);
+                           const AdjustSettings& settings, const std::atomic<bool>* stop,
+                           KeyFrameId newest = {});
 
 // Applies the result to the objects that still exist. Objects created since `base` follow:
 // keyframes their parent, landmarks their reference keyframe.

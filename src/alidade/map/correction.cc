@@ -33,6 +33,8 @@ void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>&
     KeyFrame* edited = commit.Edit(id);
     edited->T_camera_world = move.T_new.Normalised();
     edited->scale *= move.growth;
+    edited->covariance.topRows<3>() *= move.growth;
+    edited->covariance.leftCols<3>() *= move.growth;
   }
   std::vector<std::pair<LandmarkId, Move>> moved;
   commit.state().landmarks.ForEach([&](const Landmark& landmark) {

@@ -27,6 +27,10 @@ struct KeyFrame {
   // Product of all scale corrections of the lengths around it since its creation (loops of a
   // monocular map correct the scale).
   double scale = 1;
+  // Covariance of the pose when it was the newest keyframe, relative to the oldest keyframe of its
+  // local bundle adjustment: T_world_camera * Exp(xi) is the true pose, xi = (translation;
+  // rotation) ~ N(0, covariance). Zero: unknown. Not saved with a map.
+  Matrix6d covariance = Matrix6d::Zero();
   std::vector<KeyFrameId> loops;          // keyframes connected by loop closures, sorted
   std::vector<LandmarkId> landmarks;      // one per keypoint; invalid: none
   std::vector<Neighbour> covisible;       // by descending number of shared landmarks, then by id

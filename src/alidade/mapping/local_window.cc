@@ -85,7 +85,7 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
   AdjustSettings adjust{settings.noise, settings.bundle, settings.min_noise_ratio,
                         settings.assumed_depth_error, settings.assumed_depth_degrees};
   if (one_camera) adjust.bundle.max_iterations = settings.window_iterations_mono;
-  return AdjustKeyFrames(map, free, fixed, camera, adjust, stop);
+  return AdjustKeyFrames(map, free, fixed, camera, adjust, stop, id);
 }
 
 }  // namespace alidade

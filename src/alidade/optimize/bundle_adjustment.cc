@@ -1,5 +1,6 @@
 #include "alidade/optimize/bundle_adjustment.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -113,6 +114,53 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
   report.final_cost = system.cost;
   if (moved) Store(layout, state, problem);
   return report;
+}
+
+std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
+                                         const BundleSettings& settings, int camera) {
+  const BundleLayout layout = LayOut(problem, settings);
+  const auto at = std::find(layout.free_cameras.begin(), layout.free_cameras.end(), camera);
+  if (at == layout.free_cameras.end()) return {};
+  BundleState state = StartOf(problem, layout);
+  Linearisation system;
+  Linearise(layout, nullptr, state, system);
+  if (!system.valid) return {};
+
+  const auto cameras = static_cast<Eigen::Index>(layout.free_cameras.size());
+  double measured = 0;
+  bool has_right = false;
+  for (const BundleSighting& sighting : layout.sightings) {
+    has_right = has_right || sighting.weight_r > 0;
+    measured += sighting.weight_r > 0 ? 3 : 2;
+  }
+  const double spare = measured - 6.0 * static_cast<double>(cameras) -
+                       3.0 * static_cast<double>(layout.points.size());
+  if (!(spare > 0)) return {};
+
+  Eigen::VectorXd scale;
+  if (!has_right && std::count(problem.fixed.begin(), problem.fixed.end(), 0) + 1 ==
+                        static_cast<long>(problem.fixed.size())) {
+    const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(),
+                                    [](uint8_t is_fixed) { return is_fixed != 0; });
+    const Eigen::Vector3d& origin = state.cameras[fixed - problem.fixed.begin()].centre;
+    scale = Eigen::VectorXd::Zero(6 * cameras);
+    for (Eigen::Index i = 0; i < cameras; ++i)
+      scale.segment<3>(6 * i) = state.cameras[layout.free_cameras[i]].centre - origin;
+  }
+  SchurSolver solver(layout, ReducedFactor::kDense);
+  Matrix6d of_step;
+  if (!solver.Covariance(system, static_cast<int>(at - layout.free_cameras.begin()), scale,
+                         of_step))
+    return {};
+  // A step (ρ, θ) in world axes is xi = -(R ρ; R θ).
+  const Eigen::Matrix3d& R = state.cameras[camera].R;
+  Matrix6d covariance;
+  for (int i = 0; i < 6; i += 3) {
+    for (int j = 0; j < 6; j += 3)
+      covariance.block<3, 3>(i, j) = R * of_step.block<3, 3>(i, j) * R.transpose();
+  }
+  covariance *= 2 * system.cost / spare;
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 double ChiSquared(const Camera& camera, const Se3& T_camera_world, const Eigen::Vector3d& p_world,

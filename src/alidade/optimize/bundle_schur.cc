@@ -121,7 +121,7 @@ void SchurSolver::AddCameras(const Linearisation& system, double lambda) {
   }
 }
 
-bool SchurSolver::SolveDense(Eigen::VectorXd& x) {
+void SchurSolver::FillDense() {
   const Reduced& reduced = reduced_[0];
   dense_.resize(6 * cameras_, 6 * cameras_);
   for (int row = 0, at = 0; row < cameras_; ++row) {
@@ -131,6 +131,10 @@ bool SchurSolver::SolveDense(Eigen::VectorXd& x) {
       }
     }
   }
+}
+
+bool SchurSolver::SolveDense(Eigen::VectorXd& x) {
+  FillDense();
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
   if (factor.info() != Eigen::Success) return false;
   factor.solveInPlace(x);
@@ -200,10 +204,39 @@ double SchurSolver::Predicted(const Linearisation& system, double lambda,
   return 0.5 * twice;
 }
 
-void SchurSolver::Solve(const Linearisation& system, double lambda, BundleStep& step) {
+void SchurSolver::Reduce(const Linearisation& system, double lambda) {
   ParallelFor(layout_.chunk_count(),
               [&](int chunk) { Eliminate(system, lambda, chunk, reduced_[chunk]); });
   AddCameras(system, lambda);
+}
+
+bool SchurSolver::Covariance(const Linearisation& system, int slot, const Eigen::VectorXd& held,
+                             Matrix6d& covariance) {
+  constexpr double kNoDamping = 0;  // but DampingOfEntry()'s for directions nothing observes
+  Reduce(system, kNoDamping);
+  FillDense();
+  if (held.size() > 0 && held.squaredNorm() > 0) {
+    // As if the step along `held` were observed, more precisely than any other.
+    const double weight = 10 * dense_.diagonal().maxCoeff() / held.squaredNorm();
+    for (Eigen::Index j = 0; j < dense_.cols(); ++j) {
+      const Eigen::Index below = dense_.rows() - j;
+      dense_.col(j).tail(below) += weight * held[j] * held.tail(below);
+    }
+  }
+  Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
+  if (factor.info() != Eigen::Success) return false;
+  Eigen::VectorXd column(6 * cameras_);
+  for (int j = 0; j < 6; ++j) {
+    column.setZero();
+    column[6 * slot + j] = 1;
+    factor.solveInPlace(column);
+    covariance.col(j) = column.segment<6>(6 * slot);
+  }
+  return covariance.allFinite();
+}
+
+void SchurSolver::Solve(const Linearisation& system, double lambda, BundleStep& step) {
+  Reduce(system, lambda);
   Eigen::VectorXd x(6 * cameras_);
   for (int i = 0; i < cameras_; ++i) x.segment<6>(6 * i) = reduced_[0].right[i];
   step.valid = cameras_ == 0 || (sparse_ ? SolveSparse(x) : SolveDense(x));

@@ -26,6 +26,11 @@ class SchurSolver {
   SchurSolver(const BundleLayout& layout, ReducedFactor kind);
   bool sparse() const { return sparse_; }
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
+  // Covariance of the step of one free camera: its block of the inverse of the reduced system.
+  // `held`: a direction of all free cameras' steps that is held, because no observation determines
+  // it; may be empty. Only for ReducedFactor::kDense. Returns false if the system is singular.
+  bool Covariance(const Linearisation& system, int slot, const Eigen::VectorXd& held,
+                  Matrix6d& covariance);
 
  private:
   struct Reduced {  // lower blocks of the reduced system, and its right-hand side
@@ -38,6 +43,8 @@ class SchurSolver {
   int FindBlock(int row, int column, int hint) const;
   void Eliminate(const Linearisation& system, double lambda, int chunk, Reduced& reduced);
   void AddCameras(const Linearisation& system, double lambda);
+  void Reduce(const Linearisation& system, double lambda);  // into reduced_[0]
+  void FillDense();
   bool SolveDense(Eigen::VectorXd& x);
   bool SolveSparse(Eigen::VectorXd& x);
   void Substitute(const Linearisation& system, BundleStep& step);

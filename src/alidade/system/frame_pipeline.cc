@@ -30,10 +30,17 @@ TrackState PublicState(SessionState state) {
   return TrackState::kLost;
 }
 
-PoseQuality QualityOf(const TrackEstimate& estimate) {
+PoseQuality QualityOf(const TrackEstimate& estimate, const MapSnapshot& map) {
   PoseQuality quality;
   quality.probability = Probability(estimate.placed.log_odds);
   quality.covariance = estimate.placed.covariance;
+  const KeyFrame* reference = map.Find(estimate.reference);
+  if (reference && !quality.covariance.isZero()) {
+    // The map around the frame moves with its reference keyframe.
+    const Matrix6d ad =
+        Adjoint(estimate.placed.T_camera_world * reference->T_camera_world.Inverse());
+    quality.covariance += ad * reference->covariance * ad.transpose();
+  }
   quality.expected = static_cast<int>(estimate.sightings.size());
   quality.inliers = estimate.placed.inliers;
   if (quality.expected > 0)
@@ -283,7 +290,7 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
     workers_.mapper().Count(news.sightings);
   }
   now.placed = estimate.placed;
-  result.quality = QualityOf(estimate);
+  result.quality = QualityOf(estimate, map);
   if (result.keyframe) {
     const Anchor anchor = AnchorTo(map.state(), estimate.reference, estimate.placed.T_camera_world);
     placer_.InsertKeyFrame(now, estimate.placed, anchor, camera_);

@@ -49,6 +49,10 @@ std::span<const Setting> PoseEvidenceSettings::Table() {
           "Probability that a place found by appearance is right, before it is compared."),
       PublicSetting<&T::min_probability>("pose.min_probability", kShareBelowOne, "",
                                          "A frame whose pose is less probably right is lost."),
+      ExpertSetting<&T::min_keyframe>(
+          "pose.min_keyframe", kShareBelowOne, "",
+          "A frame whose pose is less probably right does not become a keyframe, where "
+          "pose.min_probability is lower."),
   };
   return kRows;
 }

@@ -297,7 +297,8 @@ void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& ma
                      placed.log_odds >= LogOdds(settings_.evidence.min_probability);
   if (!estimate.tracked) return passing_.Clear();
   most_inliers_ = std::max(most_inliers_, placed.inliers);
-  estimate.wants_keyframe = WantsKeyFrame(placed, estimate.agreement);
+  estimate.wants_keyframe = placed.log_odds >= LogOdds(settings_.evidence.min_keyframe) &&
+                            WantsKeyFrame(placed, estimate.agreement);
   if (has_depth_) passing_.Update(placed, map.corrections());
 }
 
