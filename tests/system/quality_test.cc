@@ -22,11 +22,15 @@ constexpr int kGrown = 60;
 // covariances say.
 constexpr int kGap = 10;
 
-RenderedFrames& TheRoom() {
+// One camera needs the larger image: at 320 × 240 its views differ by so few pixels that their
+// residuals do not show the errors (docs/concepts.md).
+RenderedFrames& TheRoom(Sensor sensor = Sensor::kStereo) {
   SynthSettings settings;
-  settings.width = 320;
-  settings.height = 240;
-  settings.stereo = true;
+  if (sensor != Sensor::kMono) {
+    settings.width = 320;
+    settings.height = 240;
+    settings.stereo = true;
+  }
   return FramesOf(settings);
 }
 
@@ -47,10 +51,11 @@ class Quality : public testing::TestWithParam<Sensor> {};
 // root mean square of error / standard deviation is 1. All six parameters of the motion count
 // equally.
 TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
-  RenderedFrames& room = TheRoom();
+  RenderedFrames& room = TheRoom(GetParam());
   SlamSettings settings;
   settings.sensor = GetParam();
-  settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
+  if (GetParam() != Sensor::kMono)
+    settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
   Slam slam(room.camera(), settings);
   std::vector<TrackResult> results;
   const int first = GetParam() == Sensor::kMono ? kGrown : 0;

@@ -45,8 +45,8 @@ struct PoseQuality {
   // covariance of the reference keyframe relative to the oldest keyframe of the last local bundle
   // adjustment. It does not include the drift of the map before that, and of a map that was loaded
   // only the first part. One camera: with the scale of the local map taken as exact; and too small
-  // by a factor of 1.8, in a slow start up to 6, while the map has little parallax (its first two
-  // seconds).
+  // by a factor of 1.8 in the first two seconds of a map, and of 3 to 6 where the views differ by a
+  // few pixels only (a slow camera, small images).
   // Zero: unknown, or the first frame of a map, whose pose is the identity by definition.
   Matrix6d covariance = Matrix6d::Zero();
   int expected = 0;        // landmarks that should be visible
