@@ -210,7 +210,7 @@ void AddEvaluateDepth(CLI::App& evaluate, Action& action) {
   depth
       ->add_option(
           "--camera", options->camera_file,
-          "Calibration file (camera.yaml), used instead of the sequence's own, as for `run`")
+          "Calibration file, used instead of the sequence's own, as for `run`")
       ->type_name("FILE");
   depth
       ->add_option("--max-dt", options->max_dt,

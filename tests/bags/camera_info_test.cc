@@ -3,7 +3,7 @@
 
 #include <opencv2/calib3d.hpp>
 
-#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/camera_info.h"
 #include "bags/message_bytes.h"
 #include "support/expect_error.h"
 
