@@ -35,8 +35,7 @@ struct CalibrateOptions {
 
 CalibrationStyle StyleOf(const CalibrateOptions& options) {
   const auto style = CalibrationStyleNamed(options.to);
-  if (!style)
-    ThrowUsage("--to must be alidade, kalibr, ros, opencv or colmap, not " + options.to);
+  if (!style) ThrowUsage("--to must be alidade, kalibr, ros, opencv or colmap, not " + options.to);
   return *style;
 }
 
@@ -115,8 +114,8 @@ void Write(const Calibration& calibration, const std::string& comment,
   AtomicWriteFile(options.out, written.text);
   if (options.run.quiet) return;
   if (!written.told.empty()) std::printf("%s\n", written.told.c_str());
-  std::printf("Written to %s; to use it: alidade run RECORDING --camera %s\n",
-              options.out.c_str(), options.out.c_str());
+  std::printf("Written to %s; to use it: alidade run RECORDING --camera %s\n", options.out.c_str(),
+              options.out.c_str());
 }
 
 int ConvertCommand(const CalibrateOptions& options) {
@@ -167,10 +166,10 @@ int CalibrateCommand(CalibrateOptions options) {
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
-  Write(CalibrationOf(all.camera),
-        HeadOf(options) + "\nfield of view " + CameraInWords(all) +
-            (all.known ? "" : "\nuncertain"),
-        options);
+  Write(
+      CalibrationOf(all.camera),
+      HeadOf(options) + "\nfield of view " + CameraInWords(all) + (all.known ? "" : "\nuncertain"),
+      options);
   return 0;
 }
 
@@ -186,13 +185,12 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
                    "Recordings of one camera: any source of `alidade run` except live cameras")
       ->type_name("PATH");
   command
-      ->add_option("--camera", options->camera,
-                   "Convert this calibration, of any tool that `alidade run --camera` reads, instead "
-                   "of estimating one")
+      ->add_option(
+          "--camera", options->camera,
+          "Convert this calibration, of any tool that `alidade run --camera` reads, instead "
+          "of estimating one")
       ->type_name("FILE");
-  command
-      ->add_option("--to", options->to,
-                   "Format to write; default: alidade (camera.yaml)")
+  command->add_option("--to", options->to, "Format to write; default: alidade (camera.yaml)")
       ->type_name("alidade|kalibr|ros|opencv|colmap");
   command
       ->add_option("--out", options->out,
@@ -227,7 +225,8 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
       "\nNo calibration target is needed: a minute of walking in a furnished room, with sideways "
       "motion\nand turns, is enough. A calibration that belongs to the recording is "
       "ignored.\n\nExamples:\n  alidade calibrate walk.mp4\n  alidade calibrate monday.mp4 "
-      "tuesday.mp4 --out phone.yaml\n  alidade run wednesday.mp4 --camera phone.yaml\n  alidade calibrate "
+      "tuesday.mp4 --out phone.yaml\n  alidade run wednesday.mp4 --camera phone.yaml\n  alidade "
+      "calibrate "
       "walk.mp4 --to kalibr\n  alidade calibrate --camera camchain.yaml --to ros\n\nExit "
       "status 4: the camera moved or turned too little for an estimate.");
   command->callback(

@@ -1,9 +1,11 @@
 // CameraInfo converted to cameras, compared with OpenCV's projection.
+#include "alidade/io/ros/camera_info.h"
+
 #include <gmock/gmock.h>
 
 #include <opencv2/calib3d.hpp>
 
-#include "alidade/io/ros/camera_info.h"
+#include "alidade/io/ros/messages/messages.h"
 #include "bags/message_bytes.h"
 #include "support/expect_error.h"
 
@@ -78,6 +80,14 @@ TEST(CameraInfo, OfARationalLensComesWithinHalfAPixel) {
   EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 0.55);
   info.D = {-0.3, 0.1, 0.001, 0, 0.02, 0, 0, 0};
   EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 1e-9);
+}
+
+// 14 coefficients as OAK cameras have: thin prism and tilt.
+TEST(CameraInfo, OfATiltedLensComesWithinHalfAPixel) {
+  InfoFields info = Wide();
+  info.model = "rational_polynomial";
+  info.D = {0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01, 0, 1e-4, -2e-5, -1e-4, 1e-5, 1e-4, -2e-4};
+  EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 0.55);
 }
 
 TEST(CameraInfo, OfLensesThatCannotBeWorkedWithSaysSo) {

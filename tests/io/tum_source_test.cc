@@ -191,8 +191,7 @@ TEST(TumSource, CameraForAnotherAspectRatioIsRefused) {
 TEST(TumSource, CameraForAnotherSizeIsScaled) {
   const TempFolder folder;
   WriteTinyTum(folder);
-  const std::string camera =
-      folder.Write("cameras.txt", "1 PINHOLE 640 480 600 610 320 240\n");
+  const std::string camera = folder.Write("cameras.txt", "1 PINHOLE 640 480 600 610 320 240\n");
   const auto source = OpenSource(folder.path(), {.camera_file = camera});
   EXPECT_EQ(source->Info().camera.width, 64);
   EXPECT_NEAR(source->Info().camera.fx, 60, 1e-9);

@@ -20,8 +20,10 @@ std::string Refusal(const std::string& text, const std::string& which = {}) {
 
 TEST(ColmapCameras, AllModelsThatCanBeExpressedAreRead) {
   const auto one = [](const std::string& line) {
-    return Read("# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, "
-                "HEIGHT, PARAMS[]\n# Number of cameras: 1\n1 " + line + "\n");
+    return Read(
+        "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, "
+        "HEIGHT, PARAMS[]\n# Number of cameras: 1\n1 " +
+        line + "\n");
   };
   const double cx = 1600.25 - 0.5, cy = 1201.75 - 0.5;
   const auto wanted = [&](double fx, double fy, Lens lens, const std::array<double, 5>& k) {
@@ -57,8 +59,10 @@ TEST(ColmapCameras, MistakesAreNamed) {
   EXPECT_THAT(Refusal("1 PINHOLE 640 480 nan 500 320 240\n"), HasSubstr("`nan`"));
   EXPECT_THAT(Refusal("1 PINHOLE 640 -480 500 500 320 240\n"), HasSubstr("`-480`"));
   const std::string three =
-      "1 PINHOLE 640 480 500 500 320 240\n2 PINHOLE 64 48 50 50 32 24\n7 PINHOLE 32 24 25 25 16 12\n";
-  EXPECT_THAT(Refusal(three), AllOf(HasSubstr("3 cameras"), HasSubstr("1, 2, 7"), HasSubstr("--camera cal#1")));
+      "1 PINHOLE 640 480 500 500 320 240\n2 PINHOLE 64 48 50 50 32 24\n7 PINHOLE 32 24 25 25 16 "
+      "12\n";
+  EXPECT_THAT(Refusal(three),
+              AllOf(HasSubstr("3 cameras"), HasSubstr("1, 2, 7"), HasSubstr("--camera cal#1")));
   EXPECT_EQ(Read(three, "2").left.width, 64);
   EXPECT_THAT(Refusal(three, "3"), HasSubstr("no CAMERA_ID `3`"));
 }
@@ -82,9 +86,10 @@ TEST(NerfstudioTransforms, AreRead) {
   // With its images, more values than a camera file may have.
   std::string frames = head + ",\n\"frames\": [\n";
   for (int i = 0; i < 1000; ++i) {
-    frames += std::string(i > 0 ? "," : "") + R"({"file_path": "images/frame_)" + std::to_string(i) +
-              R"(.jpg", "transform_matrix": [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})" +
-              "\n";
+    frames +=
+        std::string(i > 0 ? "," : "") + R"({"file_path": "images/frame_)" + std::to_string(i) +
+        R"(.jpg", "transform_matrix": [[1, 0, 0, 0.5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]})" +
+        "\n";
   }
   ExpectCamera(Read(frames + "]}").left, wanted);
   const size_t middle = frames.size() / 2;
@@ -96,7 +101,8 @@ TEST(NerfstudioTransforms, AreRead) {
 
 TEST(NerfstudioTransforms, IntrinsicsMayBeThoseOfTheImages) {
   const auto frame = [](const std::string& fx) {
-    return R"({"file_path": "a.png", "fl_x": )" + fx + R"(, "fl_y": 500, "cx": 320, "cy": 240, "w": 640, "h": 480})";
+    return R"({"file_path": "a.png", "fl_x": )" + fx +
+           R"(, "fl_y": 500, "cx": 320, "cy": 240, "w": 640, "h": 480})";
   };
   EXPECT_EQ(Read("{\"frames\": [" + frame("501") + "," + frame("501") + "]}").left.fx, 501);
   EXPECT_THAT(Refusal("{\"frames\": [" + frame("501") + "," + frame("502") + "]}"),
@@ -104,7 +110,8 @@ TEST(NerfstudioTransforms, IntrinsicsMayBeThoseOfTheImages) {
 }
 
 TEST(NerfstudioTransforms, AFieldOfViewIsACamera) {
-  const Calibration c = Read(R"({"camera_angle_x": 0.6911112070083618, "w": 800, "h": 600, "frames": []})");
+  const Calibration c =
+      Read(R"({"camera_angle_x": 0.6911112070083618, "w": 800, "h": 600, "frames": []})");
   EXPECT_NEAR(c.left.fx, 400 / std::tan(0.6911112070083618 / 2), 1e-9);
   EXPECT_EQ(c.left.cx, 399.5);
   EXPECT_THAT(Refusal(R"({"camera_angle_x": 0.69, "frames": []})"),
@@ -115,23 +122,27 @@ TEST(NerfstudioTransforms, AFieldOfViewIsACamera) {
 
 std::string RealSense(const std::string& model, const std::string& coeffs) {
   return R"({"width": 640, "height": 480, "ppx": 318.4123456789, "ppy": 241.5123456789, "fx": 381.9123456789,
- "fy": 381.6123456789, "model": ")" + model + R"(", "coeffs": )" + coeffs + "}";
+ "fy": 381.6123456789, "model": ")" +
+         model + R"(", "coeffs": )" + coeffs + "}";
 }
 
 TEST(RealSenseIntrinsics, AreRead) {
-  for (const char* model : {"distortion.brown_conrady", "RS2_DISTORTION_BROWN_CONRADY", "Brown Conrady"}) {
-    ExpectCamera(Read(RealSense(model, "[-0.05512345, 0.06512345, -0.0007, 0.0008, -0.0212345]")).left,
-                 {Lens::kPinhole,
-                  640,
-                  480,
-                  381.9123456789,
-                  381.6123456789,
-                  318.4123456789,
-                  241.5123456789,
-                  {-0.05512345, 0.06512345, -0.0007, 0.0008, -0.0212345}});
+  for (const char* model :
+       {"distortion.brown_conrady", "RS2_DISTORTION_BROWN_CONRADY", "Brown Conrady"}) {
+    ExpectCamera(
+        Read(RealSense(model, "[-0.05512345, 0.06512345, -0.0007, 0.0008, -0.0212345]")).left,
+        {Lens::kPinhole,
+         640,
+         480,
+         381.9123456789,
+         381.6123456789,
+         318.4123456789,
+         241.5123456789,
+         {-0.05512345, 0.06512345, -0.0007, 0.0008, -0.0212345}});
   }
-  EXPECT_EQ(Read(RealSense("distortion.kannala_brandt4", "[-0.01, 0.04, -0.03, 0.005, 0]")).left.lens,
-            Lens::kFisheye);
+  EXPECT_EQ(
+      Read(RealSense("distortion.kannala_brandt4", "[-0.01, 0.04, -0.03, 0.005, 0]")).left.lens,
+      Lens::kFisheye);
   // All models without coefficients are no distortion.
   EXPECT_EQ(Read(RealSense("ftheta", "[0, 0, 0, 0, 0]")).told, "");
   // As Python prints a dict.
@@ -140,13 +151,14 @@ TEST(RealSenseIntrinsics, AreRead) {
 
 // The inverse model maps distorted to ideal positions.
 TEST(RealSenseIntrinsics, TheInverseModelIsApproximated) {
-  const Calibration c =
-      Read(RealSense("distortion.inverse_brown_conrady", "[-0.0555, 0.0655, -0.0007, 0.0008, -0.021]"));
+  const Calibration c = Read(
+      RealSense("distortion.inverse_brown_conrady", "[-0.0555, 0.0655, -0.0007, 0.0008, -0.021]"));
   EXPECT_THAT(c.told, AllOf(HasSubstr("inverse Brown-Conrady"), HasSubstr("pixels")));
   double farthest = 0;
   for (int v = 0; v < 480; v += 37) {
     for (int u = 0; u < 640; u += 37) {
-      const double x = (u - 318.4123456789) / 381.9123456789, y = (v - 241.5123456789) / 381.6123456789;
+      const double x = (u - 318.4123456789) / 381.9123456789,
+                   y = (v - 241.5123456789) / 381.6123456789;
       const double r2 = x * x + y * y, radial = 1 + r2 * (-0.0555 + r2 * (0.0655 + r2 * -0.021));
       const Eigen::Vector3d p(x * radial + 2 * -0.0007 * x * y + 0.0008 * (r2 + 2 * x * x),
                               y * radial + 2 * 0.0008 * x * y - 0.0007 * (r2 + 2 * y * y), 1);
@@ -158,8 +170,8 @@ TEST(RealSenseIntrinsics, TheInverseModelIsApproximated) {
 }
 
 TEST(RealSenseIntrinsics, AStreamIsChosen) {
-  const std::string two = "{\"color\": " + RealSense("none", "[]") + ", \"depth\": " +
-                          RealSense("none", "[]") + ", \"depth_scale\": 0.001}";
+  const std::string two = "{\"color\": " + RealSense("none", "[]") +
+                          ", \"depth\": " + RealSense("none", "[]") + ", \"depth_scale\": 0.001}";
   EXPECT_NEAR(*Read(two, "color").depth_factor, 1000, 1e-9);
   EXPECT_THAT(Refusal(two), AllOf(HasSubstr("color, depth"), HasSubstr("--camera cal#color")));
   EXPECT_THAT(Refusal(two, "infra"), HasSubstr("no stream `infra`"));
@@ -172,17 +184,20 @@ std::string Oak(int type, const std::string& k, const std::string& cameras = {})
   const auto camera = [&](const std::string& x, int to) {
     return R"({"cameraType": )" + std::to_string(type) + R"(, "distortionCoeff": )" + k +
            R"(, "extrinsics": {"rotationMatrix": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
- "specTranslation": {"x": 0.0, "y": 0.0, "z": 0.0}, "toCameraSocket": )" + std::to_string(to) +
-           R"(, "translation": {"x": )" + x + R"(, "y": 0.0123456789, "z": 0.0}},
+ "specTranslation": {"x": 0.0, "y": 0.0, "z": 0.0}, "toCameraSocket": )" +
+           std::to_string(to) + R"(, "translation": {"x": )" + x +
+           R"(, "y": 0.0123456789, "z": 0.0}},
  "height": 800, "intrinsicMatrix": [[801.1234567891, 0.0, 639.2345678912], [0.0, 802.2345678912, 398.3456789123], [0.0, 0.0, 1.0]],
  "lensPosition": 0, "specHfovDeg": 71.86, "width": 1280})";
   };
-  return "{\"batchName\": \"\", \"boardName\": \"OAK-D\", \"cameraData\": [[1, " + camera("-7.5123456789", 2) +
-         "], [2, " + camera("0.0", -1) + "]" + cameras + "], \"version\": 6}";
+  return "{\"batchName\": \"\", \"boardName\": \"OAK-D\", \"cameraData\": [[1, " +
+         camera("-7.5123456789", 2) + "], [2, " + camera("0.0", -1) + "]" + cameras +
+         "], \"version\": 6}";
 }
 
 TEST(OakCalibration, IsRead) {
-  const Calibration c = Read(Oak(0, "[-0.04, 0.06, 0.0007, -0.0008, -0.02, 0, 0, 0, 0, 0, 0, 0, 0, 0]"), "1");
+  const Calibration c =
+      Read(Oak(0, "[-0.04, 0.06, 0.0007, -0.0008, -0.02, 0, 0, 0, 0, 0, 0, 0, 0, 0]"), "1");
   const RawCamera wanted = {Lens::kPinhole,
                             1280,
                             800,
@@ -199,7 +214,8 @@ TEST(OakCalibration, IsRead) {
 }
 
 TEST(OakCalibration, ACameraMustBeChosen) {
-  EXPECT_THAT(Refusal(Oak(0, "[]")), AllOf(HasSubstr("OAK"), HasSubstr("1, 2"), HasSubstr("--camera cal#1")));
+  EXPECT_THAT(Refusal(Oak(0, "[]")),
+              AllOf(HasSubstr("OAK"), HasSubstr("1, 2"), HasSubstr("--camera cal#1")));
   EXPECT_THAT(Refusal(Oak(3, "[]"), "1"), AllOf(HasSubstr("`cameraType`"), HasSubstr("`3`")));
   EXPECT_THAT(Refusal(Oak(0, "[]"), "9"), HasSubstr("no camera socket `9`"));
 }

@@ -68,11 +68,11 @@ TEST(Kalibr, PairsAreRead) {
 }
 
 TEST(Kalibr, APairMayBeToldByTheImu) {
-  std::string text = One(
-      "  camera_model: pinhole\n  distortion_coeffs: [0.01, -0.002, 0.003, -0.0004]\n"
-      "  distortion_model: equi\n  intrinsics: [190.97847715128717, 190.9733070521226, "
-      "254.93170605935475, 256.8974428996504]\n"
-      "  T_cam_imu: [[0, 1, 0, 0.05], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
+  std::string text =
+      One("  camera_model: pinhole\n  distortion_coeffs: [0.01, -0.002, 0.003, -0.0004]\n"
+          "  distortion_model: equi\n  intrinsics: [190.97847715128717, 190.9733070521226, "
+          "254.93170605935475, 256.8974428996504]\n"
+          "  T_cam_imu: [[0, 1, 0, 0.05], [-1, 0, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]\n");
   std::string second = text.substr(text.find('\n'));
   second.replace(second.find("0.05"), 4, "-0.07");
   const Calibration c = ParseCameraFile(text + "cam1:" + second, "chain.yaml");
@@ -102,10 +102,10 @@ TEST(Kalibr, NoDistortionIsNone) {
 // Double sphere, Usenko et al. 2018, equations 40 to 42: what the approximation says is right.
 TEST(Kalibr, ADoubleSphereIsApproximated) {
   const double fx = 160.5, fy = 159.5, cx = 320.25, cy = 240.75, xi = -0.2, alpha = 0.58;
-  const Calibration c = ParseCameraFile(
-      One("  camera_model: ds\n  distortion_model: none\n  distortion_coeffs: []\n"
-          "  intrinsics: [-0.2, 0.58, 160.5, 159.5, 320.25, 240.75]\n"),
-      "x");
+  const Calibration c =
+      ParseCameraFile(One("  camera_model: ds\n  distortion_model: none\n  distortion_coeffs: []\n"
+                          "  intrinsics: [-0.2, 0.58, 160.5, 159.5, 320.25, 240.75]\n"),
+                      "x");
   EXPECT_EQ(c.left.lens, Lens::kFisheye);
   EXPECT_THAT(c.told, AllOf(HasSubstr("ds"), HasSubstr("pixels")));
   double farthest = 0;
@@ -125,10 +125,11 @@ TEST(Kalibr, ADoubleSphereIsApproximated) {
 }
 
 TEST(Kalibr, OtherModelsAreRefusedByName) {
-  EXPECT_THAT(Refusal(One("  camera_model: omni\n  distortion_model: radtan\n"
-                          "  distortion_coeffs: [-0.2, 0.1, 0.001, 0]\n"
-                          "  intrinsics: [1.5, 800, 801, 320, 240]\n")),
-              AllOf(HasSubstr("chain.yaml:4: Kalibr"), HasSubstr("`omni`"), HasSubstr("pinhole-equi")));
+  EXPECT_THAT(
+      Refusal(One("  camera_model: omni\n  distortion_model: radtan\n"
+                  "  distortion_coeffs: [-0.2, 0.1, 0.001, 0]\n"
+                  "  intrinsics: [1.5, 800, 801, 320, 240]\n")),
+      AllOf(HasSubstr("chain.yaml:4: Kalibr"), HasSubstr("`omni`"), HasSubstr("pinhole-equi")));
   EXPECT_THAT(Refusal(One("  camera_model: cylinder\n  intrinsics: [800, 801, 320, 240]\n")),
               AllOf(HasSubstr("Kalibr"), HasSubstr("`cylinder`"), HasSubstr("calibrate again")));
   EXPECT_THAT(Refusal(One("  camera_model: pinhole\n  distortion_model: bent\n"

@@ -121,7 +121,8 @@ TEST(RosCalibration, TheNumberOfCoefficientsBeatsTheModelsName) {
                                   "[0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01, 0.0]"));
   EXPECT_EQ(c.left.lens, Lens::kPinhole);
   EXPECT_THAT(c.told, AllOf(HasSubstr("rational"), HasSubstr("pixels")));
-  // At (0.5, 0.3): (1 + 0.1 r² - 0.05 r⁴ + 0.01 r⁶) / (1 + 0.05 r² + 0.01 r⁴), and tangential terms.
+  // At (0.5, 0.3): (1 + 0.1 r² - 0.05 r⁴ + 0.01 r⁶) / (1 + 0.05 r² + 0.01 r⁴), and tangential
+  // terms.
   const double x = 0.5, y = 0.3, r2 = x * x + y * y;
   const double radial = (1 + r2 * (0.1 + r2 * (-0.05 + r2 * 0.01))) / (1 + r2 * (0.05 + r2 * 0.01));
   const double u = x * radial + 2 * 0.0008 * x * y - 0.0003 * (r2 + 2 * x * x);

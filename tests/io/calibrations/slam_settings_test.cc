@@ -94,8 +94,9 @@ TEST(OrbSlamSettings, OldOnesAreRead) {
   EXPECT_EQ(c.baseline, 0);  // bf of a depth camera is not a second camera's
   const Calibration stereo = Read(With(kOldRgbd, "DepthMapFactor: 5000.0\n", ""));
   EXPECT_NEAR(stereo.baseline, 40 / 517.306408123, 1e-12);
-  EXPECT_EQ(Read(With(With(kOldRgbd, "Camera.width: 640\n", ""), "Camera.height: 480\n", "")).left.width,
-            0);
+  EXPECT_EQ(
+      Read(With(With(kOldRgbd, "Camera.width: 640\n", ""), "Camera.height: 480\n", "")).left.width,
+      0);
 }
 
 TEST(OrbSlamSettings, NewOnesAreRead) {
@@ -113,7 +114,8 @@ TEST(OrbSlamSettings, NewOnesAreRead) {
   EXPECT_NEAR(c.right->distortion[3], 0.0003299517423931039, 1e-12);
   EXPECT_LT((c.T_left_right.t - Eigen::Vector3d(0.101012, 0.0019737, 0.0012345)).norm(), 1e-12);
   const Calibration rectified = Read(
-      "File.version: \"1.0\"\nCamera.type: \"Rectified\"\nCamera1.fx: 718.856\nCamera1.fy: 718.856\n"
+      "File.version: \"1.0\"\nCamera.type: \"Rectified\"\nCamera1.fx: 718.856\nCamera1.fy: "
+      "718.856\n"
       "Camera1.cx: 607.1928\nCamera1.cy: 185.2157\nStereo.b: 0.53716\nCamera.width: 1241\n"
       "Camera.height: 376\nCamera.fps: 10\n");
   EXPECT_EQ(rectified.baseline, 0.53716);
@@ -152,7 +154,8 @@ TEST(OrbSlamSettings, MistakesAreNamed) {
   EXPECT_THAT(Refusal(With(kNewStereo, "KannalaBrandt8", "Mei")),
               AllOf(HasSubstr("settings.yaml:4: ORB-SLAM"), HasSubstr("`Mei`"),
                     HasSubstr("KannalaBrandt8")));
-  EXPECT_THAT(Refusal(With(kOldRgbd, "Camera.fy: 516.469215456\n", "")), HasSubstr("`Camera.fy` is missing"));
+  EXPECT_THAT(Refusal(With(kOldRgbd, "Camera.fy: 516.469215456\n", "")),
+              HasSubstr("`Camera.fy` is missing"));
   EXPECT_THAT(Refusal(With(kOldRgbd, "DepthMapFactor: 5000.0", "DepthMapFactor: 0")),
               HasSubstr("`DepthMapFactor` must be positive"));
 }
@@ -196,7 +199,8 @@ TEST(StellaSettings, AreRead) {
   EXPECT_EQ(Read(With(kStella, "\"stereo\"", "\"RGBD\"")).baseline, 0);
   // OpenVSLAM, its predecessor
   const Calibration old = Read(
-      "Camera.name: \"x\"\nCamera.setup: \"monocular\"\nCamera.model: \"fisheye\"\nCamera.fx: 300.5\n"
+      "Camera.name: \"x\"\nCamera.setup: \"monocular\"\nCamera.model: \"fisheye\"\nCamera.fx: "
+      "300.5\n"
       "Camera.fy: 301.5\nCamera.cx: 320\nCamera.cy: 240\nCamera.k1: 0.01\nCamera.k2: -0.002\n"
       "Camera.k3: 0\nCamera.k4: 0.0001\nCamera.fps: 25\nCamera.cols: 640\nCamera.rows: 480\n");
   EXPECT_EQ(old.left.lens, Lens::kFisheye);
@@ -206,7 +210,8 @@ TEST(StellaSettings, AreRead) {
 
 TEST(StellaSettings, UnrectifiedPairsAreRead) {
   std::string text = kStella;
-  for (const char* k : {"k1: -0.28340811", "k2: 0.07395907", "p1: 0.00019359", "p2: 1.76187114e-05"})
+  for (const char* k :
+       {"k1: -0.28340811", "k2: 0.07395907", "p1: 0.00019359", "p2: 1.76187114e-05"})
     text = With(text, k, std::string(k).substr(0, 4) + "0.0");
   text +=
       "StereoRectifier:\n  model: \"perspective\"\n"
@@ -224,9 +229,10 @@ TEST(StellaSettings, UnrectifiedPairsAreRead) {
 }
 
 TEST(StellaSettings, PanoramasAreRefused) {
-  EXPECT_THAT(Refusal("Camera:\n  setup: monocular\n  model: equirectangular\n  cols: 1920\n  rows: 960\n"),
-              AllOf(HasSubstr("settings.yaml:3: stella_vslam"), HasSubstr("`equirectangular`"),
-                    HasSubstr("perspective images")));
+  EXPECT_THAT(
+      Refusal("Camera:\n  setup: monocular\n  model: equirectangular\n  cols: 1920\n  rows: 960\n"),
+      AllOf(HasSubstr("settings.yaml:3: stella_vslam"), HasSubstr("`equirectangular`"),
+            HasSubstr("perspective images")));
   EXPECT_THAT(Refusal(With(kStella, "perspective", "radial_division")),
               AllOf(HasSubstr("`model`"), HasSubstr("`radial_division`")));
 }
@@ -253,13 +259,16 @@ TEST(EurocSensor, IsReadOnItsOwn) {
 }
 
 std::string Basalt(const std::string& type, const std::string& values) {
-  const std::string camera = R"({"camera_type": ")" + type + R"(", "intrinsics": {"fx": 349.7560023050409,
- "fy": 348.72454229977037, "cx": 365.89440762590149, "cy": 249.32995565708704)" + values + "}}";
+  const std::string camera = R"({"camera_type": ")" + type +
+                             R"(", "intrinsics": {"fx": 349.7560023050409,
+ "fy": 348.72454229977037, "cx": 365.89440762590149, "cy": 249.32995565708704)" +
+                             values + "}}";
   return R"({"value0": {
   "T_imu_cam": [
     {"px": -0.0168, "py": -0.0689, "pz": 0.0051, "qx": 0, "qy": 0, "qz": 0.7071067811865476, "qw": 0.7071067811865476},
     {"px": -0.0168, "py": 0.0411, "pz": 0.0051, "qx": 0, "qy": 0, "qz": 0.7071067811865476, "qw": 0.7071067811865476}],
-  "intrinsics": [)" + camera + ",\n" + camera + R"(],
+  "intrinsics": [)" +
+         camera + ",\n" + camera + R"(],
   "resolution": [[752, 480], [752, 480]],
   "calib_accel_bias": [0, 0, 0], "vignette": []}})";
 }
@@ -283,8 +292,9 @@ TEST(BasaltCalibration, IsRead) {
 }
 
 TEST(BasaltCalibration, OtherModelsAreApproximatedOrRefused) {
-  for (const auto& [type, values] : std::map<std::string, std::string>{
-           {"ds", R"(, "xi": -0.2409, "alpha": 0.5667)"}, {"eucm", R"(, "alpha": 0.6, "beta": 1.1)"}}) {
+  for (const auto& [type, values] :
+       std::map<std::string, std::string>{{"ds", R"(, "xi": -0.2409, "alpha": 0.5667)"},
+                                          {"eucm", R"(, "alpha": 0.6, "beta": 1.1)"}}) {
     const Calibration c = Read(Basalt(type, values));
     EXPECT_EQ(c.left.lens, Lens::kFisheye) << type;
     EXPECT_THAT(c.told, AllOf(HasSubstr(type), HasSubstr("largest error in the image")));

@@ -112,10 +112,9 @@ bool IsOwn(const YAML::Node& root) {
 }
 
 // Asked in this order; Alidade's own names are the least specific.
-constexpr std::array kFormats = {&kKalibrFormat, &kEurocFormat,      &kRosFormat,
-                                 &kOrbSlamFormat, &kStellaFormat,     &kNerfstudioFormat,
-                                 &kRealSenseFormat, &kOakFormat,      &kBasaltFormat,
-                                 &kOpenCvFormat};
+constexpr std::array kFormats = {
+    &kKalibrFormat,     &kEurocFormat,     &kRosFormat, &kOrbSlamFormat, &kStellaFormat,
+    &kNerfstudioFormat, &kRealSenseFormat, &kOakFormat, &kBasaltFormat,  &kOpenCvFormat};
 
 std::string KnownFormats() {
   std::string names = "camera.yaml of Alidade, COLMAP cameras.txt";

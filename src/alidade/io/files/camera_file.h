@@ -16,8 +16,8 @@ inline constexpr double kDefaultFovDegrees = 66;
 // Calibration files may be long where they list images (transforms.json).
 inline constexpr size_t kMostCalibrationBytes = size_t{1} << 24;
 
-// Reads camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1 p2
-// k3]` (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter, seconds from the top to the
+// Reads camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1
+// p2 k3]` (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter, seconds from the top to the
 // bottom row, or [left to right, top to bottom]), `depth_factor`, and for a stereo pair `baseline`
 // (meters) or `right: {width …, T_left_right: 4x4}`; and the calibrations of other tools that
 // calibrations/formats.h lists, recognized by their content. `path#NAME` chooses a camera of a file

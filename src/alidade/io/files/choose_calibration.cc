@@ -43,10 +43,13 @@ Calibration FitToSize(Calibration calibration, cv::Size size) {
   const auto tell = [&](const std::string& sentence) {
     calibration.told += (calibration.told.empty() ? "" : "\n") + sentence;
   };
-  const std::string was = SizeText(left.width, left.height), now = SizeText(size.width, size.height);
+  const std::string was = SizeText(left.width, left.height),
+                    now = SizeText(size.width, size.height);
   if (left.width == 0) {
-    tell(calibration.origin + " does not state the size of its images; taken as that of the "
-         "recording, " + now);
+    tell(calibration.origin +
+         " does not state the size of its images; taken as that of the "
+         "recording, " +
+         now);
     for (RawCamera* camera : {&left, calibration.right ? &*calibration.right : nullptr}) {
       if (!camera) continue;
       camera->width = size.width;

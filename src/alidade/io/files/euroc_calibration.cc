@@ -20,8 +20,9 @@ std::vector<double> ListOf(const YamlFile& file, const char* key, size_t least, 
 Lens LensOf(const YamlFile& file) {
   const YAML::Node model = file.Need(file.root(), "camera_model");
   if (file.Text(model, "camera_model") != "pinhole") {
-    file.Fail(model, "only the camera_model `pinhole` is known, not `" + model.Scalar() +
-                         "`: calibrate as pinhole, wide lenses with the distortion_model equidistant");
+    file.Fail(model,
+              "only the camera_model `pinhole` is known, not `" + model.Scalar() +
+                  "`: calibrate as pinhole, wide lenses with the distortion_model equidistant");
   }
   const YAML::Node node = file.root()["distortion_model"];
   const std::string name = node ? file.Text(node, "distortion_model") : "none";

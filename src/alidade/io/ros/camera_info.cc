@@ -83,8 +83,7 @@ std::optional<RawCamera> CameraOfInfo(const CameraInfo& info, bool rectified, st
   camera.cx = rectified ? info.P[2] : info.K[2];
   camera.cy = rectified ? info.P[6] : info.K[5];
   if (camera.fx == 0) return std::nullopt;
-  if (!(camera.fx > 0 && camera.fy > 0))
-    ThrowInput("has focal lengths that are not positive");
+  if (!(camera.fx > 0 && camera.fy > 0)) ThrowInput("has focal lengths that are not positive");
   if (!rectified) {
     const std::string approximated = SetLens(info, camera);
     if (told) *told = approximated;

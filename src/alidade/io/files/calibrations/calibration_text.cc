@@ -43,9 +43,10 @@ std::string WithoutPoses(const std::string& text, const std::string& name) {
 YamlFile YamlOfCalibration(const std::string& text, const std::string& name) {
   const std::string_view start = std::string_view(text).substr(0, 2);
   if (start == "\xff\xfe" || start == "\xfe\xff" || text.find('\0') != std::string::npos) {
-    ThrowInput(name +
-               " is not a text file: calibrations are YAML, JSON, XML or text (COLMAP's cameras.bin "
-               "becomes text by colmap model_converter --output_type TXT)");
+    ThrowInput(
+        name +
+        " is not a text file: calibrations are YAML, JSON, XML or text (COLMAP's cameras.bin "
+        "becomes text by colmap model_converter --output_type TXT)");
   }
   const size_t begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
   const bool json = begin != std::string::npos && text[begin] == '{';

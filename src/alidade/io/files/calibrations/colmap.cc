@@ -34,8 +34,9 @@ constexpr char kKnown[] =
     "RADIAL_FISHEYE and OPENCV_FISHEYE";
 
 bool IsWord(std::string_view text) {
-  return text.size() >= 3 && text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
-                                 std::string_view::npos &&
+  return text.size() >= 3 &&
+         text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789") ==
+             std::string_view::npos &&
          std::isalpha(static_cast<unsigned char>(text[0])) != 0;
 }
 
@@ -55,8 +56,7 @@ class Line {
   std::string Text(size_t i) const { return std::string(fields_[i].substr(0, 40)); }
   double Number(size_t i) const {
     const auto number = ParseNumber(fields_[i]);
-    if (!number || !(std::abs(*number) <= 1e9))
-      Fail("`" + Text(i) + "` is not a number below 1e9");
+    if (!number || !(std::abs(*number) <= 1e9)) Fail("`" + Text(i) + "` is not a number below 1e9");
     return *number;
   }
   int Side(size_t i) const {
@@ -74,9 +74,8 @@ class Line {
 RawCamera ReadLine(const Line& line, std::string& told) {
   if (line.size() < 4) line.Fail("expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]");
   const std::string model = line.Text(1);
-  const auto* lens =
-      std::find_if(std::begin(kColmapLenses), std::end(kColmapLenses),
-                   [&](const ColmapLens& known) { return model == known.name; });
+  const auto* lens = std::find_if(std::begin(kColmapLenses), std::end(kColmapLenses),
+                                  [&](const ColmapLens& known) { return model == known.name; });
   if (lens == std::end(kColmapLenses)) {
     line.Fail("the MODEL `" + model + "` is not supported; supported are " + kKnown +
               ": undistort the images (colmap image_undistorter) or choose one of these with "

@@ -52,7 +52,8 @@ void SetSize(const YamlFile& file, const YAML::Node& parent, const std::string& 
 
 void SetResolution(const YamlFile& file, const YAML::Node& list, const std::string& key,
                    RawCamera& camera) {
-  if (!list.IsSequence() || list.size() != 2) file.Fail(list, "`" + key + "` must be [width, height]");
+  if (!list.IsSequence() || list.size() != 2)
+    file.Fail(list, "`" + key + "` must be [width, height]");
   camera.width = file.PositiveInteger(list[0], key);
   camera.height = file.PositiveInteger(list[1], key);
   file.CheckSize(list, camera.width, camera.height);

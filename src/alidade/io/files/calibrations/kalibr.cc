@@ -47,18 +47,19 @@ RawCamera ReadKalibrCamera(const YamlFile& file, const YAML::Node& node, std::st
     }
     // Kalibr has the shape parameters first: [xi, alpha, fx, fy, cx, cy].
     auto ordered = values;
-    if (ordered.size() > 4)
-      std::rotate(ordered.begin(), ordered.end() - 4, ordered.end());
+    if (ordered.size() > 4) std::rotate(ordered.begin(), ordered.end() - 4, ordered.end());
     SetRadialModel(file, model, "camera_model", name, intrinsics, "intrinsics", ordered,
                    "calibrate again with `--models pinhole-equi`", camera, told);
     return camera;
   }
   SetIntrinsics(file, intrinsics, "intrinsics", camera);
   if (lens == "radtan") {
-    if (k.size() != 4) file.Fail(coeffs ? coeffs : node, "`distortion_coeffs` of radtan must be [k1, k2, p1, p2]");
+    if (k.size() != 4)
+      file.Fail(coeffs ? coeffs : node, "`distortion_coeffs` of radtan must be [k1, k2, p1, p2]");
     SetOpenCvLens(file, coeffs, "distortion_coeffs", k, camera, told);
   } else if (lens == "equi" || lens == "equidistant") {
-    if (k.size() != 4) file.Fail(coeffs ? coeffs : node, "`distortion_coeffs` of equi must be [k1, k2, k3, k4]");
+    if (k.size() != 4)
+      file.Fail(coeffs ? coeffs : node, "`distortion_coeffs` of equi must be [k1, k2, k3, k4]");
     SetFisheyeLens(file, coeffs, "distortion_coeffs", k, camera);
   } else if (lens == "fov") {
     if (k.size() != 1) file.Fail(coeffs ? coeffs : node, "`distortion_coeffs` of fov must be [w]");

@@ -35,8 +35,8 @@ double LargestError(const RawCamera& fitted, const RawCamera& camera,
 // OpenCV's camera model with up to 14 coefficients (calib3d documentation, "detailed description").
 Eigen::Vector2d ProjectOpenCv(const std::array<double, 14>& k, double x, double y) {
   const double r2 = x * x + y * y;
-  const double radial = (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) /
-                        (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
+  const double radial =
+      (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
   const Eigen::Vector2d bent(
       x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x) + r2 * (k[8] + r2 * k[9]),
       y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y + r2 * (k[10] + r2 * k[11]));
@@ -154,9 +154,9 @@ std::string ApproximateLens(const std::string& model, const LensSamples& samples
 
 std::string SetOpenCvLens(std::span<const double> coefficients, RawCamera& camera) {
   const auto zero_from = [&](size_t first) {
-    return std::all_of(coefficients.begin() +
-                           static_cast<std::ptrdiff_t>(std::min(first, coefficients.size())),
-                       coefficients.end(), [](double k) { return k == 0; });
+    return std::all_of(
+        coefficients.begin() + static_cast<std::ptrdiff_t>(std::min(first, coefficients.size())),
+        coefficients.end(), [](double k) { return k == 0; });
   };
   camera.lens = Lens::kPinhole;
   camera.distortion = {};

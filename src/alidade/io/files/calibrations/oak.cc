@@ -19,7 +19,7 @@ std::map<std::string, YAML::Node> CamerasOf(const YamlFile& file) {
   std::map<std::string, YAML::Node> cameras;
   const auto add = [&](const YAML::Node& socket, const YAML::Node& camera) {
     if (!camera.IsMap()) file.Fail(camera, "`cameraData` must contain [socket, camera] pairs");
-    cameras[file.Text(socket, "cameraData")] = camera;
+    cameras.emplace(file.Text(socket, "cameraData"), camera);
   };
   if (data.IsMap()) {
     for (const auto& entry : data) add(entry.first, entry.second);
@@ -69,9 +69,9 @@ std::optional<Se3> PoseInOther(const YamlFile& file, const YAML::Node& node, std
   const auto t = [&](const char* key) {
     return kMetersPerUnit * file.Number(file.Need(translation, key), key);
   };
-  return file.Transform(rotation, "rotationMatrix",
-                        {R[0], R[1], R[2], t("x"), R[3], R[4], R[5], t("y"), R[6], R[7], R[8],
-                         t("z"), 0, 0, 0, 1});
+  return file.Transform(
+      rotation, "rotationMatrix",
+      {R[0], R[1], R[2], t("x"), R[3], R[4], R[5], t("y"), R[6], R[7], R[8], t("z"), 0, 0, 0, 1});
 }
 
 Calibration ReadOak(const YamlFile& file, const std::string& which) {
@@ -82,13 +82,13 @@ Calibration ReadOak(const YamlFile& file, const std::string& which) {
   if (which.empty() && cameras.size() == 1) chosen = cameras.begin();
   if (chosen == cameras.end()) {
     const std::string example = cameras.begin()->first;
-    file.Fail(file.root()["cameraData"],
-              (which.empty() ? "has the camera sockets " + names +
-                                   " (0 or CAM_A: color, 1 or CAM_B: left with the right one, 2 or "
-                                   "CAM_C: right): choose"
-                             : "there is no camera socket `" + which + "`, only " + names +
-                                   ": choose") +
-                  " one, for instance --camera " + file.path() + "#" + example);
+    file.Fail(
+        file.root()["cameraData"],
+        (which.empty() ? "has the camera sockets " + names +
+                             " (0 or CAM_A: color, 1 or CAM_B: left with the right one, 2 or "
+                             "CAM_C: right): choose"
+                       : "there is no camera socket `" + which + "`, only " + names + ": choose") +
+            " one, for instance --camera " + file.path() + "#" + example);
   }
   Calibration calibration;
   calibration.left = ReadOakCamera(file, chosen->second, calibration.told);

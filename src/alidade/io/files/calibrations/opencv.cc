@@ -8,11 +8,17 @@
 namespace alidade {
 namespace {
 
-constexpr std::array kMatrixNames = {"camera_matrix", "cameraMatrix", "Camera_Matrix",
-                                     "CameraMatrix",  "intrinsic_matrix", "camMatrix", "mtx", "K"};
-constexpr std::array kDistortionNames = {
-    "distortion_coefficients", "distortionCoefficients", "Distortion_Coefficients",
-    "dist_coeffs", "distCoeffs", "distortion", "dist", "D"};
+constexpr std::array kMatrixNames = {
+    "camera_matrix",    "cameraMatrix", "Camera_Matrix", "CameraMatrix",
+    "intrinsic_matrix", "camMatrix",    "mtx",           "K"};
+constexpr std::array kDistortionNames = {"distortion_coefficients",
+                                         "distortionCoefficients",
+                                         "Distortion_Coefficients",
+                                         "dist_coeffs",
+                                         "distCoeffs",
+                                         "distortion",
+                                         "dist",
+                                         "D"};
 constexpr std::array kWidthNames = {"image_width", "image_Width", "imageWidth", "width"};
 constexpr std::array kHeightNames = {"image_height", "image_Height", "imageHeight", "height"};
 constexpr std::array kSizeNames = {"image_size", "imageSize", "resolution", "size"};
@@ -60,7 +66,8 @@ bool IsFisheye(const YamlFile& file) {
     if (name != "pinhole" && name != "perspective" && name != "opencv" && name != "radtan" &&
         name != "plumb_bob" && name != "rational_polynomial" && name != "none" && !name.empty())
       file.Fail(root[key], std::string("`") + key + "` must be pinhole or fisheye, not `" +
-                               name.substr(0, 40) + "`: calibrate with cv::calibrateCamera or "
+                               name.substr(0, 40) +
+                               "`: calibrate with cv::calibrateCamera or "
                                "cv::fisheye::calibrate");
   }
   return false;
@@ -91,8 +98,8 @@ Calibration ReadOpenCv(const YamlFile& file, const std::string& which) {
   const YAML::Node& root = file.root();
   Calibration calibration;
   if (!IsPair(root)) {
-    FillCamera(file, FirstOf(root, kMatrixNames), FirstOf(root, kDistortionNames),
-               calibration.left, calibration.told);
+    FillCamera(file, FirstOf(root, kMatrixNames), FirstOf(root, kDistortionNames), calibration.left,
+               calibration.told);
     return calibration;
   }
   // cv::stereoCalibrate(): p_right = R p_left + T, in the unit of the target's squares.
@@ -107,11 +114,10 @@ Calibration ReadOpenCv(const YamlFile& file, const std::string& which) {
                              " long: divide it by 1000 if the target's squares were given in "
                              "millimeters");
   }
-  calibration.T_left_right =
-      file.Transform(root["R"], "R",
-                     {R[0], R[1], R[2], T[0], R[3], R[4], R[5], T[1], R[6], R[7], R[8], T[2], 0, 0,
-                      0, 1})
-          .Inverse();
+  calibration.T_left_right = file.Transform(root["R"], "R",
+                                            {R[0], R[1], R[2], T[0], R[3], R[4], R[5], T[1], R[6],
+                                             R[7], R[8], T[2], 0, 0, 0, 1})
+                                 .Inverse();
   calibration.right = right;
   return calibration;
 }

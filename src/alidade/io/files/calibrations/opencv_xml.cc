@@ -28,15 +28,17 @@ class Converter {
 
  private:
   [[noreturn]] void Fail(const std::string& what) const {
-    const auto line = std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
+    const auto line =
+        std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(at_), '\n');
     ThrowInput(name_ + ":" + std::to_string(line + 1) + ": " + what);
   }
   bool Starts(std::string_view with) const { return text_.substr(at_, with.size()) == with; }
   void Move(size_t to) {
     if (to == std::string_view::npos) Fail("the XML ends too early: the file is damaged");
-    out_.append(static_cast<size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
-                                               text_.begin() + static_cast<std::ptrdiff_t>(to), '\n')),
-                '\n');
+    out_.append(
+        static_cast<size_t>(std::count(text_.begin() + static_cast<std::ptrdiff_t>(at_),
+                                       text_.begin() + static_cast<std::ptrdiff_t>(to), '\n')),
+        '\n');
     at_ = to;
   }
   // White space, comments and <?…?>.
@@ -58,7 +60,8 @@ class Converter {
     empty_ = !tag.empty() && tag.back() == '/';
     if (empty_) tag.remove_suffix(1);
     const std::string_view name = tag.substr(0, tag.find_first_of(kBlank));
-    if (name.empty() || name.size() > 100 || name.find_first_of("\"\\<&/{}") != std::string_view::npos)
+    if (name.empty() || name.size() > 100 ||
+        name.find_first_of("\"\\<&/{}") != std::string_view::npos)
       Fail("an element without a name");
     Move(end + 1);
     return std::string(name);

@@ -24,7 +24,8 @@ Lens OrbSlamLens(const YamlFile& file) {
   return Lens::kPinhole;
 }
 
-RawCamera ReadCamera(const YamlFile& file, const std::string& prefix, Lens lens, std::string& told) {
+RawCamera ReadCamera(const YamlFile& file, const std::string& prefix, Lens lens,
+                     std::string& told) {
   const YAML::Node& root = file.root();
   RawCamera camera;
   if (root["Camera.width"] || root["Camera.height"])
@@ -60,8 +61,7 @@ CameraInfo InfoOf(const YamlFile& file, const std::string& side) {
   info.width = static_cast<uint32_t>(camera.width);
   info.height = static_cast<uint32_t>(camera.height);
   const auto fill = [&](const char* name, auto& matrix) {
-    const auto numbers =
-        MatrixOf(file, file.Need(root, side + name), side + name, matrix.size());
+    const auto numbers = MatrixOf(file, file.Need(root, side + name), side + name, matrix.size());
     std::copy(numbers.begin(), numbers.end(), matrix.begin());
   };
   fill("K", info.K);

@@ -68,7 +68,8 @@ void SetRadialModel(const YamlFile& file, const YAML::Node& model, const std::st
     require(a >= 0 && a <= 1, "alpha must be from 0 to 1");
     project = [=](const Eigen::Vector3d& p) { return ProjectUnified(a, 1, p); };
   } else if (name == "omni") {
-    // f (x, y) / (z + xi d) = f / (1 + xi) (x, y) / (alpha d + (1 - alpha) z), alpha = xi / (1 + xi)
+    // f (x, y) / (z + xi d) = f / (1 + xi) (x, y) / (alpha d + (1 - alpha) z), alpha = xi / (1 +
+    // xi)
     require(a >= 0 && a < 1e3, "xi must not be negative");
     camera.fx /= 1 + a;
     camera.fy /= 1 + a;

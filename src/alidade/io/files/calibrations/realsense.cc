@@ -22,9 +22,9 @@ bool IsRealSense(const YAML::Node& root) {
 // "distortion.inverse_brown_conrady", "RS2_DISTORTION_BROWN_CONRADY", "Inverse Brown Conrady" and
 // rs2_distortion's number, all as "inverse_brown_conrady".
 std::string ModelName(const YamlFile& file, const YAML::Node& node) {
-  static constexpr std::array kNumbered = {"none",   "modified_brown_conrady",
-                                           "inverse_brown_conrady", "ftheta",
-                                           "brown_conrady", "kannala_brandt4"};
+  static constexpr std::array kNumbered = {
+      "none",   "modified_brown_conrady", "inverse_brown_conrady",
+      "ftheta", "brown_conrady",          "kannala_brandt4"};
   std::string name = file.Text(node, "model").substr(0, 60);
   for (char& c : name) {
     c = c == ' ' || c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -59,7 +59,8 @@ LensSamples SampleInverse(const RawCamera& camera, const std::vector<double>& k)
 void FillLens(const YamlFile& file, const YAML::Node& node, RawCamera& camera, std::string& told) {
   const YAML::Node coeffs = node["coeffs"];
   auto k = coeffs && !coeffs.IsNull() ? MatrixOf(file, coeffs, "coeffs", 0) : std::vector<double>();
-  if (k.size() > 5) file.Fail(coeffs, "`coeffs` must have 5 numbers, not " + std::to_string(k.size()));
+  if (k.size() > 5)
+    file.Fail(coeffs, "`coeffs` must have 5 numbers, not " + std::to_string(k.size()));
   k.resize(5);
   const YAML::Node model = node["model"];
   const std::string name = model ? ModelName(file, model) : "none";
@@ -68,7 +69,8 @@ void FillLens(const YamlFile& file, const YAML::Node& node, RawCamera& camera, s
     SetFisheyeLens(file, coeffs ? coeffs : node, "coeffs", {k.begin(), k.begin() + 4}, camera);
   } else if (!bent) {
     return;
-  } else if (name == "brown_conrady" || (name == "modified_brown_conrady" && k[2] == 0 && k[3] == 0)) {
+  } else if (name == "brown_conrady" ||
+             (name == "modified_brown_conrady" && k[2] == 0 && k[3] == 0)) {
     SetOpenCvLens(file, coeffs, "coeffs", k, camera, told);
   } else if (name == "inverse_brown_conrady") {
     try {
@@ -77,10 +79,12 @@ void FillLens(const YamlFile& file, const YAML::Node& node, RawCamera& camera, s
       file.Fail(model, std::string("`model` ") + error.what());
     }
   } else {
-    file.Fail(model ? model : node,
-              "`model` must be none, brown_conrady, inverse_brown_conrady or kannala_brandt4, not `" +
-                  name.substr(0, 40) + "`, because `coeffs` are not 0: record another stream, or calibrate "
-                  "with a target");
+    file.Fail(
+        model ? model : node,
+        "`model` must be none, brown_conrady, inverse_brown_conrady or kannala_brandt4, not `" +
+            name.substr(0, 40) +
+            "`, because `coeffs` are not 0: record another stream, or calibrate "
+            "with a target");
   }
 }
 
@@ -100,7 +104,7 @@ Calibration ReadRealSense(const YamlFile& file, const std::string& which) {
                           file.path() + "#" + first);
     if (!node[chosen] || !IsIntrinsics(node[chosen]))
       file.Fail(node, "there is no stream `" + chosen + "`, only " + names);
-    node = node[chosen];
+    node.reset(node[chosen]);  // an assignment would change the document
   } else {
     RefuseChoice(file, which);
   }

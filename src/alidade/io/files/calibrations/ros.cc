@@ -90,8 +90,10 @@ Calibration ReadRos(const YamlFile& file, const std::string& which) {
     const std::string P = NameIn(root, kP);
     calibration.baseline = -info.P[3] / info.P[0];
     if (!(calibration.baseline > 0 && calibration.baseline < 100)) {
-      file.Fail(root[P], "`" + P + "`: the baseline -P(0,3) / P(0,0) must be between 0 and 100 m, "
-                         "not " + std::to_string(calibration.baseline) +
+      file.Fail(root[P], "`" + P +
+                             "`: the baseline -P(0,3) / P(0,0) must be between 0 and 100 m, "
+                             "not " +
+                             std::to_string(calibration.baseline) +
                              "; give the file of the right camera");
     }
   }

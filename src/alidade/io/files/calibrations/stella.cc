@@ -50,8 +50,18 @@ CameraInfo InfoOf(const YamlFile& file, const Section& section, const std::strin
   }
   RawCamera checked;
   SetMatrix(file, section.map[need("K_")], need("K_"), {info.K.begin(), info.K.end()}, checked);
-  info.P = {rectified.fx, 0, rectified.cx, -rectified.fx * baseline, 0, rectified.fy, rectified.cy,
-            0, 0, 0, 1, 0};
+  info.P = {rectified.fx,
+            0,
+            rectified.cx,
+            -rectified.fx * baseline,
+            0,
+            rectified.fy,
+            rectified.cy,
+            0,
+            0,
+            0,
+            1,
+            0};
   return info;
 }
 
@@ -89,11 +99,11 @@ void FillLens(const YamlFile& file, const Section& section, Calibration& calibra
                    {coefficient("k1"), coefficient("k2"), coefficient("k3"), coefficient("k4")},
                    calibration.left);
   } else {
-    file.Fail(model, "`" + model_key + "` must be perspective or fisheye, not `" +
-                         name.substr(0, 40) + "`: " +
-                         (name == "equirectangular"
-                              ? "cut perspective images out of the panorama first"
-                              : "calibrate the camera as one of these"));
+    file.Fail(model,
+              "`" + model_key + "` must be perspective or fisheye, not `" + name.substr(0, 40) +
+                  "`: " +
+                  (name == "equirectangular" ? "cut perspective images out of the panorama first"
+                                             : "calibrate the camera as one of these"));
   }
 }
 

@@ -118,8 +118,9 @@ RawCamera WithoutK3(const RawCamera& camera, std::string& told) {
   char error[40];
   PrintTo(error, sizeof error, "%.2g pixels", fit.error);
   if (!samples.whole || !(fit.error <= kMostMisfit)) {
-    ThrowUsage(std::string("Kalibr's radtan has no k3, and without it the distortion would be wrong by ") +
-               error + ": write ros or opencv instead");
+    ThrowUsage(
+        std::string("Kalibr's radtan has no k3, and without it the distortion would be wrong by ") +
+        error + ": write ros or opencv instead");
   }
   Tell(told, std::string("Kalibr's radtan has no k3; largest error in the image: ") + error);
   return fit.camera;
@@ -137,11 +138,11 @@ std::string KalibrCamera(const RawCamera& given, int number, const Se3* T_this_b
       text += "  - [" + Joined(std::span(values).subspan(4 * row, 4)) + "]\n";
   }
   text += "  camera_model: pinhole\n  distortion_coeffs: [" +
-          Joined(std::span(camera.distortion).first(4)) + "]\n  distortion_model: " +
-          (IsFisheye(camera) ? "equi" : "radtan") + "\n  intrinsics: [" +
-          Joined(std::array{camera.fx, camera.fy, camera.cx, camera.cy}) + "]\n  resolution: [" +
-          std::to_string(camera.width) + ", " + std::to_string(camera.height) +
-          "]\n  rostopic: /" + name + "/image_raw\n";
+          Joined(std::span(camera.distortion).first(4)) +
+          "]\n  distortion_model: " + (IsFisheye(camera) ? "equi" : "radtan") +
+          "\n  intrinsics: [" + Joined(std::array{camera.fx, camera.fy, camera.cx, camera.cy}) +
+          "]\n  resolution: [" + std::to_string(camera.width) + ", " +
+          std::to_string(camera.height) + "]\n  rostopic: /" + name + "/image_raw\n";
   return text;
 }
 
@@ -199,8 +200,7 @@ std::string OpenCvText(const Calibration& c) {
   std::vector<double> R;
   for (int i = 0; i < 9; ++i) R.push_back(T_right_left.R(i / 3, i % 3));
   return text + camera(c.left, "M1", "D1") + camera(*right, "M2", "D2") +
-         OpenCvMatrix("R", 3, 3, R) +
-         OpenCvMatrix("T", 3, 1, std::span(T_right_left.t.data(), 3));
+         OpenCvMatrix("R", 3, 3, R) + OpenCvMatrix("T", 3, 1, std::span(T_right_left.t.data(), 3));
 }
 
 // The pixel origin is the image's corner: half a pixel is added.
@@ -245,9 +245,15 @@ WrittenCalibration FormatCalibration(const Calibration& calibration, Calibration
                              " file has one camera: only the left one is written");
   };
   switch (style) {
-    case CalibrationStyle::kAlidade: written.text = head + OwnText(calibration); break;
-    case CalibrationStyle::kKalibr: written.text = head + KalibrText(calibration, written.told); break;
-    case CalibrationStyle::kOpenCv: written.text = kOpenCvStart + head + OpenCvText(calibration); break;
+    case CalibrationStyle::kAlidade:
+      written.text = head + OwnText(calibration);
+      break;
+    case CalibrationStyle::kKalibr:
+      written.text = head + KalibrText(calibration, written.told);
+      break;
+    case CalibrationStyle::kOpenCv:
+      written.text = kOpenCvStart + head + OpenCvText(calibration);
+      break;
     case CalibrationStyle::kRos:
       one_of_pair();
       written.text = head + RosText(calibration.left);

@@ -49,7 +49,8 @@ std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& cho
     const RosCameraInfo left = read(chosen.info);
     Calibration calibration;
     calibration.origin = path + ", " + topic;
-    const std::optional<RawCamera> camera = CameraOfInfo(left, chosen.image.rectified, &calibration.told);
+    const std::optional<RawCamera> camera =
+        CameraOfInfo(left, chosen.image.rectified, &calibration.told);
     if (!camera) {
       LogWarning(calibration.origin + " is of an uncalibrated camera (K is 0)");
       return std::nullopt;
@@ -60,8 +61,8 @@ std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& cho
           AddRightCamera(left, read(chosen.right_info), chosen.image.rectified, calibration);
     return calibration;
   } catch (const Error& error) {
-    throw Error(error.kind(), path + ": " + topic + " " + error.what() +
-                                  " (or use a camera file: --camera)");
+    throw Error(error.kind(),
+                path + ": " + topic + " " + error.what() + " (or use a camera file: --camera)");
   }
 }
 
