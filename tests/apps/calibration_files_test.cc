@@ -140,7 +140,8 @@ TEST(CalibrationFiles, ColmapReadsTheWrittenOne) {
         0);
     std::ofstream(in + "/images.txt") << "";
     std::ofstream(in + "/points3D.txt") << "";
-    const ProgramResult converted = colmap({"model_converter", "--input_path", in, "--output_path", out, "--output_type", "TXT"});
+    const ProgramResult converted = colmap(
+        {"model_converter", "--input_path", in, "--output_path", out, "--output_type", "TXT"});
     ASSERT_EQ(converted.status, 0) << converted.out << converted.err;
     ExpectCamera(ReadCameraFile(out + "/cameras.txt").left, ReadCameraFile(own).left);
   }

@@ -86,7 +86,8 @@ TEST(CameraInfo, OfARationalLensComesWithinHalfAPixel) {
 TEST(CameraInfo, OfATiltedLensComesWithinHalfAPixel) {
   InfoFields info = Wide();
   info.model = "rational_polynomial";
-  info.D = {0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01, 0, 1e-4, -2e-5, -1e-4, 1e-5, 1e-4, -2e-4};
+  info.D = {0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01,
+            0,   1e-4,  -2e-5,  -1e-4,   1e-5, 1e-4, -2e-4};
   EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 0.55);
 }
 
