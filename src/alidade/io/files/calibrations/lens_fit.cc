@@ -57,8 +57,14 @@ LensSamples SampleLens(const RawCamera& camera, const LensProjection& project) {
   const double v = std::max(camera.cy + 0.5, camera.height - 0.5 - camera.cy) / camera.fy;
   const double step = std::min(std::hypot(u, v), std::numbers::pi) / kSteps;  // radians
   LensSamples out;
-  for (int ray = 0; ray < kRays; ++ray) {
-    const double turn = 2 * std::numbers::pi * ray / kRays;
+  std::vector<double> turns;
+  for (int ray = 0; ray < kRays; ++ray) turns.push_back(2 * std::numbers::pi * ray / kRays);
+  // Errors are largest in the corners.
+  for (const double x : {-0.5, camera.width - 0.5}) {
+    for (const double y : {-0.5, camera.height - 0.5})
+      turns.push_back(std::atan2((y - camera.cy) / camera.fy, (x - camera.cx) / camera.fx));
+  }
+  for (const double turn : turns) {
     const Eigen::Vector2d along(std::cos(turn), std::sin(turn));
     double last = 0;
     for (double angle = step; angle < std::numbers::pi; angle += step) {
