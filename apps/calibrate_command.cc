@@ -8,6 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
+#include "alidade/io/files/calibrations/write_calibration.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/file.h"
@@ -25,13 +26,23 @@ namespace {
 
 struct CalibrateOptions {
   std::vector<std::string> sources;
-  std::string out = "camera.yaml";
+  std::string camera;  // a calibration to convert instead
+  std::string to = "alidade";
+  std::string out;
   bool overwrite = false;
   RunOptions run;
 };
 
-// First lines of the file, which identify the recordings it was estimated from.
+CalibrationStyle StyleOf(const CalibrateOptions& options) {
+  const auto style = CalibrationStyleNamed(options.to);
+  if (!style) ThrowUsage("--to must be alidade, kalibr, ros, opencv or colmap, not " + options.to);
+  return *style;
+}
+
+// First lines of the file, which identify the recordings it was estimated from, or the file it was
+// converted from.
 std::string HeadOf(const CalibrateOptions& options) {
+  if (!options.camera.empty()) return "Converted by alidade calibrate from\n" + options.camera;
   std::string head = "Found by alidade calibrate from";
   for (const std::string& source : options.sources) head += "\n" + source;
   return head;
@@ -42,10 +53,12 @@ std::string HeadOf(const CalibrateOptions& options) {
 void CheckIsFree(const CalibrateOptions& options) {
   if (options.overwrite || !IsThere(options.out)) return;
   CheckIsNoResult(options.out);
-  std::string head = "# " + HeadOf(options) + "\nfield of view";
-  for (size_t at = 2; (at = head.find('\n', at)) != std::string::npos; at += 3)
-    head.insert(at + 1, "# ");
-  if (IsFile(options.out) && ReadFile(options.out).rfind(head, 0) == 0) return;
+  std::string head = "# " + HeadOf(options) + (options.camera.empty() ? "\nfield of view" : "\n");
+  for (size_t at = 2; (at = head.find('\n', at)) != std::string::npos; at += 3) {
+    if (at + 1 < head.size()) head.insert(at + 1, "# ");
+  }
+  if (IsFile(options.out) && CommentOfCalibration(ReadFile(options.out)).rfind(head, 0) == 0)
+    return;
   ThrowInput(options.out +
              " already exists and is not a calibration of these recordings: choose another file "
              "with --out, or replace it with --overwrite");
@@ -95,9 +108,32 @@ CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings
   return all;
 }
 
-int CalibrateCommand(const CalibrateOptions& options) {
+void Write(const Calibration& calibration, const std::string& comment,
+           const CalibrateOptions& options) {
+  const WrittenCalibration written = FormatCalibration(calibration, StyleOf(options), comment);
+  AtomicWriteFile(options.out, written.text);
+  if (options.run.quiet) return;
+  if (!written.told.empty()) std::printf("%s\n", written.told.c_str());
+  std::printf("Written to %s; to use it: alidade run RECORDING --camera %s\n", options.out.c_str(),
+              options.out.c_str());
+}
+
+int ConvertCommand(const CalibrateOptions& options) {
+  const Calibration calibration = ReadCameraFile(options.camera);
+  RequireSize(calibration);
+  if (!options.run.quiet && !calibration.told.empty())
+    std::printf("%s\n", calibration.told.c_str());
+  Write(calibration, HeadOf(options), options);
+  return 0;
+}
+
+int CalibrateCommand(CalibrateOptions options) {
   CatchInterrupts();
+  if (options.out.empty()) options.out = UsualFileName(StyleOf(options));
+  if (options.camera.empty() == options.sources.empty())
+    ThrowUsage("calibrate needs either recordings or --camera FILE, a calibration to convert");
   CheckIsFree(options);
+  if (!options.camera.empty()) return ConvertCommand(options);
   RunSettings settings = SettingsFrom(options.run);
   settings.slam.WaryOfTurns();
   SetThreadCount(options.run.threads);
@@ -130,12 +166,10 @@ int CalibrateCommand(const CalibrateOptions& options) {
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
-  AtomicWriteFile(options.out, FormatCameraFile(all.camera, HeadOf(options) + "\nfield of view " +
-                                                                CameraInWords(all) +
-                                                                (all.known ? "" : "\nuncertain")));
-  if (!options.run.quiet)
-    std::printf("Written to %s; to use it: alidade run RECORDING --camera %s\n",
-                options.out.c_str(), options.out.c_str());
+  Write(
+      CalibrationOf(all.camera),
+      HeadOf(options) + "\nfield of view " + CameraInWords(all) + (all.known ? "" : "\nuncertain"),
+      options);
   return 0;
 }
 
@@ -143,14 +177,25 @@ int CalibrateCommand(const CalibrateOptions& options) {
 
 void AddCalibrateCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "Estimate a camera's focal length and distortion from recordings");
+      "calibrate",
+      "Estimate a camera's focal length and distortion from recordings, or convert a calibration");
   const auto options = std::make_shared<CalibrateOptions>();
   command
       ->add_option("RECORDING", options->sources,
                    "Recordings of one camera: any source of `alidade run` except live cameras")
-      ->required()
       ->type_name("PATH");
-  command->add_option("--out", options->out, "Calibration file to write; default: camera.yaml")
+  command
+      ->add_option(
+          "--camera", options->camera,
+          "Convert this calibration, of any tool that `alidade run --camera` reads, instead "
+          "of estimating one")
+      ->type_name("FILE");
+  command->add_option("--to", options->to, "Format to write; default: alidade (camera.yaml)")
+      ->type_name("alidade|kalibr|ros|opencv|colmap");
+  command
+      ->add_option("--out", options->out,
+                   "Calibration file to write; default: camera.yaml, or the usual name of --to's "
+                   "format (camchain.yaml, camera_info.yaml, opencv.yaml, cameras.txt)")
       ->type_name("FILE");
   command->add_flag("--overwrite", options->overwrite,
                     "Replace an existing file, even a calibration of other recordings");
@@ -180,7 +225,9 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
       "\nNo calibration target is needed: a minute of walking in a furnished room, with sideways "
       "motion\nand turns, is enough. A calibration that belongs to the recording is "
       "ignored.\n\nExamples:\n  alidade calibrate walk.mp4\n  alidade calibrate monday.mp4 "
-      "tuesday.mp4 --out phone.yaml\n  alidade run wednesday.mp4 --camera phone.yaml\n\nExit "
+      "tuesday.mp4 --out phone.yaml\n  alidade run wednesday.mp4 --camera phone.yaml\n  alidade "
+      "calibrate "
+      "walk.mp4 --to kalibr\n  alidade calibrate --camera camchain.yaml --to ros\n\nExit "
       "status 4: the camera moved or turned too little for an estimate.");
   command->callback(
       [options, &action] { action = [options] { return CalibrateCommand(*options); }; });

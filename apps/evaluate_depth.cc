@@ -208,9 +208,8 @@ void AddEvaluateDepth(CLI::App& evaluate, Action& action) {
       ->type_name("auto|fit|none")
       ->capture_default_str();
   depth
-      ->add_option(
-          "--camera", options->camera_file,
-          "Calibration file (camera.yaml), used instead of the sequence's own, as for `run`")
+      ->add_option("--camera", options->camera_file,
+                   "Calibration file, used instead of the sequence's own, as for `run`")
       ->type_name("FILE");
   depth
       ->add_option("--max-dt", options->max_dt,

@@ -39,7 +39,9 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
       ->type_name("mono|stereo|rgbd");
   command
       .add_option("--camera", options.camera_file,
-                  "Calibration file (camera.yaml), used instead of the recording's own calibration")
+                  "Calibration file, used instead of the recording's own: camera.yaml, or that of "
+                  "Kalibr, ROS, OpenCV, ORB-SLAM, EuRoC, COLMAP, nerfstudio, RealSense, OAK, "
+                  "stella_vslam or Basalt; FILE#NAME chooses one of several cameras")
       ->type_name("FILE");
   command
       .add_option("--fov", options.fov,

@@ -11,11 +11,18 @@
 namespace alidade::python {
 namespace {
 
+// `path` as Python's functions need it: without images, the file must state their size.
+Calibration SizedCalibration(const std::string& path) {
+  Calibration calibration = ReadCameraFile(path);
+  RequireSize(calibration);
+  return calibration;
+}
+
 // Converts raw images to those of a pinhole camera or a rectified pair, by a camera file.
 class Rectifier {
  public:
   Rectifier(const std::string& path, const std::string& sensor)
-      : calibration_(ReadCameraFile(path)),
+      : calibration_(SizedCalibration(path)),
         preparation_(calibration_, SensorNamed("sensor", sensor)) {}
 
   py::object camera() const { return CameraObject(preparation_.camera()); }
@@ -45,7 +52,7 @@ class Rectifier {
 };
 
 py::object ReadCamera(const std::string& path, const std::string& sensor) {
-  const Calibration calibration = ReadCameraFile(path);
+  const Calibration calibration = SizedCalibration(path);
   const Sensor wanted = SensorNamed("sensor", sensor);
   if (calibration.left.lens == Lens::kFisheye || (wanted == Sensor::kStereo && calibration.right)) {
     ThrowUsage(path + ": images of this camera must be rectified with alidade.Rectifier");

@@ -1,9 +1,11 @@
 // CameraInfo converted to cameras, compared with OpenCV's projection.
+#include "alidade/io/ros/camera_info.h"
+
 #include <gmock/gmock.h>
 
 #include <opencv2/calib3d.hpp>
 
-#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/messages/messages.h"
 #include "bags/message_bytes.h"
 #include "support/expect_error.h"
 
@@ -80,6 +82,15 @@ TEST(CameraInfo, OfARationalLensComesWithinHalfAPixel) {
   EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 1e-9);
 }
 
+// 14 coefficients as OAK cameras have: thin prism and tilt.
+TEST(CameraInfo, OfATiltedLensComesWithinHalfAPixel) {
+  InfoFields info = Wide();
+  info.model = "rational_polynomial";
+  info.D = {0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01,
+            0,   1e-4,  -2e-5,  -1e-4,   1e-5, 1e-4, -2e-4};
+  EXPECT_LT(FarthestFromOpenCv(info, CameraOf(info)), 0.55);
+}
+
 TEST(CameraInfo, OfLensesThatCannotBeWorkedWithSaysSo) {
   const auto message = [](const std::string& model, const std::vector<double>& D) {
     InfoFields info = Wide();
@@ -90,7 +101,9 @@ TEST(CameraInfo, OfLensesThatCannotBeWorkedWithSaysSo) {
   EXPECT_THAT(message("rational_polynomial", {0.45, -2.6, 0, 0, 1.5, 0.33, -2.43, 1.43}),
               HasSubstr("pixels"));
   EXPECT_THAT(message("rational_polynomial", {.1, 0, 0, 0, 0, .1, 0, 0, .3, 0, 0, 0}),
-              HasSubstr("thin prism"));
+              HasSubstr("not invertible"));
+  EXPECT_THAT(message("rational_polynomial", {.1, 0, 0, 0, 0, .1, 0, 0, .02, 0, .02, 0}),
+              HasSubstr("pixels"));
   EXPECT_THAT(message("omnidirectional", {1}), HasSubstr("`omnidirectional`"));
   EXPECT_THAT(message("plumb_bob", {std::nan("")}), HasSubstr("not finite"));
 }

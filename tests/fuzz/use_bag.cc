@@ -5,7 +5,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
-#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/camera_info.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/ros/source/choose_topics.h"
 #include "alidade/io/ros/source/topic_stamps.h"

@@ -95,7 +95,7 @@ TEST(HostileFiles, LongerThanTheirKindIsRefusedUnread) {
   ASSERT_EQ(truncate(path.c_str(), off_t{1} << 40), 0);  // 1 TB, sparse
   EXPECT_THAT(Refusal(path), HasSubstr("longer than 512 MB"));
   EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ReadCameraFile(path); }),
-              HasSubstr("longer than 1 MB"));
+              HasSubstr("longer than 16 MB"));
   const std::string just = folder.Write("just", std::string(100, 'x'));
   EXPECT_EQ(ReadFile(just, 100).size(), 100u);
   Refusal(just, 99);

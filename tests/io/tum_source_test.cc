@@ -176,15 +176,27 @@ TEST(TumSource, PathsThatAreNoRecordingSayWhy) {
               testing::HasSubstr("lists nothing"));
 }
 
-TEST(TumSource, CameraForAnotherImageSizeIsRefused) {
+TEST(TumSource, CameraForAnotherAspectRatioIsRefused) {
   const TempFolder folder;
   WriteTinyTum(folder);
   const std::string camera = folder.Write(
-      "other.yaml", "model: pinhole\nwidth: 640\nheight: 480\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n");
+      "other.yaml", "model: pinhole\nwidth: 640\nheight: 400\nfx: 1\nfy: 1\ncx: 1\ncy: 1\n");
   EXPECT_THAT(
       MessageOf(ErrorKind::kInput, [&] { OpenSource(folder.path(), {.camera_file = camera}); }),
-      testing::AllOf(testing::HasSubstr("other.yaml"), testing::HasSubstr("640x480"),
+      testing::AllOf(testing::HasSubstr("other.yaml"), testing::HasSubstr("640x400"),
                      testing::HasSubstr("64x48")));
+}
+
+// Ten times the size: the camera is scaled, and the user is told.
+TEST(TumSource, CameraForAnotherSizeIsScaled) {
+  const TempFolder folder;
+  WriteTinyTum(folder);
+  const std::string camera = folder.Write("cameras.txt", "1 PINHOLE 640 480 600 610 320 240\n");
+  const auto source = OpenSource(folder.path(), {.camera_file = camera});
+  EXPECT_EQ(source->Info().camera.width, 64);
+  EXPECT_NEAR(source->Info().camera.fx, 60, 1e-9);
+  EXPECT_NEAR(source->Info().camera.cx, 31.5, 1e-9);
+  EXPECT_THAT(source->Info().told, testing::HasSubstr("scaled to 64x48"));
 }
 
 TEST(TumSource, ReadsTheRealRecordings) {

@@ -24,6 +24,8 @@ struct Calibration {
   // Rolling shutter readout, see Camera; nullopt: not stated.
   std::optional<std::array<double, 2>> readout;
   std::optional<double> depth_factor;  // depth image value per meter; nullopt: not stated
+  // Sentences for the user, one a line: what was approximated or scaled; empty: nothing.
+  std::string told;
   std::string origin;  // file, for errors and warnings; empty: no calibration was found
 };
 

@@ -10,6 +10,7 @@
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
 #include "alidade/detect/onnx/open_detector.h"
+#include "alidade/io/files/camera_file.h"
 #include "alidade/io/read_ahead.h"
 #include "alidade/io/wrappers.h"
 #include "alidade/run/calibration/lens.h"
@@ -77,7 +78,8 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   claim.path = options.out         ? *options.out
                : options.overwrite ? usual
                                    : FreeFolder(usual, claim.owner);
-  for (const auto& file : {options.camera_file, options.config, options.detector}) {
+  if (options.camera_file) claim.inputs.push_back(CameraFilePath(*options.camera_file));
+  for (const auto& file : {options.config, options.detector}) {
     if (file) claim.inputs.push_back(*file);
   }
   if (options.load) claim.inputs.push_back(SavedMapPath(*options.load));

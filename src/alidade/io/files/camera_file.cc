@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 
+#include "alidade/base/error.h"
 #include "alidade/base/log.h"
-#include "alidade/base/print.h"
+#include "alidade/io/files/calibrations/calibration_text.h"
+#include "alidade/io/files/calibrations/fold.h"
+#include "alidade/io/files/calibrations/formats.h"
+#include "alidade/io/files/calibrations/write_calibration.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/yaml.h"
 
@@ -75,18 +79,12 @@ std::array<double, 2> ReadReadout(const YamlFile& file, const YAML::Node& node) 
   return {both[0], both[1]};
 }
 
-}  // namespace
-
-Calibration ReadCameraFile(const std::string& path) {
-  return ParseCameraFile(ReadFile(path, kMostConfigBytes), path);
-}
-
-Calibration ParseCameraFile(const std::string& text, const std::string& name) {
-  const YamlFile file(text, name);
+// Alidade's own format.
+Calibration ReadOwn(const YamlFile& file, const std::string& which) {
+  RefuseChoice(file, which);
   const YAML::Node& root = file.root();
   WarnOfUnknownKeys(file, root, false);
   Calibration calibration;
-  calibration.origin = name;
   calibration.left = ReadRawCamera(file, root);
   if (root["fps"]) calibration.fps = Positive(file, root, "fps");
   if (const YAML::Node readout = root["readout"]) calibration.readout = ReadReadout(file, readout);
@@ -106,33 +104,99 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name) {
   return calibration;
 }
 
+// With a single of these names the file is meant to be Alidade's, so that a mistake in it is named.
+bool IsOwn(const YAML::Node& root) {
+  static constexpr std::array kNames = {"model", "width", "height", "fx", "fy", "cx", "cy"};
+  return std::any_of(kNames.begin(), kNames.end(),
+                     [&](const char* name) { return root[name].IsDefined(); });
+}
+
+// Asked in this order; Alidade's own names are the least specific.
+constexpr std::array kFormats = {
+    &kKalibrFormat,     &kEurocFormat,     &kRosFormat, &kOrbSlamFormat, &kStellaFormat,
+    &kNerfstudioFormat, &kRealSenseFormat, &kOakFormat, &kBasaltFormat,  &kOpenCvFormat};
+
+std::string KnownFormats() {
+  std::string names = "camera.yaml of Alidade, COLMAP cameras.txt";
+  for (const CalibrationFormat* format : kFormats) names += std::string(", ") + format->name;
+  return names;
+}
+
+Calibration ReadYaml(const YamlFile& text, const std::string& which) {
+  YamlFile file = text;
+  for (const CalibrationFormat* format : kFormats) {
+    if (!format->recognizes(file.root())) continue;
+    file.SetTool(format->name);
+    return format->reads(file, which);
+  }
+  if (IsOwn(file.root())) return ReadOwn(file, which);
+  ThrowInput(file.path() + ": is not a calibration that is known here; known are " +
+             KnownFormats());
+}
+
+}  // namespace
+
+std::string CameraFilePath(const std::string& given) {
+  const size_t mark = given.rfind('#');
+  return mark == std::string::npos || mark == 0 || IsThere(given) ? given : given.substr(0, mark);
+}
+
+Calibration ReadCameraFile(const std::string& given) {
+  const std::string path = CameraFilePath(given);
+  const std::string which = path.size() < given.size() ? given.substr(path.size() + 1) : "";
+  return ParseCameraFile(ReadFile(path, kMostCalibrationBytes), path, which);
+}
+
+Calibration ParseCameraFile(const std::string& text, const std::string& name,
+                            const std::string& which) {
+  Calibration calibration;
+  try {
+    calibration = IsColmapCameras(text) ? ReadColmapCameras(text, name, which)
+                                        : ReadYaml(YamlOfCalibration(text, name), which);
+  } catch (const YAML::Exception& error) {  // a value where a map is expected, and similar
+    ThrowInput(name + (error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1)) +
+               ": " + error.msg);
+  }
+  calibration.origin = name;
+  CheckLens(calibration);
+  return calibration;
+}
+
+void CheckLens(const Calibration& calibration) {
+  for (const RawCamera* camera :
+       {&calibration.left, calibration.right ? &*calibration.right : nullptr}) {
+    if (!camera || camera->width == 0) continue;
+    const std::optional<double> radius = FoldRadius(*camera);
+    if (!radius) continue;
+    ThrowInput((calibration.origin.empty() ? "the calibration" : calibration.origin) + ": the " +
+               (camera == &calibration.left ? "" : "right camera's ") +
+               "distortion folds inside the image: from " +
+               std::to_string(static_cast<int>(*radius)) +
+               " pixels off the principal point on, two directions share a pixel. Calibrate again, "
+               "with the target also at the borders of the image or with fewer coefficients, or "
+               "crop the images");
+  }
+}
+
+void RequireSize(const Calibration& calibration) {
+  if (calibration.left.width == 0 || (calibration.right && calibration.right->width == 0))
+    ThrowInput(calibration.origin +
+               ": the width and height of the images are missing: add them to the file");
+}
+
+Calibration CalibrationOf(const Camera& camera) {
+  Calibration calibration;
+  calibration.left = {Lens::kPinhole, camera.width, camera.height, camera.fx,
+                      camera.fy,      camera.cx,    camera.cy,     camera.distortion};
+  calibration.baseline = camera.baseline;
+  calibration.fps = camera.fps;
+  if (camera.readout_known || camera.RollingShutter()) calibration.readout = camera.readout;
+  if (camera.depth_factor > 0) calibration.depth_factor = camera.depth_factor;
+  return calibration;
+}
+
 std::string FormatCameraFile(const Camera& camera, const std::string& comment) {
-  std::string text;
-  for (size_t begin = 0; begin < comment.size();) {
-    const size_t end = std::min(comment.find('\n', begin), comment.size());
-    text += "# " + comment.substr(begin, end - begin) + "\n";
-    begin = end + 1;
-  }
-  const auto exact = [](double value) {
-    char digits[40];
-    PrintTo(digits, sizeof(digits), "%.17g", value);
-    return std::string(digits);
-  };
-  text += "model: pinhole\nwidth: " + std::to_string(camera.width) +
-          "\nheight: " + std::to_string(camera.height) + "\nfx: " + exact(camera.fx) +
-          "\nfy: " + exact(camera.fy) + "\ncx: " + exact(camera.cx) + "\ncy: " + exact(camera.cy) +
-          "\ndistortion: [";
-  for (size_t i = 0; i < camera.distortion.size(); ++i)
-    text += (i > 0 ? ", " : "") + exact(camera.distortion[i]);
-  text += "]\nfps: " + exact(camera.fps) + "\n";
-  if (camera.readout[0] != 0) {
-    text += "readout: [" + exact(camera.readout[0]) + ", " + exact(camera.readout[1]) + "]\n";
-  } else if (camera.readout_known || camera.readout[1] != 0) {
-    text += "readout: " + exact(camera.readout[1]) + "\n";
-  }
-  if (camera.depth_factor > 0) text += "depth_factor: " + exact(camera.depth_factor) + "\n";
-  if (camera.baseline > 0) text += "baseline: " + exact(camera.baseline) + "\n";
-  return text;
+  return FormatCalibration(CalibrationOf(camera), CalibrationStyle::kAlidade, comment).text;
 }
 
 Calibration GuessedCalibration(int width, int height, double fov_degrees) {

@@ -1,4 +1,5 @@
-// Camera files: Alidade's camera.yaml, and the assumed camera of a recording without one.
+// Camera files: Alidade's camera.yaml, calibrations of other tools, and the assumed camera of a
+// recording without one.
 #pragma once
 
 #include <optional>
@@ -12,15 +13,31 @@ namespace ALIDADE_API alidade {
 // Degrees along the longer side. The main camera of most phones has 60 to 70.
 inline constexpr double kDefaultFovDegrees = 66;
 
-// camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1 p2 k3]`
-// (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter, seconds from the top to the bottom
-// row, or [left to right, top to bottom]), `depth_factor`, and for a stereo pair `baseline`
-// (meters) or `right: {width …, T_left_right: 4x4}`. Throws Error (input) with file:line for a
-// missing or invalid value; warns of unknown keys.
-Calibration ReadCameraFile(const std::string& path);
-// The same for a file's text; `name` appears in errors.
-Calibration ParseCameraFile(const std::string& text, const std::string& name);
+// Calibration files may be long where they list images (transforms.json).
+inline constexpr size_t kMostCalibrationBytes = size_t{1} << 24;
 
+// Reads camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1
+// p2 k3]` (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter, seconds from the top to the
+// bottom row, or [left to right, top to bottom]), `depth_factor`, and for a stereo pair `baseline`
+// (meters) or `right: {width …, T_left_right: 4x4}`; and the calibrations of other tools that
+// calibrations/formats.h lists, recognized by their content. `path#NAME` chooses a camera of a file
+// with several. Throws Error (input) with file:line for a missing or invalid value, and for a
+// distortion that folds inside the image; warns of unknown keys. The size stays 0 when the file of
+// another tool does not state it.
+Calibration ReadCameraFile(const std::string& path);
+// The same for a file's text; `name` appears in errors, `which` is the chosen camera.
+Calibration ParseCameraFile(const std::string& text, const std::string& name,
+                            const std::string& which = {});
+// The file's path without `#NAME`.
+std::string CameraFilePath(const std::string& given);
+
+// Throws Error (input) when a distortion folds inside the image.
+void CheckLens(const Calibration& calibration);
+// Throws Error (input) when the calibration does not state the size of the images.
+void RequireSize(const Calibration& calibration);
+
+// A camera as a calibration, for FormatCalibration().
+Calibration CalibrationOf(const Camera& camera);
 // Formats a camera as text that ReadCameraFile() reads back exactly. `comment`: lines for the
 // beginning, without #.
 std::string FormatCameraFile(const Camera& camera, const std::string& comment = {});

@@ -13,16 +13,66 @@ namespace {
 
 constexpr double kShortest35 = 6, kLongest35 = 1000;  // mm
 
-void CheckSize(const Calibration& calibration, cv::Size size) {
-  if (size != cv::Size(calibration.left.width, calibration.left.height)) {
-    ThrowInput(calibration.origin + " is for images of " + std::to_string(calibration.left.width) +
-               "x" + std::to_string(calibration.left.height) +
-               ", but those of the recording have " + std::to_string(size.width) + "x" +
-               std::to_string(size.height));
-  }
+std::string SizeText(int width, int height) {
+  return std::to_string(width) + "x" + std::to_string(height);
+}
+
+void Scale(RawCamera& camera, cv::Size size) {
+  const double x = static_cast<double>(size.width) / camera.width;
+  const double y = static_cast<double>(size.height) / camera.height;
+  camera.width = size.width;
+  camera.height = size.height;
+  camera.fx *= x;
+  camera.fy *= y;
+  // Pixel centers are at integers, image borders at ±0.5.
+  camera.cx = (camera.cx + 0.5) * x - 0.5;
+  camera.cy = (camera.cy + 0.5) * y - 0.5;
+}
+
+// Equal up to the rounding of one side to whole pixels.
+bool SameAspect(const RawCamera& camera, cv::Size size) {
+  const double width = static_cast<double>(camera.width) * size.height / camera.height;
+  const double height = static_cast<double>(camera.height) * size.width / camera.width;
+  return std::abs(width - size.width) < 1 || std::abs(height - size.height) < 1;
 }
 
 }  // namespace
+
+Calibration FitToSize(Calibration calibration, cv::Size size) {
+  RawCamera& left = calibration.left;
+  const auto tell = [&](const std::string& sentence) {
+    calibration.told += (calibration.told.empty() ? "" : "\n") + sentence;
+  };
+  const std::string was = SizeText(left.width, left.height),
+                    now = SizeText(size.width, size.height);
+  if (left.width == 0) {
+    tell(calibration.origin +
+         " does not state the size of its images; taken as that of the "
+         "recording, " +
+         now);
+    for (RawCamera* camera : {&left, calibration.right ? &*calibration.right : nullptr}) {
+      if (!camera) continue;
+      camera->width = size.width;
+      camera->height = size.height;
+    }
+  } else if (size != cv::Size(left.width, left.height)) {
+    if (!SameAspect(left, size)) {
+      ThrowInput(calibration.origin + " is for images of " + was +
+                 ", but those of the recording have " + now +
+                 ", another aspect ratio: calibrate at this size, or give the calibration of the "
+                 "cropped images");
+    }
+    tell(calibration.origin + ", for images of " + was + ", is scaled to " + now +
+         "; if these are a crop and not scaled, calibrate at this size");
+    if (calibration.right) {
+      if (calibration.right->width == left.width && calibration.right->height == left.height)
+        Scale(*calibration.right, size);
+    }
+    Scale(left, size);
+  }
+  CheckLens(calibration);
+  return calibration;
+}
 
 double AssumedFov(cv::Size size) {
   if (size.width >= size.height) return kDefaultFovDegrees;
@@ -42,8 +92,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
   std::optional<Calibration> found = beside;
   if (options.camera_file) found = ReadCameraFile(*options.camera_file);
   if (found && !options.fov_degrees) {
-    CheckSize(*found, size);
-    return {*found, false, {}};
+    return {FitToSize(*found, size), false, {}};
   }
   ChosenCalibration chosen;
   double assumed = AssumedFov(size);

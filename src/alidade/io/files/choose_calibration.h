@@ -27,9 +27,14 @@ double AssumedFov(cv::Size size);
 // well.
 double FovOfFocalLength35(double millimetres, cv::Size size);
 
+// Adapts a calibration to images of `size`: one for images of another size but the same aspect
+// ratio is scaled, cx' = (cx + 0.5) s - 0.5, and one without a size gets it. Adds to `told`. Throws
+// Error (input) for another aspect ratio, and for a distortion that folds inside the image.
+Calibration FitToSize(Calibration calibration, cv::Size size);
+
 // `found`: calibration beside the images. `size`: size of the recording's images, pixels.
-// `focal_length_35`: focal length stated by the recording, mm in 35 mm equivalents; 0: none. Throws
-// Error (input) when the calibration is for another size.
+// `focal_length_35`: focal length stated by the recording, mm in 35 mm equivalents; 0: none. The
+// calibration is adapted by FitToSize().
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& found, cv::Size size,
                                     const SourceOptions& options, double focal_length_35 = 0);
 

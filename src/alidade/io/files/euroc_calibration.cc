@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "alidade/io/files/file.h"
-#include "alidade/io/files/yaml.h"
 
 namespace alidade {
 namespace {
@@ -21,11 +20,13 @@ std::vector<double> ListOf(const YamlFile& file, const char* key, size_t least, 
 Lens LensOf(const YamlFile& file) {
   const YAML::Node model = file.Need(file.root(), "camera_model");
   if (file.Text(model, "camera_model") != "pinhole") {
-    file.Fail(model, "only the camera_model `pinhole` is known, not `" + model.Scalar() + "`");
+    file.Fail(model,
+              "only the camera_model `pinhole` is known, not `" + model.Scalar() +
+                  "`: calibrate as pinhole, wide lenses with the distortion_model equidistant");
   }
   const YAML::Node node = file.root()["distortion_model"];
   const std::string name = node ? file.Text(node, "distortion_model") : "none";
-  if (name == "equidistant") return Lens::kFisheye;
+  if (name == "equidistant" || name == "equi") return Lens::kFisheye;
   if (name != "radial-tangential" && name != "radtan" && name != "plumb_bob" && name != "none") {
     file.Fail(node, "distortion_model is radial-tangential or equidistant, not `" + name + "`");
   }
@@ -39,7 +40,10 @@ EurocCamera ReadEurocCamera(const std::string& path) {
 }
 
 EurocCamera ParseEurocCamera(const std::string& text, const std::string& name) {
-  const YamlFile file(text, name);
+  return EurocCameraOf(YamlFile(text, name), true);
+}
+
+EurocCamera EurocCameraOf(const YamlFile& file, bool need_pose) {
   EurocCamera camera;
   camera.raw.lens = LensOf(file);
   const YAML::Node resolution = file.Need(file.root(), "resolution");
@@ -65,6 +69,7 @@ EurocCamera ParseEurocCamera(const std::string& text, const std::string& name) {
     camera.fps = file.Number(rate, "rate_hz");
     if (!(camera.fps > 0)) file.Fail(rate, "`rate_hz` must be positive");
   }
+  if (!need_pose && !file.root()["T_BS"]) return camera;
   const YAML::Node T_BS = file.Need(file.root(), "T_BS");
   // EuRoC writes {rows, cols, data: [...]}; a plain list of 16 numbers is accepted as well.
   camera.T_body_camera = file.Transform(T_BS.IsMap() ? file.Need(T_BS, "data") : T_BS, "T_BS");

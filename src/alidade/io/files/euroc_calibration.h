@@ -5,6 +5,7 @@
 
 #include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/io/files/yaml.h"
 
 namespace alidade {
 
@@ -18,5 +19,7 @@ struct EurocCamera {
 // 5 coefficients) and equidistant (4 coefficients).
 EurocCamera ReadEurocCamera(const std::string& path);
 EurocCamera ParseEurocCamera(const std::string& text, const std::string& name);
+// Without `need_pose`, a missing T_BS is the identity.
+EurocCamera EurocCameraOf(const YamlFile& file, bool need_pose);
 
 }  // namespace alidade

@@ -106,7 +106,11 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
                "--sensor mono)");
   }
   ImagePreparation preparation(calibration, sensor);
-  if (sensor == Sensor::kRgbd) recording.told = DepthSizeTold(recording, size);
+  recording.told = calibration.told;
+  if (sensor == Sensor::kRgbd) {
+    const std::string told = DepthSizeTold(recording, size);
+    recording.told += (recording.told.empty() || told.empty() ? "" : "\n") + told;
+  }
   recording.lens_told = std::move(lens_told);
   return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
 }

@@ -172,6 +172,7 @@ std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path
   info.camera = preparation.camera();
   info.camera_guessed = guessed;
   info.lens_told = lens_told;
+  info.told = calibration.told;
   const int frames = stream->FrameCount();
   info.frames = frames > 0 ? frames : -1;
   return std::make_unique<VideoSource>(std::move(info), path, std::move(stream),

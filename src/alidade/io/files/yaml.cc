@@ -5,7 +5,6 @@
 #include "alidade/base/error.h"
 #include "alidade/geometry/picture_size.h"
 #include "alidade/io/files/file.h"
-#include "alidade/io/files/yaml_check.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
@@ -22,9 +21,9 @@ std::string Start(const std::string& text) {
 
 YamlFile::YamlFile(const std::string& path) : YamlFile(ReadFile(path, kMostConfigBytes), path) {}
 
-YamlFile::YamlFile(std::string text, const std::string& name) : path_(name) {
+YamlFile::YamlFile(std::string text, const std::string& name, int most_nodes) : path_(name) {
   if (text.rfind("%YAML:", 0) == 0) text[0] = '#';  // as a comment it does not shift line numbers
-  CheckYaml(text, name);
+  CheckYaml(text, name, most_nodes);
   try {
     root_ = YAML::Load(text);
   } catch (const YAML::Exception& error) {
@@ -36,7 +35,8 @@ YamlFile::YamlFile(std::string text, const std::string& name) : path_(name) {
 
 void YamlFile::Fail(const YAML::Node& at, const std::string& what) const {
   const auto mark = at.Mark();
-  ThrowInput(path_ + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1)) + ": " + what);
+  ThrowInput(path_ + (mark.is_null() ? "" : ":" + std::to_string(mark.line + 1)) + ": " +
+             (tool_.empty() ? "" : tool_ + ": ") + what);
 }
 
 YAML::Node YamlFile::Need(const YAML::Node& parent, const std::string& key) const {
@@ -87,14 +87,18 @@ std::vector<double> YamlFile::Numbers(const YAML::Node& node, const std::string&
 }
 
 Se3 YamlFile::Transform(const YAML::Node& node, const std::string& key) const {
-  const auto v = Numbers(node, key);
+  return Transform(node, key, Numbers(node, key));
+}
+
+Se3 YamlFile::Transform(const YAML::Node& node, const std::string& key,
+                        const std::vector<double>& v) const {
   if (v.size() != 16) Fail(node, "`" + key + "` must be 4x4 numbers, row by row");
   Se3 T;
   for (int r = 0; r < 3; ++r) {
     for (int c = 0; c < 3; ++c) T.R(r, c) = v[static_cast<size_t>(4 * r + c)];
     T.t[r] = v[static_cast<size_t>(4 * r + 3)];
   }
-  if ((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-2 ||
+  if (!((T.R * T.R.transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-2) ||
       T.R.determinant() < 0) {
     Fail(node, "`" + key + "`: the upper left 3x3 part is not a rotation");
   }

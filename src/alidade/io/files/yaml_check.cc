@@ -16,7 +16,7 @@ namespace {
 // open maps.
 class Checker : public YAML::EventHandler {
  public:
-  explicit Checker(const std::string& name) : name_(name) {}
+  Checker(const std::string& name, int most_nodes) : name_(name), most_nodes_(most_nodes) {}
 
   void OnDocumentStart(const YAML::Mark&) override {}
   void OnDocumentEnd() override {}
@@ -54,8 +54,8 @@ class Checker : public YAML::EventHandler {
   }
 
   void Add(const YAML::Mark& mark, const std::string* text) {
-    if (++nodes_ > kMostYamlNodes)
-      Fail(mark, "more than " + std::to_string(kMostYamlNodes) +
+    if (++nodes_ > most_nodes_)
+      Fail(mark, "more than " + std::to_string(most_nodes_) +
                      " names and values: this is not a camera or settings file");
     if (open_.empty() || !open_.back().is_map) return;
     Level& map = open_.back();
@@ -74,14 +74,14 @@ class Checker : public YAML::EventHandler {
 
   std::string name_;
   std::vector<Level> open_;
-  int nodes_ = 0;
+  int most_nodes_, nodes_ = 0;
 };
 
 }  // namespace
 
-void CheckYaml(const std::string& text, const std::string& name) {
+void CheckYaml(const std::string& text, const std::string& name, int most_nodes) {
   std::istringstream stream(text);
-  Checker checker(name);
+  Checker checker(name, most_nodes);
   try {
     YAML::Parser parser(stream);
     if (parser.HandleNextDocument(checker) && parser.HandleNextDocument(checker))

@@ -10,9 +10,9 @@ namespace alidade {
 inline constexpr int kMostYamlDepth = 16;     // levels of nested lists and maps
 inline constexpr int kMostYamlNodes = 10000;  // keys, values, lists and maps
 
-// Throws Error (input) with `name`:line when `text` is not valid YAML, exceeds the limits above,
+// Throws Error (input) with `name`:line when `text` is not valid YAML, exceeds the limits,
 // repeats a key within a map, contains a second document, or uses anchors and aliases (`&a`, `*a`).
 // Aliases could expand a few lines to millions of values or make a value contain itself.
-void CheckYaml(const std::string& text, const std::string& name);
+void CheckYaml(const std::string& text, const std::string& name, int most_nodes = kMostYamlNodes);
 
 }  // namespace alidade

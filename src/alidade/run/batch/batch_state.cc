@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/sources/any_source.h"
 #include "alidade/version.h"
@@ -109,7 +110,8 @@ std::string FingerprintOf(const BatchItem& item, const RunOptions& options,
     AddCalibrationBeside(hash, path);
   }
   AddContent(hash, options.config);
-  AddContent(hash, options.camera_file);
+  AddContent(hash, options.camera_file ? std::optional(CameraFilePath(*options.camera_file))
+                                       : std::nullopt);
   for (const auto& file : {options.detector, options.load}) {
     if (file) AddSource(hash, *file);
   }

@@ -120,7 +120,7 @@ void Set(SynthSettings& settings, const std::string& name, const std::string& va
   ThrowUsage("synth: unknown option \"" + name + "\"" + DidYouMean(name, names));
 }
 
-Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
+Calibration RenderedCalibration(const Camera& camera, const RawCamera& lens) {
   Calibration calibration;
   calibration.left = lens;
   calibration.baseline = camera.baseline;
@@ -132,18 +132,15 @@ Calibration CalibrationOf(const Camera& camera, const RawCamera& lens) {
 // The camera given by the user, if any.
 Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions& options) {
   const Camera& camera = recording.camera();
-  const Calibration own = CalibrationOf(camera, recording.lens());
+  const Calibration own = RenderedCalibration(camera, recording.lens());
   if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
   Calibration chosen = own;
   if (options.fov_degrees || !recording.settings().calibrated) {
     const double assumed = AssumedFov({camera.width, camera.height});
     chosen = GuessedCalibration(camera.width, camera.height, options.fov_degrees.value_or(assumed));
   }
-  if (options.camera_file) chosen = ReadCameraFile(*options.camera_file);
-  if (chosen.left.width != camera.width || chosen.left.height != camera.height) {
-    ThrowInput(chosen.origin + " is for images of another size than the rendered " +
-               std::to_string(camera.width) + "x" + std::to_string(camera.height));
-  }
+  if (options.camera_file)
+    chosen = FitToSize(ReadCameraFile(*options.camera_file), {camera.width, camera.height});
   if (!options.camera_file) {
     chosen.baseline = own.baseline;
     chosen.fps = own.fps;
@@ -165,7 +162,9 @@ class SynthSource : public ActorSource {
  public:
   SynthSource(SynthSettings settings, const SourceOptions& options)
       : recording_(settings),
-        preparation_(ToldCalibration(recording_, options), ChooseSensor(settings, options)) {
+        calibration_(ToldCalibration(recording_, options)),
+        preparation_(calibration_, ChooseSensor(settings, options)) {
+    info_.told = calibration_.told;
     info_.name = "synth-" + settings.scene;
     info_.kind = "synth";
     info_.sensor = ChooseSensor(settings, options);
@@ -203,6 +202,7 @@ class SynthSource : public ActorSource {
 
  private:
   SynthRecording recording_;
+  Calibration calibration_;
   ImagePreparation preparation_;
   SourceInfo info_;
   cv::Mat mask_;

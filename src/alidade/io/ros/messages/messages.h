@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "alidade/io/ros/camera_info.h"
 #include "alidade/io/ros/containers/bags_module.h"
 
 namespace alidade {
@@ -27,16 +28,9 @@ struct RosPicture {
   std::string_view data;
 };
 
-// sensor_msgs/CameraInfo, with the message's field names.
-struct RosCameraInfo {
+// sensor_msgs/CameraInfo.
+struct RosCameraInfo : CameraInfo {
   MessageHeader header;
-  uint32_t width = 0, height = 0;
-  std::string distortion_model;
-  std::vector<double> D;
-  std::array<double, 9> K{}, R{};  // row-major
-  std::array<double, 12> P{};
-  uint32_t binning_x = 0, binning_y = 0;
-  uint32_t roi_x = 0, roi_y = 0, roi_height = 0, roi_width = 0;
 };
 
 // All throw Error (input) when the message is damaged.

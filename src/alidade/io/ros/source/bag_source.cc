@@ -8,7 +8,7 @@
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/file.h"
-#include "alidade/io/ros/messages/camera_of_info.h"
+#include "alidade/io/ros/camera_info.h"
 #include "alidade/io/ros/source/bag_file.h"
 #include "alidade/io/ros/source/bag_player.h"
 #include "alidade/io/ros/source/choose_topics.h"
@@ -49,7 +49,8 @@ std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& cho
     const RosCameraInfo left = read(chosen.info);
     Calibration calibration;
     calibration.origin = path + ", " + topic;
-    const std::optional<RawCamera> camera = CameraOfInfo(left, chosen.image.rectified);
+    const std::optional<RawCamera> camera =
+        CameraOfInfo(left, chosen.image.rectified, &calibration.told);
     if (!camera) {
       LogWarning(calibration.origin + " is of an uncalibrated camera (K is 0)");
       return std::nullopt;
@@ -60,7 +61,8 @@ std::optional<Calibration> CalibrationTold(BagFile& bag, const ChosenTopics& cho
           AddRightCamera(left, read(chosen.right_info), chosen.image.rectified, calibration);
     return calibration;
   } catch (const Error& error) {
-    throw Error(error.kind(), path + ": " + topic + " " + error.what());
+    throw Error(error.kind(),
+                path + ": " + topic + " " + error.what() + " (or use a camera file: --camera)");
   }
 }
 
@@ -120,6 +122,7 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   info.lens_told = lens_told;
   info.R_camera_rectified = preparation.R_camera_rectified();
   info.told = chosen.told;
+  if (!calibration.told.empty()) info.told += (info.told.empty() ? "" : "\n") + calibration.told;
   player->Begin(std::move(info), std::move(preparation), options.color);
   return player;
 }
