@@ -8,6 +8,7 @@
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/export/export_folder.h"
+#include "alidade/run/export/frame_choice.h"
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/export/mcap_export.h"
 #include "alidade/version.h"
@@ -15,7 +16,7 @@
 namespace alidade {
 namespace {
 
-enum class Target { kPly, kPcd, kTum, kColmap, kMcap };
+enum class Target { kPly, kPcd, kTum, kColmap, kGsplat, kNerfstudio, kMcap };
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -30,6 +31,8 @@ Plan PlanOf(const ExportSettings& settings) {
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
                                       {"colmap", Target::kColmap},
+                                      {"gsplat", Target::kGsplat},
+                                      {"nerfstudio", Target::kNerfstudio},
                                       {"mcap", Target::kMcap}});
   auto form = Choice<Form>("--format", settings.format,
                            {{"text", Form::kText},
@@ -39,13 +42,30 @@ Plan PlanOf(const ExportSettings& settings) {
   if (target == Target::kTum && form != Form::kDefault && form != Form::kText) {
     ThrowUsage("--format cannot be '" + settings.format + "': TUM trajectories are text");
   }
-  if (target != Target::kColmap && form == Form::kBoth) {
+  const bool model = target == Target::kColmap || target == Target::kGsplat;
+  if (!model && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
   }
+  if (target == Target::kNerfstudio && form == Form::kText)
+    ThrowUsage("--format cannot be 'text': the points of a nerfstudio folder are binary");
   if (target == Target::kMcap && form != Form::kDefault && form != Form::kBinary) {
     ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
   }
-  if (form == Form::kDefault) form = target == Target::kColmap ? Form::kBoth : Form::kBinary;
+  if (form == Form::kDefault) form = model ? Form::kBoth : Form::kBinary;
+  if (!model && target != Target::kNerfstudio) {
+    if (settings.source || settings.camera || settings.masks || settings.images != "keyframes" ||
+        !settings.with_images) {
+      ThrowUsage(
+          "--images, --no-images, --masks, --source and --camera are for --to colmap, gsplat and "
+          "nerfstudio");
+    }
+  } else if (!settings.with_images) {
+    if (target != Target::kColmap)
+      ThrowUsage("--no-images is for --to colmap: other trainers need the images");
+    if (settings.source || settings.camera || settings.masks || settings.images != "keyframes")
+      ThrowUsage("--no-images cannot be combined with --images, --masks, --source and --camera");
+  }
+  FrameChoiceNamed(settings.images);
   return {target, form};
 }
 
@@ -72,8 +92,26 @@ void WriteExportFile(const std::string& path, const std::string& bytes) {
 
 void ExportSettings::Check() const { PlanOf(*this); }
 
+bool ExportSettings::WithImages() const {
+  const Target target = PlanOf(*this).target;
+  return with_images &&
+         (target == Target::kColmap || target == Target::kGsplat || target == Target::kNerfstudio);
+}
+
 MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
-  return SeenOften(saved, PartOf(saved, settings.part), settings.min_observations);
+  const int usual = PlanOf(settings).target == Target::kColmap || settings.WithImages() ? 2 : 1;
+  return SeenOften(saved, PartOf(saved, settings.part),
+                   settings.min_observations > 0 ? settings.min_observations : usual);
+}
+
+std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings) {
+  const Form form = PlanOf(settings).form;
+  std::vector<ColmapFile> files;
+  if (form != Form::kBinary) files = EncodeColmapText(model);
+  if (form != Form::kText) {
+    for (ColmapFile& file : EncodeColmapBinary(model)) files.push_back(std::move(file));
+  }
+  return files;
 }
 
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
@@ -94,16 +132,15 @@ std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
       what = std::to_string(part.keyframes.size()) + " poses";
       break;
     case Target::kColmap: {
-      const ColmapModel model = ColmapModelOf(saved, part);
-      std::vector<ColmapFile> files;
-      if (plan.form != Form::kBinary) files = EncodeColmapText(model);
-      if (plan.form != Form::kText) {
-        for (ColmapFile& file : EncodeColmapBinary(model)) files.push_back(std::move(file));
-      }
-      WriteExportFolder(out, files);
+      ExportFolder folder(out);
+      folder.Write(EncodeColmap(ColmapModelOf(saved, part), settings));
+      folder.Place(settings.to);
       what = std::to_string(part.keyframes.size()) + " images, " + what;
       break;
     }
+    case Target::kGsplat:
+    case Target::kNerfstudio:
+      ThrowUsage("--to " + settings.to + " needs the images: export the result folder of a run");
     case Target::kMcap:
       ExportMapToMcap(saved, part, out, "alidade " ALIDADE_VERSION);
       what = std::to_string(part.keyframes.size()) + " keyframes, " + what;
