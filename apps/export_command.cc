@@ -58,13 +58,13 @@ void AddExportCommand(CLI::App& app, Action& action) {
   command
       ->add_option(
           "--to", options->how.to,
-          "ply, pcd: landmarks; tum: trajectory of the keyframes; colmap: undistorted images "
+          "ply, pcd: landmarks; tum, evo, kitti, euroc: trajectory; colmap: undistorted images "
           "and a sparse model (images/, sparse/0/); gsplat: the same with the principal "
           "point in the center, for trainers of Gaussian splats; nerfstudio: images and "
           "transforms.json; mcap: trajectory, points and, if recorded, the whole run, for "
           "Foxglove, Lichtblick, Rerun and ros2")
       ->required()
-      ->type_name("ply|pcd|tum|colmap|gsplat|nerfstudio|mcap");
+      ->type_name("ply|pcd|tum|evo|kitti|euroc|colmap|gsplat|nerfstudio|mcap");
   command
       ->add_option(
           "--images", options->how.images,
@@ -76,6 +76,18 @@ void AddExportCommand(CLI::App& app, Action& action) {
                     "colmap: the model alone, with the recorded, distorted camera");
   command->add_flag("--masks", options->how.masks,
                     "Also masks of moving objects (black), if the run was made with --write-masks");
+  command
+      ->add_option("--poses", options->how.poses,
+                   "Trajectories: of all frames with a pose, or of the keyframes; default: frames "
+                   "of a result folder, but keyframes for tum")
+      ->type_name("frames|keyframes");
+  command
+      ->add_option("--up", options->how.up,
+                   "Trajectories: z turns the world so that z is up, by the mean upright axis of "
+                   "the camera, as gravity is not measured")
+      ->type_name("map|z");
+  command->add_flag("--colors", options->how.colors,
+                    "ply, pcd: color the landmarks as the recording's images show them");
   command
       ->add_option("--source", options->how.source,
                    "Where the recording is now; default: where the run read it")
@@ -101,7 +113,8 @@ void AddExportCommand(CLI::App& app, Action& action) {
       ->type_name("N");
   command->footer(
       "\nExamples:\n  alidade export alidade-out/kitchen --to ply kitchen.ply\n  alidade export "
-      "alidade-out/kitchen --to mcap kitchen.mcap      to open in Foxglove\n  alidade export "
+      "alidade-out/kitchen --to pcd kitchen.pcd --colors\n  alidade export alidade-out/kitchen "
+      "--to mcap kitchen.mcap      to open in Foxglove\n  alidade export "
       "alidade-out/kitchen --to colmap kitchen-colmap   images and sparse model\n  alidade export "
       "alidade-out/walk --to gsplat walk-gs --images sharpest:2\n  alidade export "
       "alidade-out/walk --to nerfstudio walk-ns --source videos/walk.mp4\n  alidade export "

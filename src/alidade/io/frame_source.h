@@ -42,8 +42,6 @@ struct SourceFrame {
   // True depth of each pixel of `image`: CV_32F, meters along z, 0 = no surface. Rendered
   // recordings only.
   cv::Mat true_depth = {};
-  // Path of the file that `image` was read from; empty: it is not a file of its own (video, bag).
-  std::string image_file = {};
 };
 
 struct SourceInfo {

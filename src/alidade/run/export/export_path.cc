@@ -6,6 +6,7 @@
 #include "alidade/base/print.h"
 #include "alidade/run/export/mcap_export.h"
 #include "alidade/run/export/nerfstudio_files.h"
+#include "alidade/run/export/trajectory_export.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/sources/saved_map.h"
 #include "alidade/version.h"
@@ -93,6 +94,14 @@ std::string ExportPath(const std::string& path, const ExportSettings& settings,
   }
   CheckIsNoResult(out);
   const SavedMap saved = ReadSavedMap(path);
+  if (settings.IsTrajectory()) return ExportTrajectory(path, saved, settings, out);
+  if (settings.colors) {
+    const MapPart part = PartFor(saved, settings);
+    OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+    const Cloud cloud = ColoredCloud(saved, part, recording, progress);
+    WriteCloud(cloud, settings, out);
+    return std::to_string(cloud.points.size()) + " colored points";
+  }
   if (settings.WithImages()) return ExportImages(path, saved, settings, out, progress);
   return ExportMap(saved, settings, out);
 }

@@ -48,12 +48,13 @@ bool ImageNames::IsJpeg(const std::string& name) {
 
 std::string ImageNames::NameOf(const SourceFrame& frame) {
   std::string name;
-  if (frame.image_file.empty()) {
+  const auto number_of_file = static_cast<size_t>(frame.number);
+  if (number_of_file >= files_.size()) {
     char number[40];
     PrintTo(number, sizeof(number), "frame_%06d", frame.number);
     name = number + std::string(video_ ? ".jpg" : ".png");
   } else {
-    name = Sanitized(std::filesystem::path(frame.image_file).filename().string());
+    name = Sanitized(std::filesystem::path(files_[number_of_file]).filename().string());
     if (!IsJpeg(name) && LowerCase(EndingOf(name)) != ".png")
       name = name.substr(0, name.size() - EndingOf(name).size()) + ".png";
   }

@@ -4,13 +4,14 @@
 #include <set>
 #include <string>
 
-#include "alidade/io/frame_source.h"
+#include "alidade/run/export/own_recording.h"
 
 namespace alidade {
 
 class ImageNames {
  public:
-  explicit ImageNames(const SourceInfo& source) : video_(source.kind == "video") {}
+  explicit ImageNames(const OwnRecording& recording)
+      : video_(recording.source->Info().kind == "video"), files_(recording.image_files) {}
 
   // The name of the recording's own file, with _ for whitespace, control characters, quotes and
   // backslashes, which COLMAP's text files or a shell would take apart, and for bytes that are not
@@ -22,6 +23,7 @@ class ImageNames {
 
  private:
   bool video_;
+  std::vector<std::string> files_;
   std::set<std::string> taken_;
 };
 

@@ -11,12 +11,13 @@
 #include "alidade/run/export/frame_choice.h"
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/export/mcap_export.h"
+#include "alidade/run/export/trajectory_export.h"
 #include "alidade/version.h"
 
 namespace alidade {
 namespace {
 
-enum class Target { kPly, kPcd, kTum, kColmap, kGsplat, kNerfstudio, kMcap };
+enum class Target { kPly, kPcd, kTum, kEvo, kKitti, kEuroc, kColmap, kGsplat, kNerfstudio, kMcap };
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -30,6 +31,9 @@ Plan PlanOf(const ExportSettings& settings) {
                                      {{"ply", Target::kPly},
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
+                                      {"evo", Target::kEvo},
+                                      {"kitti", Target::kKitti},
+                                      {"euroc", Target::kEuroc},
                                       {"colmap", Target::kColmap},
                                       {"gsplat", Target::kGsplat},
                                       {"nerfstudio", Target::kNerfstudio},
@@ -39,9 +43,15 @@ Plan PlanOf(const ExportSettings& settings) {
                             {"binary", Form::kBinary},
                             {"both", Form::kBoth},
                             {"default", Form::kDefault}});
-  if (target == Target::kTum && form != Form::kDefault && form != Form::kText) {
-    ThrowUsage("--format cannot be '" + settings.format + "': TUM trajectories are text");
-  }
+  const bool trajectory = target == Target::kTum || target == Target::kEvo ||
+                          target == Target::kKitti || target == Target::kEuroc;
+  if (trajectory && form != Form::kDefault && form != Form::kText)
+    ThrowUsage("--format cannot be '" + settings.format + "': trajectories are text");
+  Choice<bool>("--poses", settings.poses,
+               {{"default", true}, {"frames", true}, {"keyframes", true}});
+  Choice<bool>("--up", settings.up, {{"map", true}, {"z", true}});
+  if (!trajectory && (settings.poses != "default" || settings.up != "map"))
+    ThrowUsage("--poses and --up are for --to tum, evo, kitti and euroc");
   const bool model = target == Target::kColmap || target == Target::kGsplat;
   if (!model && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
@@ -52,17 +62,24 @@ Plan PlanOf(const ExportSettings& settings) {
     ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
   }
   if (form == Form::kDefault) form = model ? Form::kBoth : Form::kBinary;
-  if (!model && target != Target::kNerfstudio) {
-    if (settings.source || settings.camera || settings.masks || settings.images != "keyframes" ||
-        !settings.with_images) {
-      ThrowUsage(
-          "--images, --no-images, --masks, --source and --camera are for --to colmap, gsplat and "
-          "nerfstudio");
-    }
-  } else if (!settings.with_images) {
+  const bool images = model || target == Target::kNerfstudio;
+  const bool cloud = target == Target::kPly || target == Target::kPcd;
+  if (settings.colors && !cloud)
+    ThrowUsage("--colors is for --to ply and pcd; images come with colored points");
+  const bool about_images =
+      settings.masks || settings.images != "keyframes" || !settings.with_images;
+  if (!images && about_images)
+    ThrowUsage("--images, --no-images and --masks are for --to colmap, gsplat and nerfstudio");
+  const bool about_source = settings.source || settings.camera;
+  if (!images && about_source && !settings.colors) {
+    ThrowUsage(
+        "--source and --camera are for --to colmap, gsplat and nerfstudio, and for ply and pcd "
+        "with --colors");
+  }
+  if (!settings.with_images) {
     if (target != Target::kColmap)
       ThrowUsage("--no-images is for --to colmap: other trainers need the images");
-    if (settings.source || settings.camera || settings.masks || settings.images != "keyframes")
+    if (about_source || settings.masks || settings.images != "keyframes")
       ThrowUsage("--no-images cannot be combined with --images, --masks, --source and --camera");
   }
   FrameChoiceNamed(settings.images);
@@ -80,17 +97,15 @@ MapPart PartOf(const SavedMap& saved, int number) {
   return parts[static_cast<size_t>(number)];
 }
 
-void WriteExportFile(const std::string& path, const std::string& bytes) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    ThrowInput(path + " is a folder; give the name of a file");
-  }
-  AtomicWriteFile(path, bytes);
-}
-
 }  // namespace
 
 void ExportSettings::Check() const { PlanOf(*this); }
+
+bool ExportSettings::IsTrajectory() const {
+  const Target target = PlanOf(*this).target;
+  return target == Target::kTum || target == Target::kEvo || target == Target::kKitti ||
+         target == Target::kEuroc;
+}
 
 bool ExportSettings::WithImages() const {
   const Target target = PlanOf(*this).target;
@@ -114,21 +129,37 @@ std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSetti
   return files;
 }
 
+void WriteExportFile(const std::string& path, const std::string& bytes) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    ThrowInput(path + " is a folder; give the name of a file");
+  }
+  AtomicWriteFile(path, bytes);
+}
+
+void WriteCloud(const Cloud& cloud, const ExportSettings& settings, const std::string& out) {
+  const Plan plan = PlanOf(settings);
+  const auto format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
+  WriteExportFile(
+      out, plan.target == Target::kPly ? EncodePly(cloud, format) : EncodePcd(cloud, format));
+}
+
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
                       const std::string& out) {
   const Plan plan = PlanOf(settings);
   const MapPart part = PartFor(saved, settings);
-  const auto cloud_format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
   std::string what = std::to_string(part.landmarks.size()) + " points";
   switch (plan.target) {
     case Target::kPly:
-      WriteExportFile(out, EncodePly(CloudOf(saved, part), cloud_format));
-      break;
     case Target::kPcd:
-      WriteExportFile(out, EncodePcd(CloudOf(saved, part), cloud_format));
+      WriteCloud(CloudOf(saved, part), settings, out);
       break;
     case Target::kTum:
-      WriteExportFile(out, FormatTumTrajectory(TrajectoryOf(saved, part)));
+    case Target::kEvo:
+    case Target::kKitti:
+    case Target::kEuroc:
+      if (settings.poses == "frames") ThrowUsage("--poses frames needs the result folder of a run");
+      WriteExportFile(out, FormatTrajectory(TrajectoryOf(saved, part), settings));
       what = std::to_string(part.keyframes.size()) + " poses";
       break;
     case Target::kColmap: {

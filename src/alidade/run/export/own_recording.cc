@@ -8,6 +8,10 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/datasets/euroc_recording.h"
+#include "alidade/io/files/datasets/folder_recording.h"
+#include "alidade/io/files/datasets/kitti_recording.h"
+#include "alidade/io/files/datasets/tum_recording.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/text.h"
 #include "alidade/run/folder/own_files.h"
@@ -20,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr char kModelAlone[] = ", or write the model alone with --no-images";
+constexpr char kWithout[] = ", or export without images (--no-images, no --colors)";
 
 // Share of a keyframe's features that are found again. The same image gives nearly all; those of
 // moving objects and settings of the extraction may differ. Other images give less than 1 %.
@@ -45,12 +49,15 @@ std::string PixelsOf(const Camera& camera) {
   return std::to_string(camera.width) + "x" + std::to_string(camera.height);
 }
 
-// The folder with the stats.json of the run that wrote the map; empty: none.
-std::string ResultFolderOf(const std::string& path) {
-  std::error_code error;
-  fs::path folder = fs::absolute(path, error).lexically_normal();
-  if (!IsFolder(path)) folder = folder.parent_path();
-  return IsFile((folder / kStatsFile).string()) ? folder.string() : "";
+std::vector<std::string> ImageFilesOf(const std::string& folder, const std::string& kind) {
+  Recording recording;
+  if (kind == "tum") recording = ReadTumRecording(folder);
+  if (kind == "euroc") recording = ReadEurocRecording(folder);
+  if (kind == "kitti") recording = ReadKittiRecording(folder);
+  if (kind == "images") recording = ReadFolderRecording(folder, std::nullopt);
+  std::vector<std::string> files;
+  for (RecordedFrame& frame : recording.frames) files.push_back(std::move(frame.image));
+  return files;
 }
 
 ExtractorSettings ExtractionOf(const SavedMap& saved) {
@@ -64,6 +71,13 @@ ExtractorSettings ExtractionOf(const SavedMap& saved) {
 }
 
 }  // namespace
+
+std::string ResultFolderOf(const std::string& path) {
+  std::error_code error;
+  fs::path folder = fs::absolute(path, error).lexically_normal();
+  if (!IsFolder(path)) folder = folder.parent_path();
+  return IsFile((folder / kStatsFile).string()) ? folder.string() : "";
+}
 
 OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
                               const std::optional<std::string>& source,
@@ -81,12 +95,12 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
                     ? ": its images came from a live camera and were not kept: name a "
                       "recording of them with --source"
                     : ": it is not known which recording it is of: name it with --source") +
-               kModelAlone);
+               kWithout);
   }
   const std::string place = PathOfSource(own.path);
   if (!place.empty() && !IsThere(place)) {
     ThrowInput(own.path + ", the recording of " + path +
-               ", is not there any more: name its new place with --source" + kModelAlone);
+               ", is not there any more: name its new place with --source" + kWithout);
   }
   const json reading = MemberAt(stats, "reading");
   SourceOptions options;
@@ -102,13 +116,14 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
       ThrowInput(told_camera +
                  ", the --camera of that run, is not there any more: name its new "
                  "place with --camera" +
-                 std::string(kModelAlone));
+                 std::string(kWithout));
     }
     options.camera_file = told_camera;
   } else if (const json fov = MemberAt(reading, "fov"); fov.is_number()) {
     options.fov_degrees = fov.get<double>();
   }
   own.source = OpenAnySource(own.path, options);
+  own.image_files = ImageFilesOf(own.path, own.source->Info().kind);
   const Camera& images = own.source->Info().camera;
   const bool smaller = saved.camera.width < images.width;
   const Camera scaled = smaller ? images.ScaledToWidth(saved.camera.width) : images;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "alidade/features/extractor.h"
 #include "alidade/io/frame_source.h"
@@ -16,7 +17,12 @@ struct OwnRecording {
   std::string path;    // as for OpenAnySource()
   std::string folder;  // of the result; empty: the map lies alone
   std::unique_ptr<FrameSource> source;
+  std::vector<std::string>
+      image_files;  // by SourceFrame::number; empty: not of files (videos, bags)
 };
+
+// The folder of the run that wrote the map `path`, or of the result folder `path`; empty: none.
+std::string ResultFolderOf(const std::string& path);
 
 // `path`: of a map or a result folder. `source`, `camera`: instead of those of the run. Throws
 // Error (input) if the recording is not known, gone or has another image size than the map.

@@ -36,12 +36,12 @@ class PinholeImages {
   cv::Mat Apply(const cv::Mat& image, const ReadoutMotion& readout = {}) const;
   cv::Mat ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout = {}) const;
 
-  // Where a raw pixel of the map's camera is in the pinhole image, and in the recorded image.
+  // Where a raw pixel of the map's camera is in the pinhole image.
   Eigen::Vector2d InPinhole(const Eigen::Vector2d& raw, const ReadoutMotion& readout = {}) const;
-  Eigen::Vector2d InRecorded(const Eigen::Vector2d& raw) const;
   bool Holds(const Eigen::Vector2d& pixel) const;  // inside the pinhole image
 
  private:
+  Eigen::Vector2d InRecorded(const Eigen::Vector2d& raw) const;
   Eigen::Vector2d Source(const Eigen::Vector2d& pixel, const ReadoutMotion& readout) const;
   cv::Mat Positions(const ReadoutMotion& readout) const;
   bool Moves(const ReadoutMotion& readout) const;

@@ -18,9 +18,21 @@ constexpr double kMarginShare = 0.95;  // of the frames
 
 bool Earlier(const PosedFrame& a, const PosedFrame& b) { return a.time < b.time; }
 
-// The trajectory of the map with these keyframes: the one whose list of keyframes has most of their
-// times.
-std::string TrajectoryFileOf(const std::string& folder, const std::vector<PosedFrame>& keyframes) {
+std::vector<PosedFrame> KeyFramesByTime(const SavedMap& saved, const MapPart& part) {
+  std::vector<PosedFrame> keyframes;
+  for (KeyFrameId id : part.keyframes) {
+    const KeyFrame& keyframe = *saved.map.Find(id);
+    keyframes.push_back({keyframe.frame->time, keyframe.T_camera_world, id});
+  }
+  std::stable_sort(keyframes.begin(), keyframes.end(), Earlier);
+  return keyframes;
+}
+
+}  // namespace
+
+std::string TrajectoryFileFor(const SavedMap& saved, const MapPart& part,
+                              const std::string& folder) {
+  const std::vector<PosedFrame> keyframes = KeyFramesByTime(saved, part);
   std::string best;
   size_t most = 0;
   for (size_t number = 0;; ++number) {
@@ -41,20 +53,17 @@ std::string TrajectoryFileOf(const std::string& folder, const std::vector<PosedF
   }
 }
 
-}  // namespace
-
 PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::string& folder,
                          const Eigen::Matrix3d& R_camera_rectified) {
+  all_ = KeyFramesByTime(saved, part);
   for (KeyFrameId id : part.keyframes) {
     const KeyFrame& keyframe = *saved.map.Find(id);
-    all_.push_back({keyframe.frame->time, keyframe.T_camera_world, id});
     if (const auto depth = MedianDepth(saved.map, keyframe); depth && *depth > 0)
       inverse_depths_.push_back({keyframe.frame->time, 1 / *depth});
   }
   keyframes_ = all_.size();
-  std::stable_sort(all_.begin(), all_.end(), Earlier);
   std::sort(inverse_depths_.begin(), inverse_depths_.end());
-  if (const std::string file = TrajectoryFileOf(folder, all_); !file.empty()) {
+  if (const std::string file = TrajectoryFileFor(saved, part, folder); !file.empty()) {
     const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
     for (const StampedPose& pose : ReadTrajectory(file)) {
       const Se3 T_world_camera = turn.Inverse() * pose.T_world_camera * turn;
@@ -78,14 +87,14 @@ std::vector<PosedFrame> PosedFrames::At(double time) const {
 
 ReadoutMotion PosedFrames::MotionAt(double time) const {
   ReadoutMotion readout;
+  if (trajectory_.empty()) return readout;
   const auto after = std::lower_bound(trajectory_.begin(), trajectory_.end(),
                                       PosedFrame{time + kSameMoment, {}, {}}, Earlier);
   const auto here = std::lower_bound(trajectory_.begin(), trajectory_.end(),
                                      PosedFrame{time - kSameMoment, {}, {}}, Earlier);
   const auto a = here == trajectory_.begin() ? here : here - 1;
   const auto b = after == trajectory_.end() ? after - 1 : after;
-  if (trajectory_.empty() || !(b->time > a->time) || b->time - a->time > 2 * kLongestStep)
-    return readout;
+  if (!(b->time > a->time) || b->time - a->time > 2 * kLongestStep) return readout;
   readout.motion = (b->T_camera_world * a->T_camera_world.Inverse()).Log() / (b->time - a->time);
   if (!inverse_depths_.empty()) {
     const auto next =

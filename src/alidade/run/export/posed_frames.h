@@ -9,6 +9,11 @@
 
 namespace alidade {
 
+// The file in a result folder with the trajectory of a map: the one beside the list of keyframes
+// that has most of the map's. Empty: none.
+std::string TrajectoryFileFor(const SavedMap& saved, const MapPart& part,
+                              const std::string& folder);
+
 struct PosedFrame {
   double time = 0;      // seconds
   Se3 T_camera_world;   // of the map

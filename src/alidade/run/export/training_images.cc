@@ -4,46 +4,38 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/io/read_ahead.h"
+#include "alidade/run/export/frame_matcher.h"
 #include "alidade/run/export/image_masks.h"
 #include "alidade/run/export/image_names.h"
+#include "alidade/run/export/landmark_colors.h"
+#include "alidade/run/export/map_models.h"
 #include "alidade/run/export/pinhole_images.h"
-#include "alidade/run/export/posed_frames.h"
 
 namespace alidade {
 namespace {
 
-constexpr int kTrainingQuality = 95;
-
-// Sum of colors, red green blue.
-struct ColorSum {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  int count = 0;
-};
+constexpr int kTrainingQuality = 95;  // JPEG
+constexpr std::array<uint8_t, 3> kUnknownColor = {128, 128, 128};
 
 const cv::Mat& PictureIn(const SourceFrame& frame) {
   return frame.color.empty() ? frame.image : frame.color;
 }
 
-// Bilinear; red green blue.
-Eigen::Vector3d ColorAt(const cv::Mat& image, const Eigen::Vector2d& pixel) {
-  const double x = std::clamp(pixel.x(), 0.0, image.cols - 1.0),
-               y = std::clamp(pixel.y(), 0.0, image.rows - 1.0);
-  const int left = static_cast<int>(x), top = static_cast<int>(y);
-  const int right = std::min(left + 1, image.cols - 1), bottom = std::min(top + 1, image.rows - 1);
-  const auto at = [&](int u, int v) -> Eigen::Vector3d {
-    if (image.channels() == 1) return Eigen::Vector3d::Constant(image.at<uint8_t>(v, u));
-    const auto& bgr = image.at<cv::Vec3b>(v, u);
-    return {double(bgr[2]), double(bgr[1]), double(bgr[0])};
-  };
-  const double u = x - left, v = y - top;
-  return (1 - v) * ((1 - u) * at(left, top) + u * at(right, top)) +
-         v * ((1 - u) * at(left, bottom) + u * at(right, bottom));
+// Reads the recording once, in its own thread.
+void ForEachFrame(OwnRecording& recording, const ExportProgress& progress,
+                  const std::function<void(const SourceFrame&)>& take) {
+  const int total = recording.source->Info().frames;
+  ReadAhead frames(std::move(recording.source));
+  int read = 0;
+  while (const std::optional<SourceFrame> frame = frames.Next()) {
+    take(*frame);
+    if (progress && !progress(++read, total)) throw ExportStopped();
+  }
 }
 
 class TrainingWriter {
@@ -55,54 +47,34 @@ class TrainingWriter {
         settings_(settings),
         folder_(folder),
         info_(recording.source->Info()),
-        poses_(saved, part, recording.folder, info_.R_camera_rectified),
+        frames_(saved, part, recording.folder, info_.R_camera_rectified),
         pinhole_(saved.camera, {info_.camera.width, info_.camera.height},
-                 {settings.centered, poses_.MarginFor(saved.camera)}),
-        names_(info_),
-        check_(saved) {
-    if (settings.choice.kind != FrameChoice::Kind::kKeyframes && !poses_.has_trajectory()) {
+                 {settings.centered, frames_.poses().MarginFor(saved.camera)}),
+        names_(recording),
+        colors_(saved, part, {info_.camera.width, info_.camera.height}) {
+    if (settings.choice.kind != FrameChoice::Kind::kKeyframes &&
+        !frames_.poses().has_trajectory()) {
       ThrowUsage(
           "--images other than keyframes needs the result folder of the run, whose trajectory has "
           "the poses of all frames");
     }
     if (settings.masks) masks_.emplace(recording.folder);
-    used_.insert(part.landmarks.begin(), part.landmarks.end());
     set_.model.camera = pinhole_.camera();
   }
 
   void Take(const SourceFrame& frame) {
-    if (!frame.problem.empty() || frame.image.empty()) return;
-    std::optional<PosedFrame> posed;
-    for (const PosedFrame& candidate : poses_.At(frame.time)) {
-      if (candidate.keyframe.valid()) {
-        if (done_.count(candidate.keyframe) > 0) continue;
-        if (!check_.Shows(frame.image, *saved_.map.Find(candidate.keyframe))) {
-          others_.insert(candidate.keyframe);
-          continue;
-        }
-        done_.insert(candidate.keyframe);
-        others_.erase(candidate.keyframe);
-        AddColors(frame, *saved_.map.Find(candidate.keyframe));
-      }
-      posed = candidate;
-      break;
-    }
-    if (posed) Choose(frame, *posed);
+    const std::optional<PosedFrame> posed = frames_.Match(frame);
+    if (!posed) return;
+    if (posed->keyframe.valid()) colors_.Add(PictureIn(frame), *saved_.map.Find(posed->keyframe));
+    Choose(frame, *posed);
   }
 
   TrainingSet Finish(const std::string& source) {
     Flush();
-    if (done_.empty() && others_.empty())
-      ThrowInput(source +
-                 " has no frame at the times of the map's keyframes: it was changed since "
-                 "the run, or is another recording");
-    if (done_.empty())
-      ThrowInput(source +
-                 ": its images do not show what the map was made of: it was changed since "
-                 "the run, or is another recording");
+    frames_.CheckFound(source);
     AddPoints();
-    set_.other = static_cast<int>(others_.size());
-    set_.missing = static_cast<int>(poses_.keyframes() - done_.size() - others_.size());
+    set_.other = frames_.other();
+    set_.missing = frames_.missing();
     return std::move(set_);
   }
 
@@ -137,7 +109,7 @@ class TrainingWriter {
   }
 
   void Write(const SourceFrame& frame, const PosedFrame& posed) {
-    const ReadoutMotion readout = poses_.MotionAt(frame.time);
+    const ReadoutMotion readout = frames_.poses().MotionAt(frame.time);
     const std::string name = names_.NameOf(frame);
     const cv::Mat image = pinhole_.Apply(PictureIn(frame), readout);
     folder_.Write("images/" + name, ImageNames::IsJpeg(name) ? EncodeJpeg(image, kTrainingQuality)
@@ -162,17 +134,6 @@ class TrainingWriter {
       images_[posed.keyframe] = static_cast<int>(set_.model.images.size());
     }
     set_.model.images.push_back(std::move(written));
-  }
-
-  void AddColors(const SourceFrame& frame, const KeyFrame& keyframe) {
-    const cv::Mat& picture = PictureIn(frame);
-    for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-      if (!keyframe.landmarks[i].valid() || used_.count(keyframe.landmarks[i]) == 0) continue;
-      const Keypoint& keypoint = keyframe.frame->keypoints[i];
-      ColorSum& color = colors_[keyframe.landmarks[i]];
-      color.sum += ColorAt(picture, pinhole_.InRecorded({keypoint.raw_x, keypoint.raw_y}));
-      ++color.count;
-    }
   }
 
   void AddPoints() {
@@ -201,12 +162,9 @@ class TrainingWriter {
       if (settings_.choice.kind == Kind::kKeyframes &&
           static_cast<int>(point.track.size()) < settings_.min_observations)
         continue;
-      const auto color = colors_.find(id);
-      if (color == colors_.end()) continue;  // of keyframes that were not found
-      const Eigen::Vector3d mean = color->second.sum / color->second.count;
-      for (int channel = 0; channel < 3; ++channel)
-        point.color[static_cast<size_t>(channel)] =
-            static_cast<uint8_t>(std::lround(mean[channel]));
+      const auto color = colors_.Of(id);
+      if (!color) continue;  // of keyframes that were not found
+      point.color = *color;
       if (in_front > 0) point.error = sum / in_front;
       for (const ColmapModel::Seen& seen : point.track) {
         model.images[static_cast<size_t>(seen.image)]
@@ -222,17 +180,14 @@ class TrainingWriter {
   const TrainingSettings settings_;
   ExportFolder& folder_;
   const SourceInfo info_;
-  const PosedFrames poses_;
+  FrameMatcher frames_;
   const PinholeImages pinhole_;
   ImageNames names_;
-  ImageCheck check_;
+  LandmarkColors colors_;
   std::optional<ImageMasks> masks_;
   TrainingSet set_;
-  std::set<LandmarkId> used_;
-  std::map<LandmarkId, ColorSum> colors_;
   std::map<KeyFrameId, int> images_;                  // indices in the model
   std::map<KeyFrameId, std::vector<int>> keypoints_;  // index in the image's, -1: outside
-  std::set<KeyFrameId> done_, others_;                // found in the recording, or not the same
   // The sharpest frame of the present window.
   std::optional<std::pair<SourceFrame, PosedFrame>> best_;
   double sharpness_ = 0;
@@ -246,14 +201,25 @@ TrainingSet WriteTrainingImages(const SavedMap& saved, const MapPart& part, OwnR
                                 const TrainingSettings& settings, const ExportProgress& progress,
                                 ExportFolder& folder) {
   TrainingWriter writer(saved, part, recording, settings, folder);
-  const int total = recording.source->Info().frames;
-  ReadAhead frames(std::move(recording.source));
-  int read = 0;
-  while (const std::optional<SourceFrame> frame = frames.Next()) {
-    writer.Take(*frame);
-    if (progress && !progress(++read, total)) throw ExportStopped();
-  }
+  ForEachFrame(recording, progress, [&](const SourceFrame& frame) { writer.Take(frame); });
   return writer.Finish(recording.path);
+}
+
+Cloud ColoredCloud(const SavedMap& saved, const MapPart& part, OwnRecording& recording,
+                   const ExportProgress& progress) {
+  const SourceInfo info = recording.source->Info();
+  FrameMatcher frames(saved, part, recording.folder, info.R_camera_rectified);
+  LandmarkColors colors(saved, part, {info.camera.width, info.camera.height});
+  ForEachFrame(recording, progress, [&](const SourceFrame& frame) {
+    const std::optional<PosedFrame> posed = frames.Match(frame);
+    if (posed && posed->keyframe.valid())
+      colors.Add(PictureIn(frame), *saved.map.Find(posed->keyframe));
+  });
+  frames.CheckFound(recording.path);
+  Cloud cloud = CloudOf(saved, part);
+  for (LandmarkId id : part.landmarks)
+    cloud.colors.push_back(colors.Of(id).value_or(kUnknownColor));
+  return cloud;
 }
 
 }  // namespace alidade

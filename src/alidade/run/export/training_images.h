@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/io/cloud.h"
 #include "alidade/io/colmap.h"
 #include "alidade/run/export/export_folder.h"
 #include "alidade/run/export/frame_choice.h"
@@ -39,5 +40,10 @@ struct TrainingSet {
 TrainingSet WriteTrainingImages(const SavedMap& saved, const MapPart& part, OwnRecording& recording,
                                 const TrainingSettings& settings, const ExportProgress& progress,
                                 ExportFolder& folder);
+
+// The landmarks in the colors of the recording's images, gray where no image is there. Throws as
+// above.
+Cloud ColoredCloud(const SavedMap& saved, const MapPart& part, OwnRecording& recording,
+                   const ExportProgress& progress);
 
 }  // namespace alidade

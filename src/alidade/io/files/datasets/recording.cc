@@ -62,7 +62,6 @@ class RecordingSource : public FrameSource {
     frame.number = static_cast<int>(next_++);
     frame.part = recorded.part;
     frame.problem = recorded.problem;
-    frame.image_file = recorded.image;
     if (!frame.problem.empty()) return frame;
     try {
       const GrayAndColor read = ReadImageAsStored(recorded.image, color_);
