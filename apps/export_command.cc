@@ -14,11 +14,14 @@ namespace {
 
 struct ExportOptions {
   std::string map, out;  // paths
+  bool no_images = false;
   ExportSettings how;
 };
 
 int ExportCommand(const ExportOptions& options) {
   CatchInterrupts();
+  ExportSettings how = options.how;
+  how.with_images = !options.no_images;
   Terminal terminal(false);
   const auto progress = [&](int frames, int total) {
     if (terminal.shows_progress() && frames % 10 == 0)
@@ -27,7 +30,7 @@ int ExportCommand(const ExportOptions& options) {
     return !Interrupted();
   };
   try {
-    const std::string what = ExportPath(options.map, options.how, options.out, progress);
+    const std::string what = ExportPath(options.map, how, options.out, progress);
     terminal.SetProgress("");
     std::printf("%s: %s\n", options.out.c_str(), what.c_str());
     return 0;
@@ -72,7 +75,7 @@ void AddExportCommand(CLI::App& app, Action& action) {
           "the sharpest frame of each 1/RATE seconds")
       ->type_name("keyframes|every:N|sharpest:RATE")
       ->capture_default_str();
-  command->add_flag("!--no-images", options->how.with_images,
+  command->add_flag("--no-images", options->no_images,
                     "colmap: the model alone, with the recorded, distorted camera");
   command->add_flag("--masks", options->how.masks,
                     "Also masks of moving objects (black), if the run was made with --write-masks");
