@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <optional>
 
 #include "alidade/base/error.h"
 #include "alidade/io/text.h"
@@ -14,17 +13,16 @@ FrameChoice FrameChoiceNamed(const std::string& word) {
   if (word == "keyframes") return choice;
   const size_t colon = word.find(':');
   const std::string name = word.substr(0, colon);
-  const std::optional<double> number =
-      colon == std::string::npos ? std::nullopt : ParseNumber(word.substr(colon + 1));
-  if (name == "every" && number && *number >= 1 && *number <= 1e6 &&
-      *number == std::floor(*number)) {
+  const double number =  // 0: none, which is out of range
+      colon == std::string::npos ? 0 : ParseNumber(word.substr(colon + 1)).value_or(0);
+  if (name == "every" && number >= 1 && number <= 1e6 && number == std::floor(number)) {
     choice.kind = FrameChoice::Kind::kEvery;
-    choice.every = static_cast<int>(*number);
+    choice.every = static_cast<int>(number);
     return choice;
   }
-  if (name == "sharpest" && number && *number >= 1e-3 && *number <= 1e3) {
+  if (name == "sharpest" && number >= 1e-3 && number <= 1e3) {
     choice.kind = FrameChoice::Kind::kSharpest;
-    choice.rate = *number;
+    choice.rate = number;
     return choice;
   }
   ThrowUsage(
