@@ -117,8 +117,8 @@ def _by_ending(path: str) -> str:
     """The export format for a file name's ending."""
     to = {".ply": "ply", ".pcd": "pcd", ".txt": "tum", ".tum": "tum", ".mcap": "mcap"}.get(os.path.splitext(path)[1])
     if to is None:
-        raise UsageError(f'{path}: its ending does not say what to write; give to="ply", "pcd", "tum", "colmap" '
-                         'or "mcap"')
+        raise UsageError(f'{path}: its ending does not say what to write; give to="ply", "pcd", "tum", "colmap", '
+                         '"gsplat", "nerfstudio" or "mcap"')
     return to
 
 
@@ -152,15 +152,15 @@ class Map:
         self._core.save(coded(path))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
-               min_observations: int = 1) -> str:
+               min_observations: Optional[int] = None) -> str:
         """Exports to another format, as ``alidade export`` does. Returns a description of what was written.
 
-        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a folder with both), "mcap" (both
-            as ROS 2 messages). None: by the ending of the path.
+        to: "ply", "pcd" (the points), "tum" (the keyframes' trajectory), "colmap" (a folder with both; with images:
+            Result.export()), "mcap" (both as ROS 2 messages). None: by the ending of the path.
         format: "text", "binary", "both" (colmap) or "default". part: index into ``parts``.
-        min_observations: omits points observed by fewer keyframes.
+        min_observations: omits points observed by fewer keyframes; None: 2 for "colmap", else 1.
         """
-        return self._core.export(coded(path), to or _by_ending(decoded(path)), format, part, min_observations)
+        return self._core.export(coded(path), to or _by_ending(decoded(path)), format, part, min_observations or 0)
 
     @property
     def parts(self) -> List[MapPart]:

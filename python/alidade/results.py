@@ -46,16 +46,22 @@ class Result:
         shutil.copytree(self.folder, decoded(folder))
 
     def export(self, path: PathLike, to: Optional[str] = None, *, format: str = "default", part: int = 0,
-               min_observations: int = 1) -> str:
+               min_observations: Optional[int] = None, images: Optional[str] = "keyframes", masks: bool = False,
+               source: Optional[PathLike] = None, camera: Optional[PathLike] = None) -> str:
         """Exports to another format, as ``alidade export`` does. Returns a description of what was written.
 
         to: "mcap": the run frame by frame (if recorded with ``record=True``; else its poses) and the final path and
-            points, as ROS 2 messages (docs/reference/mcap.md). Other formats: the map, as Map.export(). None: by the ending of
-            the path.
+            points, as ROS 2 messages (docs/reference/mcap.md). "colmap", "gsplat", "nerfstudio": a folder with
+            undistorted images to train on (docs/guides/training.md). Other formats: the map, as Map.export(). None: by
+            the ending of the path.
         format, part, min_observations: as in Map.export(), not for "mcap".
+        images: "keyframes", "every:N" or "sharpest:RATE"; None: the model alone ("colmap").
+        masks: also masks of moving objects, if the run wrote them. source, camera: where the recording and its
+            calibration file are now; None: where the run read them.
         """
         return _core.export_path(coded(self.folder), coded(path), to or _by_ending(decoded(path)), format, part,
-                                 min_observations)
+                                 min_observations or 0, images, masks, None if source is None else coded(source),
+                                 None if camera is None else coded(camera))
 
     @property
     def trajectory(self) -> numpy.ndarray:

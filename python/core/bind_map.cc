@@ -185,17 +185,28 @@ py::str Export(const MapHolder& saved, const std::string& out, const std::string
   std::string told;
   {
     const py::gil_scoped_release release;
-    told = ExportMap(*saved, HowToExport(to, format, part, min_observations), out);
+    ExportSettings settings = HowToExport(to, format, part, min_observations);
+    if (to == "colmap") settings.with_images = false;  // a map has none
+    told = ExportMap(*saved, settings, out);
   }
   return PathText(told);
 }
 
 py::str ExportFrom(const std::string& path, const std::string& out, const std::string& to,
-                   const std::string& format, int part, int min_observations) {
+                   const std::string& format, int part, int min_observations,
+                   const std::optional<std::string>& images, bool masks,
+                   const std::optional<std::string>& source,
+                   const std::optional<std::string>& camera) {
   std::string told;
   {
     const py::gil_scoped_release release;
-    told = ExportPath(path, HowToExport(to, format, part, min_observations), out);
+    ExportSettings settings = HowToExport(to, format, part, min_observations);
+    settings.with_images = images.has_value();
+    if (images) settings.images = *images;
+    settings.masks = masks;
+    settings.source = source;
+    settings.camera = camera;
+    told = ExportPath(path, settings, out);
   }
   return PathText(told);
 }
@@ -238,7 +249,8 @@ void BindMap(py::module_& core) {
   core.def("read_map", &Read, py::arg("path"));
   core.def("decode_map", &Decode, py::arg("bytes"));
   core.def("export_path", &ExportFrom, py::arg("path"), py::arg("out"), py::arg("to"),
-           py::arg("format"), py::arg("part"), py::arg("min_observations"));
+           py::arg("format"), py::arg("part"), py::arg("min_observations"), py::arg("images"),
+           py::arg("masks"), py::arg("source"), py::arg("camera"));
 }
 
 }  // namespace alidade::python

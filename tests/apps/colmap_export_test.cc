@@ -4,6 +4,7 @@
 #include <opencv2/calib3d.hpp>
 #include <sstream>
 
+#include "support/colmap_program.h"
 #include "support/saved_map_command.h"
 
 namespace alidade::colmap_export_test {
@@ -12,7 +13,7 @@ namespace {
 // The text model, read as COLMAP's documentation says and projected by OpenCV.
 TEST_F(SavedMapCommand, ColmapModelProjectsToItsKeypoints) {
   const std::string out = folder_ / "model";
-  Export(Result("mono"), "colmap", out);
+  Export(Result("mono"), "colmap", out, {"--no-images"});
   std::istringstream camera(DataLines(out + "/cameras.txt").at(0));
   std::string skipped, model;
   double fx, fy, cx, cy, k1, k2, p1, p2;
@@ -72,36 +73,10 @@ TEST_F(SavedMapCommand, ColmapModelProjectsToItsKeypoints) {
   EXPECT_LT(sum / count, 1.5);
 }
 
-// Runs the real program; its words and its exit status.
-ProgramResult Colmap(const std::string& arguments) {
-  const std::string command = "QT_QPA_PLATFORM=offscreen colmap " + arguments + " 2>&1";
-  ProgramResult result;
-  FILE* pipe = popen(command.c_str(), "r");
-  if (pipe == nullptr) return result;
-  char buffer[4096];
-  for (size_t got; (got = fread(buffer, 1, sizeof(buffer), pipe)) > 0;) {
-    result.out.append(buffer, got);
-  }
-  result.status = pclose(pipe);
-  return result;
-}
-
-// The number after `words`.
-double NumberAfter(const std::string& text, const std::string& words) {
-  const size_t at = text.find(words);
-  if (at == std::string::npos) {
-    ADD_FAILURE() << "no '" << words << "' in: " << text;
-    return NAN;
-  }
-  return std::strtod(text.c_str() + at + words.size(), nullptr);
-}
-
 class RealColmap : public SavedMapCommand {
  protected:
   void SetUp() override {
-    if (Colmap("help").status != 0) {
-      GTEST_SKIP() << "needs COLMAP (scripts/setup --tests installs Debian's)";
-    }
+    if (!HasColmap()) GTEST_SKIP() << "needs COLMAP (scripts/setup --tests installs Debian's)";
   }
 };
 
@@ -111,7 +86,7 @@ TEST_F(RealColmap, ReadsTextAndBinary) {
     const json info = Info(result);
     for (const char* format : {"text", "binary", "both"}) {
       const std::string out = folder_ / (std::string(sensor) + format);
-      Export(result, "colmap", out, {"--format", format});
+      Export(result, "colmap", out, {"--no-images", "--min-observations", "1", "--format", format});
       const ProgramResult analysis = Colmap("model_analyzer --path " + out);
       EXPECT_EQ(analysis.status, 0) << analysis.out;
       EXPECT_EQ(NumberAfter(analysis.out, "\nRegistered images:"), info["keyframes"]);
@@ -125,8 +100,8 @@ TEST_F(RealColmap, ReadsTextAndBinary) {
 
 TEST_F(RealColmap, ConvertsEachIntoTheOther) {
   const std::string text = folder_ / "text", binary = folder_ / "binary";
-  Export(Result("rgbd"), "colmap", text, {"--format", "text"});
-  Export(Result("rgbd"), "colmap", binary, {"--format", "binary"});
+  Export(Result("rgbd"), "colmap", text, {"--no-images", "--format", "text"});
+  Export(Result("rgbd"), "colmap", binary, {"--no-images", "--format", "binary"});
   const std::string out = folder_.Folder("converted");
   const ProgramResult converted =
       Colmap("model_converter --output_type TXT --input_path " + binary + " --output_path " + out);
@@ -144,7 +119,7 @@ TEST_F(RealColmap, ConvertsEachIntoTheOther) {
 // it.
 TEST_F(RealColmap, AdjustsTheModel) {
   const std::string model = folder_ / "model", out = folder_.Folder("adjusted");
-  Export(Result("mono"), "colmap", model, {"--min-observations", "2"});
+  Export(Result("mono"), "colmap", model, {"--no-images"});
   const double before = NumberAfter(Colmap("model_analyzer --path " + model).out, "error:");
   const ProgramResult adjusted =
       Colmap("bundle_adjuster --input_path " + model + " --output_path " + out);

@@ -124,7 +124,8 @@ TEST_F(SavedMapCommand, ExportsOneOfSeveralMaps) {
   EXPECT_EQ(DataLines(folder_ / "a.txt").size(), 7u);
   Export(map, "tum", folder_ / "b.txt", {"--part", "1"});
   EXPECT_EQ(DataLines(folder_ / "b.txt").size(), 4u);
-  Export(map, "colmap", folder_ / "model", {"--part", "1"});
+  Export(map, "colmap", folder_ / "model",
+         {"--no-images", "--min-observations", "1", "--part", "1"});
   EXPECT_EQ(DataLines(folder_ / "model/points3D.txt").size(), info["maps"][1]["landmarks"]);
 }
 
@@ -137,7 +138,7 @@ TEST_F(SavedMapCommand, AnEmptyMapHasNothingToExport) {
   EXPECT_EQ(RunAlidade({"info", map}).status, 0);
   Export(map, "pcd", folder_ / "a.pcd");
   EXPECT_THAT(ReadText(folder_ / "a.pcd"), HasSubstr("POINTS 0"));
-  Export(map, "colmap", folder_ / "model");
+  Export(map, "colmap", folder_ / "model", {"--no-images"});
 }
 
 TEST_F(SavedMapCommand, TumIsTheTrajectoryOfTheKeyframes) {
@@ -178,11 +179,11 @@ TEST_F(SavedMapCommand, CloudsHoldTheLandmarks) {
 TEST_F(SavedMapCommand, ColmapFolderIsReplacedOnlyWhenItIsOurs) {
   const std::string result = Result("rgbd");
   const std::string out = folder_ / "deep/model";
-  Export(result, "colmap", out + "/");
+  Export(result, "colmap", out + "/", {"--no-images"});
   EXPECT_EQ(NamesIn(out).size(), 7u);  // the model twice, and what tells it is ours
-  Export(result, "colmap", out, {"--format", "text"});
+  Export(result, "colmap", out, {"--no-images", "--format", "text"});
   EXPECT_EQ(NamesIn(out).size(), 4u);
-  Export(result, "colmap", folder_.Folder("empty"));
+  Export(result, "colmap", folder_.Folder("empty"), {"--no-images"});
 
   const std::string foreign = folder_ / "foreign";
   folder_.Write("foreign/images.txt", "months of work");
@@ -200,7 +201,7 @@ TEST_F(SavedMapCommand, WhatAKilledExportLeftIsRemoved) {
   const std::string left = folder_.Folder("model.tmp99999-0");
   folder_.Write("model.tmp99999-0/images.txt", "half");
   folder_.Write("model.tmp99999-1/thesis.txt", "someone else's");
-  Export(Result("rgbd"), "colmap", folder_ / "model");
+  Export(Result("rgbd"), "colmap", folder_ / "model", {"--no-images"});
   EXPECT_FALSE(fs::exists(left));
   EXPECT_TRUE(fs::exists(folder_ / "model.tmp99999-1"));
 }

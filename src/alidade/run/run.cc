@@ -162,6 +162,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
   setup.source = source->Info();
   setup.source.told = inspected.told;
+  setup.reading = wanted;
   settings.sensor = setup.source.sensor;
   settings.threaded = ThreadedFrom(options, setup.source.kind == "camera");
   OutputFolder folder(ClaimOf(options, setup.source));

@@ -1,73 +1,136 @@
 #include "alidade/run/export/export_folder.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/folder/draft_folder.h"
 
 namespace alidade {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::ordered_json;
 
 constexpr const char* kMarker = "export.json";
-constexpr std::array<const char*, 7> kOurFiles = {"cameras.txt", "images.txt", "points3D.txt",
-                                                  "cameras.bin", "images.bin", "points3D.bin",
-                                                  kMarker};
+constexpr int kMarkerVersion = 2;
+// What version 1 wrote, whose marker has no list.
+constexpr std::array<const char*, 7> kFirstFiles = {"cameras.txt", "images.txt", "points3D.txt",
+                                                    "cameras.bin", "images.bin", "points3D.bin",
+                                                    kMarker};
 
-bool HoldsOnlyOurs(const fs::path& folder) {
+std::set<std::string> FirstFiles() { return {kFirstFiles.begin(), kFirstFiles.end()}; }
+
+// The files of an earlier export, from its marker; empty: the folder has no marker of ours.
+std::set<std::string> FilesOfEarlier(const fs::path& folder) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    bool ours = false;
-    for (const char* known : kOurFiles) ours = ours || name == known;
-    if (!ours || !entry.is_regular_file(error)) return false;
+  if (!fs::is_regular_file(folder / kMarker, error)) return {};
+  const auto marker = ordered_json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
+  if (!marker.is_object() || !marker.contains("version")) return {};
+  if (marker.contains("colmap")) return FirstFiles();
+  std::set<std::string> files;
+  if (!marker.contains("files") || !marker["files"].is_array()) return files;
+  for (const auto& file : marker["files"]) {
+    if (file.is_string()) files.insert(file.get<std::string>());
   }
-  return !error;
+  files.insert(kMarker);
+  return files;
 }
 
-bool HoldsOurMarker(const fs::path& folder) {
+// A file in `folder` that is not among `files`; empty: none.
+std::string OtherFile(const fs::path& folder, const std::set<std::string>& files) {
   std::error_code error;
-  if (!fs::is_regular_file(folder / kMarker, error)) return false;
-  const auto marker = nlohmann::json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
-  return marker.is_object() && marker.contains("version") && marker.contains("colmap");
+  for (auto at = fs::recursive_directory_iterator(folder, error);
+       !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
+    if (at->is_directory(error) && !at->is_symlink(error)) continue;
+    const std::string name = at->path().lexically_relative(folder).generic_string();
+    if (files.count(name) == 0 || at->is_symlink(error)) return name;
+  }
+  return error ? error.message() : "";
 }
 
-void CheckFree(const fs::path& path) {
+// A folder that a killed export left: what this or the first version writes before it is done.
+bool IsLeftover(const fs::path& folder) {
+  std::error_code error;
+  if (fs::is_regular_file(folder / kMarker, error)) return !FilesOfEarlier(folder).empty();
+  return OtherFile(folder, FirstFiles()).empty();
+}
+
+std::string PathWithoutSlash(const std::string& folder) {
+  fs::path path = fs::path(folder).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();
+  return path.string();
+}
+
+void CheckIsFree(const fs::path& path) {
   std::error_code error;
   if (!fs::exists(fs::symlink_status(path, error))) return;
   if (!fs::is_directory(path, error)) ThrowInput(path.string() + " is a file, not a folder");
   const bool empty = fs::is_empty(path, error);
   if (error) ThrowInput(path.string() + ": " + error.message());
-  if (!empty && !(HoldsOurMarker(path) && HoldsOnlyOurs(path))) {
-    ThrowInput(path.string() +
-               ": the folder contains other files than an earlier export; choose another");
+  if (empty) return;
+  const std::set<std::string> ours = FilesOfEarlier(path);
+  const std::string other = ours.empty() ? "" : OtherFile(path, ours);
+  if (!ours.empty() && other.empty()) return;
+  ThrowInput(path.string() + ": the folder contains other files than an earlier export" +
+             (other.empty() ? "" : " (" + other + ")") + "; choose another");
+}
+
+std::string CheckedPath(const std::string& folder) {
+  std::string path = PathWithoutSlash(folder);
+  CheckIsFree(path);
+  for (const std::string& left : StaleTemporaries(path)) {
+    std::error_code ignored;
+    if (IsLeftover(left)) fs::remove_all(left, ignored);
   }
+  return path;
+}
+
+std::string MarkerText(const std::string& format, const std::vector<std::string>& files) {
+  const ordered_json marker = {{"version", kMarkerVersion}, {"format", format}, {"files", files}};
+  return marker.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
 
-void WriteExportFolder(const std::string& folder, const std::vector<ColmapFile>& files) {
-  fs::path path = fs::path(folder).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // with a trailing slash
-  CheckFree(path);
-  for (const std::string& left : StaleTemporaries(path.string())) {
-    std::error_code ignored;
-    if (HoldsOnlyOurs(left)) fs::remove_all(left, ignored);
+ExportFolder::ExportFolder(const std::string& path) : path_(CheckedPath(path)) {}
+
+void ExportFolder::Write(const std::string& name, const std::string& bytes) {
+  if (!draft_) {
+    draft_.emplace(path_);
+    AtomicWriteFile(draft_->path() + "/" + kMarker, MarkerText("unfinished", {}));
   }
-  const DraftFolder draft(path.string());
-  for (const ColmapFile& file : files) {
-    AtomicWriteFile(draft.path() + "/" + file.name, file.bytes);
-  }
-  const nlohmann::ordered_json marker = {{"version", 1}, {"colmap", files.size()}};
-  AtomicWriteFile(draft.path() + "/" + kMarker, marker.dump(2) + "\n");
+  const fs::path file = fs::path(draft_->path()) / name;
   std::error_code error;
-  for (const char* name : kOurFiles) fs::remove(path / name, error);
-  fs::rename(draft.path(), path, error);
-  if (error) ThrowInput(path.string() + ": cannot be written: " + error.message());
+  fs::create_directories(file.parent_path(), error);
+  if (error) ThrowInput(file.parent_path().string() + ": cannot be created: " + error.message());
+  AtomicWriteFile(file.string(), bytes, Sync::kNo);
+  files_.push_back(name);
+}
+
+void ExportFolder::Write(const std::vector<ColmapFile>& files, const std::string& subfolder) {
+  for (const ColmapFile& file : files) Write(subfolder + file.name, file.bytes);
+}
+
+void ExportFolder::Place(const std::string& format) {
+  AtomicWriteFile(draft_->path() + "/" + kMarker, MarkerText(format, files_));
+  CheckIsFree(path_);  // others may have written there meanwhile
+  std::error_code error;
+  std::string earlier;
+  if (fs::exists(path_, error)) {
+    earlier = TemporaryBeside(path_);
+    fs::rename(path_, earlier, error);
+  }
+  if (!error) fs::rename(draft_->path(), path_, error);
+  if (error) {
+    const std::string why = error.message();
+    if (!earlier.empty() && !fs::exists(path_, error)) fs::rename(earlier, path_, error);
+    ThrowInput(path_ + ": cannot be written: " + why);
+  }
+  if (!earlier.empty()) fs::remove_all(earlier, error);
 }
 
 }  // namespace alidade

@@ -5,6 +5,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
 #include "alidade/run/export/mcap_export.h"
+#include "alidade/run/export/nerfstudio_files.h"
+#include "alidade/run/export/trajectory_export.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/sources/saved_map.h"
 #include "alidade/version.h"
@@ -29,7 +31,7 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
     ThrowUsage("OUT is the source itself; choose another file");
   CheckIsNoResult(out);
   const bool map = stream.empty() && !std::filesystem::is_directory(path, error);
-  if (!map && (settings.part != 0 || settings.min_observations != 1)) {
+  if (!map && (settings.part != 0 || settings.min_observations > 1)) {
     ThrowUsage("--part and --min-observations apply to a map: give the file map.alidade");
   }
   if (map) {
@@ -41,10 +43,49 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
       "frames");
 }
 
+std::string InWords(const TrainingSet& set) {
+  const Camera& camera = set.model.camera;
+  std::string words = std::to_string(set.model.images.size()) + " images of " +
+                      std::to_string(camera.width) + "x" + std::to_string(camera.height) +
+                      (set.masks ? " with masks, " : ", ") +
+                      std::to_string(set.model.points.size()) + " points";
+  const auto without = [&](int keyframes, const char* why) {
+    if (keyframes == 0) return;
+    words += "; without " + std::to_string(keyframes) +
+             (keyframes == 1 ? " keyframe " : " keyframes ") + why;
+  };
+  without(set.other, "of which the recording has another image");
+  without(set.missing, "that the recording does not have");
+  return words;
+}
+
+std::string ExportImages(const std::string& path, const SavedMap& saved,
+                         const ExportSettings& settings, const std::string& out,
+                         const ExportProgress& progress) {
+  const MapPart part = PartFor(saved, settings);
+  if (part.keyframes.empty()) ThrowInput(path + ": the map is empty");
+  ExportFolder folder(out);  // before the recording is read
+  OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+  TrainingSettings training;
+  training.choice = FrameChoiceNamed(settings.images);
+  training.min_observations = settings.min_observations > 0 ? settings.min_observations : 2;
+  training.centered = settings.to == "gsplat";
+  training.masks = settings.masks;
+  const TrainingSet set = WriteTrainingImages(saved, part, recording, training, progress, folder);
+  if (settings.to == "nerfstudio") {
+    folder.Write("transforms.json", NerfstudioJson(set.model, set.masks));
+    folder.Write("sparse_pc.ply", EncodePly(NerfstudioCloud(set.model), CloudFormat::kBinary));
+  } else {
+    folder.Write(EncodeColmap(set.model, settings), "sparse/0/");
+  }
+  folder.Place(settings.to);
+  return InWords(set);
+}
+
 }  // namespace
 
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
-                       const std::string& out) {
+                       const std::string& out, const ExportProgress& progress) {
   settings.Check();
   if (settings.to == "mcap") return ExportToMcap(path, settings, out);
   std::error_code error;
@@ -52,7 +93,17 @@ std::string ExportPath(const std::string& path, const ExportSettings& settings,
     ThrowUsage("OUT is the map itself; choose another file");
   }
   CheckIsNoResult(out);
-  return ExportMap(ReadSavedMap(path), settings, out);
+  const SavedMap saved = ReadSavedMap(path);
+  if (settings.IsTrajectory()) return ExportTrajectory(path, saved, settings, out);
+  if (settings.colors) {
+    const MapPart part = PartFor(saved, settings);
+    OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+    const Cloud cloud = ColoredCloud(saved, part, recording, progress);
+    WriteCloud(cloud, settings, out);
+    return std::to_string(cloud.points.size()) + " colored points";
+  }
+  if (settings.WithImages()) return ExportImages(path, saved, settings, out, progress);
+  return ExportMap(saved, settings, out);
 }
 
 }  // namespace alidade

@@ -8,14 +8,16 @@
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/export/export_folder.h"
+#include "alidade/run/export/frame_choice.h"
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/export/mcap_export.h"
+#include "alidade/run/export/trajectory_export.h"
 #include "alidade/version.h"
 
 namespace alidade {
 namespace {
 
-enum class Target { kPly, kPcd, kTum, kColmap, kMcap };
+enum class Target { kPly, kPcd, kTum, kEvo, kKitti, kEuroc, kColmap, kGsplat, kNerfstudio, kMcap };
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -29,23 +31,58 @@ Plan PlanOf(const ExportSettings& settings) {
                                      {{"ply", Target::kPly},
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
+                                      {"evo", Target::kEvo},
+                                      {"kitti", Target::kKitti},
+                                      {"euroc", Target::kEuroc},
                                       {"colmap", Target::kColmap},
+                                      {"gsplat", Target::kGsplat},
+                                      {"nerfstudio", Target::kNerfstudio},
                                       {"mcap", Target::kMcap}});
   auto form = Choice<Form>("--format", settings.format,
                            {{"text", Form::kText},
                             {"binary", Form::kBinary},
                             {"both", Form::kBoth},
                             {"default", Form::kDefault}});
-  if (target == Target::kTum && form != Form::kDefault && form != Form::kText) {
-    ThrowUsage("--format cannot be '" + settings.format + "': TUM trajectories are text");
-  }
-  if (target != Target::kColmap && form == Form::kBoth) {
+  const bool trajectory = target == Target::kTum || target == Target::kEvo ||
+                          target == Target::kKitti || target == Target::kEuroc;
+  if (trajectory && form != Form::kDefault && form != Form::kText)
+    ThrowUsage("--format cannot be '" + settings.format + "': trajectories are text");
+  Choice<bool>("--poses", settings.poses,
+               {{"default", true}, {"frames", true}, {"keyframes", true}});
+  Choice<bool>("--up", settings.up, {{"map", true}, {"z", true}});
+  if (!trajectory && (settings.poses != "default" || settings.up != "map"))
+    ThrowUsage("--poses and --up are for --to tum, evo, kitti and euroc");
+  const bool model = target == Target::kColmap || target == Target::kGsplat;
+  if (!model && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
   }
+  if (target == Target::kNerfstudio && form == Form::kText)
+    ThrowUsage("--format cannot be 'text': the points of a nerfstudio folder are binary");
   if (target == Target::kMcap && form != Form::kDefault && form != Form::kBinary) {
     ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
   }
-  if (form == Form::kDefault) form = target == Target::kColmap ? Form::kBoth : Form::kBinary;
+  if (form == Form::kDefault) form = model ? Form::kBoth : Form::kBinary;
+  const bool images = model || target == Target::kNerfstudio;
+  const bool cloud = target == Target::kPly || target == Target::kPcd;
+  if (settings.colors && !cloud)
+    ThrowUsage("--colors is for --to ply and pcd; images come with colored points");
+  const bool about_images =
+      settings.masks || settings.images != "keyframes" || !settings.with_images;
+  if (!images && about_images)
+    ThrowUsage("--images, --no-images and --masks are for --to colmap, gsplat and nerfstudio");
+  const bool about_source = settings.source || settings.camera;
+  if (!images && about_source && !settings.colors) {
+    ThrowUsage(
+        "--source and --camera are for --to colmap, gsplat and nerfstudio, and for ply and pcd "
+        "with --colors");
+  }
+  if (!settings.with_images) {
+    if (target != Target::kColmap)
+      ThrowUsage("--no-images is for --to colmap: other trainers need the images");
+    if (about_source || settings.masks || settings.images != "keyframes")
+      ThrowUsage("--no-images cannot be combined with --images, --masks, --source and --camera");
+  }
+  FrameChoiceNamed(settings.images);
   return {target, form};
 }
 
@@ -60,6 +97,38 @@ MapPart PartOf(const SavedMap& saved, int number) {
   return parts[static_cast<size_t>(number)];
 }
 
+}  // namespace
+
+void ExportSettings::Check() const { PlanOf(*this); }
+
+bool ExportSettings::IsTrajectory() const {
+  const Target target = PlanOf(*this).target;
+  return target == Target::kTum || target == Target::kEvo || target == Target::kKitti ||
+         target == Target::kEuroc;
+}
+
+bool ExportSettings::WithImages() const {
+  const Target target = PlanOf(*this).target;
+  return with_images &&
+         (target == Target::kColmap || target == Target::kGsplat || target == Target::kNerfstudio);
+}
+
+MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
+  const int usual = PlanOf(settings).target == Target::kColmap || settings.WithImages() ? 2 : 1;
+  return SeenOften(saved, PartOf(saved, settings.part),
+                   settings.min_observations > 0 ? settings.min_observations : usual);
+}
+
+std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings) {
+  const Form form = PlanOf(settings).form;
+  std::vector<ColmapFile> files;
+  if (form != Form::kBinary) files = EncodeColmapText(model);
+  if (form != Form::kText) {
+    for (ColmapFile& file : EncodeColmapBinary(model)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
 void WriteExportFile(const std::string& path, const std::string& bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
@@ -68,42 +137,41 @@ void WriteExportFile(const std::string& path, const std::string& bytes) {
   AtomicWriteFile(path, bytes);
 }
 
-}  // namespace
-
-void ExportSettings::Check() const { PlanOf(*this); }
-
-MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
-  return SeenOften(saved, PartOf(saved, settings.part), settings.min_observations);
+void WriteCloud(const Cloud& cloud, const ExportSettings& settings, const std::string& out) {
+  const Plan plan = PlanOf(settings);
+  const auto format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
+  WriteExportFile(
+      out, plan.target == Target::kPly ? EncodePly(cloud, format) : EncodePcd(cloud, format));
 }
 
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
                       const std::string& out) {
   const Plan plan = PlanOf(settings);
   const MapPart part = PartFor(saved, settings);
-  const auto cloud_format = plan.form == Form::kText ? CloudFormat::kAscii : CloudFormat::kBinary;
   std::string what = std::to_string(part.landmarks.size()) + " points";
   switch (plan.target) {
     case Target::kPly:
-      WriteExportFile(out, EncodePly(CloudOf(saved, part), cloud_format));
-      break;
     case Target::kPcd:
-      WriteExportFile(out, EncodePcd(CloudOf(saved, part), cloud_format));
+      WriteCloud(CloudOf(saved, part), settings, out);
       break;
     case Target::kTum:
-      WriteExportFile(out, FormatTumTrajectory(TrajectoryOf(saved, part)));
+    case Target::kEvo:
+    case Target::kKitti:
+    case Target::kEuroc:
+      if (settings.poses == "frames") ThrowUsage("--poses frames needs the result folder of a run");
+      WriteExportFile(out, FormatTrajectory(TrajectoryOf(saved, part), settings));
       what = std::to_string(part.keyframes.size()) + " poses";
       break;
     case Target::kColmap: {
-      const ColmapModel model = ColmapModelOf(saved, part);
-      std::vector<ColmapFile> files;
-      if (plan.form != Form::kBinary) files = EncodeColmapText(model);
-      if (plan.form != Form::kText) {
-        for (ColmapFile& file : EncodeColmapBinary(model)) files.push_back(std::move(file));
-      }
-      WriteExportFolder(out, files);
+      ExportFolder folder(out);
+      folder.Write(EncodeColmap(ColmapModelOf(saved, part), settings));
+      folder.Place(settings.to);
       what = std::to_string(part.keyframes.size()) + " images, " + what;
       break;
     }
+    case Target::kGsplat:
+    case Target::kNerfstudio:
+      ThrowUsage("--to " + settings.to + " needs the images: export the result folder of a run");
     case Target::kMcap:
       ExportMapToMcap(saved, part, out, "alidade " ALIDADE_VERSION);
       what = std::to_string(part.keyframes.size()) + " keyframes, " + what;

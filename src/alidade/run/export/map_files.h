@@ -1,28 +1,59 @@
 // `alidade export`: writes a map to files for other programs.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
+#include "alidade/io/cloud.h"
+#include "alidade/io/colmap.h"
 #include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
 
 struct ExportSettings {
-  // ply, pcd: the landmarks; tum: the keyframes; colmap: both; mcap: both, as ROS 2 messages
+  // ply, pcd: the landmarks; tum, evo, kitti, euroc: a trajectory; colmap: both; mcap: both, as ROS
+  // 2 messages;
+  // gsplat, nerfstudio, and colmap with images: folders to train on (training_images.h)
   std::string to;
-  std::string format = "default";  // text, binary, both (colmap only)
+  std::string format = "default";  // text, binary, both (colmap, gsplat)
   int part = 0;                    // 0: the largest of the maps in the file
-  int min_observations = 1;        // landmarks observed by fewer keyframes are omitted
-  void Check() const;              // throws Error (usage) for unknown words
+  // Landmarks observed by fewer keyframes are omitted. 0: 2 for folders of images, whose readers
+  // (COLMAP's bundle adjuster) reject other points, else 1.
+  int min_observations = 0;
+  // Of folders of images:
+  std::string images = "keyframes";  // FrameChoiceNamed()
+  bool with_images = true;           // false: the sparse model alone (colmap)
+  bool masks = false;                // of moving objects, where the run wrote them
+  // Of trajectories: frames, keyframes, or default: frames of a result folder, but keyframes for
+  // tum.
+  std::string poses = "default";
+  std::string up = "map";  // z: the world is turned so that z is up (trajectory_export.h)
+  // Of ply and pcd: colors of the recording's images.
+  bool colors = false;
+  std::optional<std::string> source, camera;  // instead of those of the run
+
+  bool WithImages() const;    // true if images are to be written
+  bool IsTrajectory() const;  // of tum, evo, kitti and euroc
+  void Check() const;         // throws Error (usage) for unknown words
 };
 
 // The chosen map, with the landmarks that have enough observations. Throws Error (usage) for a part
 // that does not exist.
 MapPart PartFor(const SavedMap& saved, const ExportSettings& settings);
 
-// Writes `out`: a file, or for colmap a folder (export_folder.h). Returns a description of what was
-// written ("3071 points"). Throws Error: usage for a part that does not exist, input if writing
-// fails.
+// The files of a COLMAP model in the form that --format names.
+std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings);
+
+// Throws Error (input) if it cannot be written or is a folder.
+void WriteExportFile(const std::string& path, const std::string& bytes);
+
+// Writes a cloud as ply or pcd.
+void WriteCloud(const Cloud& cloud, const ExportSettings& settings, const std::string& out);
+
+// Writes `out`: a file, or for colmap a folder (export_folder.h) with the model alone. Returns a
+// description of what was written ("3071 points"). Throws Error: usage for a part that does not
+// exist and for formats that need images, input if writing fails.
 std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
                       const std::string& out);
 

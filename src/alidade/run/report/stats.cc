@@ -1,5 +1,6 @@
 #include "alidade/run/report/stats.h"
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/timing.h"
@@ -28,6 +29,20 @@ ordered_json SettingsJson(const RunSetup& setup) {
     settings[name] = parsed.is_discarded() ? ordered_json(value) : parsed;
   }
   return settings;
+}
+
+// What the source was opened with, so that it can be opened again.
+ordered_json ReadingJson(const SourceOptions& reading) {
+  const auto optional = [](const auto& value) {
+    return value ? ordered_json(*value) : ordered_json(nullptr);
+  };
+  std::optional<std::string> camera = reading.camera_file;
+  std::error_code error;
+  if (camera) camera = std::filesystem::absolute(*camera, error).lexically_normal().string();
+  return {{"camera", optional(camera)},
+          {"fov", optional(reading.fov_degrees)},
+          {"first", reading.first},
+          {"last", reading.last}};
 }
 
 // What semi-dense mapping did; null when it was not asked for.
@@ -123,6 +138,7 @@ std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const 
       {"version", kStatsVersion},
       {"source", setup.source_path},
       {"sensor", NameOf(setup.settings.slam.sensor)},
+      {"reading", ReadingJson(setup.reading)},
       {"settings", SettingsJson(setup)},
       {"camera", CameraJson(camera)},
       {"calibration", CalibrationJson(camera)},

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "alidade/io/files/open_source.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/run/setup/run_settings.h"
 
@@ -11,6 +12,7 @@ namespace alidade {
 struct RunSetup {
   std::string source_path;  // as typed
   SourceInfo source;        // as opened: its camera may be a guess, see CameraFinding
+  SourceOptions reading;    // how it was opened
   RunSettings settings;     // as used
   std::string profile;
   int threads = 0;
