@@ -140,6 +140,23 @@ TEST(RosCalibration, FisheyesAreRead) {
   EXPECT_NEAR(c.left.distortion[3], -0.0002, 1e-12);
 }
 
+// One camera can be used all the same.
+TEST(RosCalibration, ABaselineThatCannotBeUsedIsTold) {
+  const Calibration negative = Read(With(kEcho, "-165.97", "165.97"));
+  EXPECT_EQ(negative.baseline, 0);
+  EXPECT_THAT(negative.told, HasSubstr("the file of the right camera"));
+  const Calibration raw = Read(With(kFile, "318.6, 0.00000,", "318.6, -52.05,"));
+  EXPECT_EQ(raw.baseline, 0);
+  EXPECT_THAT(raw.told, HasSubstr("not rectified"));
+}
+
+TEST(RosCalibration, PaddedCoefficientsAreRead) {
+  const Calibration c = Read(With(With(kFile, "cols: 5", "cols: 10"),
+                                  "[0.26238312, -0.95310412, -0.00535812, 0.00262812, 1.16331412]",
+                                  "[0.1, -0.05, 0.0008, -0.0003, 0.01, 0.05, 0.01, 0.001, 0, 0]"));
+  EXPECT_THAT(c.told, HasSubstr("rational"));
+}
+
 TEST(RosCalibration, WhatIsWrongIsNamed) {
   EXPECT_THAT(Refusal(With(kFile, "plumb_bob", "thin_prism_6")),
               AllOf(HasSubstr("info.yaml:"), HasSubstr("ROS camera_info"),
@@ -148,7 +165,6 @@ TEST(RosCalibration, WhatIsWrongIsNamed) {
   EXPECT_THAT(Refusal(With(kFile, "640", "0")), HasSubstr("`image_width`"));
   EXPECT_THAT(Refusal(With(kFile, ", 1.00000]\ndistortion_model", "]\ndistortion_model")),
               HasSubstr("`camera_matrix` must have 9 numbers, not 8"));
-  EXPECT_THAT(Refusal(With(kEcho, "-165.97", "165.97")), HasSubstr("baseline"));
   EXPECT_THAT(Refusal(With(kEcho, "binning_x: 2", "binning_x: 2.5")), HasSubstr("`binning_x`"));
 }
 

@@ -158,20 +158,19 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name,
                ": " + error.msg);
   }
   calibration.origin = name;
-  CheckLens(calibration);
   return calibration;
 }
 
-void CheckLens(const Calibration& calibration) {
+void CheckLens(const Calibration& calibration, bool with_right) {
   for (const RawCamera* camera :
-       {&calibration.left, calibration.right ? &*calibration.right : nullptr}) {
+       {&calibration.left, with_right && calibration.right ? &*calibration.right : nullptr}) {
     if (!camera || camera->width == 0) continue;
     const std::optional<double> radius = FoldRadius(*camera);
     if (!radius) continue;
     ThrowInput((calibration.origin.empty() ? "the calibration" : calibration.origin) + ": the " +
                (camera == &calibration.left ? "" : "right camera's ") +
                "distortion folds inside the image: from " +
-               std::to_string(static_cast<int>(*radius)) +
+               std::to_string(static_cast<int>(std::min(*radius, 1e9))) +
                " pixels off the principal point on, two directions share a pixel. Calibrate again, "
                "with the target also at the borders of the image or with fewer coefficients, or "
                "crop the images");
@@ -182,6 +181,7 @@ void RequireSize(const Calibration& calibration) {
   if (calibration.left.width == 0 || (calibration.right && calibration.right->width == 0))
     ThrowInput(calibration.origin +
                ": the width and height of the images are missing: add them to the file");
+  CheckLens(calibration, true);
 }
 
 Calibration CalibrationOf(const Camera& camera) {

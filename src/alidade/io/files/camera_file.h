@@ -21,8 +21,8 @@ inline constexpr size_t kMostCalibrationBytes = size_t{1} << 24;
 // bottom row, or [left to right, top to bottom]), `depth_factor`, and for a stereo pair `baseline`
 // (meters) or `right: {width …, T_left_right: 4x4}`; and the calibrations of other tools that
 // calibrations/formats.h lists, recognized by their content. `path#NAME` chooses a camera of a file
-// with several. Throws Error (input) with file:line for a missing or invalid value, and for a
-// distortion that folds inside the image; warns of unknown keys. The size stays 0 when the file of
+// with several. Throws Error (input) with file:line for a missing or invalid value; warns of
+// unknown keys. The size stays 0 when the file of
 // another tool does not state it.
 Calibration ReadCameraFile(const std::string& path);
 // The same for a file's text; `name` appears in errors, `which` is the chosen camera.
@@ -31,9 +31,11 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name,
 // The file's path without `#NAME`.
 std::string CameraFilePath(const std::string& given);
 
-// Throws Error (input) when a distortion folds inside the image.
-void CheckLens(const Calibration& calibration);
-// Throws Error (input) when the calibration does not state the size of the images.
+// Throws Error (input) when a distortion folds inside the image. `with_right`: also the right
+// camera's.
+void CheckLens(const Calibration& calibration, bool with_right);
+// Throws Error (input) when the calibration does not state the size of the images, or a distortion
+// folds inside them.
 void RequireSize(const Calibration& calibration);
 
 // A camera as a calibration, for FormatCalibration().

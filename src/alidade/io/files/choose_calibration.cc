@@ -38,7 +38,7 @@ bool SameAspect(const RawCamera& camera, cv::Size size) {
 
 }  // namespace
 
-Calibration FitToSize(Calibration calibration, cv::Size size) {
+Calibration FitToSize(Calibration calibration, cv::Size size, bool with_right) {
   RawCamera& left = calibration.left;
   const auto tell = [&](const std::string& sentence) {
     calibration.told += (calibration.told.empty() ? "" : "\n") + sentence;
@@ -70,7 +70,7 @@ Calibration FitToSize(Calibration calibration, cv::Size size) {
     }
     Scale(left, size);
   }
-  CheckLens(calibration);
+  CheckLens(calibration, with_right);
   return calibration;
 }
 
@@ -92,7 +92,7 @@ ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv
   std::optional<Calibration> found = beside;
   if (options.camera_file) found = ReadCameraFile(*options.camera_file);
   if (found && !options.fov_degrees) {
-    return {FitToSize(*found, size), false, {}};
+    return {FitToSize(*found, size, options.sensor != Sensor::kMono), false, {}};
   }
   ChosenCalibration chosen;
   double assumed = AssumedFov(size);

@@ -30,7 +30,8 @@ double FovOfFocalLength35(double millimetres, cv::Size size);
 // Adapts a calibration to images of `size`: one for images of another size but the same aspect
 // ratio is scaled, cx' = (cx + 0.5) s - 0.5, and one without a size gets it. Adds to `told`. Throws
 // Error (input) for another aspect ratio, and for a distortion that folds inside the image.
-Calibration FitToSize(Calibration calibration, cv::Size size);
+// `with_right`: the right camera is used.
+Calibration FitToSize(Calibration calibration, cv::Size size, bool with_right = true);
 
 // `found`: calibration beside the images. `size`: size of the recording's images, pixels.
 // `focal_length_35`: focal length stated by the recording, mm in 35 mm equivalents; 0: none. The

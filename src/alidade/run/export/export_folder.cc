@@ -59,9 +59,21 @@ bool IsLeftover(const fs::path& folder) {
   return OtherFile(folder, FirstFiles()).empty();
 }
 
+bool IsComplete(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_regular_file(folder / kMarker, error)) return false;
+  const auto marker = ordered_json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
+  return marker.is_object() && marker.contains("format") && marker["format"] != "unfinished";
+}
+
 std::string PathWithoutSlash(const std::string& folder) {
   fs::path path = fs::path(folder).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();
+  std::error_code error;
+  if (fs::is_symlink(path, error)) {  // the folder it leads to is replaced, not the link
+    path = fs::canonical(path, error);
+    if (error) ThrowInput(folder + ": " + error.message());
+  }
   return path.string();
 }
 
@@ -84,6 +96,11 @@ std::string CheckedPath(const std::string& folder) {
   CheckIsFree(path);
   for (const std::string& left : StaleTemporaries(path)) {
     std::error_code ignored;
+    // Killed between two renames: the folder is missing, and what is left is complete.
+    if (!fs::exists(path, ignored) && IsComplete(left)) {
+      fs::rename(left, path, ignored);
+      continue;
+    }
     if (IsLeftover(left)) fs::remove_all(left, ignored);
   }
   return path;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/datasets/euroc_recording.h"
 #include "alidade/io/files/datasets/folder_recording.h"
 #include "alidade/io/files/datasets/kitti_recording.h"
@@ -112,7 +113,7 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
   if (camera) {
     options.camera_file = camera;
   } else if (!told_camera.empty()) {
-    if (!IsThere(told_camera)) {
+    if (!IsThere(CameraFilePath(told_camera))) {
       ThrowInput(told_camera +
                  ", the --camera of that run, is not there any more: name its new "
                  "place with --camera" +

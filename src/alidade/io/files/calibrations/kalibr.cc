@@ -102,11 +102,13 @@ Calibration ReadKalibr(const YamlFile& file, const std::string& which) {
   calibration.left = ReadKalibrCamera(file, left, calibration.told);
   const YAML::Node right = root["cam1"];
   if (!which.empty() || !right || !right.IsMap()) return calibration;
-  const auto T_right_left = PoseInRight(file, left, right);
-  if (!T_right_left) return calibration;
   try {
-    calibration.right = ReadKalibrCamera(file, right, calibration.told);
+    const auto T_right_left = PoseInRight(file, left, right);
+    if (!T_right_left) return calibration;
+    std::string told;
+    calibration.right = ReadKalibrCamera(file, right, told);
     calibration.T_left_right = T_right_left->Inverse();
+    if (!told.empty()) Tell(calibration.told, told);
   } catch (const Error& error) {  // the first camera can still be used on its own
     LogWarning(std::string(error.what()) + "; only cam0 is used");
     calibration.right.reset();

@@ -171,7 +171,9 @@ std::string SetOpenCvLens(std::span<const double> coefficients, RawCamera& camer
                 camera.distortion.begin());
     return {};
   }
-  if (coefficients.size() != 8 && coefficients.size() != 12 && coefficients.size() != 14)
+  while (coefficients.size() > 8 && coefficients.back() == 0)  // padding
+    coefficients = coefficients.first(coefficients.size() - 1);
+  if (coefficients.size() < 8 || coefficients.size() > 14)
     ThrowInput("has " + std::to_string(coefficients.size()) +
                " distortion coefficients; OpenCV's models have 4, 5, 8, 12 or 14");
   std::array<double, 14> k{};

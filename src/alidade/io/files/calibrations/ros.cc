@@ -85,16 +85,22 @@ Calibration ReadRos(const YamlFile& file, const std::string& which) {
   } catch (const Error& error) {
     file.Fail(root[D] ? root[D] : matrix, error.what());
   }
-  // Of the right camera of a pair: P(0, 3) = -fx × baseline.
+  // Of the right camera of a pair: P(0, 3) = -fx × baseline. It is of the rectified images: those
+  // of a lens that needs no rectification only.
   if (info.P[0] > 0 && info.P[3] != 0) {
-    const std::string P = NameIn(root, kP);
-    calibration.baseline = -info.P[3] / info.P[0];
-    if (!(calibration.baseline > 0 && calibration.baseline < 100)) {
-      file.Fail(root[P], "`" + P +
-                             "`: the baseline -P(0,3) / P(0,0) must be between 0 and 100 m, "
-                             "not " +
-                             std::to_string(calibration.baseline) +
-                             "; give the file of the right camera");
+    const double baseline = -info.P[3] / info.P[0];
+    const bool rectified = calibration.left.distortion == std::array<double, 5>{} &&
+                           (info.R == std::array<double, 9>{} ||
+                            info.R == std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
+    if (!rectified) {
+      Tell(calibration.told, file.path() +
+                                 ": the baseline in `P` is not used, since the images are not "
+                                 "rectified: for stereo give both cameras, as in a Kalibr camchain");
+    } else if (baseline > 0 && baseline < 100) {
+      calibration.baseline = baseline;
+    } else {
+      Tell(calibration.told, file.path() + ": the baseline in `P`, " + std::to_string(baseline) +
+                                 " m, is not used: for stereo give the file of the right camera");
     }
   }
   return calibration;

@@ -114,6 +114,12 @@ RawCamera WithoutK3(const RawCamera& camera, std::string& told) {
         return Eigen::Vector2d((pixel.x() - camera.cx) / camera.fx,
                                (pixel.y() - camera.cy) / camera.fy);
       });
+  constexpr size_t kFewest = 240;  // directions within the image
+  if (samples.samples.size() < kFewest) {
+    ThrowUsage(
+        "Kalibr's radtan has no k3, and it cannot be approximated: the principal point is too far "
+        "outside the image; write ros or opencv instead");
+  }
   const LensFit fit = FitBrown(camera, samples.samples, 4);
   char error[40];
   PrintTo(error, sizeof error, "%.2g pixels", fit.error);
