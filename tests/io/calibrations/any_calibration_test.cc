@@ -188,7 +188,7 @@ TEST(AnyCalibration, AFoldInsideTheImageIsRefused) {
         "1 RADIAL 640 480 400 320 240 -0.4 0\n", "1 RADIAL_FISHEYE 640 480 400 320 240 -0.4 0\n",
         "image_width: 640\nimage_height: 480\ncamera_matrix: [400, 0, 320, 0, 400, 240, 0, 0, 1]\n"
         "distortion_coefficients: [0.1, 0, 0, 0, 0, 9, 0, 0]\n"}) {
-    EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { ParseCameraFile(text, "bent"); }),
+    EXPECT_THAT(MessageOf(ErrorKind::kInput, [&] { RequireSize(ParseCameraFile(text, "bent")); }),
                 AllOf(HasSubstr("bent"), HasSubstr("alibrate again")));
   }
 }
