@@ -20,8 +20,8 @@ struct PoseEvidenceSettings {
   double look_alike = 0.02;   // P(such a part agrees with the map at a wrong pose)
   double jump_rate = 0.2;     // cuts of the recording and the like per second
   double found_again = 0.05;  // P(right) of a candidate of place recognition before it is compared
-  double min_probability = 0.99;   // a frame whose pose is less probably right has none
-  double min_keyframe = 0.99;      // and becomes no keyframe, where min_probability is lower
+  double min_probability = 0.99;  // a frame whose pose is less probably right has none
+  double min_keyframe = 0.99;     // and becomes no keyframe, where min_probability is lower
 
   static std::span<const Setting> Table();
 };

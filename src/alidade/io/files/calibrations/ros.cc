@@ -93,9 +93,10 @@ Calibration ReadRos(const YamlFile& file, const std::string& which) {
                            (info.R == std::array<double, 9>{} ||
                             info.R == std::array<double, 9>{1, 0, 0, 0, 1, 0, 0, 0, 1});
     if (!rectified) {
-      Tell(calibration.told, file.path() +
-                                 ": the baseline in `P` is not used, since the images are not "
-                                 "rectified: for stereo give both cameras, as in a Kalibr camchain");
+      Tell(calibration.told,
+           file.path() +
+               ": the baseline in `P` is not used, since the images are not "
+               "rectified: for stereo give both cameras, as in a Kalibr camchain");
     } else if (baseline > 0 && baseline < 100) {
       calibration.baseline = baseline;
     } else {
