@@ -30,10 +30,11 @@ TrackState PublicState(SessionState state) {
   return TrackState::kLost;
 }
 
-PoseQuality QualityOf(const TrackEstimate& estimate, const MapSnapshot& map) {
+PoseQuality QualityOf(const TrackEstimate& estimate, [[maybe_unused]] const MapSnapshot& map) {
   PoseQuality quality;
   quality.probability = Probability(estimate.placed.log_odds);
   quality.covariance = estimate.placed.covariance;
+#ifndef __EMSCRIPTEN__  // the module for browsers shows no covariances
   const KeyFrame* reference = map.Find(estimate.reference);
   if (reference && !quality.covariance.isZero()) {
     // The map around the frame moves with its reference keyframe.
@@ -41,6 +42,7 @@ PoseQuality QualityOf(const TrackEstimate& estimate, const MapSnapshot& map) {
         Adjoint(estimate.placed.T_camera_world * reference->T_camera_world.Inverse());
     quality.covariance += ad * reference->covariance * ad.transpose();
   }
+#endif
   quality.expected = static_cast<int>(estimate.sightings.size());
   quality.inliers = estimate.placed.inliers;
   if (quality.expected > 0)
