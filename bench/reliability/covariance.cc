@@ -1,6 +1,5 @@
 #include "bench/reliability/covariance.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/evaluation/motion_error.h"
 #include "alidade/geometry/alignment.h"
 #include "alidade/slam.h"
 #include "alidade/synth/recording.h"
@@ -75,14 +75,11 @@ void Run(const SynthSettings& scene, Sensor sensor, std::array<Spread, 2>& sprea
     if (i - first < kGap) continue;
     const TrackResult &before = results[n - kGap], &now = results[n];
     if (before.quality.covariance.isZero() || now.quality.covariance.isZero()) continue;
-    const Se3 found = before.T_world_camera.Inverse() * now.T_world_camera;
     Se3 real = truth[n - kGap].Inverse() * truth[n];
     real.t /= scale;
-    const Matrix6d carried = Adjoint(found.Inverse());
-    const Matrix6d covariance =
-        now.quality.covariance + carried * before.quality.covariance * carried.transpose();
-    const Vector6d xi = (found.Inverse() * real).Log();
-    spreads[i - first - kGap < kYoung ? 0 : 1].chi2.push_back(xi.dot(covariance.inverse() * xi));
+    spreads[i - first - kGap < kYoung ? 0 : 1].chi2.push_back(
+        MotionChiSquared({before.T_world_camera, before.quality.covariance},
+                         {now.T_world_camera, now.quality.covariance}, real));
   }
 }
 

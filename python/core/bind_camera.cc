@@ -12,9 +12,9 @@ namespace alidade::python {
 namespace {
 
 // `path` as Python's functions need it: without images, the file must state their size.
-Calibration SizedCalibration(const std::string& path) {
+Calibration SizedCalibration(const std::string& path, Sensor sensor) {
   Calibration calibration = ReadCameraFile(path);
-  RequireSize(calibration);
+  RequireSize(calibration, sensor == Sensor::kStereo);
   return calibration;
 }
 
@@ -22,7 +22,7 @@ Calibration SizedCalibration(const std::string& path) {
 class Rectifier {
  public:
   Rectifier(const std::string& path, const std::string& sensor)
-      : calibration_(SizedCalibration(path)),
+      : calibration_(SizedCalibration(path, SensorNamed("sensor", sensor))),
         preparation_(calibration_, SensorNamed("sensor", sensor)) {}
 
   py::object camera() const { return CameraObject(preparation_.camera()); }
@@ -52,8 +52,8 @@ class Rectifier {
 };
 
 py::object ReadCamera(const std::string& path, const std::string& sensor) {
-  const Calibration calibration = SizedCalibration(path);
   const Sensor wanted = SensorNamed("sensor", sensor);
+  const Calibration calibration = SizedCalibration(path, wanted);
   if (calibration.left.lens == Lens::kFisheye || (wanted == Sensor::kStereo && calibration.right)) {
     ThrowUsage(path + ": images of this camera must be rectified with alidade.Rectifier");
   }

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "alidade/io/files/camera_file.h"
+#include "support/colmap_program.h"
 #include "support/expect_camera.h"
 #include "support/program.h"
 
@@ -86,6 +87,24 @@ TEST(CalibrationFiles, OfAnotherAspectOrWithAFoldAreRefused) {
               HasSubstr("folds inside the image"));
 }
 
+// What lies beside the recording is not used then.
+TEST(CalibrationFiles, AFoldingOneBesideTheRecordingDoesNotKeepOthersOut) {
+  const TempFolder folder;
+  const std::string copy = CopyOf(Recording(), folder);
+  const std::string good = ReadText(copy + "/camera.yaml");
+  folder.Write("recording/camera.yaml",
+               "model: pinhole\nwidth: 320\nheight: 240\nfx: 200\nfy: 200\ncx: 159.5\ncy: 119.5\n"
+               "distortion: [-0.5, 0, 0, 0]\n");
+  const auto run = [&](const std::vector<std::string>& how) {
+    std::vector<std::string> words = {"run", copy, "--out", folder / "out", "--overwrite"};
+    words.insert(words.end(), how.begin(), how.end());
+    return RunAlidade(words);
+  };
+  EXPECT_THAT(run({}).err, HasSubstr("folds inside the image"));
+  EXPECT_EQ(run({"--camera", folder.Write("good.yaml", good)}).status, 0);
+  EXPECT_EQ(run({"--fov", "75"}).status, 0);
+}
+
 TEST(CalibrationFiles, AreConverted) {
   const TempFolder folder;
   const std::string kalibr = folder.Write(
@@ -118,11 +137,7 @@ TEST(CalibrationFiles, AreConverted) {
 
 // COLMAP itself reads the written camera, and writes it again.
 TEST(CalibrationFiles, ColmapReadsTheWrittenOne) {
-  const auto colmap = [](std::vector<std::string> words) {
-    words.insert(words.begin(), {"QT_QPA_PLATFORM=offscreen", "colmap"});
-    return RunProgram("/usr/bin/env", words);
-  };
-  if (colmap({"help"}).status != 0) GTEST_SKIP() << "needs COLMAP (scripts/setup --tests)";
+  if (!HasColmap()) GTEST_SKIP() << "needs COLMAP (scripts/setup --tests)";
   const TempFolder folder;
   for (const std::string& lens : {std::string("pinhole"), std::string("fisheye")}) {
     SCOPED_TRACE(lens);
@@ -140,9 +155,9 @@ TEST(CalibrationFiles, ColmapReadsTheWrittenOne) {
         0);
     std::ofstream(in + "/images.txt") << "";
     std::ofstream(in + "/points3D.txt") << "";
-    const ProgramResult converted = colmap(
-        {"model_converter", "--input_path", in, "--output_path", out, "--output_type", "TXT"});
-    ASSERT_EQ(converted.status, 0) << converted.out << converted.err;
+    const ProgramResult converted = Colmap("model_converter --input_path " + in +
+                                           " --output_path " + out + " --output_type TXT");
+    ASSERT_EQ(converted.status, 0) << converted.out;
     ExpectCamera(ReadCameraFile(out + "/cameras.txt").left, ReadCameraFile(own).left);
   }
 }

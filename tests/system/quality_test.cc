@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "alidade/evaluation/motion_error.h"
 #include "alidade/geometry/alignment.h"
 #include "alidade/slam.h"
 #include "support/rendered_frames.h"
@@ -70,14 +71,10 @@ TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
   for (int i = first + kGap; i < first + kFrames; ++i) {
     const TrackResult &before = results[i - kGap], &now = results[i];
     if (before.quality.covariance.isZero() || now.quality.covariance.isZero()) continue;
-    const Se3 found = before.T_world_camera.Inverse() * now.T_world_camera;
     Se3 truth = room.Pose(i - kGap).Inverse() * room.Pose(i);
     truth.t /= scale;
-    const Matrix6d carried = Adjoint(found.Inverse());
-    const Matrix6d covariance =
-        now.quality.covariance + carried * before.quality.covariance * carried.transpose();
-    const Vector6d xi = (found.Inverse() * truth).Log();
-    sum += xi.dot(covariance.inverse() * xi);
+    sum += MotionChiSquared({before.T_world_camera, before.quality.covariance},
+                            {now.T_world_camera, now.quality.covariance}, truth);
     count += 6;
   }
   ASSERT_GE(count, 6 * 30);

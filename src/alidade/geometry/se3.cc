@@ -62,11 +62,11 @@ Eigen::Quaterniond Se3::Quaternion() const {
 
 Se3 Se3::Normalised() const { return {Quaternion().toRotationMatrix(), t}; }
 
-Matrix6d Adjoint(const Se3& X) {
+Matrix6d Carried(const Se3& X, const Matrix6d& covariance) {
   Matrix6d ad = Matrix6d::Zero();
   ad.topLeftCorner<3, 3>() = ad.bottomRightCorner<3, 3>() = X.R;
   ad.topRightCorner<3, 3>() = Skew(X.t) * X.R;
-  return ad;
+  return ad * covariance * ad.transpose();
 }
 
 double RotationAngle(const Se3& a, const Se3& b) { return LogSo3(a.R.transpose() * b.R).norm(); }

@@ -44,8 +44,9 @@ struct Se3 {
   friend Eigen::Vector3d operator*(const Se3& a, const Eigen::Vector3d& p) { return a.R * p + a.t; }
 };
 
-// Ad of X: X Exp(xi) X⁻¹ = Exp(Ad xi) (Solà et al. 2018, example 6).
-Matrix6d Adjoint(const Se3& X);
+// Covariance of Ad xi, where xi has `covariance` and X Exp(xi) X⁻¹ = Exp(Ad xi) (Solà et al. 2018,
+// example 6): an error of T_world_b is carried to T_world_a = T_world_b T_b_a by X = T_a_b.
+Matrix6d Carried(const Se3& X, const Matrix6d& covariance);
 
 // Angle of the relative rotation, radians.
 double RotationAngle(const Se3& a, const Se3& b);

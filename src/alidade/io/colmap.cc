@@ -19,15 +19,22 @@ struct CameraModel {
   std::vector<double> parameters;
 };
 
-CameraModel ModelOf(const Camera& camera) {
+CameraModel ModelOf(const RawCamera& camera) {
   std::vector<double> parameters = {camera.fx, camera.fy, camera.cx + kHalfPixel,
                                     camera.cy + kHalfPixel};
-  if (!camera.HasDistortion()) return {1, "PINHOLE", parameters};
   const auto& [k1, k2, p1, p2, k3] = camera.distortion;
+  const bool fisheye = camera.lens == Lens::kFisheye;
+  if (!fisheye && camera.distortion == std::array<double, 5>{}) return {1, "PINHOLE", parameters};
   parameters.insert(parameters.end(), {k1, k2, p1, p2});
+  if (fisheye) return {5, "OPENCV_FISHEYE", parameters};
   if (k3 == 0) return {4, "OPENCV", parameters};
   parameters.insert(parameters.end(), {k3, 0, 0, 0});  // k4 k5 k6 of the rational model
   return {6, "FULL_OPENCV", parameters};
+}
+
+RawCamera RawOf(const Camera& camera) {
+  return {Lens::kPinhole, camera.width, camera.height, camera.fx,
+          camera.fy,      camera.cx,    camera.cy,     camera.distortion};
 }
 
 void Check(const ColmapModel& model) {
@@ -59,16 +66,6 @@ std::ostringstream DoubleText() {
   out.imbue(std::locale::classic());
   out.precision(17);  // max_digits10 of double: reads back exactly
   return out;
-}
-
-std::string CamerasText(const ColmapModel& model) {
-  std::ostringstream out = DoubleText();
-  const CameraModel camera = ModelOf(model.camera);
-  out << "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
-  out << "1 " << camera.name << ' ' << model.camera.width << ' ' << model.camera.height;
-  for (double parameter : camera.parameters) out << ' ' << parameter;
-  out << '\n';
-  return out.str();
 }
 
 std::string ImagesText(const ColmapModel& model) {
@@ -132,7 +129,7 @@ class Bytes {
 
 std::string CamerasBinary(const ColmapModel& model) {
   Bytes out;
-  const CameraModel camera = ModelOf(model.camera);
+  const CameraModel camera = ModelOf(RawOf(model.camera));
   out.Add(uint64_t{1});  // number of cameras
   out.Add(uint32_t{1});  // camera id
   out.Add(camera.number);
@@ -184,9 +181,19 @@ std::string PointsBinary(const ColmapModel& model) {
 
 }  // namespace
 
+std::string EncodeColmapCamera(const RawCamera& camera) {
+  const CameraModel model = ModelOf(camera);
+  std::ostringstream out = DoubleText();
+  out << "# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n1 " << model.name << ' ' << camera.width
+      << ' ' << camera.height;
+  for (double parameter : model.parameters) out << ' ' << parameter;
+  out << '\n';
+  return out.str();
+}
+
 std::vector<ColmapFile> EncodeColmapText(const ColmapModel& model) {
   Check(model);
-  return {{"cameras.txt", CamerasText(model)},
+  return {{"cameras.txt", EncodeColmapCamera(RawOf(model.camera))},
           {"images.txt", ImagesText(model)},
           {"points3D.txt", PointsText(model)}};
 }

@@ -8,6 +8,7 @@
 
 #include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
+#include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
 
 namespace ALIDADE_API alidade {
@@ -47,6 +48,9 @@ struct ColmapFile {
   std::string name;
   std::string bytes;
 };
+
+// cameras.txt with one camera; a fisheye is OPENCV_FISHEYE.
+std::string EncodeColmapCamera(const RawCamera& camera);
 
 // Encode the files cameras, images and points3D; ids are indices plus one. The camera model is
 // PINHOLE without distortion, OPENCV when k3 is 0, otherwise FULL_OPENCV. Throw Error (usage) when

@@ -74,17 +74,10 @@ void AssumeDepth(const MapSnapshot& map, const KeyFrame& reference, double error
                                   1 / (sigma * sigma)});
 }
 
-// The module for browsers shows no covariances; they would take 16 kB of it.
-#ifdef __EMSCRIPTEN__
-constexpr bool kCovariances = false;
-#else
-constexpr bool kCovariances = true;
-#endif
-
 // Of camera `newest` relative to camera `anchor`, the only one held: `cameras` and all points are
 // unknown. Virtual observations are left out. Zero: not determined.
-[[maybe_unused]] Matrix6d CovarianceOf(BundleProblem problem, const BundleSettings& settings,
-                                       int cameras, int newest, int anchor) {
+Matrix6d CovarianceOf(BundleProblem problem, const BundleSettings& settings, int cameras,
+                      int newest, int anchor) {
   std::erase_if(problem.observations,
                 [&](const BundleObservation& o) { return o.camera >= cameras; });
   problem.T_camera_world.resize(cameras);
@@ -152,14 +145,12 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     bundle.redescending = bundle.redescending || share < 1;
   }
   result.report = AdjustBundle(problem, bundle, stop);
-  if constexpr (kCovariances) {
-    const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
-    if (index && !(stop && *stop)) {
-      const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
-      result.newest = newest;
-      result.covariance = CovarianceOf(problem, bundle, static_cast<int>(cameras.size()), *index,
-                                       static_cast<int>(oldest));
-    }
+  const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
+  if (kCovariances && index && !(stop && *stop)) {
+    const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
+    result.newest = newest;
+    result.covariance = CovarianceOf(problem, bundle, static_cast<int>(cameras.size()), *index,
+                                     static_cast<int>(oldest));
   }
   for (size_t i = 0; i < free.size(); ++i)
     result.poses.push_back({free[i], problem.T_camera_world[i]});

@@ -17,6 +17,13 @@ struct Neighbour {
   int shared = 0;  // landmarks observed by both
 };
 
+// Whether keyframes get a covariance. The module for browsers shows none and is limited in size.
+#ifdef __EMSCRIPTEN__
+inline constexpr bool kCovariances = false;
+#else
+inline constexpr bool kCovariances = true;
+#endif
+
 struct KeyFrame {
   KeyFrameId id;
   std::shared_ptr<const Frame> frame;  // never null in a map

@@ -138,10 +138,9 @@ std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
   if (!(spare > 0)) return {};
 
   Eigen::VectorXd scale;
-  if (!has_right && std::count(problem.fixed.begin(), problem.fixed.end(), 0) + 1 ==
-                        static_cast<long>(problem.fixed.size())) {
-    const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(),
-                                    [](uint8_t is_fixed) { return is_fixed != 0; });
+  const auto is_fixed = [](uint8_t fixed) { return fixed != 0; };
+  if (!has_right && std::count_if(problem.fixed.begin(), problem.fixed.end(), is_fixed) == 1) {
+    const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(), is_fixed);
     const Eigen::Vector3d& origin = state.cameras[fixed - problem.fixed.begin()].centre;
     scale = Eigen::VectorXd::Zero(6 * cameras);
     for (Eigen::Index i = 0; i < cameras; ++i)

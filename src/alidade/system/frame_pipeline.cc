@@ -30,19 +30,17 @@ TrackState PublicState(SessionState state) {
   return TrackState::kLost;
 }
 
-PoseQuality QualityOf(const TrackEstimate& estimate, [[maybe_unused]] const MapSnapshot& map) {
+PoseQuality QualityOf(const TrackEstimate& estimate, const MapSnapshot& map) {
   PoseQuality quality;
   quality.probability = Probability(estimate.placed.log_odds);
   quality.covariance = estimate.placed.covariance;
-#ifndef __EMSCRIPTEN__  // the module for browsers shows no covariances
   const KeyFrame* reference = map.Find(estimate.reference);
-  if (reference && !quality.covariance.isZero()) {
+  if (kCovariances && reference && !quality.covariance.isZero()) {
     // The map around the frame moves with its reference keyframe.
-    const Matrix6d ad =
-        Adjoint(estimate.placed.T_camera_world * reference->T_camera_world.Inverse());
-    quality.covariance += ad * reference->covariance * ad.transpose();
+    quality.covariance +=
+        Carried(estimate.placed.T_camera_world * reference->T_camera_world.Inverse(),
+                reference->covariance);
   }
-#endif
   quality.expected = static_cast<int>(estimate.sightings.size());
   quality.inliers = estimate.placed.inliers;
   if (quality.expected > 0)

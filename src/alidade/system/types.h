@@ -44,9 +44,8 @@ struct PoseQuality {
   // From the normal equations of the pose, scaled by the residuals, and of the local map: the
   // covariance of the reference keyframe relative to the oldest keyframe of the last local bundle
   // adjustment. It does not include the drift of the map before that, and of a map that was loaded
-  // only the first part. One camera: with the scale of the local map taken as exact; and too small
-  // by a factor of 1.8 in the first two seconds of a map, and of 3 to 6 where the views differ by a
-  // few pixels only (a slow camera, small images).
+  // only the first part. One camera: with the scale of the local map taken as exact, and too small
+  // while its views differ by a few pixels only (docs/benchmarks/reliability.md).
   // Zero: unknown, or the first frame of a map, whose pose is the identity by definition.
   Matrix6d covariance = Matrix6d::Zero();
   int expected = 0;        // landmarks that should be visible

@@ -267,6 +267,39 @@ TEST_F(TrainingExport, AFolderOfSomebodyElseIsKept) {
   EXPECT_EQ(NamesIn(folder_.path()).size(), 2u);  // no drafts
 }
 
+TEST_F(TrainingExport, ALinkIsKeptAndWhatItLeadsToIsReplaced) {
+  const std::string out = folder_ / "ns", link = folder_ / "link";
+  Export(ColoredResult(), "nerfstudio", out);
+  fs::create_directory_symlink(out, link);
+  Export(ColoredResult(), "gsplat", link + "/");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::exists(out + "/sparse/0/cameras.bin"));
+  EXPECT_FALSE(fs::exists(out + "/transforms.json"));
+}
+
+// Killed between the two renames of ExportFolder::Place(): the earlier export lies aside.
+TEST_F(TrainingExport, AnExportThatWasPutAsideComesBack) {
+  const std::string out = folder_ / "ns";
+  Export(ColoredResult(), "nerfstudio", out);
+  fs::rename(out, out + ".tmp4711-0");
+  ExpectRefused({"export", ColoredResult(), "--to", "colmap", out, "--source", folder_ / "gone"}, 3,
+                "is not there any more");
+  EXPECT_TRUE(fs::exists(out + "/transforms.json"));
+}
+
+TEST_F(TrainingExport, TheChosenCameraOfAFileIsFoundAgain) {
+  const std::string cameras = folder_ / "cameras.txt", result = folder_ / "result";
+  ASSERT_EQ(RunAlidade({"calibrate", "--camera", Recording() + "/camera.yaml", "--to", "colmap",
+                        "--out", cameras})
+                .status,
+            0);
+  ASSERT_EQ(RunAlidade({"run", Recording(), "--sensor", "mono", "--camera", cameras + "#1", "--out",
+                        result, "--quiet"})
+                .status,
+            0);
+  Export(result, "colmap", folder_ / "colmap");
+}
+
 TEST_F(TrainingExport, OptionsThatCannotBeAreUsageErrors) {
   const std::string result = ColoredResult(), out = folder_ / "out";
   ExpectRefused({"export", result, "--to", "colmap", out, "--images", "some"}, 2, "every:N");

@@ -193,6 +193,19 @@ TEST(AnyCalibration, AFoldInsideTheImageIsRefused) {
   }
 }
 
+TEST(AnyCalibration, AFoldingRightCameraMattersForStereoOnly) {
+  Calibration pair;
+  pair.left = Some(Lens::kPinhole);
+  pair.right = pair.left;
+  pair.right->distortion = {-0.4, 0, 0, 0, 0};
+  EXPECT_EQ(FitToSize(pair, {640, 480}, false).left.width, 640);
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          FitToSize(pair, {640, 480}, true);
+                        }),
+              HasSubstr("right camera's distortion folds"));
+}
+
 class WrittenCalibrations : public testing::TestWithParam<CalibrationStyle> {};
 
 TEST_P(WrittenCalibrations, AreReadBack) {
@@ -258,6 +271,12 @@ TEST(WrittenCalibration, KalibrHasNoThirdRadialCoefficient) {
       EXPECT_LT((read.Project(p) - Eigen::Vector2d(u, v)).norm(), 0.5);
     }
   }
+  const RawCamera middle = c.left;
+  c.left.cx = -2000;  // nothing of a lens is seen
+  EXPECT_THAT(
+      MessageOf(ErrorKind::kUsage, [&] { FormatCalibration(c, CalibrationStyle::kKalibr); }),
+      HasSubstr("too far outside"));
+  c.left = middle;
   c.left.distortion = {0.2, -0.9, 0, 0, 2};
   EXPECT_THAT(
       MessageOf(ErrorKind::kUsage, [&] { FormatCalibration(c, CalibrationStyle::kKalibr); }),

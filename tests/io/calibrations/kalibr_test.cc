@@ -148,5 +148,15 @@ TEST(Kalibr, AStrangeSecondCameraIsLeftOut) {
   EXPECT_THAT(warnings.text(), AllOf(HasSubstr("`cylinder`"), HasSubstr("only cam0 is used")));
 }
 
+TEST(Kalibr, ADamagedPoseOfTheSecondCameraDoesNotHinderTheFirst) {
+  std::string text = kPair;
+  text.replace(text.find("0.9999992248836708"), 18, "7.0");
+  WarningCatcher warnings;
+  const Calibration c = ParseCameraFile(text, "chain.yaml");
+  EXPECT_FALSE(c.right);
+  EXPECT_EQ(c.told, "");
+  EXPECT_THAT(warnings.text(), AllOf(HasSubstr("`T_cn_cnm1`"), HasSubstr("only cam0 is used")));
+}
+
 }  // namespace
 }  // namespace alidade::kalibr_test

@@ -161,7 +161,7 @@ Calibration ParseCameraFile(const std::string& text, const std::string& name,
   return calibration;
 }
 
-void CheckLens(const Calibration& calibration, bool with_right) {
+void RefuseFolds(const Calibration& calibration, bool with_right) {
   for (const RawCamera* camera :
        {&calibration.left, with_right && calibration.right ? &*calibration.right : nullptr}) {
     if (!camera || camera->width == 0) continue;
@@ -177,11 +177,12 @@ void CheckLens(const Calibration& calibration, bool with_right) {
   }
 }
 
-void RequireSize(const Calibration& calibration) {
-  if (calibration.left.width == 0 || (calibration.right && calibration.right->width == 0))
+void RequireSize(const Calibration& calibration, bool with_right) {
+  if (calibration.left.width == 0 ||
+      (with_right && calibration.right && calibration.right->width == 0))
     ThrowInput(calibration.origin +
                ": the width and height of the images are missing: add them to the file");
-  CheckLens(calibration, true);
+  RefuseFolds(calibration, with_right);
 }
 
 Calibration CalibrationOf(const Camera& camera) {

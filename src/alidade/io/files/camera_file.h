@@ -33,10 +33,10 @@ std::string CameraFilePath(const std::string& given);
 
 // Throws Error (input) when a distortion folds inside the image. `with_right`: also the right
 // camera's.
-void CheckLens(const Calibration& calibration, bool with_right);
+void RefuseFolds(const Calibration& calibration, bool with_right);
 // Throws Error (input) when the calibration does not state the size of the images, or a distortion
-// folds inside them.
-void RequireSize(const Calibration& calibration);
+// folds inside them. `with_right`: the right camera is used.
+void RequireSize(const Calibration& calibration, bool with_right = true);
 
 // A camera as a calibration, for FormatCalibration().
 Calibration CalibrationOf(const Camera& camera);

@@ -70,7 +70,7 @@ Calibration FitToSize(Calibration calibration, cv::Size size, bool with_right) {
     }
     Scale(left, size);
   }
-  CheckLens(calibration, with_right);
+  RefuseFolds(calibration, with_right);
   return calibration;
 }
 

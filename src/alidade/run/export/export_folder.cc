@@ -17,6 +17,7 @@ using nlohmann::ordered_json;
 
 constexpr const char* kMarker = "export.json";
 constexpr int kMarkerVersion = 2;
+constexpr const char* kUnfinished = "unfinished";  // instead of the format
 // What version 1 wrote, whose marker has no list.
 constexpr std::array<const char*, 7> kFirstFiles = {"cameras.txt", "images.txt", "points3D.txt",
                                                     "cameras.bin", "images.bin", "points3D.bin",
@@ -24,12 +25,18 @@ constexpr std::array<const char*, 7> kFirstFiles = {"cameras.txt", "images.txt",
 
 std::set<std::string> FirstFiles() { return {kFirstFiles.begin(), kFirstFiles.end()}; }
 
-// The files of an earlier export, from its marker; empty: the folder has no marker of ours.
-std::set<std::string> FilesOfEarlier(const fs::path& folder) {
+// Null: the folder has no marker of ours.
+ordered_json MarkerIn(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_regular_file(folder / kMarker, error)) return {};
-  const auto marker = ordered_json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
-  if (!marker.is_object() || !marker.contains("version")) return {};
+  ordered_json marker = ordered_json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
+  return marker.is_object() && marker.contains("version") ? std::move(marker) : ordered_json();
+}
+
+// The files of an earlier export, from its marker; empty: it has none of ours.
+std::set<std::string> FilesOfEarlier(const fs::path& folder) {
+  const ordered_json marker = MarkerIn(folder);
+  if (marker.is_null()) return {};
   if (marker.contains("colmap")) return FirstFiles();
   std::set<std::string> files;
   if (!marker.contains("files") || !marker["files"].is_array()) return files;
@@ -60,10 +67,8 @@ bool IsLeftover(const fs::path& folder) {
 }
 
 bool IsComplete(const fs::path& folder) {
-  std::error_code error;
-  if (!fs::is_regular_file(folder / kMarker, error)) return false;
-  const auto marker = ordered_json::parse(ReadFile((folder / kMarker).string()), nullptr, false);
-  return marker.is_object() && marker.contains("format") && marker["format"] != "unfinished";
+  const ordered_json marker = MarkerIn(folder);
+  return marker.contains("format") && marker["format"] != kUnfinished;
 }
 
 std::string PathWithoutSlash(const std::string& folder) {
@@ -118,7 +123,7 @@ ExportFolder::ExportFolder(const std::string& path) : path_(CheckedPath(path)) {
 void ExportFolder::Write(const std::string& name, const std::string& bytes) {
   if (!draft_) {
     draft_.emplace(path_);
-    AtomicWriteFile(draft_->path() + "/" + kMarker, MarkerText("unfinished", {}));
+    AtomicWriteFile(draft_->path() + "/" + kMarker, MarkerText(kUnfinished, {}));
   }
   const fs::path file = fs::path(draft_->path()) / name;
   std::error_code error;

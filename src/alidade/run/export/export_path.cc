@@ -68,7 +68,7 @@ std::string ExportImages(const std::string& path, const SavedMap& saved,
   OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
   TrainingSettings training;
   training.choice = FrameChoiceNamed(settings.images);
-  training.min_observations = settings.min_observations > 0 ? settings.min_observations : 2;
+  training.min_observations = settings.LeastObservations();
   training.centered = settings.to == "gsplat";
   training.masks = settings.masks;
   const TrainingSet set = WriteTrainingImages(saved, part, recording, training, progress, folder);

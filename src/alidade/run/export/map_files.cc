@@ -25,6 +25,16 @@ struct Plan {
   Form form;
 };
 
+bool IsTrajectoryTarget(Target target) {
+  return target == Target::kTum || target == Target::kEvo || target == Target::kKitti ||
+         target == Target::kEuroc;
+}
+
+// Folders that may have images.
+bool IsFolderTarget(Target target) {
+  return target == Target::kColmap || target == Target::kGsplat || target == Target::kNerfstudio;
+}
+
 // The format with `default` resolved.
 Plan PlanOf(const ExportSettings& settings) {
   const auto target = Choice<Target>("--to", settings.to,
@@ -43,8 +53,7 @@ Plan PlanOf(const ExportSettings& settings) {
                             {"binary", Form::kBinary},
                             {"both", Form::kBoth},
                             {"default", Form::kDefault}});
-  const bool trajectory = target == Target::kTum || target == Target::kEvo ||
-                          target == Target::kKitti || target == Target::kEuroc;
+  const bool trajectory = IsTrajectoryTarget(target);
   if (trajectory && form != Form::kDefault && form != Form::kText)
     ThrowUsage("--format cannot be '" + settings.format + "': trajectories are text");
   Choice<bool>("--poses", settings.poses,
@@ -62,7 +71,7 @@ Plan PlanOf(const ExportSettings& settings) {
     ThrowUsage("--format cannot be '" + settings.format + "': MCAP is binary");
   }
   if (form == Form::kDefault) form = model ? Form::kBoth : Form::kBinary;
-  const bool images = model || target == Target::kNerfstudio;
+  const bool images = IsFolderTarget(target);
   const bool cloud = target == Target::kPly || target == Target::kPcd;
   if (settings.colors && !cloud)
     ThrowUsage("--colors is for --to ply and pcd; images come with colored points");
@@ -101,22 +110,19 @@ MapPart PartOf(const SavedMap& saved, int number) {
 
 void ExportSettings::Check() const { PlanOf(*this); }
 
-bool ExportSettings::IsTrajectory() const {
-  const Target target = PlanOf(*this).target;
-  return target == Target::kTum || target == Target::kEvo || target == Target::kKitti ||
-         target == Target::kEuroc;
-}
+bool ExportSettings::IsTrajectory() const { return IsTrajectoryTarget(PlanOf(*this).target); }
 
 bool ExportSettings::WithImages() const {
-  const Target target = PlanOf(*this).target;
-  return with_images &&
-         (target == Target::kColmap || target == Target::kGsplat || target == Target::kNerfstudio);
+  return with_images && IsFolderTarget(PlanOf(*this).target);
+}
+
+int ExportSettings::LeastObservations() const {
+  if (min_observations > 0) return min_observations;
+  return IsFolderTarget(PlanOf(*this).target) ? 2 : 1;
 }
 
 MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
-  const int usual = PlanOf(settings).target == Target::kColmap || settings.WithImages() ? 2 : 1;
-  return SeenOften(saved, PartOf(saved, settings.part),
-                   settings.min_observations > 0 ? settings.min_observations : usual);
+  return SeenOften(saved, PartOf(saved, settings.part), settings.LeastObservations());
 }
 
 std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings) {

@@ -13,8 +13,7 @@ namespace alidade {
 
 struct ExportSettings {
   // ply, pcd: the landmarks; tum, evo, kitti, euroc: a trajectory; colmap: both; mcap: both, as ROS
-  // 2 messages;
-  // gsplat, nerfstudio, and colmap with images: folders to train on (training_images.h)
+  // 2 messages; gsplat, nerfstudio, and colmap with images: folders to train on (training_images.h)
   std::string to;
   std::string format = "default";  // text, binary, both (colmap, gsplat)
   int part = 0;                    // 0: the largest of the maps in the file
@@ -33,9 +32,10 @@ struct ExportSettings {
   bool colors = false;
   std::optional<std::string> source, camera;  // instead of those of the run
 
-  bool WithImages() const;    // true if images are to be written
-  bool IsTrajectory() const;  // of tum, evo, kitti and euroc
-  void Check() const;         // throws Error (usage) for unknown words
+  bool WithImages() const;        // true if images are to be written
+  bool IsTrajectory() const;      // of tum, evo, kitti and euroc
+  int LeastObservations() const;  // min_observations with 0 resolved
+  void Check() const;             // throws Error (usage) for unknown words
 };
 
 // The chosen map, with the landmarks that have enough observations. Throws Error (usage) for a part

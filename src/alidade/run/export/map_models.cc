@@ -5,21 +5,13 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "alidade/base/print.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
 namespace {
-
-// Offset from a keypoint to the projection of its landmark, raw image pixels.
-std::optional<double> ErrorInImage(const Camera& camera, const KeyFrame& keyframe,
-                                   const Keypoint& keypoint, const Eigen::Vector3d& p_world) {
-  const Eigen::Vector3d p_camera = keyframe.T_camera_world * p_world;
-  if (p_camera.z() <= 0) return std::nullopt;
-  const Eigen::Vector2d seen = camera.Distort(camera.Project(p_camera));
-  return (seen - Eigen::Vector2d(keypoint.raw_x, keypoint.raw_y)).norm();
-}
 
 // Times are not unique if a recording was added to the map of another: -2, -3, … is appended then.
 std::string FreshName(double time, std::set<std::string>& taken) {
@@ -69,6 +61,37 @@ Cloud CloudOf(const SavedMap& saved, const MapPart& part) {
   return cloud;
 }
 
+ColmapModel::Point PointOf(
+    const ColmapModel& model, const Landmark& landmark,
+    const std::function<std::optional<ColmapModel::Seen>(const Observation&)>& place) {
+  ColmapModel::Point point;
+  point.p_world = landmark.p_world;
+  double sum = 0;
+  int in_front = 0;
+  for (const Observation& observation : landmark.observations) {
+    const std::optional<ColmapModel::Seen> seen = place(observation);
+    if (!seen) continue;
+    point.track.push_back(*seen);
+    const ColmapModel::Image& image = model.images[static_cast<size_t>(seen->image)];
+    const Eigen::Vector3d p_camera = image.T_camera_world * landmark.p_world;
+    if (!(p_camera.z() > 0)) continue;
+    const Eigen::Vector2d pixel = model.camera.Distort(model.camera.Project(p_camera));
+    sum += (pixel - image.keypoints[static_cast<size_t>(seen->keypoint)].pixel).norm();
+    ++in_front;
+  }
+  if (in_front > 0) point.error = sum / in_front;
+  return point;
+}
+
+void AddPoint(ColmapModel& model, ColmapModel::Point point) {
+  for (const ColmapModel::Seen& seen : point.track) {
+    model.images[static_cast<size_t>(seen.image)]
+        .keypoints[static_cast<size_t>(seen.keypoint)]
+        .point = static_cast<int>(model.points.size());
+  }
+  model.points.push_back(std::move(point));
+}
+
 ColmapModel ColmapModelOf(const SavedMap& saved, const MapPart& part) {
   ColmapModel model;
   model.camera = saved.camera;
@@ -83,30 +106,12 @@ ColmapModel ColmapModelOf(const SavedMap& saved, const MapPart& part) {
     }
     model.images.push_back(std::move(image));
   }
-  for (LandmarkId id : part.landmarks) {
-    const Landmark& landmark = *saved.map.Find(id);
-    ColmapModel::Point point;
-    point.p_world = landmark.p_world;
-    double sum = 0;
-    int seen_by = 0;
-    for (const Observation& seen : landmark.observations) {
-      const auto image = images.find(seen.keyframe);
-      if (image == images.end()) continue;
-      const KeyFrame& keyframe = *saved.map.Find(seen.keyframe);
-      point.track.push_back({image->second, seen.keypoint});
-      model.images[static_cast<size_t>(image->second)]
-          .keypoints[static_cast<size_t>(seen.keypoint)]
-          .point = static_cast<int>(model.points.size());
-      const auto error = ErrorInImage(saved.camera, keyframe,
-                                      keyframe.frame->keypoints[static_cast<size_t>(seen.keypoint)],
-                                      landmark.p_world);
-      if (!error) continue;
-      sum += *error;
-      ++seen_by;
-    }
-    if (seen_by > 0) point.error = sum / seen_by;
-    model.points.push_back(std::move(point));
-  }
+  const auto place = [&](const Observation& seen) -> std::optional<ColmapModel::Seen> {
+    const auto image = images.find(seen.keyframe);
+    if (image == images.end()) return std::nullopt;
+    return ColmapModel::Seen{image->second, seen.keypoint};
+  };
+  for (LandmarkId id : part.landmarks) AddPoint(model, PointOf(model, *saved.map.Find(id), place));
   return model;
 }
 

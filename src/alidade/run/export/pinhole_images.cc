@@ -153,22 +153,22 @@ cv::Mat PinholeImages::Positions(const ReadoutMotion& readout) const {
   return positions;
 }
 
-cv::Mat PinholeImages::Apply(const cv::Mat& image, const ReadoutMotion& readout) const {
+cv::Mat PinholeImages::Resampled(const cv::Mat& image, const ReadoutMotion& readout,
+                                 int interpolation) const {
   const bool moves = Moves(readout);
   if (same_ && !moves) return image;
   cv::Mat out;
-  cv::remap(image, out, moves ? Positions(readout) : at_rest_, cv::noArray(), cv::INTER_CUBIC,
+  cv::remap(image, out, moves ? Positions(readout) : at_rest_, cv::noArray(), interpolation,
             cv::BORDER_REPLICATE);
   return out;
 }
 
+cv::Mat PinholeImages::Apply(const cv::Mat& image, const ReadoutMotion& readout) const {
+  return Resampled(image, readout, cv::INTER_CUBIC);
+}
+
 cv::Mat PinholeImages::ApplyNearest(const cv::Mat& mask, const ReadoutMotion& readout) const {
-  const bool moves = Moves(readout);
-  if (same_ && !moves) return mask;
-  cv::Mat out;
-  cv::remap(mask, out, moves ? Positions(readout) : at_rest_, cv::noArray(), cv::INTER_NEAREST,
-            cv::BORDER_REPLICATE);
-  return out;
+  return Resampled(mask, readout, cv::INTER_NEAREST);
 }
 
 }  // namespace alidade

@@ -45,6 +45,7 @@ class PinholeImages {
   Eigen::Vector2d Source(const Eigen::Vector2d& pixel, const ReadoutMotion& readout) const;
   cv::Mat Positions(const ReadoutMotion& readout) const;
   bool Moves(const ReadoutMotion& readout) const;
+  cv::Mat Resampled(const cv::Mat& image, const ReadoutMotion& readout, int interpolation) const;
 
   Camera map_, pinhole_;
   cv::Size recorded_;

@@ -138,26 +138,15 @@ class TrainingWriter {
 
   void AddPoints() {
     ColmapModel& model = set_.model;
+    const auto place = [&](const Observation& seen) -> std::optional<ColmapModel::Seen> {
+      const auto image = images_.find(seen.keyframe);
+      if (image == images_.end()) return std::nullopt;
+      const int keypoint = keypoints_.at(seen.keyframe)[static_cast<size_t>(seen.keypoint)];
+      if (keypoint < 0) return std::nullopt;
+      return ColmapModel::Seen{image->second, keypoint};
+    };
     for (LandmarkId id : part_.landmarks) {
-      const Landmark& landmark = *saved_.map.Find(id);
-      ColmapModel::Point point;
-      point.p_world = landmark.p_world;
-      double sum = 0;
-      int in_front = 0;
-      for (const Observation& seen : landmark.observations) {
-        const auto image = images_.find(seen.keyframe);
-        if (image == images_.end()) continue;
-        const int keypoint = keypoints_.at(seen.keyframe)[static_cast<size_t>(seen.keypoint)];
-        if (keypoint < 0) continue;
-        point.track.push_back({image->second, keypoint});
-        const ColmapModel::Image& written = model.images[static_cast<size_t>(image->second)];
-        const Eigen::Vector3d p_camera = written.T_camera_world * landmark.p_world;
-        if (!(p_camera.z() > 0)) continue;
-        sum += (model.camera.Project(p_camera) -
-                written.keypoints[static_cast<size_t>(keypoint)].pixel)
-                   .norm();
-        ++in_front;
-      }
+      ColmapModel::Point point = PointOf(model, *saved_.map.Find(id), place);
       // Frames that are no keyframes observe nothing: their points need no observations either.
       if (settings_.choice.kind == Kind::kKeyframes &&
           static_cast<int>(point.track.size()) < settings_.min_observations)
@@ -165,13 +154,7 @@ class TrainingWriter {
       const auto color = colors_.Of(id);
       if (!color) continue;  // of keyframes that were not found
       point.color = *color;
-      if (in_front > 0) point.error = sum / in_front;
-      for (const ColmapModel::Seen& seen : point.track) {
-        model.images[static_cast<size_t>(seen.image)]
-            .keypoints[static_cast<size_t>(seen.keypoint)]
-            .point = static_cast<int>(model.points.size());
-      }
-      model.points.push_back(std::move(point));
+      AddPoint(model, std::move(point));
     }
   }
 

@@ -52,6 +52,8 @@ Eigen::Vector2d ProjectOpenCv(const std::array<double, 14>& k, double x, double 
 
 }  // namespace
 
+bool LensSamples::Enough() const { return samples.size() >= 5 * kRays; }
+
 LensSamples SampleLens(const RawCamera& camera, const LensProjection& project) {
   const double u = std::max(camera.cx + 0.5, camera.width - 0.5 - camera.cx) / camera.fx;
   const double v = std::max(camera.cy + 0.5, camera.height - 0.5 - camera.cy) / camera.fy;
@@ -131,7 +133,7 @@ LensFit FitFisheye(const RawCamera& camera, const std::vector<LensSample>& sampl
 
 std::string ApproximateLens(const std::string& model, const LensSamples& samples,
                             RawCamera& camera) {
-  if (samples.samples.size() < 5 * kRays)
+  if (!samples.Enough())
     ThrowInput("has a " + model + " lens whose coefficients map most directions outside the image");
   const bool forward =
       std::all_of(samples.samples.begin(), samples.samples.end(), [](const LensSample& sample) {

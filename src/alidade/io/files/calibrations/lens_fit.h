@@ -29,6 +29,7 @@ struct LensSample {
 struct LensSamples {
   std::vector<LensSample> samples;
   bool whole = true;
+  bool Enough() const;  // for a fit
 };
 LensSamples SampleLens(const RawCamera& camera, const LensProjection& project);
 

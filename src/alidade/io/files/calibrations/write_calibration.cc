@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
+#include "alidade/io/colmap.h"
 #include "alidade/io/files/calibrations/fields.h"
 #include "alidade/io/files/calibrations/lens_fit.h"
 
@@ -29,9 +30,9 @@ std::string Exact(double value) {
   return digits;
 }
 
-std::string Joined(std::span<const double> values, const char* gap = ", ") {
+std::string Joined(std::span<const double> values) {
   std::string text;
-  for (const double value : values) text += (text.empty() ? "" : gap) + Exact(value);
+  for (const double value : values) text += (text.empty() ? "" : ", ") + Exact(value);
   return text;
 }
 
@@ -114,8 +115,7 @@ RawCamera WithoutK3(const RawCamera& camera, std::string& told) {
         return Eigen::Vector2d((pixel.x() - camera.cx) / camera.fx,
                                (pixel.y() - camera.cy) / camera.fy);
       });
-  constexpr size_t kFewest = 240;  // directions within the image
-  if (samples.samples.size() < kFewest) {
+  if (!samples.Enough()) {
     ThrowUsage(
         "Kalibr's radtan has no k3, and it cannot be approximated: the principal point is too far "
         "outside the image; write ros or opencv instead");
@@ -209,25 +209,6 @@ std::string OpenCvText(const Calibration& c) {
          OpenCvMatrix("R", 3, 3, R) + OpenCvMatrix("T", 3, 1, std::span(T_right_left.t.data(), 3));
 }
 
-// The pixel origin is the image's corner: half a pixel is added.
-std::string ColmapText(const RawCamera& camera) {
-  const auto& k = camera.distortion;
-  std::vector<double> values = {camera.fx, camera.fy, camera.cx + 0.5, camera.cy + 0.5};
-  const char* model = "PINHOLE";
-  if (IsFisheye(camera)) {
-    model = "OPENCV_FISHEYE";
-    values.insert(values.end(), k.begin(), k.begin() + 4);
-  } else if (k != std::array<double, 5>{}) {
-    model = k[4] == 0 ? "OPENCV" : "FULL_OPENCV";
-    values.insert(values.end(), k.begin(), k.begin() + 4);
-    if (k[4] != 0) values.insert(values.end(), {k[4], 0, 0, 0});
-  }
-  return "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, "
-         "PARAMS[]\n# Number of cameras: 1\n1 " +
-         std::string(model) + " " + std::to_string(camera.width) + " " +
-         std::to_string(camera.height) + " " + Joined(values, " ") + "\n";
-}
-
 }  // namespace
 
 const char* NameOf(CalibrationStyle style) { return kStyles[static_cast<size_t>(style)].name; }
@@ -266,7 +247,7 @@ WrittenCalibration FormatCalibration(const Calibration& calibration, Calibration
       break;
     case CalibrationStyle::kColmap:
       one_of_pair();
-      written.text = head + ColmapText(calibration.left);
+      written.text = head + EncodeColmapCamera(calibration.left);
       break;
   }
   return written;
