@@ -4,9 +4,9 @@
 #include <cstdio>
 #include <string>
 
+#include "alidade/base/shell_quoted.h"
 #include "alidade/run/calibration/find_camera.h"
 #include "alidade/run/results/run_results.h"
-#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {
@@ -34,13 +34,6 @@ std::string Clock(double seconds) {
     std::snprintf(text, sizeof(text), "%ld:%02ld", whole / 60, whole % 60);
   }
   return text;
-}
-
-// As typed in a shell: in quotes only if needed.
-std::string InShell(const std::string& path) {
-  constexpr char kPlain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+=:,@%";
-  return path.find_first_not_of(kPlain) == std::string::npos ? path : ShellQuoted(path);
 }
 
 }  // namespace
@@ -125,7 +118,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       summary.maps > 1 ? " in the largest" : "",
       run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
   // A localization leaves no map to show.
-  const std::string view = settings.localize ? "" : ", or: alidade view " + InShell(folder);
+  const std::string view = settings.localize ? "" : ", or: alidade view " + ShellWord(folder);
   std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
 }
 

@@ -1,7 +1,7 @@
 #include <sstream>
 
+#include "alidade/base/shell_quoted.h"
 #include "describe/completion.h"
-#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "alidade/base/shell_quoted.h"
 #include "describe/completion.h"
-#include "program/shell_quoted.h"
 
 namespace alidade {
 namespace {

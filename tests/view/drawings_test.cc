@@ -113,6 +113,24 @@ TEST(Histogram, BarsAreAsTallAsTheyAreFull) {
   EXPECT_NEAR(tall[1] / tall[0], 101.0 / 300, 0.01);
 }
 
+TEST(Histogram, LabelsDoNotOverlap) {
+  std::vector<double> values;
+  for (int i = 0; i < 1000; ++i) values.push_back(2.1 * i);  // "1000 ms", "1500 ms", "2000 ms"
+  const std::string svg = DrawHistogram(values, "ms", "times");
+  EXPECT_THAT(svg, HasSubstr(">1000 ms<"));
+  EXPECT_THAT(svg, Not(HasSubstr("e+03")));
+  const std::regex label("<text x=\"([0-9.]+)\"[^>]*>([^<]*)<");
+  double end = -1;
+  int count = 0;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), label), last; it != last; ++it, ++count) {
+    const double middle = std::stod((*it)[1]), half = 4.0 * static_cast<double>((*it)[2].length());
+    EXPECT_GT(middle - half, end);
+    end = middle + half;
+    EXPECT_LE(end, 440);
+  }
+  EXPECT_GE(count, 3);
+}
+
 TEST(Report, EachStageThatRanHasAHistogram) {
   RunReport report;
   report.milliseconds = {{"frame", {1, 2, 3}}, {"map", {4, 5}}, {"loop", {}}};
@@ -126,6 +144,29 @@ TEST(Report, WordsOfOthersCannotBecomeMarkup) {
   const std::string html = RenderReport(report);
   EXPECT_THAT(html, Not(HasSubstr("<script>")));
   EXPECT_THAT(html, HasSubstr("a &amp; b &lt; c"));
+}
+
+TEST(Report, FailureShapeAndNextStepsComeFirst) {
+  RunReport report;
+  EXPECT_THAT(RenderReport(report), Not(HasSubstr("role=\"note\"")));
+  report.failure = {"Nothing was mapped: the images are black."};
+  report.warnings = {"no depth"};
+  report.lost_spans = {"1.00 s to 2.00 s: the image was blurred."};
+  report.unit = "map units";
+  report.on_units = "Lengths are in map units.";
+  report.cloud.cloud.points = {{0, 0, 0}, {1, 2, 4}};
+  report.next = {{"See it", "alidade view 'a b'"}};
+  report.facts = {{"source", "walk"}};
+  const std::string html = RenderReport(report);
+  size_t at = 0;
+  for (const char* part :
+       {"role=\"note\"", "images are black", "<h2>Lost</h2>", "<h2>Warnings</h2>", "<h2>Landmarks",
+        "in map units.", "data-unit=\"map units\"", "What to do next", "alidade view 'a b",
+        "<th>source"}) {
+    const size_t found = html.find(part, at);
+    ASSERT_NE(found, std::string::npos) << part;
+    at = found;
+  }
 }
 
 TEST(Report, EveryMapIsDrawnFromAboveAndFromTheSide) {

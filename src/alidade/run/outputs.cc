@@ -82,7 +82,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
       pictures.keyframes = DrawKeyframes(log.album, results, slam, log.first_time.value_or(0));
     });
     attempt([&] {
-      folder.Write("report.html", ReportHtml(setup, camera, log, results, std::move(pictures)));
+      folder.Write("report.html",
+                   ReportHtml(setup, camera, log, results, folder.path(), std::move(pictures)));
     });
     attempt([&] {
       if (masks) masks->Finish();

@@ -13,6 +13,7 @@ namespace {
 constexpr double kWide = 440, kTall = 150;  // so that two fit side by side
 constexpr double kFloor = 24;               // pixels below the bars, for the numbers
 constexpr size_t kBars = 40;
+constexpr double kLetter = 9;  // width of a letter, pixels, at most
 
 // The 99th percentile; the axis starts at 0.
 double TopOf(std::vector<double> values) {
@@ -51,15 +52,16 @@ std::string DrawHistogram(const std::vector<double>& values, const std::string& 
   }
   svg += "<path class=\"grid\" d=\"M0 " + SvgNumber(bottom) + "H" + SvgNumber(kWide) + "\"/>\n";
   const double step = RoundStep(top / 3);
+  double free_from = 0;  // where the label before ends
   for (int i = 0; i * step <= top && i < 9; ++i) {
-    const double at = x(i * step);
-    char text[40];
-    PrintTo(text, sizeof(text), "%.3g", i * step);
-    svg += SvgText(at, kTall - 6,
-                   i == 0            ? "start"
-                   : at > kWide - 30 ? "end"
-                                     : "middle",
-                   i == 0 ? std::string(text) : text + (" " + unit));
+    char number[40];
+    PrintTo(number, sizeof(number), "%g", i * step);
+    const std::string text = i == 0 ? number : number + (" " + unit);
+    const double letters = kLetter * static_cast<double>(text.size());
+    const double from = std::clamp(x(i * step) - letters / 2, 0.0, kWide - letters);
+    if (from < free_from) continue;
+    svg += SvgText(from + letters / 2, kTall - 6, "middle", text);
+    free_from = from + letters + kLetter;
   }
   return svg + "</svg>\n";
 }

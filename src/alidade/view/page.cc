@@ -6,9 +6,9 @@ namespace alidade {
 namespace {
 
 constexpr char kStyle[] = R"(<style>
-:root{color-scheme:light dark;--ink:#1b1f24;--page:#fff;--soft:#6b7480;--line:#d8dde3;--path:#0b6fd1;--dot:#8a94a0;
+:root{color-scheme:light dark;--ink:#1b1f24;--page:#fff;--soft:#6b7480;--line:#d8dde3;--path:#0b6fd1;--dot:#5c6875;
 --run0:#0072b2;--run1:#c04f00;--run2:#00805c;--run3:#a8478a;--run4:#8a6d00;--run5:#5b5fc7}
-@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--page:#14171b;--soft:#98a2ad;--line:#333a42;--path:#5aa9ff;--dot:#77818c;
+@media(prefers-color-scheme:dark){:root{--ink:#e6e9ed;--page:#14171b;--soft:#98a2ad;--line:#333a42;--path:#5aa9ff;--dot:#98a3ae;
 --run0:#5ab4e8;--run1:#ff8a3d;--run2:#2fc79b;--run3:#e08fc2;--run4:#e5b83a;--run5:#a5a8ff}}
 body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--page);max-width:940px;margin:2rem auto;padding:0 1rem}
 h1{font-size:1.5rem;margin:0 0 .2rem}h2{font-size:1.1rem;margin:2rem 0 .5rem}h3{font-size:1rem;margin:1.2rem 0 .4rem}
@@ -18,13 +18,15 @@ th{font-weight:600;color:var(--soft)}.numbers td+td,.numbers th+th{text-align:ri
 text{font-size:12px;fill:var(--soft);stroke:var(--page);stroke-width:3px;paint-order:stroke}
 @media(max-width:600px){text{font-size:24px}td,th{padding-right:.8rem}}
 .wide{overflow-x:auto}table:not([class]) td{overflow-wrap:anywhere}details table:not([class]) th{overflow-wrap:anywhere;min-width:9em}path,polyline{fill:none;stroke-linecap:round;stroke-linejoin:round}
-.landmarks{stroke:var(--dot);stroke-width:1.6;opacity:.7}.path{stroke:var(--path);stroke-width:2}
+.landmarks{stroke:var(--dot);stroke-width:2.4;opacity:.75}.path{stroke:var(--path);stroke-width:2}
 .keyframes{stroke:var(--path);stroke-width:6}.scale{stroke:var(--soft);stroke-width:2}
 .start{fill:#1a9d50}.end{fill:#d43a2f}.tracked{fill:#1a9d50}.lost{fill:#d43a2f}.starting{fill:var(--line)}
 .grid{stroke:var(--line)}.series{stroke:var(--path)}
 .shape{display:grid;grid-template-columns:repeat(3,1fr);gap:.6rem}img{width:100%;display:block;border-radius:6px}
 .turn canvas,.turn .live{display:none}.turn.on canvas{display:block;width:100%;aspect-ratio:3/2;border:1px solid var(--line);border-radius:6px;
 box-sizing:border-box;cursor:grab;touch-action:pan-y}.turn.on img,.turn.on .still{display:none}.turn.on .live{display:block;margin:.4rem 0 1rem}
+.turn{position:relative}.turn.on .measure{position:absolute;left:14px;top:10px;margin:0;border-bottom:2px solid var(--soft);color:var(--soft);
+font-size:13px;white-space:nowrap;pointer-events:none}
 .turn canvas:focus-visible{outline:2px solid var(--path)}button{font:inherit;color:inherit;background:none;border:1px solid var(--line);border-radius:4px;padding:.1em .6em;cursor:pointer}
 .keyframes-shown{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem}.keyframes-shown div{display:flex;gap:4px}.keyframes-shown img{flex:1;min-width:0;border-radius:3px}
 figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem;margin-top:1rem}
@@ -38,6 +40,9 @@ figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-
 .chip{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.4em;background:var(--own)}
 .legend>span{margin-right:1.2em;white-space:nowrap}.legend .key{margin-left:0}
 @media(max-width:600px){.compared th:first-child{white-space:normal;min-width:6em}.compared tbody td{min-width:5.5em;max-width:8em;overflow-wrap:anywhere}}
+.banner{border-left:4px solid #d43a2f;background:color-mix(in srgb,#d43a2f 8%,var(--page));padding:.4rem 1rem;margin:1rem 0;border-radius:0 6px 6px 0}
+.banner p{margin:.3rem 0;font-weight:600}.banner h2{margin:.5rem 0 .2rem}.banner ul{margin:.2rem 0 .5rem;padding-left:1.2rem}
+.next dd{margin:0 0 .6rem}code{font:13px/1.5 ui-monospace,monospace;background:color-mix(in srgb,var(--line) 40%,var(--page));border-radius:4px;padding:.1em .4em;overflow-wrap:anywhere}
 summary{cursor:pointer;font-weight:600}details{margin-top:2rem}
 </style>
 )";

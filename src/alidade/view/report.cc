@@ -68,7 +68,9 @@ std::string Shape(const RunReport& report) {
   if (!turnable && report.shape.empty()) return "";
   // Without further views the cloud consists of the landmarks.
   std::string html = report.shape.empty() ? "<h2>Landmarks</h2>\n" : "<h2>Shape</h2>\n";
-  if (turnable) html += TurnableHtml(report.cloud, report.cloud_picture);
+  if (!report.on_units.empty())
+    html += "<p class=\"soft\">" + EscapeHtml(report.on_units) + "</p>\n";
+  if (turnable) html += TurnableHtml(report.cloud, report.cloud_picture, report.unit);
   if (report.shape.empty()) return html;
   html += "<div class=\"shape\">\n";
   for (const ReportPicture& picture : report.shape) html += Figure(picture);
@@ -126,6 +128,24 @@ std::string Maps(const std::vector<ReportMap>& maps) {
   return html;
 }
 
+// Everything that a user must know before trusting the result.
+std::string Banner(const RunReport& report) {
+  const std::string lists =
+      HtmlList("Lost", report.lost_spans) + HtmlList("Warnings", report.warnings);
+  if (report.failure.empty() && lists.empty()) return "";
+  std::string html = "<div class=\"banner\" role=\"note\">\n";
+  for (const std::string& line : report.failure) html += Cell("p", line) + "\n";
+  return html + lists + "</div>\n";
+}
+
+std::string Next(const std::vector<ReportStep>& steps) {
+  if (steps.empty()) return "";
+  std::string html = "<h2>What to do next</h2>\n<dl class=\"next\">\n";
+  for (const ReportStep& step : steps)
+    html += Cell("dt", step.purpose) + "<dd>" + Cell("code", step.command) + "</dd>\n";
+  return html + "</dl>\n";
+}
+
 }  // namespace
 
 std::string Base64(const std::string& bytes) {
@@ -144,10 +164,11 @@ std::string Base64(const std::string& bytes) {
 }
 
 std::string RenderReport(const RunReport& report) {
-  std::string html = PairTable(report.facts);
-  html += HtmlList("Warnings", report.warnings);
-  html += Maps(report.maps);
+  std::string html = Banner(report);
   html += Shape(report);
+  html += Next(report.next);
+  html += report.facts.empty() ? "" : "<h2>The run</h2>\n" + PairTable(report.facts);
+  html += Maps(report.maps);
   if (!report.error.empty()) {
     html += "<h2>Distance to the ground truth</h2>\n" +
             DrawCurves({report.error}, report.seconds, "s", "m",
@@ -158,7 +179,6 @@ std::string RenderReport(const RunReport& report) {
           "<p class=\"soft\"><span class=\"key\" style=\"background:var(--line)\"></span>starting"
           "<span class=\"key\" style=\"background:#1a9d50\"></span>tracked"
           "<span class=\"key\" style=\"background:#d43a2f\"></span>lost</p>\n";
-  html += HtmlList("Lost", report.lost_spans);
   html += Timing(report);
   html += "<details>\n<summary>Settings</summary>\n" + PairTable(report.settings) + "</details>\n";
   return HtmlPage(report.title, html);

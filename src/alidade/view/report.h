@@ -31,9 +31,21 @@ struct ReportMap {
   PlaceDrawing place;
 };
 
+// A command that continues with the result.
+struct ReportStep {
+  std::string purpose, command;
+};
+
 struct RunReport {
-  std::string title;                                       // of the recording
+  std::string title;  // of the recording
+  std::vector<std::string>
+      failure;  // why the run as a whole failed, with advice; empty: it did not
+  std::vector<std::string> lost_spans;  // as sentences, with advice
+  std::vector<std::string> warnings;
+  std::string unit;                                        // of lengths, for example "m"
+  std::string on_units;                                    // a sentence about the unit; empty: none
   std::vector<std::pair<std::string, std::string>> facts;  // name and value, in order of display
+  std::vector<ReportStep> next;
   std::vector<ReportMap> maps;
   CloudScene cloud;                  // shown interactively; empty: none
   ReportPicture cloud_picture;       // the cloud as a still image, for pages without scripts
@@ -42,10 +54,8 @@ struct RunReport {
   std::vector<FrameFate> frames;
   // Per stage; the first is the whole frame.
   std::vector<std::pair<std::string, std::vector<double>>> milliseconds;
-  std::vector<std::string> lost_spans;  // as sentences, with advice
   Curve error;         // distance to the ground truth, meters over seconds; empty: unknown
   double seconds = 0;  // duration of the recording
-  std::vector<std::string> warnings;
   std::vector<std::pair<std::string, std::string>> settings;
 };
 

@@ -55,6 +55,7 @@ struct Packed {
   size_t points = 0;      // number of points
   std::string stretches;  // number of poses of each stretch of the path
   bool colored = false;
+  float extent = 0;  // length of the script's unit, in units of the scene
 };
 
 Packed Pack(const CloudScene& scene) {
@@ -75,6 +76,7 @@ Packed Pack(const CloudScene& scene) {
     if (known && box.Has(points[i])) kept.push_back(i);
   }
   packed.points = std::min(kept.size(), kMostTurnablePoints);
+  packed.extent = extent;
   packed.colored = !scene.cloud.colors.empty();
   const auto append = [&](const Eigen::Vector3f& p) {
     // centered along the axes that are shorter than the longest one
@@ -102,14 +104,16 @@ std::string PictureHtml(const ReportPicture& picture) {
          Base64(picture.bytes) + "\">";
 }
 
-std::string TurnableHtml(const CloudScene& scene, const ReportPicture& picture) {
+std::string TurnableHtml(const CloudScene& scene, const ReportPicture& picture,
+                         const std::string& unit) {
   const Packed packed = Pack(scene);
   std::string html = "<figure class=\"turn\" id=\"turn\">\n";
   if (!picture.bytes.empty()) html += PictureHtml(picture) + "\n";
   if (packed.points == 0) return html + "</figure>\n";
   html +=
       "<canvas tabindex=\"0\" role=\"application\" aria-label=\"the map; arrow keys rotate, plus "
-      "and minus zoom\"></canvas>\n<figcaption><span class=\"still\">" +
+      "and minus zoom\"></canvas>\n<span class=\"live measure\" "
+      "id=\"turn-scale\"></span>\n<figcaption><span class=\"still\">" +
       EscapeHtml(picture.caption) +
       "</span><span class=\"live\"><button type=\"button\" data-view=\"behind\">From behind"
       "</button> <button type=\"button\" data-view=\"above\">From above</button> "
@@ -118,8 +122,9 @@ std::string TurnableHtml(const CloudScene& scene, const ReportPicture& picture) 
       "</figcaption>\n</figure>\n";
   html += "<script type=\"text/plain\" id=\"turn-points\" data-points=\"" +
           std::to_string(packed.points) + "\" data-path=\"" + packed.stretches +
-          "\" data-colored=\"" + (packed.colored ? "1" : "0") + "\">" + Base64(packed.bytes) +
-          "</script>\n";
+          "\" data-colored=\"" + (packed.colored ? "1" : "0") + "\" data-extent=\"" +
+          SvgNumber(packed.extent, 6) + "\" data-unit=\"" + EscapeHtml(unit) + "\">" +
+          Base64(packed.bytes) + "</script>\n";
   return html + "<script>" + kTurnableScript + "</script>\n";
 }
 

@@ -69,6 +69,14 @@ inline constexpr char kTurnableScript[] = R"script(
     const hex = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
     return [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16) / 255);
   };
+  const bar = document.getElementById('turn-scale'), extent = +source.dataset.extent;
+  const scale = () => {  // a length of 1, 2 or 5 times a power of ten, at the distance of the middle
+    const pixels = LENS * Math.min(canvas.clientWidth, canvas.clientHeight) / 2 / eye.far / extent;
+    const wanted = canvas.clientWidth / 6 / pixels, power = 10 ** Math.floor(Math.log10(wanted));
+    const length = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
+    bar.style.width = `${(length * pixels).toFixed(1)}px`;
+    bar.textContent = `${+length.toPrecision(3)} ${source.dataset.unit}`;
+  };
   function draw() {
     asked = 0;
     const dots = window.devicePixelRatio || 1;
@@ -96,6 +104,7 @@ inline constexpr char kTurnableScript[] = R"script(
       gl.drawArrays(gl.LINE_STRIP, first, length);
       first += length;
     }
+    scale();
     box.dataset.turn = eye.turn.toFixed(3);
   }
   const show = (name) => {

@@ -110,18 +110,33 @@ std::map<int, const KeyFrame*> ByIndex(const MapSnapshot& map, int first_number)
   return keyframes;
 }
 
+// All that can be shown alike: with semi-dense depth if any has it, else those that still exist,
+// else all.
+std::vector<const KeyframeAlbum::Page*> ShownPages(const KeyframeAlbum& album,
+                                                   const std::map<int, const KeyFrame*>& living) {
+  std::vector<const KeyframeAlbum::Page*> all, existing, dense;
+  for (const KeyframeAlbum::Page& page : album.pages()) {
+    all.push_back(&page);
+    const auto found = living.find(page.index);
+    if (found == living.end()) continue;
+    existing.push_back(&page);
+    if (found->second->depth && !found->second->depth->pixels.empty()) dense.push_back(&page);
+  }
+  return !dense.empty() ? dense : !existing.empty() ? existing : all;
+}
+
 }  // namespace
 
 std::vector<ReportKeyframe> DrawKeyframes(const KeyframeAlbum& album, const RunResults& results,
                                           const Slam& slam, double start) {
-  const auto& pages = album.pages();
   const Camera camera = slam.camera();
   const auto living = ByIndex(results.map, slam.first_number());
+  const auto pages = ShownPages(album, living);
   const size_t count = std::min(kMostDrawn, pages.size());
   const float smaller = static_cast<float>(KeyframeAlbum::kWide) / static_cast<float>(camera.width);
   std::vector<ReportKeyframe> drawn;
   for (size_t i = 0; i < count; ++i) {
-    const KeyframeAlbum::Page& page = pages[i * pages.size() / count];
+    const KeyframeAlbum::Page& page = *pages[i * pages.size() / count];
     const auto found = living.find(page.index);
     const KeyFrame* keyframe = found == living.end() ? nullptr : found->second;
     std::vector<DepthDot> dots;

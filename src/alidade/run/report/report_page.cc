@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "alidade/base/print.h"
+#include "alidade/base/shell_quoted.h"
 #include "alidade/base/timing.h"
 #include "alidade/run/report/stats.h"
 #include "alidade/run/sources/truth.h"
@@ -18,6 +19,11 @@ std::string Format(const char* format, double value) {
 
 // Most landmarks that are drawn, of all maps: more are not visible, but enlarge the page.
 constexpr size_t kMostLandmarks = 8000;
+
+constexpr char kOnMapUnits[] =
+    "Lengths are in map units: one camera shows shapes, but not their size, so a map unit is the "
+    "median depth of the first keyframe. For meters, tell a distance that you know: alidade export "
+    "with --scale-by.";
 
 PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
   PlaceDrawing place;
@@ -119,9 +125,7 @@ std::vector<std::pair<std::string, std::string>> FactsOf(const RunSetup& setup,
                                           ", which share no place; the first one has the most "
                                           "frames, and the path length is that of it"});
   }
-  if (tracked == 0) facts.push_back({"nothing mapped", WhyNothing(log)});
   if (log.dropped > 0) facts.push_back({"frames skipped", std::to_string(log.dropped)});
-  if (log.interrupted) facts.push_back({"interrupted", "results are incomplete"});
   return facts;
 }
 
@@ -173,13 +177,47 @@ std::vector<ReportMap> MapsOf(const RunLog& log, const RunResults& results,
   return maps;
 }
 
+// Why the run as a whole failed, and what to do; empty: it did not.
+std::vector<std::string> FailureOf(const RunLog& log, const RunResults& results) {
+  std::vector<std::string> lines;
+  if (results.tracked == 0) {
+    const std::string why = WhyNothing(log), advice = AdviceOn(why);
+    lines.push_back("Nothing was mapped: " + why + ".");
+    if (!advice.empty()) lines.push_back(advice);
+  }
+  if (log.interrupted) lines.push_back("The run was interrupted: the results are incomplete.");
+  return lines;
+}
+
+std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& setup,
+                                  const RunResults& results, const std::string& folder) {
+  if (results.tracked == 0 || settings.localize) return {};
+  const std::string result = ShellWord(folder);
+  std::vector<ReportStep> steps = {{"Walk through the map in a browser", "alidade view " + result}};
+  if (!settings.semidense.enabled) {
+    steps.push_back({"Map surfaces and edges, not only landmarks",
+                     "alidade run " + ShellWord(setup.source_path) + " --semidense"});
+  }
+  steps.push_back({"Find another recording of the place in this map",
+                   "alidade localize RECORDING --map " + ShellWord(folder + "/map.alidade")});
+  steps.push_back({"Train Gaussian splats or a radiance field (also: --to colmap, nerfstudio)",
+                   "alidade export " + result + " --to gsplat " + ShellWord(folder + "-gsplat")});
+  return steps;
+}
+
 }  // namespace
 
 std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
-                       const RunResults& results, ReportPictures pictures) {
-  const std::string unit = setup.settings.slam.sensor == Sensor::kMono ? "map units" : "m";
+                       const RunResults& results, const std::string& folder,
+                       ReportPictures pictures) {
+  const bool mono = setup.settings.slam.sensor == Sensor::kMono;
+  const std::string unit = mono ? "map units" : "m";
   RunReport report;
   report.title = setup.source.name;
+  report.failure = FailureOf(log, results);
+  report.unit = unit;
+  if (mono) report.on_units = kOnMapUnits;
+  report.next = NextSteps(setup.settings.slam, setup, results, folder);
   report.facts = FactsOf(setup, camera, log, results, unit);
   report.maps = MapsOf(log, results, unit);
   report.cloud = std::move(pictures.shape.scene);

@@ -22,7 +22,9 @@ struct ReportPictures {
 // Both as the bytes of the file. Fields and units: docs/reference/stats.md.
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
                       const RunResults& results);
+// `folder`: of the result, as the user typed it.
 std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
-                       const RunResults& results, ReportPictures pictures);
+                       const RunResults& results, const std::string& folder,
+                       ReportPictures pictures);
 
 }  // namespace alidade
