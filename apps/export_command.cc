@@ -3,7 +3,10 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "alidade/base/error.h"
+#include "alidade/io/text.h"
 #include "alidade/run/export/export_path.h"
 #include "alidade/run/play/loop.h"
 #include "commands.h"
@@ -15,13 +18,21 @@ namespace {
 struct ExportOptions {
   std::string map, out;  // paths
   bool no_images = false;
+  std::vector<std::string> scale_by;
   ExportSettings how;
 };
+
+KnownDistance DistanceOf(const std::vector<std::string>& words) {
+  const auto meters = ParseNumber(words[2]);
+  if (!meters) ThrowUsage("--scale-by: '" + words[2] + "' is not a number of meters");
+  return {words[0], words[1], *meters};
+}
 
 int ExportCommand(const ExportOptions& options) {
   CatchInterrupts();
   ExportSettings how = options.how;
   how.with_images = !options.no_images;
+  if (!options.scale_by.empty()) how.scale_by = DistanceOf(options.scale_by);
   Terminal terminal(false);
   const auto progress = [&](int frames, int total) {
     if (terminal.shows_progress() && frames % 10 == 0)
@@ -59,15 +70,15 @@ void AddExportCommand(CLI::App& app, Action& action) {
       ->required()
       ->type_name("PATH");
   command
-      ->add_option(
-          "--to", options->how.to,
-          "ply, pcd: landmarks; tum, evo, kitti, euroc: trajectory; colmap: undistorted images "
-          "and a sparse model (images/, sparse/0/); gsplat: the same with the principal "
-          "point in the center, for trainers of Gaussian splats; nerfstudio: images and "
-          "transforms.json; mcap: trajectory, points and, if recorded, the whole run, for "
-          "Foxglove, Lichtblick, Rerun and ros2")
+      ->add_option("--to", options->how.to,
+                   "map: a map for --map and --load (to change its unit with --scale-by); ply, "
+                   "pcd: landmarks; tum, evo, kitti, euroc: trajectory; colmap: undistorted images "
+                   "and a sparse model (images/, sparse/0/); gsplat: the same with the principal "
+                   "point in the center, for trainers of Gaussian splats; nerfstudio: images and "
+                   "transforms.json; mcap: trajectory, points and, if recorded, the whole run, for "
+                   "Foxglove, Lichtblick, Rerun and ros2")
       ->required()
-      ->type_name("ply|pcd|tum|evo|kitti|euroc|colmap|gsplat|nerfstudio|mcap");
+      ->type_name("map|ply|pcd|tum|evo|kitti|euroc|colmap|gsplat|nerfstudio|mcap");
   command
       ->add_option(
           "--images", options->how.images,
@@ -89,6 +100,13 @@ void AddExportCommand(CLI::App& app, Action& action) {
                    "Trajectories: z turns the world so that z is up, by the mean upright axis of "
                    "the camera, as gravity is not measured")
       ->type_name("map|z");
+  command
+      ->add_option("--scale-by", options->scale_by,
+                   "Maps of one camera: lengths become meters, by two places A and B and the "
+                   "distance between them. A place is the time of a frame in seconds "
+                   "(trajectory.txt), landmark:ID, or x,y,z in the map")
+      ->expected(3)
+      ->type_name("A B METERS");
   command->add_flag("--colors", options->how.colors,
                     "ply, pcd: color the landmarks as the recording's images show them");
   command
@@ -121,6 +139,8 @@ void AddExportCommand(CLI::App& app, Action& action) {
       "alidade-out/kitchen --to colmap kitchen-colmap   images and sparse model\n  alidade export "
       "alidade-out/walk --to gsplat walk-gs --images sharpest:2\n  alidade export "
       "alidade-out/walk --to nerfstudio walk-ns --source videos/walk.mp4\n  alidade export "
+      "alidade-out/walk --to evo walk.txt --scale-by 2.0 7.5 1.20   in meters: the camera moved "
+      "1.20 m\n  alidade export "
       "map.alidade --to colmap model --no-images && colmap model_analyzer --path model");
   command->callback([options, &action] { action = [options] { return ExportCommand(*options); }; });
 }

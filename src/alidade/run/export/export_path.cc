@@ -4,6 +4,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
+#include "alidade/run/export/map_scale.h"
 #include "alidade/run/export/mcap_export.h"
 #include "alidade/run/export/nerfstudio_files.h"
 #include "alidade/run/export/trajectory_export.h"
@@ -23,6 +24,13 @@ std::string InWords(const McapCounts& counts, const char* frames) {
          " landmarks, " + shape + megabytes;
 }
 
+// Returns the factor.
+double Scale(const std::string& path, const ExportSettings& settings, SavedMap& saved) {
+  const double scale = ScaleFor(path, saved, settings);
+  if (settings.scale_by) ScaleMap(saved, PartFor(saved, settings), scale);
+  return scale;
+}
+
 std::string ExportToMcap(const std::string& path, const ExportSettings& settings,
                          const std::string& out) {
   const std::string stream = StreamIn(path), program = "alidade " ALIDADE_VERSION;
@@ -31,11 +39,14 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
     ThrowUsage("OUT is the source itself; choose another file");
   CheckIsNoResult(out);
   const bool map = stream.empty() && !std::filesystem::is_directory(path, error);
+  if (!map && settings.scale_by)
+    ThrowUsage("--scale-by with --to mcap applies to a map: give the file map.alidade");
   if (!map && (settings.part != 0 || settings.min_observations > 1)) {
     ThrowUsage("--part and --min-observations apply to a map: give the file map.alidade");
   }
   if (map) {
-    const SavedMap saved = ReadSavedMap(path);
+    SavedMap saved = ReadSavedMap(path);
+    Scale(path, settings, saved);
     return InWords(ExportMapToMcap(saved, PartFor(saved, settings), out, program), "keyframes");
   }
   return InWords(
@@ -60,12 +71,13 @@ std::string InWords(const TrainingSet& set) {
 }
 
 std::string ExportImages(const std::string& path, const SavedMap& saved,
-                         const ExportSettings& settings, const std::string& out,
+                         const ExportSettings& settings, double scale, const std::string& out,
                          const ExportProgress& progress) {
   const MapPart part = PartFor(saved, settings);
   if (part.keyframes.empty()) ThrowInput(path + ": the map is empty");
   ExportFolder folder(out);  // before the recording is read
   OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+  recording.scale = scale;
   TrainingSettings training;
   training.choice = FrameChoiceNamed(settings.images);
   training.min_observations = settings.LeastObservations();
@@ -93,16 +105,18 @@ std::string ExportPath(const std::string& path, const ExportSettings& settings,
     ThrowUsage("OUT is the map itself; choose another file");
   }
   CheckIsNoResult(out);
-  const SavedMap saved = ReadSavedMap(path);
-  if (settings.IsTrajectory()) return ExportTrajectory(path, saved, settings, out);
+  SavedMap saved = ReadSavedMap(path);
+  const double scale = Scale(path, settings, saved);
+  if (settings.IsTrajectory()) return ExportTrajectory(path, saved, settings, scale, out);
   if (settings.colors) {
     const MapPart part = PartFor(saved, settings);
     OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+    recording.scale = scale;
     const Cloud cloud = ColoredCloud(saved, part, recording, progress);
     WriteCloud(cloud, settings, out);
     return std::to_string(cloud.points.size()) + " colored points";
   }
-  if (settings.WithImages()) return ExportImages(path, saved, settings, out, progress);
+  if (settings.WithImages()) return ExportImages(path, saved, settings, scale, out, progress);
   return ExportMap(saved, settings, out);
 }
 

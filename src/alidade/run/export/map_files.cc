@@ -7,17 +7,32 @@
 #include "alidade/base/choice.h"
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/export/export_folder.h"
 #include "alidade/run/export/frame_choice.h"
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/export/mcap_export.h"
+#include "alidade/run/export/own_recording.h"
+#include "alidade/run/export/posed_frames.h"
 #include "alidade/run/export/trajectory_export.h"
 #include "alidade/version.h"
 
 namespace alidade {
 namespace {
 
-enum class Target { kPly, kPcd, kTum, kEvo, kKitti, kEuroc, kColmap, kGsplat, kNerfstudio, kMcap };
+enum class Target {
+  kMap,
+  kPly,
+  kPcd,
+  kTum,
+  kEvo,
+  kKitti,
+  kEuroc,
+  kColmap,
+  kGsplat,
+  kNerfstudio,
+  kMcap
+};
 enum class Form { kDefault, kText, kBinary, kBoth };
 
 struct Plan {
@@ -38,7 +53,8 @@ bool IsFolderTarget(Target target) {
 // The format with `default` resolved.
 Plan PlanOf(const ExportSettings& settings) {
   const auto target = Choice<Target>("--to", settings.to,
-                                     {{"ply", Target::kPly},
+                                     {{"map", Target::kMap},
+                                      {"ply", Target::kPly},
                                       {"pcd", Target::kPcd},
                                       {"tum", Target::kTum},
                                       {"evo", Target::kEvo},
@@ -91,6 +107,8 @@ Plan PlanOf(const ExportSettings& settings) {
     if (about_source || settings.masks || settings.images != "keyframes")
       ThrowUsage("--no-images cannot be combined with --images, --masks, --source and --camera");
   }
+  if (target == Target::kMap && form == Form::kText)
+    ThrowUsage("--format cannot be 'text': map files are binary");
   FrameChoiceNamed(settings.images);
   return {target, form};
 }
@@ -125,6 +143,14 @@ MapPart PartFor(const SavedMap& saved, const ExportSettings& settings) {
   return SeenOften(saved, PartOf(saved, settings.part), settings.LeastObservations());
 }
 
+double ScaleFor(const std::string& path, const SavedMap& saved, const ExportSettings& settings) {
+  if (!settings.scale_by) return 1;
+  const MapPart part = PartOf(saved, settings.part);
+  const std::string file = TrajectoryFileFor(saved, part, ResultFolderOf(path));
+  return MetersPerUnit(saved, part, file.empty() ? Trajectory{} : ReadTrajectory(file),
+                       *settings.scale_by);
+}
+
 std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings) {
   const Form form = PlanOf(settings).form;
   std::vector<ColmapFile> files;
@@ -156,6 +182,10 @@ std::string ExportMap(const SavedMap& saved, const ExportSettings& settings,
   const MapPart part = PartFor(saved, settings);
   std::string what = std::to_string(part.landmarks.size()) + " points";
   switch (plan.target) {
+    case Target::kMap:
+      WriteExportFile(out, EncodeMap(saved));
+      what = std::to_string(part.keyframes.size()) + " keyframes, " + what;
+      break;
     case Target::kPly:
     case Target::kPcd:
       WriteCloud(CloudOf(saved, part), settings, out);

@@ -7,13 +7,15 @@
 
 #include "alidade/io/cloud.h"
 #include "alidade/io/colmap.h"
+#include "alidade/run/export/map_scale.h"
 #include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
 
 struct ExportSettings {
-  // ply, pcd: the landmarks; tum, evo, kitti, euroc: a trajectory; colmap: both; mcap: both, as ROS
-  // 2 messages; gsplat, nerfstudio, and colmap with images: folders to train on (training_images.h)
+  // map: a map file; ply, pcd: the landmarks; tum, evo, kitti, euroc: a trajectory; colmap: both;
+  // mcap: both, as ROS 2 messages; gsplat, nerfstudio, and colmap with images: folders to train on
+  // (training_images.h)
   std::string to;
   std::string format = "default";  // text, binary, both (colmap, gsplat)
   int part = 0;                    // 0: the largest of the maps in the file
@@ -30,6 +32,7 @@ struct ExportSettings {
   std::string up = "map";  // z: the world is turned so that z is up (trajectory_export.h)
   // Of ply and pcd: colors of the recording's images.
   bool colors = false;
+  std::optional<KnownDistance> scale_by;      // of maps of one camera: lengths are then meters
   std::optional<std::string> source, camera;  // instead of those of the run
 
   bool WithImages() const;        // true if images are to be written
@@ -41,6 +44,9 @@ struct ExportSettings {
 // The chosen map, with the landmarks that have enough observations. Throws Error (usage) for a part
 // that does not exist.
 MapPart PartFor(const SavedMap& saved, const ExportSettings& settings);
+
+// Meters per map unit by scale_by; 1 without it. `path`: of the map or its result folder.
+double ScaleFor(const std::string& path, const SavedMap& saved, const ExportSettings& settings);
 
 // The files of a COLMAP model in the form that --format names.
 std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings);

@@ -6,6 +6,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/map/view.h"
+#include "alidade/run/export/map_scale.h"
 #include "alidade/run/folder/own_files.h"
 
 namespace alidade {
@@ -54,7 +55,7 @@ std::string TrajectoryFileFor(const SavedMap& saved, const MapPart& part,
 }
 
 PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::string& folder,
-                         const Eigen::Matrix3d& R_camera_rectified) {
+                         const Eigen::Matrix3d& R_camera_rectified, double scale) {
   all_ = KeyFramesByTime(saved, part);
   for (KeyFrameId id : part.keyframes) {
     const KeyFrame& keyframe = *saved.map.Find(id);
@@ -65,7 +66,9 @@ PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::
   std::sort(inverse_depths_.begin(), inverse_depths_.end());
   if (const std::string file = TrajectoryFileFor(saved, part, folder); !file.empty()) {
     const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
-    for (const StampedPose& pose : ReadTrajectory(file)) {
+    Trajectory trajectory = ReadTrajectory(file);
+    ScaleTrajectory(trajectory, scale);
+    for (const StampedPose& pose : trajectory) {
       const Se3 T_world_camera = turn.Inverse() * pose.T_world_camera * turn;
       trajectory_.push_back({pose.time, T_world_camera.Inverse(), {}});
     }

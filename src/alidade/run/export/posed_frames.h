@@ -24,9 +24,9 @@ class PosedFrames {
  public:
   // `folder`: of the result, whose trajectory of the map is read; empty, or without one: keyframes
   // only. `R_camera_rectified`: SourceInfo's, which turns the map's world into that of
-  // trajectories.
+  // trajectories. `scale`: by which the trajectory is multiplied.
   PosedFrames(const SavedMap& saved, const MapPart& part, const std::string& folder,
-              const Eigen::Matrix3d& R_camera_rectified);
+              const Eigen::Matrix3d& R_camera_rectified, double scale);
 
   bool has_trajectory() const { return !trajectory_.empty(); }
   size_t keyframes() const { return keyframes_; }

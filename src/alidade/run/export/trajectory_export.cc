@@ -10,6 +10,7 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/export/map_models.h"
+#include "alidade/run/export/map_scale.h"
 #include "alidade/run/export/own_recording.h"
 #include "alidade/run/export/posed_frames.h"
 
@@ -91,14 +92,15 @@ std::string FormatTrajectory(Trajectory trajectory, const ExportSettings& settin
 }
 
 std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
-                             const ExportSettings& settings, const std::string& out) {
+                             const ExportSettings& settings, double scale, const std::string& out) {
   const MapPart part = PartFor(saved, settings);
   const std::string file = TrajectoryFileFor(saved, part, ResultFolderOf(path));
   const bool frames = settings.poses == "frames" ||
                       (settings.poses == "default" && settings.to != "tum" && !file.empty());
   if (frames && file.empty())
     ThrowUsage("--poses frames needs the result folder of the run, with its trajectory");
-  const Trajectory trajectory = frames ? ReadTrajectory(file) : TrajectoryOf(saved, part);
+  Trajectory trajectory = frames ? ReadTrajectory(file) : TrajectoryOf(saved, part);
+  if (frames) ScaleTrajectory(trajectory, scale);
   WriteExportFile(out, FormatTrajectory(trajectory, settings));
   return std::to_string(trajectory.size()) + " poses" + (frames ? "" : " of keyframes");
 }

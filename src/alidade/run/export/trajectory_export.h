@@ -23,8 +23,9 @@ std::string FormatTrajectory(Trajectory trajectory, const ExportSettings& settin
 
 // `path`: of a map or a result folder. Writes tum, evo, kitti or euroc and returns a description.
 // `settings.poses`: "frames" of the result's trajectory of that part, "keyframes" of the map, or
-// "default": frames where they are, but keyframes for tum. Throws Error.
+// "default": frames where they are, but keyframes for tum. `scale`: ScaleFor(), by which `saved`
+// was multiplied already. Throws Error.
 std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
-                             const ExportSettings& settings, const std::string& out);
+                             const ExportSettings& settings, double scale, const std::string& out);
 
 }  // namespace alidade
