@@ -44,7 +44,8 @@ class Chooser {
   ChosenTopics Choose() {
     if (pictures_.empty()) {
       ThrowInput(query_.path +
-                 " contains no images (sensor_msgs Image or CompressedImage); it has " +
+                 " contains no images (sensor_msgs Image or CompressedImage, foxglove "
+                 "CompressedVideo); it has " +
                  AllTopics(bag_));
     }
     ChosenTopics chosen;
