@@ -4,9 +4,11 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
+#include "alidade/io/files/image_codec.h"
 #include "alidade/run/export/map_scale.h"
 #include "alidade/run/export/mcap_export.h"
 #include "alidade/run/export/nerfstudio_files.h"
+#include "alidade/run/export/training_preview.h"
 #include "alidade/run/export/trajectory_export.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/sources/saved_map.h"
@@ -14,6 +16,8 @@
 
 namespace alidade {
 namespace {
+
+constexpr int kPreviewQuality = 90;  // JPEG
 
 std::string InWords(const McapCounts& counts, const char* frames) {
   char megabytes[32];
@@ -84,6 +88,8 @@ std::string ExportImages(const std::string& path, const SavedMap& saved,
   training.centered = settings.to == "gsplat";
   training.masks = settings.masks;
   const TrainingSet set = WriteTrainingImages(saved, part, recording, training, progress, folder);
+  if (const cv::Mat preview = TrainingPreview(set); !preview.empty())
+    folder.Write("preview.jpg", EncodeJpeg(preview, kPreviewQuality));
   if (settings.to == "nerfstudio") {
     folder.Write("transforms.json", NerfstudioJson(set.model, set.masks));
     folder.Write("sparse_pc.ply", EncodePly(NerfstudioCloud(set.model), CloudFormat::kBinary));

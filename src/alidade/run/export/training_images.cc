@@ -133,7 +133,19 @@ class TrainingWriter {
       }
       images_[posed.keyframe] = static_cast<int>(set_.model.images.size());
     }
+    const int landmarks = posed.keyframe.valid() ? LandmarksOf(posed.keyframe) : 0;
+    if (set_.shown.empty() || landmarks > shown_landmarks_) {
+      set_.shown = image;
+      set_.shown_image = static_cast<int>(set_.model.images.size());
+      shown_landmarks_ = landmarks;
+    }
     set_.model.images.push_back(std::move(written));
+  }
+
+  int LandmarksOf(KeyFrameId id) const {
+    const auto& landmarks = saved_.map.Find(id)->landmarks;
+    return static_cast<int>(std::count_if(landmarks.begin(), landmarks.end(),
+                                          [](LandmarkId landmark) { return landmark.valid(); }));
   }
 
   void AddPoints() {
@@ -169,6 +181,7 @@ class TrainingWriter {
   LandmarkColors colors_;
   std::optional<ImageMasks> masks_;
   TrainingSet set_;
+  int shown_landmarks_ = 0;
   std::map<KeyFrameId, int> images_;                  // indices in the model
   std::map<KeyFrameId, std::vector<int>> keypoints_;  // index in the image's, -1: outside
   // The sharpest frame of the present window.

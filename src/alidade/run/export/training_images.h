@@ -30,8 +30,10 @@ struct TrainingSet {
   // images. Colors are the mean of those of all observations.
   ColmapModel model;
   bool masks = false;
-  int other = 0;    // keyframes of other recordings, which are not exported
-  int missing = 0;  // keyframes whose frames were not found or could not be read
+  int other = 0;        // keyframes of other recordings, which are not exported
+  cv::Mat shown;        // the written image of the keyframe with most landmarks
+  int shown_image = 0;  // its index in the model
+  int missing = 0;      // keyframes whose frames were not found or could not be read
 };
 
 // Reads the recording once and writes images/NAME (and masks/NAME.png) to `folder`. Throws Error:
