@@ -154,8 +154,8 @@ TEST(RosPictures, OfCompressedDepthAreUnpacked) {
   head.append(reinterpret_cast<const char*>(quantization), sizeof quantization);
   EXPECT_FLOAT_EQ(decode("32FC1; compressedDepth png", head + png).at<float>(0, 0), 2.5f);
   EXPECT_THAT(MessageOf(ErrorKind::kInput,
-                        [&] { decode("16UC1; compressedDepth rvl", head + "xxxxxxxx"); }),
-              HasSubstr("a compression other than PNG"));
+                        [&] { decode("16UC1; compressedDepth zstd", head + "xxxxxxxx"); }),
+              HasSubstr("`16UC1; compressedDepth zstd`, which is not read"));
 }
 
 TEST(RosPictures, ThatCannotBeAreRefused) {

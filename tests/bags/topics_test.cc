@@ -76,10 +76,13 @@ TEST_F(Topics, PairsBelongTogetherByTheirStamps) {
 TEST_F(Topics, NamesAreShownInOneLine) {
   using namespace std::string_literals;
   const std::string name = "/\0cam\n\x1b[31m"s;
-  const auto source = Open({{name, "sensor_msgs/Image", kStart,
-                             ImageMessage(kRos2, kStart, "camera", "mono\r9", Grey(1))}});
-  EXPECT_THAT(source->Info().told, HasSubstr("image /?cam??[31m (mono?9, "));
-  EXPECT_THAT(source->Next()->problem, HasSubstr("mono?9"));
+  const auto source = Open({Picture(name, kStart, 1)});
+  EXPECT_THAT(source->Info().told, HasSubstr("image /?cam??[31m (mono8, "));
+  const std::string unknown = MessageOf(ErrorKind::kInput, [&] {
+    Open({{name, "sensor_msgs/Image", kStart,
+           ImageMessage(kRos2, kStart, "camera", "mono\r9", Grey(1))}});
+  });
+  EXPECT_THAT(unknown, HasSubstr("/?cam??[31m has the encoding `mono?9`"));
   const std::string refused =
       MessageOf(ErrorKind::kUsage, [&] { Open({Picture(name, kStart, 10)}, "?image=/cam"); });
   EXPECT_THAT(refused, HasSubstr("there are /?cam??[31m; depth"));
@@ -178,7 +181,7 @@ TEST_F(Topics, AnotherSizeOrEncodingCostsThatFrame) {
   messages[2].bytes = ImageMessage(kRos2, StampOf(2), "camera", "secret", Grey(1));
   const auto source = Open(messages);
   EXPECT_EQ(source->Next()->problem, "");
-  EXPECT_THAT(source->Next()->problem, HasSubstr("another size"));
+  EXPECT_THAT(source->Next()->problem, HasSubstr("is 10x10, but /cam/image's first is 64x48"));
   EXPECT_THAT(source->Next()->problem, HasSubstr("`secret`"));
 }
 

@@ -62,6 +62,54 @@ TEST(KittiSource, CountsOfTimesAndImagesMayDiffer) {
   EXPECT_THAT(warnings.text(), HasSubstr("2 times for 3 images"));
 }
 
+TEST(KittiSource, AMissingImageLeavesTheOthersTheirTimes) {
+  const TempFolder folder;
+  WriteTinyKitti(folder, 6);
+  for (const char* name : {"image_0/000002.png", "image_1/000002.png", "image_0/000003.png"})
+    std::filesystem::remove(folder / name);
+  WarningCatcher warnings;
+  const auto source = OpenSource(folder.path());
+  EXPECT_THAT(warnings.text(), HasSubstr("6 times for 4 images: 2 are missing by their numbers"));
+  EXPECT_EQ(source->Info().frames, 4);
+  for (const int i : {0, 1, 4, 5}) {
+    const auto frame = source->Next();
+    ASSERT_TRUE(frame);
+    EXPECT_DOUBLE_EQ(frame->time, 0.1 * i);
+    EXPECT_EQ(cv::norm(frame->image, TinyImage(10 * i), cv::NORM_INF), 0);
+    EXPECT_EQ(cv::norm(frame->right, TinyImage(10 * i + 1), cv::NORM_INF), 0);
+  }
+  EXPECT_FALSE(source->Next());
+}
+
+// Numbers from 1: the last would be beyond the list if the first time were that of number 0.
+TEST(KittiSource, NumbersMayBeginAtOne) {
+  const TempFolder folder;
+  WriteTinyKitti(folder, 5, false);
+  folder.Write("times.txt", "0\n0.1\n0.2\n0.3\n");
+  for (const char* name : {"image_0/000000.png", "image_0/000002.png"})
+    std::filesystem::remove(folder / name);
+  const auto source = OpenSource(folder.path());
+  for (const int i : {1, 3, 4}) {
+    const auto frame = source->Next();
+    ASSERT_TRUE(frame);
+    EXPECT_DOUBLE_EQ(frame->time, 0.1 * (i - 1));
+    EXPECT_EQ(cv::norm(frame->image, TinyImage(10 * i), cv::NORM_INF), 0);
+  }
+}
+
+TEST(KittiSource, NamesThatAreNoNumbersArePairedInOrder) {
+  const TempFolder folder;
+  WriteTinyKitti(folder, 4, false);
+  for (int i = 0; i < 3; ++i)
+    std::filesystem::rename(folder / ("image_0/00000" + std::to_string(i) + ".png"),
+                            folder / ("image_0/frame" + std::to_string(i) + ".png"));
+  std::filesystem::remove(folder / "image_0/000003.png");
+  WarningCatcher warnings;
+  const auto source = OpenSource(folder.path());
+  EXPECT_THAT(warnings.text(), HasSubstr("4 times for 3 images: frames without one"));
+  EXPECT_EQ(source->Info().frames, 3);
+}
+
 TEST(KittiSource, BadCalibrationsAreNamed) {
   const TempFolder folder;
   WriteTinyKitti(folder, 2);

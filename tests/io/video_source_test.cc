@@ -157,6 +157,40 @@ TEST(VideoSource, StandsUprightByTheRotationFlag) {
   EXPECT_NEAR(cv::mean(frame->image(cv::Rect(28, 68, 16, 56)))[0], 128, 10);
 }
 
+// All eight ways to show an image that keep its sides parallel.
+TEST(VideoSource, IsShownAsTheDisplayMatrixSays) {
+  const TempFolder folder;
+  WarningCatcher warnings;
+  const std::string path = WriteVideo(folder, 3), bytes = ReadFile(path);
+  const cv::Mat stored = OpenSource(path)->Next()->image;
+  for (const auto& [a, b, c, d] : std::vector<std::array<int, 4>>{{1, 0, 0, 1},
+                                                                  {0, 1, -1, 0},
+                                                                  {-1, 0, 0, -1},
+                                                                  {0, -1, 1, 0},
+                                                                  {-1, 0, 0, 1},
+                                                                  {1, 0, 0, -1},
+                                                                  {0, 1, 1, 0},
+                                                                  {0, -1, -1, 0}}) {
+    std::string changed = bytes;
+    SetMp4DisplayMatrix(changed, a, b, c, d);
+    AtomicWriteFile(path, changed);
+    const auto frame = OpenSource(path, {.color = true})->Next();
+    ASSERT_TRUE(frame);
+    const int right = stored.cols - 1, bottom = stored.rows - 1;
+    ASSERT_EQ(frame->image.size(), a == 0 ? cv::Size(48, 128) : cv::Size(128, 48));
+    ASSERT_EQ(frame->color.size(), frame->image.size());
+    // The shown image begins at 0: a negative factor counts from the other end.
+    const int x0 = (a < 0 ? right : 0) + (c < 0 ? bottom : 0);
+    const int y0 = (b < 0 ? right : 0) + (d < 0 ? bottom : 0);
+    for (int y = 0; y <= bottom; ++y) {
+      for (int x = 0; x <= right; ++x) {
+        const cv::Point at(a * x + c * y + x0, b * x + d * y + y0);
+        ASSERT_EQ(frame->image.at<uchar>(at), stored.at<uchar>(y, x)) << a << b << c << d;
+      }
+    }
+  }
+}
+
 TEST(VideoSource, FirstAndLastCountFrames) {
   const TempFolder folder;
   WarningCatcher warnings;

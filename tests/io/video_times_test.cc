@@ -1,7 +1,10 @@
 // Videos in which frames are stored in another order than they are shown.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include "alidade/io/files/file.h"
 #include "alidade/io/files/open_source.h"
+#include "support/expect_error.h"
+#include "support/mp4.h"
 #include "support/temp_folder.h"
 #include "support/video_with_b_frames.h"
 
@@ -35,6 +38,32 @@ TEST(VideoTimes, EveryFrameHasItsOwnPresentationTime) {
   }
   ASSERT_TRUE(source->Seek(20));
   EXPECT_NEAR(source->Next()->time, 1e-3 * times[20], 1e-6);
+}
+
+// A telephone cuts a video without encoding it again: an edit list leaves frames out at both ends.
+TEST(VideoTimes, OfAnEditListAreThoseOfThePartThatIsShown) {
+  const TempFolder folder;
+  std::vector<int> times;
+  for (int i = 0; i < 25; ++i) times.push_back(40 * i);
+  const std::string path = folder / "clip.mp4";
+  WriteVideoWithBFrames(path, Images(25), times);
+  std::string bytes = ReadFile(path);
+  const size_t edits = Mp4Box(bytes, "elst");
+  const double track = Mp4Number(bytes, Mp4Box(bytes, "mdhd") + 20);
+  const double start = Mp4Number(bytes, edits + 20) / track;  // FFmpeg's: the first frame shown
+  SetMp4Edit(bytes, start + 0.2, 0.4);
+  AtomicWriteFile(path, bytes);
+  WarningCatcher warnings;
+  const auto source = OpenSource(path);
+  EXPECT_EQ(source->Info().frames, 10);
+  int frames = 0;
+  while (const auto frame = source->Next()) {
+    EXPECT_NEAR(frame->time, 0.04 * frames, 1e-6);
+    EXPECT_NEAR(cv::mean(frame->image)[0], 20 + 8 * (frames + 5), 4);
+    ++frames;
+  }
+  EXPECT_EQ(frames, 10);
+  EXPECT_THAT(warnings.text(), testing::Not(testing::HasSubstr("truncated")));
 }
 
 }  // namespace

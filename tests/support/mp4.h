@@ -42,13 +42,28 @@ inline void SetMp4Durations(std::string& bytes, const std::vector<uint32_t>& dur
   }
 }
 
-// Sets the rotation flag to a clockwise quarter turn.
-inline void SetMp4QuarterTurn(std::string& bytes) {
-  const uint32_t one = 0x10000, minus_one = 0xffff0000, one_w = 0x40000000;
+// Sets the display matrix: the pixel (x, y) is shown at (a x + c y, b x + d y), each of -1, 0, 1.
+inline void SetMp4DisplayMatrix(std::string& bytes, int a, int b, int c, int d) {
+  const auto fixed = [](int value) { return static_cast<uint32_t>(value * 0x10000); };
+  const uint32_t one_w = 0x40000000;
   std::string matrix;
-  for (const uint32_t value : {0u, one, 0u, minus_one, 0u, 0u, 0u, 0u, one_w})
+  for (const uint32_t value : {fixed(a), fixed(b), 0u, fixed(c), fixed(d), 0u, 0u, 0u, one_w})
     matrix += Mp4Text(value);
   bytes.replace(Mp4Box(bytes, "tkhd") + 48, matrix.size(), matrix);  // version 0 of the box
+}
+
+// Sets the rotation flag to a clockwise quarter turn.
+inline void SetMp4QuarterTurn(std::string& bytes) { SetMp4DisplayMatrix(bytes, 0, 1, -1, 0); }
+
+// Sets the edit list to one segment, from `start` on. Seconds; the file has an edit list, and one
+// track.
+inline void SetMp4Edit(std::string& bytes, double start, double duration) {
+  // Version 0 of all boxes. Segments have the movie's time scale, starts the track's.
+  const uint32_t movie = Mp4Number(bytes, Mp4Box(bytes, "mvhd") + 20);
+  const uint32_t track = Mp4Number(bytes, Mp4Box(bytes, "mdhd") + 20);
+  bytes.replace(Mp4Box(bytes, "elst") + 12, 12,
+                Mp4Text(1) + Mp4Text(static_cast<uint32_t>(duration * movie + 0.5)) +
+                    Mp4Text(static_cast<uint32_t>(start * track + 0.5)));
 }
 
 }  // namespace alidade

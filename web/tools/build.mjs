@@ -30,6 +30,8 @@ const options = {
   nodePaths: [join(web, 'node_modules')], alias: { '@alidade/scene': join(web, 'scene/src/index.ts') }, logLevel: 'warning',
 };
 
+const LATER = ['mp4']; // scripts that the phone page loads only when they are needed
+
 // The phone page: its script, the Workers, and the service worker, which contains the list of files and their digest.
 export async function buildPhone() {
   const from = join(web, 'phone/src');
@@ -39,10 +41,13 @@ export async function buildPhone() {
   const { version } = JSON.parse(readFileSync(join(web, 'core/package.json'), 'utf8'));
   const main = { ...options, entryPoints: [join(from, 'main.ts')], outfile: join(to, 'phone.js') };
   const define = { BUNDLED: '[]', PROGRAM: JSON.stringify(`Alidade ${version}`) };
-  const { metafile } = await build({ ...main, define, write: false, metafile: true });
-  const packages = bundled(metafile);
+  const inputs = {};
+  for (const more of [{ ...main, define }, ...LATER.map((name) => ({ ...options, entryPoints: [join(from, `${name}.ts`)], outfile: join(to, `${name}.js`) }))]) {
+    Object.assign(inputs, (await build({ ...more, write: false, metafile: true })).metafile.inputs);
+  }
+  const packages = bundled({ inputs });
   await build({ ...main, define: { ...define, BUNDLED: JSON.stringify(packages.map(({ name, version: number, licence }) => ({ name, version: number, licence }))) } });
-  for (const name of ['worker', 'detector_worker']) await build({ ...options, entryPoints: [join(from, `${name}.ts`)], outfile: join(to, `${name}.js`) });
+  for (const name of ['worker', 'detector_worker', ...LATER]) await build({ ...options, entryPoints: [join(from, `${name}.ts`)], outfile: join(to, `${name}.js`) });
   await build({ ...options, entryPoints: [join(from, 'phone.css')], outfile: join(to, 'phone.css') });
   for (const name of ['index.html', 'icon.svg', 'manifest.webmanifest']) copyFileSync(join(from, name), join(to, name));
   writeFileSync(join(to, 'licences.txt'), licences(packages));

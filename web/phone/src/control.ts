@@ -13,7 +13,8 @@ import { RemoteEngine } from './remote.ts';
 import { download, showOffers } from './save.ts';
 import { engineHooks } from './session.ts';
 import { coreSettings, detectorClasses } from './settings.ts';
-import { VideoFile } from './video_file.ts';
+import { openVideo } from './video.ts';
+import type { Video } from './video.ts';
 import { Wake } from './wake.ts';
 
 const pause = (milliseconds: number) => new Promise<void>((resolve) => { setTimeout(resolve, milliseconds); });
@@ -21,7 +22,7 @@ const pause = (milliseconds: number) => new Promise<void>((resolve) => { setTime
 export class Control {
   engine: Engine | null = null;
   private camera: CameraSource | null = null;
-  private file: VideoFile | null = null;
+  private file: Video | null = null;
   private recorder: Recorder | null = null;
   private readonly wake = new Wake();
 
@@ -38,7 +39,7 @@ export class Control {
         problem: (text) => this.notice(text, 'camera'),
       });
       this.dispatch({ kind: 'phase', phase: 'running' });
-      await this.begin();
+      await this.begin(this.video.videoWidth, this.video.videoHeight);
       await this.wake.hold();
       this.camera.start(this.state.choices.focus);
     } catch (error) {
@@ -55,10 +56,10 @@ export class Control {
     this.closeFile();
     await this.asked;
     try {
-      const opened = await VideoFile.open(this.video, chosen);
+      const opened = await openVideo(this.video, chosen);
       this.file = opened;
       this.dispatch({ kind: 'phase', phase: 'running' });
-      await this.begin();
+      await this.begin(opened.width, opened.height);
       await this.wake.hold();
       const goesOn = () => this.file === opened && this.state.phase === 'running';
       for (let next = await opened.next(); next && this.file === opened; next = await opened.next()) {
@@ -68,14 +69,16 @@ export class Control {
           return;
         }
         this.engine!.push(next.bitmap, next.time, 0);
-        this.dispatch({ kind: 'progress', progress: { seconds: next.time, duration: opened.duration, share: opened.share } });
+        this.dispatch({ kind: 'progress', progress: { seconds: next.time, duration: opened.duration } });
       }
       while (this.engine && !this.engine.free) await pause(5);
       if (this.file === opened) this.end('');
     } catch (error) {
+      const { message } = error as Error;
+      if (this.engine && this.state.shown) return this.end(`${chosen.name} could not be read to its end: ${message}. The results so far can be saved.`);
       this.closeFile();
-      this.dispatch({ kind: 'phase', phase: this.engine && this.state.shown ? 'ended' : 'idle' });
-      this.notice(`${chosen.name} was not opened: ${(error as Error).message}.`, 'start');
+      this.dispatch({ kind: 'phase', phase: 'idle' });
+      this.notice(`${chosen.name} was not opened: ${message}.`, 'start');
     }
   }
 
@@ -135,15 +138,15 @@ export class Control {
     if (!this.file) this.camera?.resume();
   }
 
-  // Creates a new engine and an empty state for images of the video element.
-  private async begin(): Promise<void> {
+  // Creates a new engine and an empty state for images of this size.
+  private async begin(width: number, height: number): Promise<void> {
     const { choices, info, remote } = this.state;
     this.engine?.close();
     this.dispatch({ kind: 'begin', remote, fov: choices.fov });
     const hooks = engineHooks(this.dispatch, (why) => this.end(why));
     const engine = this.engine = remote ? new RemoteEngine(hooks) : new LocalEngine(hooks, info?.threads ?? false);
     const classes = remote ? [] : detectorClasses(choices);
-    await engine.begin({ ...workingSize(this.video.videoWidth, this.video.videoHeight), fov: choices.fov, settings: coreSettings(choices), classes });
+    await engine.begin({ ...workingSize(width, height), fov: choices.fov, settings: coreSettings(choices), classes });
     if (classes.length > 0) this.detector.connect(engine as LocalEngine);
   }
 

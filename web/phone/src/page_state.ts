@@ -10,7 +10,7 @@ export type Phase = 'idle' | 'running' | 'ended';
 // info.json: the server's capabilities.
 export interface Info { connected?: boolean; core?: boolean; threads?: boolean }
 
-export interface Progress { seconds: number; duration: number; share: number } // of a video file
+export interface Progress { seconds: number; duration: number } // of a video file
 
 export type PageMessage =
   | { kind: 'info'; info: Info }
@@ -50,6 +50,9 @@ export class PageState {
   get remote(): boolean {
     return Boolean(this.info?.connected && (this.choices.connected || this.info.core === false));
   }
+
+  // Whether there is a map.
+  get savable(): boolean { return this.session !== null && (this.shown?.frame.counts.keyframes ?? 0) > 0; }
 
   apply(message: PageMessage): void {
     switch (message.kind) {

@@ -38,6 +38,7 @@ export class PageView {
     const { phase, info, notices, recording, progress } = state;
     document.body.dataset.phase = phase;
     byId('again').hidden = phase !== 'ended';
+    byId('save-open').hidden = !state.savable;
     byId('remove').hidden = state.cube === null;
     byId('set-connected-row').hidden = !(info?.connected && info.core !== false);
     write(byId('where'), info ? whereText(state, location.host) : '');
@@ -50,7 +51,7 @@ export class PageView {
     write(byId('record'), recording === null ? 'Record' : `Recording ${recording}`);
     byId('record').setAttribute('aria-pressed', String(recording !== null));
     byId('progress').hidden = progress === null || phase !== 'running';
-    (byId('progress-bar') as HTMLProgressElement).value = progress?.share ?? 0;
+    (byId('progress-bar') as HTMLProgressElement).value = progress?.duration ? Math.min(1, progress.seconds / progress.duration) : 0;
     write(byId('progress-text'), progress ? `${progress.seconds.toFixed(1)} of ${progress.duration.toFixed(1)} s` : '');
     const all = [...notices.values()].join(' ');
     write(byId('notice'), all);
@@ -58,11 +59,11 @@ export class PageView {
   }
 
   private numbers(): void {
-    const { shown, counters } = this.state;
+    const { phase, shown, counters } = this.state;
     const { keyframes, landmarks, matches } = shown?.frame.counts ?? { keyframes: 0, landmarks: 0, matches: 0 };
-    const numbers = { keyframes, landmarks, matches, milliseconds: Math.round(shown?.frame.milliseconds ?? 0) };
+    const numbers = { keyframes, landmarks, matches, frames: counters.processed, milliseconds: Math.round(shown?.frame.milliseconds ?? 0) };
     for (const [name, value] of Object.entries(numbers)) write(document.querySelector(`[data-count=${name}]`)!, String(value));
-    document.body.dataset.state = shown?.frame.state ?? 'initializing';
+    document.body.dataset.state = phase === 'ended' ? phase : shown?.frame.state ?? 'initializing';
     document.body.dataset.frames = String(counters.processed);
   }
 }

@@ -41,8 +41,11 @@ export function whereText({ remote, info }: PageState, host: string): string {
   return `The images stay on this device: nothing is uploaded.${choice}`;
 }
 
-export function statusOf({ phase, why, session, shown, cube }: PageState): { word: string; advice: string } {
-  if (phase === 'ended') return { word: 'Ended', advice: why ? '' : session?.remote ? 'The computer that serves this page has the map.' : 'The results can be saved.' };
+export function statusOf({ phase, why, session, shown, cube, savable }: PageState): { word: string; advice: string } {
+  if (phase === 'ended') {
+    const results = !savable ? 'There is no map to save.' : session?.remote ? 'The computer that serves this page has the map.' : 'The results can be saved.';
+    return { word: 'Ended', advice: why ? '' : results };
+  }
   if (shown) {
     const { frame, light } = shown;
     const tap = frame.state === 'tracking' && !cube && frame.counts.keyframes > 3;
@@ -52,8 +55,9 @@ export function statusOf({ phase, why, session, shown, cube }: PageState): { wor
   return { word: 'Ready', advice: '' };
 }
 
+// Horizontal field of view of the processed images.
 export function lensText({ fov, fovSigma }: Frame, given: boolean): string {
   if (!(fov > 0)) return '';
-  if (given) return `${fov.toFixed(0)}° given`;
-  return fovSigma > 5 ? `${fov.toFixed(0)}° assumed` : `${fov.toFixed(1)}° ± ${fovSigma.toFixed(1)} found`;
+  if (given) return `Field of view ${fov.toFixed(0)}°, given`;
+  return `Field of view ${fovSigma > 5 ? `${fov.toFixed(0)}°, assumed` : `${fov.toFixed(1)}° ± ${fovSigma.toFixed(1)}°, found`}`;
 }

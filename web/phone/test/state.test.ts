@@ -6,7 +6,7 @@ import type { Frame } from '../../core/src/index.ts';
 import { PageState } from '../src/page_state.ts';
 import type { Done } from '../src/protocol.ts';
 import { DEFAULTS } from '../src/settings.ts';
-import { statusOf } from '../src/words.ts';
+import { lensText, statusOf } from '../src/words.ts';
 
 const FRAME: Frame = {
   number: 0, state: 'tracking', pose: null, predicted: null, failure: null, reason: '', counts: { keyframes: 5, landmarks: 300, matches: 80, features: 500, maps: 1 },
@@ -80,8 +80,24 @@ test('the page says what it does at each moment', () => {
   assert.deepEqual(statusOf(state), { word: 'Tracking', advice: 'Tap a surface to put a cube on it.' });
   state.apply({ kind: 'phase', phase: 'ended' });
   assert.deepEqual(statusOf(state), { word: 'Ended', advice: 'The results can be saved.' });
+  assert.ok(state.savable);
   state.apply({ kind: 'done', done: done({ state: 'lost' }), messages: [] }); // was under way
   assert.equal(statusOf(state).word, 'Ended');
+});
+
+test('without a map there is nothing to save', () => {
+  const state = running();
+  assert.equal(state.savable, false);
+  state.apply({ kind: 'done', done: done({ state: 'initializing', counts: { ...FRAME.counts, keyframes: 0 } }), messages: [] });
+  assert.equal(state.savable, false);
+  state.apply({ kind: 'phase', phase: 'ended' });
+  assert.deepEqual(statusOf(state), { word: 'Ended', advice: 'There is no map to save.' });
+});
+
+test('the lens is said with what the number is of', () => {
+  assert.equal(lensText({ ...FRAME, fov: 63.04, fovSigma: 0.72 }, false), 'Field of view 63.0° ± 0.7°, found');
+  assert.equal(lensText({ ...FRAME, fov: 66, fovSigma: 10 }, false), 'Field of view 66°, assumed');
+  assert.equal(lensText({ ...FRAME, fov: 66 }, true), 'Field of view 66°, given');
 });
 
 test('images go to another computer only where the server can work on them', () => {

@@ -7,15 +7,12 @@
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/depth_size.h"
 
 namespace alidade {
 namespace {
 
 constexpr double kShortest35 = 6, kLongest35 = 1000;  // mm
-
-std::string SizeText(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
-}
 
 void Scale(RawCamera& camera, cv::Size size) {
   const double x = static_cast<double>(size.width) / camera.width;
@@ -43,8 +40,7 @@ Calibration FitToSize(Calibration calibration, cv::Size size, bool with_right) {
   const auto tell = [&](const std::string& sentence) {
     calibration.told += (calibration.told.empty() ? "" : "\n") + sentence;
   };
-  const std::string was = SizeText(left.width, left.height),
-                    now = SizeText(size.width, size.height);
+  const std::string was = SizeText({left.width, left.height}), now = SizeText(size);
   if (left.width == 0) {
     tell(calibration.origin +
          " does not state the size of its images; taken as that of the "

@@ -15,7 +15,7 @@ struct DecodedImage {
   cv::Mat image;
   std::string problem;  // why there is no image; empty: no problem
   // Only with kGrayAndColor, when `image` is the gray one: CV_8UC3, blue green red; empty for a
-  // gray file.
+  // gray file. CV_16UC3 in messages of ROS with as many bits.
   cv::Mat color = {};
 };
 

@@ -12,6 +12,7 @@
 #include "alidade/io/files/datasets/kitti_recording.h"
 #include "alidade/io/files/datasets/recording.h"
 #include "alidade/io/files/datasets/tum_recording.h"
+#include "alidade/io/files/depth_size.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/files/media.h"
@@ -74,18 +75,29 @@ double LensToldBy(const Recording& recording, const SourceOptions& options) {
   }
 }
 
-// What is done about depth images of another size than the images; empty: nothing.
-std::string DepthSizeTold(const Recording& recording, cv::Size size) {
-  const auto first = std::find_if(recording.frames.begin(), recording.frames.end(),
-                                  [](const RecordedFrame& frame) { return !frame.depth.empty(); });
-  if (first == recording.frames.end()) return {};
-  try {
-    const cv::Size depth = ReadImageSize(first->depth);
-    if (!IsWholeFraction(depth, size)) return {};
-    return "Depth images of " + SizeText(depth) + " are scaled up to " + SizeText(size);
-  } catch (const Error&) {  // reported when the image is read with its frame
-    return {};
+// DepthSizeTold() of the first depth images; one of them may be damaged.
+std::string DepthSizeOfRecordingTold(const Recording& recording, const std::string& path,
+                                     cv::Size size) {
+  constexpr int kTries = 5;
+  std::string problem;
+  int tries = 0;
+  for (const RecordedFrame& frame : recording.frames) {
+    if (frame.depth.empty()) continue;
+    if (tries++ == kTries) break;
+    cv::Size depth;
+    try {
+      depth = ReadImageSize(frame.depth);
+    } catch (const Error&) {  // reported when the image is read with its frame
+      continue;
+    }
+    try {
+      return DepthSizeTold(depth, size);
+    } catch (const Error& error) {
+      if (problem.empty()) problem = error.what();
+    }
   }
+  if (!problem.empty()) ThrowInput(path + ": " + problem);
+  return {};
 }
 
 std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
@@ -108,7 +120,7 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   ImagePreparation preparation(calibration, sensor);
   recording.told = calibration.told;
   if (sensor == Sensor::kRgbd) {
-    const std::string told = DepthSizeTold(recording, size);
+    const std::string told = DepthSizeOfRecordingTold(recording, path, size);
     recording.told += (recording.told.empty() || told.empty() ? "" : "\n") + told;
   }
   recording.lens_told = std::move(lens_told);

@@ -11,6 +11,7 @@ extern "C" {
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgproc.hpp>
+#include <string_view>
 #include <thread>
 
 namespace alidade {
@@ -37,21 +38,34 @@ double Millimetres(const AVDictionary* metadata) {
   return std::isfinite(value) && value > 0 ? value : 0;
 }
 
-// Clockwise quarter turns that make the images upright.
-int QuarterTurns(const AVStream& stream) {
-  const uint8_t* matrix = nullptr;
+// How the images are shown: turned clockwise by quarters, then mirrored left to right.
+struct Orientation {
+  int turns = 0;
+  bool mirrored = false;
+};
+
+// From the display matrix, of which other parts (scale, shear) are ignored.
+Orientation OrientationOf(const AVStream& stream) {
+  const uint8_t* side_data = nullptr;
 #if LIBAVFORMAT_VERSION_MAJOR >= 61
   const AVPacketSideData* side =
       av_packet_side_data_get(stream.codecpar->coded_side_data, stream.codecpar->nb_coded_side_data,
                               AV_PKT_DATA_DISPLAYMATRIX);
-  if (side) matrix = side->data;
+  if (side) side_data = side->data;
 #else
-  matrix = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
+  side_data = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, nullptr);
 #endif
-  if (!matrix) return 0;
+  if (!side_data) return {};
+  int32_t matrix[9];
+  std::memcpy(matrix, side_data, sizeof matrix);
+  Orientation shown;
+  shown.mirrored = int64_t{matrix[0]} * matrix[4] < int64_t{matrix[1]} * matrix[3];
+  if (shown.mirrored) av_display_matrix_flip(matrix, 1, 0);
   // av_display_rotation_get() returns the counterclockwise angle of the display.
-  const double degrees = -av_display_rotation_get(reinterpret_cast<const int32_t*>(matrix));
-  return std::isfinite(degrees) ? ((static_cast<int>(std::lround(degrees / 90)) % 4) + 4) % 4 : 0;
+  const double degrees = -av_display_rotation_get(matrix);
+  if (std::isfinite(degrees))
+    shown.turns = ((static_cast<int>(std::lround(degrees / 90)) % 4) + 4) % 4;
+  return shown;
 }
 
 class VideoFile : public MediaStream {
@@ -73,11 +87,12 @@ class VideoFile : public MediaStream {
     if (avcodec_open2(codec_.get(), decoder, nullptr) < 0) return false;
     frame_.reset(av_frame_alloc());
     packet_.reset(av_packet_alloc());
-    turns_ = QuarterTurns(*stream_);
+    shown_ = OrientationOf(*stream_);
     return frame_ && packet_;
   }
 
   int FrameCount() const override {
+    if (const int shown = IndexedFrames(); shown > 0) return shown;
     if (stream_->nb_frames > 0) return static_cast<int>(stream_->nb_frames);
     const double seconds = static_cast<double>(format_->duration) / AV_TIME_BASE;
     return seconds > 0 ? static_cast<int>(std::floor(seconds * FramesPerSecond() + 0.5)) : 0;
@@ -121,7 +136,7 @@ class VideoFile : public MediaStream {
 
   cv::Mat Color() override {
     if (color_.empty()) return {};
-    return turns_ == 0 ? color_.clone() : Upright(color_);
+    return shown_.turns == 0 && !shown_.mirrored ? color_.clone() : Upright(color_);
   }
 
   bool SeekNear(double time) override {
@@ -135,6 +150,19 @@ class VideoFile : public MediaStream {
   }
 
  private:
+  // Frames in the index of an MP4 file, without those that its edit list leaves out. 0: there is no
+  // complete index, as in a fragmented file.
+  int IndexedFrames() const {
+    const std::string_view container = format_->iformat->name;
+    if (container.find("mp4") == std::string_view::npos || stream_->nb_frames <= 0) return 0;
+    int frames = 0;
+    for (int i = 0; i < avformat_index_get_entries_count(stream_); ++i) {
+      const AVIndexEntry* entry = avformat_index_get_entry(stream_, i);
+      if (entry && (entry->flags & AVINDEX_DISCARD_FRAME) == 0) ++frames;
+    }
+    return frames;
+  }
+
   int64_t Start() const { return stream_->start_time == AV_NOPTS_VALUE ? 0 : stream_->start_time; }
 
   // Gives the decoder the next packet of the stream, or tells it of the end; false when the packet
@@ -189,10 +217,18 @@ class VideoFile : public MediaStream {
   cv::Mat Upright(const cv::Mat& image) const {
     constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
                                           cv::ROTATE_90_COUNTERCLOCKWISE};
-    if (turns_ == 0) return image;
-    cv::Mat turned;
-    cv::rotate(image, turned, kTurns[turns_ - 1]);
-    return turned;
+    cv::Mat upright = image;
+    if (shown_.turns != 0) {
+      cv::Mat turned;
+      cv::rotate(upright, turned, kTurns[shown_.turns - 1]);
+      upright = turned;
+    }
+    if (shown_.mirrored) {
+      cv::Mat mirrored;
+      cv::flip(upright, mirrored, 1);
+      upright = mirrored;
+    }
+    return upright;
   }
 
   Owned<AVFormatContext> format_;
@@ -202,7 +238,7 @@ class VideoFile : public MediaStream {
   Owned<SwsContext> scaler_;
   AVStream* stream_ = nullptr;  // of format_
   cv::Mat color_;               // of the image that Gray() returned last
-  int turns_ = 0;
+  Orientation shown_;
   int64_t last_ = AV_NOPTS_VALUE;  // latest time of a frame since the last seek
   double time_ = 0;                // of the grabbed frame, seconds
   bool ended_ = false;             // the decoder knows that no packet follows

@@ -2,26 +2,17 @@
 
 #include <algorithm>
 #include <limits>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
 #include "alidade/io/association.h"
 #include "alidade/io/files/datasets/list_order.h"
+#include "alidade/io/files/depth_size.h"
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/gray_levels.h"
 
 namespace alidade {
-
-std::string SizeText(cv::Size size) {
-  return std::to_string(size.width) + "x" + std::to_string(size.height);
-}
-
-bool IsWholeFraction(cv::Size small, cv::Size size) {
-  const int times = size.width / std::max(1, small.width);
-  return times >= 2 && small * times == size;
-}
 
 namespace {
 
@@ -80,7 +71,8 @@ class RecordingSource : public FrameSource {
     }
     if (info_.sensor == Sensor::kRgbd && !recorded.depth.empty()) {
       frame.depth = OrIncomplete(frame, [&] {
-        return preparation_.Depth(Checked(Enlarged(ReadDepth(recorded.depth)), recorded.depth));
+        const cv::Mat depth = ScaledUpDepth(ReadDepth(recorded.depth), raw_size_);
+        return preparation_.Depth(Checked(depth, recorded.depth));
       });
     }
     return frame;
@@ -93,14 +85,6 @@ class RecordingSource : public FrameSource {
                  SizeText(raw_size_));
     }
     return image;
-  }
-
-  // A depth image whose size is a whole fraction of the images' is scaled up without interpolation.
-  cv::Mat Enlarged(const cv::Mat& depth) const {
-    if (!IsWholeFraction(depth.size(), raw_size_)) return depth;
-    cv::Mat enlarged;
-    cv::resize(depth, enlarged, raw_size_, 0, 0, cv::INTER_NEAREST);
-    return enlarged;
   }
 
   template <typename Read>

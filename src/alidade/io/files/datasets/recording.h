@@ -49,11 +49,6 @@ std::vector<RecordedFrame> FramesOf(const std::vector<StampedName>& list,
 int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::*which,
                  const std::vector<StampedName>& list, const std::string& folder, double max_dt);
 
-std::string SizeText(cv::Size size);  // "640x480"
-
-// Whether images of `size` have 2, 3, … times the width and height of `small`.
-bool IsWholeFraction(cv::Size small, cv::Size size);
-
 // Size of the first image whose header can be read. Throws Error (input) when there is none.
 cv::Size SizeOfImages(const Recording& recording);
 

@@ -10,8 +10,12 @@
 namespace alidade {
 
 // `use` as in image_codec.h. Depth is CV_16UC1 in millimeters or CV_32FC1 in meters. Throws Error
-// (input) when the message is damaged or has an unknown encoding.
+// (input) when the message is damaged or has an unknown encoding. Images and colors of 16 bits a
+// channel stay so (CV_16UC1, CV_16UC3): see GrayLevels.
 DecodedImage PictureOf(const RosPicture& picture, ImageUse use);
+
+// Throws Error (input) naming the encodings that are read when the message has another one.
+void CheckEncoding(const RosPicture& picture);
 
 // Width and height from the message or from its JPEG or PNG header, without decoding.
 cv::Size SizeOfPicture(const RosPicture& picture);

@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/files/depth_size.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/text.h"
 
@@ -17,6 +18,16 @@ constexpr double kDepthWithin = 0.02;
 // Seconds. The drivers of cameras that are triggered together may stamp them slightly apart.
 // Rotating at 60 degrees per second, the image moves by about 2 pixels in this time.
 constexpr double kPairWithin = 0.003;
+
+// `levels` are those of the gray image, so that color and gray have the same brightness.
+cv::Mat ColorIn8Bit(const cv::Mat& color, const GrayLevels& levels) {
+  const auto range = levels.range();
+  if (color.depth() != CV_16U || !range) return color;
+  const double scale = 255 / (range->white - range->black);
+  cv::Mat color8;
+  color.convertTo(color8, CV_8U, scale, -scale * range->black);
+  return color8;
+}
 
 }  // namespace
 
@@ -57,8 +68,10 @@ DecodedImage BagPlayer::Read(const PictureTopic& topic, const BagMessage& messag
   if (!problem.empty()) ThrowInput(problem);
   DecodedImage decoded = PictureOf(
       ParseRosPicture(bytes, bag_->Topics()[topic.topic].serialization, topic.compressed), use);
+  if (use == ImageUse::kDepth) decoded.image = ScaledUpDepth(decoded.image, image_.size);
   if (decoded.image.size() != image_.size)
-    ThrowInput("is of another size than " + image_.name + "'s first");
+    ThrowInput("is " + SizeText(decoded.image.size()) + ", but " + image_.name + "'s first is " +
+               SizeText(image_.size));
   return decoded;
 }
 
@@ -91,7 +104,7 @@ std::optional<SourceFrame> BagPlayer::Next() {
     const DecodedImage read =
         Read(image_, frames_.message(i), color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
     frame.image = preparation_->Left(levels_.To8Bit(read.image, frame.time));
-    if (!read.color.empty()) frame.color = preparation_->Left(read.color);
+    if (!read.color.empty()) frame.color = preparation_->Left(ColorIn8Bit(read.color, levels_));
   } catch (const Error& error) {
     frame.problem =
         path_ + ": message " + std::to_string(i) + " of " + image_.name + " " + error.what();

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/depth_size.h"
 
 namespace alidade {
 namespace {
@@ -75,10 +77,11 @@ class Chooser {
                "; there are " + ListOf(pictures_, false) + "; depth: " + ListOf(pictures_, true));
   }
 
-  // true when each depth pixel corresponds to the pixel of `image` with the same coordinates.
-  // Drivers state this by a common frame_id or by the topic's name.
+  // true when each depth pixel corresponds to the pixel of `image` with the same coordinates, or to
+  // a block of n x n pixels. Drivers state this by a common frame_id or by the topic's name.
   static bool IsRegistered(const PictureTopic& depth, const PictureTopic& image) {
-    if (!depth.depth || !depth.problem.empty() || depth.size != image.size) return false;
+    if (!depth.depth || !depth.problem.empty()) return false;
+    if (depth.size != image.size && !IsWholeFraction(depth.size, image.size)) return false;
     if (depth.frame_id == image.frame_id) return true;
     if (HasWord(depth.base, "depth_registered")) return true;
     const size_t aligned = depth.base.find("aligned_depth_to_");
@@ -91,16 +94,18 @@ class Chooser {
   std::optional<PictureTopic> DepthFor(const PictureTopic& image) const {
     if (query_.depth) {
       PictureTopic depth = Named("depth", *query_.depth);
-      if (depth.size != image.size)
-        ThrowUsage("depth=" + depth.name + " is of another size than " + image.name +
-                   ": only depth that is registered to the image can be used");
+      if (depth.size != image.size && !IsWholeFraction(depth.size, image.size))
+        ThrowUsage("depth=" + depth.name + " has " + SizeText(depth.size) + ", but " + image.name +
+                   " has " + SizeText(image.size) +
+                   ": only depth that is registered to the image can be used, of the same size or "
+                   "a half, a third, … of it");
       return depth;
     }
     const PictureTopic* best = nullptr;
     for (const PictureTopic& depth : pictures_) {
       if (!IsRegistered(depth, image)) continue;
       const auto rank = [](const PictureTopic& topic) {
-        return std::make_pair(!topic.compressed, topic.messages);
+        return std::make_tuple(topic.size.area(), !topic.compressed, topic.messages);
       };
       if (!best || rank(depth) > rank(*best)) best = &depth;
     }
@@ -190,6 +195,8 @@ class Chooser {
       rest += (rest.empty() ? "" : ", ") + picture.name + (picture.depth ? " (depth)" : "");
     }
     if (!rest.empty()) told += "; not used: " + rest + " (SOURCE?image=TOPIC&depth=TOPIC selects)";
+    if (chosen.depth && chosen.depth->size != chosen.image.size)
+      told += "\n" + DepthSizeTold(chosen.depth->size, chosen.image.size);
     return told;
   }
 

@@ -45,6 +45,7 @@ void LookAt(BagFile& bag, PictureTopic& picture) {
       picture.size = SizeOfPicture(first);
       picture.depth =
           IsDepth(first) || (first.encoding == "mono16" && Holds(picture.base, "depth"));
+      CheckEncoding(first);
       if (picture.size.empty()) ThrowInput("has no size, or a damaged header");
       if (!IsPictureSize(picture.size.width, picture.size.height))
         ThrowInput("cannot be used: " + TooLargeText(picture.size.width, picture.size.height));

@@ -1,18 +1,17 @@
-// Reads a video file image by image, at the speed of processing, without skipping any.
+// Plays a video file and captures each image: for what decoded_video.ts cannot decode. A busy machine may miss images.
+import type { Picture, Video } from './video.ts';
 
 const MOST_WAITING = 3; // images
 const SLOWEST = 0.0625, FASTEST = 4; // playback rates supported by browsers
 const STEADY = 30; // images without a miss before playback speeds up
 
-interface Waiting { bitmap: ImageBitmap; time: number }
-
 // Plays a video element and captures each displayed image. When one was missed (the browser counts displayed images),
 // seeks back and plays more slowly.
-export class VideoFile {
+export class PlayedVideo implements Video {
   private readonly address: string;
   private readonly canvas: OffscreenCanvas;
   private readonly context: OffscreenCanvasRenderingContext2D;
-  private waiting: Waiting[] = [];
+  private waiting: Picture[] = [];
   private last = -1; // time of the last captured image, seconds
   private shown = -1; // images displayed so far, as counted by the browser
   private dropped = 0;
@@ -27,7 +26,7 @@ export class VideoFile {
   }
 
   // Throws Error with a text for users when the browser cannot read the file.
-  static async open(video: HTMLVideoElement, file: Blob): Promise<VideoFile> {
+  static async open(video: HTMLVideoElement, file: Blob): Promise<PlayedVideo> {
     const address = URL.createObjectURL(file);
     await new Promise<void>((resolve, reject) => {
       video.onloadeddata = () => resolve();
@@ -37,18 +36,19 @@ export class VideoFile {
       video.load();
     });
     if (!video.videoWidth) throw new Error('it contains no images');
-    const opened = new VideoFile(video, address);
+    const opened = new PlayedVideo(video, address);
     video.playbackRate = 0.5;
     video.requestVideoFrameCallback(opened.take);
     video.onended = () => opened.wake?.();
     return opened;
   }
 
-  get share(): number { return this.video.duration ? Math.max(0, this.last) / this.video.duration : 0; }
+  get width(): number { return this.canvas.width; }
+  get height(): number { return this.canvas.height; }
   get duration(): number { return this.video.duration; }
 
   // The next image and its time in seconds; null: end of the video.
-  async next(): Promise<Waiting | null> {
+  async next(): Promise<Picture | null> {
     for (;;) {
       const first = this.waiting.shift();
       if (this.closed) return null;
