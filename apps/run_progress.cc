@@ -36,13 +36,6 @@ std::string Clock(double seconds) {
   return text;
 }
 
-// As typed in a shell: in quotes only if needed.
-std::string InShell(const std::string& path) {
-  constexpr char kPlain[] =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./+=:,@%";
-  return path.find_first_not_of(kPlain) == std::string::npos ? path : ShellQuoted(path);
-}
-
 }  // namespace
 
 void RunProgress::Begin(const WatchedRun& run, const std::string& folder) {
@@ -114,8 +107,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       *summary.first_tracked != run_->log.numbers.front())
     tracked += " from frame " + std::to_string(*summary.first_tracked) + " on";
   if (!summary.lost_spans.empty()) tracked += ", lost " + LostInAll(summary.lost_spans);
-  const std::string maps =
-      summary.maps > 1 ? " in " + std::to_string(summary.maps) + " maps" : std::string();
+  const std::string shown = InShell(folder),
+                    maps = summary.maps > 1 ? " in " + std::to_string(summary.maps) + " maps"
+                                            : std::string();
   std::printf(
       "%d of %d frames tracked%s; %d keyframes, %d landmarks%s%s, path %.2f %s%s\n"
       "%s in %s\n",
@@ -123,10 +117,10 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       maps.c_str(), shape.c_str(), summary.path_length,
       settings.sensor == Sensor::kMono ? "map units" : "m",
       summary.maps > 1 ? " in the largest" : "",
-      run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+      run_->log.interrupted ? "Interrupted: results so far" : "Results", shown.c_str());
   // A localization leaves no map to show.
   const std::string view = settings.localize ? "" : ", or: alidade view " + InShell(folder);
-  std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
+  std::printf("Open %s%s\n", InShell(folder + "/report.html").c_str(), view.c_str());
 }
 
 }  // namespace alidade
