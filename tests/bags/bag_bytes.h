@@ -210,11 +210,15 @@ class McapBytes {
     Channel& channel = found->second;
     if (is_new) {
       channel.id = static_cast<uint16_t>(channels_.size());
-      const std::string type = ros1_ ? message.type : Ros2Type(message.type);
-      channel.records = Record(3, Little(channel.id) + Sized32(type) +
-                                      Sized32(ros1_ ? "ros1msg" : "ros2msg") + Sized32("...")) +
-                        Record(4, Little(channel.id) + Little(channel.id) + Sized32(message.topic) +
-                                      Sized32(ros1_ ? "ros1" : "cdr") + Sized32(""));
+      // Types of Protocol Buffers have a point: "foxglove.CompressedVideo".
+      const bool protobuf = message.type.find('.') != std::string::npos;
+      const std::string type = ros1_ || protobuf ? message.type : Ros2Type(message.type);
+      const std::string schema = protobuf ? "protobuf" : ros1_ ? "ros1msg" : "ros2msg";
+      const std::string encoding = protobuf ? "protobuf" : ros1_ ? "ros1" : "cdr";
+      channel.records =
+          Record(3, Little(channel.id) + Sized32(type) + Sized32(schema) + Sized32("...")) +
+          Record(4, Little(channel.id) + Little(channel.id) + Sized32(message.topic) +
+                        Sized32(encoding) + Sized32(""));
       plain += channel.records;
     }
     const auto time = static_cast<uint64_t>(message.log_time);

@@ -13,18 +13,21 @@ struct Module {
   MediaDecodeFunction* decode = nullptr;
   MediaOpenFunction* open = nullptr;
   MediaFocalFunction* focal = nullptr;
+  MediaPacketsFunction* packets = nullptr;
   std::string problem;
 };
 
 Module LoadMediaModule() {
   // OpenCV's default limit is 2^30 pixels. It reads this variable when it is loaded.
   setenv("OPENCV_IO_MAX_IMAGE_PIXELS", std::to_string(kMostPixels).c_str(), 0);
-  const LoadedModule loaded = LoadModule(
-      kMediaModuleFile, {"alidade_media_decode", "alidade_media_open", "alidade_media_focal"});
-  if (loaded.symbols.empty()) return {nullptr, nullptr, nullptr, loaded.problem};
+  const LoadedModule loaded =
+      LoadModule(kMediaModuleFile, {"alidade_media_decode", "alidade_media_open",
+                                    "alidade_media_focal", "alidade_media_packets"});
+  if (loaded.symbols.empty()) return {nullptr, nullptr, nullptr, nullptr, loaded.problem};
   return {reinterpret_cast<MediaDecodeFunction*>(loaded.symbols[0]),
           reinterpret_cast<MediaOpenFunction*>(loaded.symbols[1]),
           reinterpret_cast<MediaFocalFunction*>(loaded.symbols[2]),
+          reinterpret_cast<MediaPacketsFunction*>(loaded.symbols[3]),
           {}};
 }
 
@@ -76,6 +79,18 @@ std::unique_ptr<MediaStream> OpenVideo(const std::string& path) {
 std::unique_ptr<MediaStream> OpenLiveCamera(int number) {
   return Open("", number, "camera:" + std::to_string(number),
               "is it connected, and not used by another program?");
+}
+
+std::unique_ptr<PacketDecoder> OpenPacketDecoder(PacketCodec codec) {
+  const Module& module = TheModule();
+  if (module.packets == nullptr)
+    ThrowInput(std::string("needs ") + kMediaModuleFile + ": " + module.problem);
+  std::unique_ptr<PacketDecoder> decoder(module.packets(codec));
+  if (!decoder) {
+    ThrowInput(std::string("is ") + (codec == PacketCodec::kH264 ? "H.264" : "H.265") +
+               ", which this system's FFmpeg does not decode");
+  }
+  return decoder;
 }
 
 }  // namespace alidade

@@ -21,5 +21,6 @@ DecodedImage DecodeByMediaModule(std::string_view bytes, ImageUse use);
 // Throw Error (input) when the source cannot be opened or the module is missing.
 std::unique_ptr<MediaStream> OpenVideo(const std::string& path);
 std::unique_ptr<MediaStream> OpenLiveCamera(int number);
+std::unique_ptr<PacketDecoder> OpenPacketDecoder(PacketCodec codec);
 
 }  // namespace alidade

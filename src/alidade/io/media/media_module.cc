@@ -12,6 +12,7 @@
 #include <opencv2/videoio.hpp>
 
 #include "alidade/io/files/image_codec.h"
+#include "alidade/io/media/packet_decoder.h"
 #include "alidade/io/media/video_file.h"
 
 namespace alidade {
@@ -107,6 +108,13 @@ extern "C" __attribute__((visibility("default"))) MediaStream* alidade_media_ope
   cv::VideoCapture capture;
   if (!capture.open(camera, cv::CAP_ANY)) return nullptr;
   return std::make_unique<LiveCamera>(std::move(capture)).release();
+} catch (...) {
+  return nullptr;
+}
+
+extern "C" __attribute__((visibility("default"))) PacketDecoder* alidade_media_packets(
+    PacketCodec codec) try {
+  return MakePacketDecoder(codec).release();
 } catch (...) {
   return nullptr;
 }

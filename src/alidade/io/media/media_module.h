@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <opencv2/core.hpp>
 
 namespace alidade {
@@ -32,6 +33,25 @@ class MediaStream {
   virtual bool SeekNear(double time) = 0;
 };
 
+enum class PacketCodec { kH264, kH265 };
+
+// A video that comes as packets of one frame each, as byte streams (Annex B of the standards).
+class PacketDecoder {
+ public:
+  virtual ~PacketDecoder() = default;
+  enum class Received { kNone, kImage, kDamaged };
+
+  // Decodes the packet with index `number`; false when it is damaged. Then Receive() must be called
+  // until it returns kNone.
+  virtual bool Send(const char* bytes, size_t size, int64_t number) = 0;
+  // No packet follows: the frames kept back so far can be received.
+  virtual bool End() = 0;
+  // The next frame in order of presentation: the index of its packet, and CV_8UC3, blue green red.
+  virtual Received Receive(int64_t& number, cv::Mat& color) = 0;
+  // The next packet is a keyframe.
+  virtual void Restart() = 0;
+};
+
 inline constexpr char kMediaModuleFile[] = "libalidade_media.so";
 
 // `use` is an ImageUse. Returns false when the bytes are not an image.
@@ -40,5 +60,7 @@ using MediaDecodeFunction = bool(const char* bytes, size_t size, int use, cv::Ma
 using MediaFocalFunction = double(const char* bytes, size_t size);
 // Opens a video file or, with an empty path, live camera `camera`. Null when it cannot be opened.
 using MediaOpenFunction = MediaStream*(const char* path, int camera);
+// Null when FFmpeg was built without this decoder.
+using MediaPacketsFunction = PacketDecoder*(PacketCodec codec);
 
 }  // namespace alidade

@@ -4,7 +4,6 @@ extern "C" {
 #include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/display.h>
-#include <libswscale/swscale.h>
 }
 
 #include <charconv>
@@ -14,22 +13,14 @@ extern "C" {
 #include <string_view>
 #include <thread>
 
+#include "alidade/io/media/pixels.h"
+
 namespace alidade {
 namespace {
 
 // QuickTime metadata key that Apple phones write for the file or for a track.
 constexpr char kFocalLengthKey[] = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
 constexpr int kMostDamaged = 4096;  // consecutive packets that cannot be decoded
-
-struct Close {
-  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
-  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-template <typename T>
-using Owned = std::unique_ptr<T, Close>;
 
 double Millimetres(const AVDictionary* metadata) {
   const AVDictionaryEntry* entry = av_dict_get(metadata, kFocalLengthKey, nullptr, 0);
@@ -127,7 +118,7 @@ class VideoFile : public MediaStream {
   double Time() const override { return time_; }
 
   cv::Mat Gray() override {
-    color_ = Converted();
+    color_ = pixels_.Converted(*frame_);
     if (color_.empty()) return {};
     cv::Mat gray;
     cv::cvtColor(color_, gray, cv::COLOR_BGR2GRAY);
@@ -195,25 +186,6 @@ class VideoFile : public MediaStream {
     return true;
   }
 
-  // The grabbed frame as blue green red; empty when its pixels cannot be converted.
-  cv::Mat Converted() {
-    const AVFrame& frame = *frame_;
-    if (frame.width <= 0 || frame.height <= 0) return {};
-    const auto format = static_cast<AVPixelFormat>(frame.format);
-    scaler_.reset(sws_getCachedContext(scaler_.release(), frame.width, frame.height, format,
-                                       frame.width, frame.height, AV_PIX_FMT_BGR24, SWS_BICUBIC,
-                                       nullptr, nullptr, nullptr));
-    if (!scaler_) return {};
-    // The scaler writes whole vectors: rows are as long as a multiple of 32 pixels, and one more.
-    cv::Mat padded(frame.height + 1, (frame.width + 31) / 32 * 32, CV_8UC3);
-    cv::Mat color = padded(cv::Rect(0, 0, frame.width, frame.height));
-    uint8_t* const planes[] = {color.data, nullptr, nullptr, nullptr};
-    const int strides[] = {static_cast<int>(color.step), 0, 0, 0};
-    const int rows =
-        sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, planes, strides);
-    return rows == frame.height ? color : cv::Mat();
-  }
-
   cv::Mat Upright(const cv::Mat& image) const {
     constexpr cv::RotateFlags kTurns[] = {cv::ROTATE_90_CLOCKWISE, cv::ROTATE_180,
                                           cv::ROTATE_90_COUNTERCLOCKWISE};
@@ -235,7 +207,7 @@ class VideoFile : public MediaStream {
   Owned<AVCodecContext> codec_;
   Owned<AVFrame> frame_;
   Owned<AVPacket> packet_;
-  Owned<SwsContext> scaler_;
+  FramePixels pixels_;
   AVStream* stream_ = nullptr;  // of format_
   cv::Mat color_;               // of the image that Gray() returned last
   Orientation shown_;

@@ -12,6 +12,12 @@ namespace {
 constexpr size_t kMostTopics = 100'000;
 constexpr size_t kMostWarnings = 5;
 
+bool HoldsPictures(const BagTopic& topic) {
+  if (topic.serialization == Serialization::kProtobuf)
+    return topic.type == kVideoType || topic.type == kCalibrationType;
+  return topic.serialization != Serialization::kOther && IsWantedType(topic.type);
+}
+
 }  // namespace
 
 size_t IndexedBag::TopicOf(std::string_view name, std::string_view type,
@@ -22,7 +28,7 @@ size_t IndexedBag::TopicOf(std::string_view name, std::string_view type,
     if (topics_.size() == kMostTopics) ThrowInput("lists an impossible number of topics");
     topics_.push_back({Printable(name), Printable(Ros1TypeOf(type)), serialization, 0});
     messages_.emplace_back();
-    wanted_.push_back(serialization != Serialization::kOther && IsWantedType(topics_.back().type));
+    wanted_.push_back(HoldsPictures(topics_.back()));
   }
   return found->second;
 }
@@ -52,6 +58,10 @@ std::string Ros1TypeOf(std::string_view type) {
   // some bridges write "sensor_msgs::msg::dds_::Image_"
   for (size_t at = plain.find("::"); at != std::string::npos; at = plain.find("::"))
     plain.replace(at, 2, "/");
+  // Protocol Buffers, and IDL of the same schema.
+  if (plain == "foxglove.CompressedVideo" || plain == "foxglove/CompressedVideo") return kVideoType;
+  if (plain == "foxglove.CameraCalibration" || plain == "foxglove/CameraCalibration")
+    return kCalibrationType;
   const size_t middle = plain.find("/msg/");
   if (middle != std::string::npos) plain.erase(middle, 4);
   const size_t dds = plain.find("/dds_/");

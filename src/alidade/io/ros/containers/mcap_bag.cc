@@ -69,9 +69,10 @@ class McapFile : public IndexedBag {
 
   void AddChannel(std::string_view content) {
     const McapChannel channel = ParseMcapChannel(content);
-    const Serialization serialization = channel.encoding == "cdr"    ? Serialization::kCdr
-                                        : channel.encoding == "ros1" ? Serialization::kRos1
-                                                                     : Serialization::kOther;
+    const Serialization serialization = channel.encoding == "cdr"        ? Serialization::kCdr
+                                        : channel.encoding == "ros1"     ? Serialization::kRos1
+                                        : channel.encoding == "protobuf" ? Serialization::kProtobuf
+                                                                         : Serialization::kOther;
     const auto schema = schemas_.find(channel.schema);
     channels_[channel.id] = TopicOf(
         channel.topic, schema == schemas_.end() ? "(no type)" : schema->second, serialization);

@@ -62,12 +62,18 @@ bool BagPlayer::Seek(int frames) {
   return true;
 }
 
-DecodedImage BagPlayer::Read(const PictureTopic& topic, const BagMessage& message, ImageUse use) {
+DecodedImage BagPlayer::ReadPicture(const PictureTopic& topic, size_t i, ImageUse use) {
   std::string bytes;
-  const std::string problem = bag_->Read(message, bytes);
+  const std::string problem = bag_->Read(bag_->Messages(topic.topic)[i], bytes);
   if (!problem.empty()) ThrowInput(problem);
-  DecodedImage decoded = PictureOf(
+  return PictureOf(
       ParseRosPicture(bytes, bag_->Topics()[topic.topic].serialization, topic.compressed), use);
+}
+
+DecodedImage BagPlayer::Read(const PictureTopic& topic, size_t i, ImageUse use) {
+  DecodedImage decoded =
+      topic.video ? videos_.try_emplace(topic.topic, *bag_, topic.topic).first->second.Read(i, use)
+                  : ReadPicture(topic, i, use);
   if (use == ImageUse::kDepth) decoded.image = ScaledUpDepth(decoded.image, image_.size);
   if (decoded.image.size() != image_.size)
     ThrowInput("is " + SizeText(decoded.image.size()) + ", but " + image_.name + "'s first is " +
@@ -76,11 +82,11 @@ DecodedImage BagPlayer::Read(const PictureTopic& topic, const BagMessage& messag
 }
 
 cv::Mat BagPlayer::Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
-                           TopicStamps& stamps, size_t i, ImageUse use, SourceFrame& frame) {
+                           size_t i, ImageUse use, SourceFrame& frame) {
   const std::optional<size_t> partner = finder->PartnerOf(i);
   if (!partner) return {};
   try {
-    return Read(topic, stamps.message(*partner), use).image;
+    return Read(topic, *partner, use).image;
   } catch (const Error& error) {
     frame.incomplete =
         path_ + ": message " + std::to_string(*partner) + " of " + topic.name + " " + error.what();
@@ -101,8 +107,7 @@ std::optional<SourceFrame> BagPlayer::Next() {
   // The same value that a text list of these stamps would give.
   frame.time = ParseNumber(frame.stamp).value_or(0);
   try {
-    const DecodedImage read =
-        Read(image_, frames_.message(i), color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
+    const DecodedImage read = Read(image_, i, color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
     frame.image = preparation_->Left(levels_.To8Bit(read.image, frame.time));
     if (!read.color.empty()) frame.color = preparation_->Left(ColorIn8Bit(read.color, levels_));
   } catch (const Error& error) {
@@ -112,13 +117,11 @@ std::optional<SourceFrame> BagPlayer::Next() {
   }
   // A frame whose right or depth image is bad is still used as a monocular frame.
   if (info_.sensor == Sensor::kStereo) {
-    const cv::Mat right =
-        Partner(right_finder_, *right_, *right_stamps_, i, ImageUse::kGray, frame);
+    const cv::Mat right = Partner(right_finder_, *right_, i, ImageUse::kGray, frame);
     if (!right.empty()) frame.right = preparation_->Right(levels_.To8Bit(right, frame.time));
   }
   if (info_.sensor == Sensor::kRgbd) {
-    const cv::Mat depth =
-        Partner(depth_finder_, *depth_, *depth_stamps_, i, ImageUse::kDepth, frame);
+    const cv::Mat depth = Partner(depth_finder_, *depth_, i, ImageUse::kDepth, frame);
     if (!depth.empty()) frame.depth = preparation_->Depth(depth);
   }
   return frame;

@@ -2,6 +2,7 @@
 // time.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -13,6 +14,7 @@
 #include "alidade/io/ros/source/choose_topics.h"
 #include "alidade/io/ros/source/play_order.h"
 #include "alidade/io/ros/source/topic_stamps.h"
+#include "alidade/io/ros/source/topic_video.h"
 
 namespace alidade {
 
@@ -32,16 +34,19 @@ class BagPlayer : public FrameSource {
   bool Seek(int frames) override;
 
  private:
-  DecodedImage Read(const PictureTopic& topic, const BagMessage& message, ImageUse use);
+  // The image of message `i` of a topic.
+  DecodedImage Read(const PictureTopic& topic, size_t i, ImageUse use);
+  DecodedImage ReadPicture(const PictureTopic& topic, size_t i, ImageUse use);
   // The right or depth image of `frame`, which is message `i` of its topic; empty when there is
   // none. One that cannot be read sets SourceFrame::incomplete.
-  cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic,
-                  TopicStamps& stamps, size_t i, ImageUse use, SourceFrame& frame);
+  cv::Mat Partner(std::optional<PartnerFinder>& finder, const PictureTopic& topic, size_t i,
+                  ImageUse use, SourceFrame& frame);
 
   std::unique_ptr<BagFile> bag_;
   std::string path_;
   PictureTopic image_;
   std::optional<PictureTopic> right_, depth_;
+  std::map<size_t, TopicVideo> videos_;  // by topic
   TopicStamps frames_;
   PlayOrder order_{frames_};
   std::optional<TopicStamps> right_stamps_, depth_stamps_;

@@ -44,7 +44,8 @@ class Chooser {
   ChosenTopics Choose() {
     if (pictures_.empty()) {
       ThrowInput(query_.path +
-                 " contains no images (sensor_msgs Image or CompressedImage); it has " +
+                 " contains no images (sensor_msgs Image or CompressedImage, foxglove "
+                 "CompressedVideo); it has " +
                  AllTopics(bag_));
     }
     ChosenTopics chosen;
@@ -128,7 +129,7 @@ class Chooser {
     if (!asked) return InfoTopicOf(bag_, picture);
     if (asked->empty()) return -1;
     for (size_t i = 0; i < bag_.Topics().size(); ++i) {
-      if (bag_.Topics()[i].name == *asked && bag_.Topics()[i].type == "sensor_msgs/CameraInfo" &&
+      if (bag_.Topics()[i].name == *asked && IsInfoType(bag_.Topics()[i].type) &&
           !bag_.Messages(i).empty())
         return static_cast<int>(i);
     }

@@ -6,7 +6,10 @@
 
 #include "alidade/base/error.h"
 #include "alidade/geometry/picture_size.h"
+#include "alidade/io/ros/messages/foxglove_calibration.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
+#include "alidade/io/ros/messages/video_message.h"
+#include "alidade/io/ros/source/topic_video.h"
 
 namespace alidade {
 namespace {
@@ -31,7 +34,48 @@ std::string FolderOfTopic(const std::string& name) {
   return slash == std::string::npos ? "" : name.substr(0, slash);
 }
 
+// A recording may begin in the middle of a video.
+void LookAtVideo(BagFile& bag, PictureTopic& picture) {
+  TopicVideo video(bag, picture.topic);
+  picture.video = true;
+  picture.problem = "is video without a keyframe, at which decoding could begin";
+  const size_t count = bag.Messages(picture.topic).size();
+  size_t i = video.KeyframeFrom(0);
+  for (size_t tries = 0; i < count && tries < kTries; ++tries, i = video.KeyframeFrom(i + 1)) {
+    try {
+      picture.size = video.Read(i, ImageUse::kGray).image.size();
+      if (!IsPictureSize(picture.size.width, picture.size.height))
+        ThrowInput("cannot be used: " + TooLargeText(picture.size.width, picture.size.height));
+      picture.problem.clear();
+      return;
+    } catch (const Error& error) {
+      if (tries == 0) picture.problem = error.what();
+    }
+  }
+}
+
+// Sets `video` for the frames of a video, and their format; false when the first messages cannot be
+// read.
+bool FindVideo(BagFile& bag, PictureTopic& picture) {
+  TopicVideo video(bag, picture.topic);
+  for (size_t i = 0; i < std::min(bag.Messages(picture.topic).size(), kTries); ++i) {
+    try {
+      const RosPicture head = video.Head(i);
+      picture.encoding = head.encoding;
+      picture.frame_id = head.header.frame_id;
+      if (bag.Topics()[picture.topic].type != kVideoType && !IsVideoFormat(head.encoding))
+        return false;
+      CodecOfFormat(head.encoding);
+      return true;
+    } catch (const Error& error) {
+      picture.problem = error.what();
+    }
+  }
+  return false;
+}
+
 void LookAt(BagFile& bag, PictureTopic& picture) {
+  picture.problem.clear();
   const BagTopic& topic = bag.Topics()[picture.topic];
   const std::vector<BagMessage>& messages = bag.Messages(picture.topic);
   std::string bytes;
@@ -63,7 +107,7 @@ std::vector<PictureTopic> PictureTopicsOf(BagFile& bag) {
   std::vector<PictureTopic> pictures;
   for (size_t i = 0; i < bag.Topics().size(); ++i) {
     const BagTopic& topic = bag.Topics()[i];
-    const bool compressed = topic.type == "sensor_msgs/CompressedImage";
+    const bool compressed = topic.type == "sensor_msgs/CompressedImage" || topic.type == kVideoType;
     if ((topic.type != "sensor_msgs/Image" && !compressed) || bag.Messages(i).empty()) continue;
     PictureTopic picture;
     picture.topic = i;
@@ -74,7 +118,11 @@ std::vector<PictureTopic> PictureTopicsOf(BagFile& bag) {
     const std::string last = picture.base.substr(FolderOfTopic(picture.base).size());
     picture.rectified = last.rfind("/image_rect", 0) == 0 ||
                         (Holds(picture.base, "rectified") && !Holds(picture.base, "unrectified"));
-    LookAt(bag, picture);
+    if (compressed && FindVideo(bag, picture)) {
+      LookAtVideo(bag, picture);
+    } else if (topic.type != kVideoType) {
+      LookAt(bag, picture);
+    }
     pictures.push_back(std::move(picture));
   }
   std::sort(pictures.begin(), pictures.end(),
@@ -127,7 +175,7 @@ int InfoTopicOf(BagFile& bag, const PictureTopic& picture) {
   const std::string beside = FolderOfTopic(picture.base) + "/camera_info";
   std::vector<int> of_frame;
   for (size_t i = 0; i < bag.Topics().size(); ++i) {
-    if (bag.Topics()[i].type != "sensor_msgs/CameraInfo" || bag.Messages(i).empty()) continue;
+    if (!IsInfoType(bag.Topics()[i].type) || bag.Messages(i).empty()) continue;
     if (bag.Topics()[i].name == beside) return static_cast<int>(i);
     try {
       const RosCameraInfo info = FirstInfo(bag, i);
@@ -148,7 +196,9 @@ RosCameraInfo FirstInfo(BagFile& bag, size_t topic) {
     std::string failure = bag.Read(messages[i], bytes);
     try {
       if (!failure.empty()) ThrowInput(failure);
-      return ParseRosCameraInfo(bytes, bag.Topics()[topic].serialization);
+      const BagTopic& of = bag.Topics()[topic];
+      return of.type == kCalibrationType ? ParseFoxgloveCalibration(bytes, of.serialization)
+                                         : ParseRosCameraInfo(bytes, of.serialization);
     } catch (const Error& error) {
       problem = error.what();
     }

@@ -17,6 +17,7 @@ struct PictureTopic {
   std::string encoding, frame_id;
   cv::Size size;
   bool compressed = false, depth = false;
+  bool video = false;      // the messages are frames of one video (TopicVideo)
   bool rectified = false;  // by its name: image_rect, image_rect_color, …
   std::string problem;     // why none of the first messages can be read; empty: no problem
   int64_t messages = 0;

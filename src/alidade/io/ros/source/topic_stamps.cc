@@ -10,6 +10,7 @@
 #include "alidade/base/error.h"
 #include "alidade/io/association.h"
 #include "alidade/io/ros/messages/messages.h"
+#include "alidade/io/ros/messages/video_message.h"
 
 namespace alidade {
 namespace {
@@ -33,6 +34,7 @@ int64_t Difference(int64_t a, int64_t b) {
 TopicStamps::TopicStamps(BagFile& bag, size_t topic)
     : bag_(bag),
       serialization_(bag.Topics()[topic].serialization),
+      video_(bag.Topics()[topic].type == kVideoType),
       messages_(&bag.Messages(topic)),
       stamps_(messages_->size(), kUnread) {
   std::vector<int64_t> lags;
@@ -51,7 +53,8 @@ int64_t TopicStamps::HeaderStamp(size_t i) {
   for (const uint64_t most : {kHeaderBytes, BagFile::kWholeMessage}) {
     if (!bag_.Read(message(i), bytes, most).empty()) return 0;
     try {
-      return ParseRosHeader(bytes, serialization_).stamp;
+      return video_ ? ParseVideoHeader(bytes, serialization_).stamp
+                    : ParseRosHeader(bytes, serialization_).stamp;
     } catch (const Error&) {  // the header is longer than the bytes read, or damaged
       if (bytes.size() < most) return 0;
     }

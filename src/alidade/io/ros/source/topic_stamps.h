@@ -31,6 +31,7 @@ class TopicStamps {
 
   BagFile& bag_;
   Serialization serialization_;
+  bool video_;  // messages of kVideoType, whose header is another
   const std::vector<BagMessage>* messages_;
   std::vector<int64_t> stamps_;  // kUnread until read
   // Nanoseconds from header times to log times, the median of the first few messages.
