@@ -15,6 +15,7 @@
 #include "alidade/serve/viewer_server.h"
 #include "alidade/version.h"
 #include "commands.h"
+#include "pose_teller.h"
 #include "run_flags.h"
 #include "run_progress.h"
 #include "viewer_flags.h"
@@ -24,8 +25,11 @@ namespace {
 
 int RunAndTell(const RunOptions& options) {
   CatchInterrupts();
+  std::optional<PoseTeller> poses;
+  if (options.poses) poses.emplace(*options.poses);  // first: no message may come between poses
   RunProgress progress(options.quiet);
   std::vector<RunWatcher*> watchers = {&progress};
+  if (poses) watchers.push_back(&*poses);
   std::optional<StreamFeed> feed;
   std::unique_ptr<ViewerServer> server;
   const std::optional<std::string> record = RecordFileOf(options);

@@ -14,6 +14,7 @@ constexpr char kExamples[] =
     "  alidade run walk.bag                         a ROS recording: .bag, .db3, .mcap or folder\n"
     "  alidade run \"walk.mcap?image=/cam0/image_raw&right=/cam1/image_raw\"   with these topics\n"
     "  alidade run my_recording --viewer            watch the run in a browser\n"
+    "  alidade run camera:0 --poses udp:127.0.0.1:5005   tells each pose as it comes\n"
     "  alidade run my_recording --record-to a.mcap  for Foxglove, Lichtblick, Rerun, ros2 bag "
     "play\n"
     "  alidade run my_recording --schedule threaded --profile phone\n"
@@ -98,6 +99,14 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
                   "Address on which the viewer listens; default: 127.0.0.1, reachable from this "
                   "machine only")
       ->type_name("ADDRESS");
+  command
+      .add_option(
+          "--poses", options.poses,
+          "Tell each pose as it comes, one line per frame. -: to the standard output, and all "
+          "messages to stderr; udp:HOST:PORT: a datagram each. TUM format (time tx ty tz qx qy qz "
+          "qw); json:- or json:udp:HOST:PORT: JSON, with covariance and state "
+          "(docs/reference/poses.md)")
+      ->type_name("-|udp:HOST:PORT");
   command
       .add_option("--out", options.out,
                   options.localize

@@ -107,8 +107,9 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       *summary.first_tracked != run_->log.numbers.front())
     tracked += " from frame " + std::to_string(*summary.first_tracked) + " on";
   if (!summary.lost_spans.empty()) tracked += ", lost " + LostInAll(summary.lost_spans);
-  const std::string maps =
-      summary.maps > 1 ? " in " + std::to_string(summary.maps) + " maps" : std::string();
+  const std::string shown = ShellWord(folder),
+                    maps = summary.maps > 1 ? " in " + std::to_string(summary.maps) + " maps"
+                                            : std::string();
   std::printf(
       "%d of %d frames tracked%s; %d keyframes, %d landmarks%s%s, path %.2f %s%s\n"
       "%s in %s\n",
@@ -116,10 +117,10 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       maps.c_str(), shape.c_str(), summary.path_length,
       settings.sensor == Sensor::kMono ? "map units" : "m",
       summary.maps > 1 ? " in the largest" : "",
-      run_->log.interrupted ? "Interrupted: results so far" : "Results", folder.c_str());
+      run_->log.interrupted ? "Interrupted: results so far" : "Results", shown.c_str());
   // A localization leaves no map to show.
   const std::string view = settings.localize ? "" : ", or: alidade view " + ShellWord(folder);
-  std::printf("Open %s/report.html%s\n", folder.c_str(), view.c_str());
+  std::printf("Open %s%s\n", ShellWord(folder + "/report.html").c_str(), view.c_str());
 }
 
 }  // namespace alidade

@@ -5,17 +5,17 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/run/export/mcap_export.h"
+#include "alidade/run/export/result_stream.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/recorder/record_file.h"
 #include "alidade/run/recorder/stream_file.h"
 #include "alidade/run/sources/saved_map.h"
 #include "alidade/serve/viewer_server.h"
-#include "alidade/stream/stream_encoder.h"
 #include "alidade/stream/stream_hub.h"
-#include "alidade/version.h"
 #include "commands.h"
 #include "viewer_flags.h"
 
@@ -45,21 +45,6 @@ class StillHub : public StreamHub {
   std::vector<std::shared_ptr<const std::string>> messages_;
 };
 
-// The messages of a map without a run.
-std::vector<std::string> MessagesOf(const SavedMap& saved, const std::string& path) {
-  StreamSource source;
-  source.program = "alidade " ALIDADE_VERSION;
-  source.source = path;
-  source.sensor = saved.sensor;
-  source.unit = saved.sensor == NameOf(Sensor::kMono) ? "map units" : "m";
-  source.camera = saved.camera;
-  StreamEncoder encoder(source);
-  encoder.End(saved.map);
-  std::vector<std::string> messages = encoder.Whole();
-  messages.push_back(encoder.Playback({false, true, false}));
-  return messages;
-}
-
 int View(const ViewArguments& arguments) {
   if (IsMcap(arguments.what))
     ThrowInput(arguments.what +
@@ -67,14 +52,19 @@ int View(const ViewArguments& arguments) {
                "`alidade view` shows result folders, run.stream and maps");
   const std::string recorded = StreamIn(arguments.what);
   std::unique_ptr<StillHub> hub;
+  StillMap still;
   if (recorded.empty()) {
-    hub = std::make_unique<StillHub>(MessagesOf(ReadSavedMap(arguments.what), arguments.what));
+    ResultStream result = StreamOfResult(ReadSavedMap(arguments.what), arguments.what);
+    hub = std::make_unique<StillHub>(std::move(result.messages));
+    const Eigen::Quaterniond q = result.T_map_files.Quaternion();
+    const Eigen::Vector3d& t = result.T_map_files.t;
+    still = {result.cloud, {q.x(), q.y(), q.z(), q.w(), t.x(), t.y(), t.z()}};
   } else {
     StreamFileReader check(recorded);  // reports a damaged file before a page connects
   }
   CatchInterrupts();
   const auto server = StartViewer(ServeSettingsFor(arguments.port, arguments.host), hub.get(),
-                                  recorded, arguments.what);
+                                  recorded, arguments.what, hub ? &still : nullptr);
   std::printf("Viewer of %s: %s (Ctrl-C ends)\n", arguments.what.c_str(),
               server->address().c_str());
   std::fflush(stdout);
@@ -103,8 +93,9 @@ void AddViewCommand(CLI::App& app, Action& action) {
       ->type_name("ADDRESS");
   command->footer(
       "\nExamples:\n  alidade run kitchen --record && alidade view alidade-out/kitchen     replays "
-      "the run\n  alidade view alidade-out/kitchen/map.alidade                         shows the "
-      "map\n  alidade view alidade-out/kitchen --host 0.0.0.0                      for another "
+      "the run\n  alidade view alidade-out/kitchen                                     without "
+      "--record: map, path and depth\n  alidade view alidade-out/kitchen --host 0.0.0.0            "
+      "          for another "
       "device\n\nPrints the address and runs until Ctrl-C.");
   command->callback([arguments, &action] { action = [arguments] { return View(*arguments); }; });
 }

@@ -5,10 +5,9 @@ include(GNUInstallDirs)
 
 set(ALIDADE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/Alidade)
 
-# Contents of the library: all floors except those used only by the program and the tests.
+# Contents of the library: all floors; run and serve, because SlamView shows and records as a run does.
 get_property(ALIDADE_FLOORS GLOBAL PROPERTY ALIDADE_FLOORS)
-set(PARTS ${ALIDADE_FLOORS} alidade_module alidade_io_files alidade_onnx)
-list(REMOVE_ITEM PARTS alidade_synth alidade_view alidade_ros)
+set(PARTS ${ALIDADE_FLOORS} alidade_module alidade_io_files alidade_onnx alidade_run alidade_viewer)
 set(OBJECTS)
 foreach(PART ${PARTS})
   list(APPEND OBJECTS $<TARGET_OBJECTS:${PART}>)
@@ -32,6 +31,9 @@ endfunction()
 
 set(NEEDS Threads::Threads opencv_imgproc opencv_video opencv_calib3d JPEG::JPEG PNG::PNG yaml-cpp
     ${CMAKE_DL_LIBS})
+if(ZSTD_LIBRARY AND ZSTD_INCLUDE_DIR)
+  list(APPEND NEEDS ${ZSTD_LIBRARY})
+endif()
 find_package(JPEG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(yaml-cpp REQUIRED)

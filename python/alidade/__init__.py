@@ -26,13 +26,15 @@ pose is a (4, 4) array ``T_world_camera``, which maps points of the camera's fra
 ``world`` is the first keyframe's (left) camera: x right, y down, z forward. The scale of a monocular
 map is unknown: it has a unit of its own. A trajectory is (n, 8): timestamp tx ty tz qx qy qz qw.
 
-Errors are raised as ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``); the message
+Errors are raised as ``alidade.Error`` (``UsageError``, ``InputError``, ``NothingMapped``, …); the message
 says what to do. Warnings go to the logger ``alidade``. See docs/guides/python.md.
 """
 
 from . import _core
+from ._arguments import integer
+from ._fields import document_fields
 from .camera import Camera, Rectifier
-from .errors import Error, InputError, NothingMapped, RunStopped, UsageError
+from .errors import ArrayError, Error, InputError, NothingMapped, RunStopped, UsageError
 from .evaluation import (DepthErrors, DepthScore, ErrorStatistics, RelativePoseError, TrajectoryError, ate,
                          depth_errors, read_trajectory, rpe, write_trajectory)
 from .maps import Cloud, KeyFrames, Map, MapPart, Observations, Points
@@ -49,6 +51,7 @@ def set_threads(threads: int) -> None:
 
     Raises UsageError outside 0 to 256.
     """
+    threads = integer("threads", threads)
     if not 0 <= threads <= 256:
         raise UsageError(f"threads must be from 0 (one for each core) to 256, not {threads}")
     _core.set_threads(threads)
@@ -71,9 +74,11 @@ def describe_setting(name: str) -> "dict[str, object]":
 
 
 __all__ = [
-    "Camera", "Cloud", "DepthErrors", "DepthScore", "Error", "ErrorStatistics", "Features", "Frame", "FramePose",
+    "ArrayError", "Camera", "Cloud", "DepthErrors", "DepthScore", "Error", "ErrorStatistics", "Features", "Frame", "FramePose",
     "InputError", "KeyFrames", "Map", "MapPart", "NothingMapped", "Observations", "Points", "Progress", "Recording",
     "Rectifier", "RelativePoseError", "Result", "RunStopped", "Slam", "TrackResult", "TrajectoryError", "UsageError",
     "ate", "depth_errors", "describe_setting", "localize", "open", "read_trajectory", "rpe", "run", "set_threads",
     "settings", "write_trajectory",
 ]
+
+document_fields(thing for thing in map(globals().get, __all__) if isinstance(thing, type))

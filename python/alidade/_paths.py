@@ -2,11 +2,14 @@
 
 import os
 
+from ._arguments import described
 from .errors import UsageError
 
 
-def coded(path: "os.PathLike[str] | os.PathLike[bytes] | str | bytes") -> bytes:
-    """The path as bytes. Raises UsageError for a name that no file can have."""
+def coded(path: "os.PathLike[str] | os.PathLike[bytes] | str | bytes", argument: str = "path") -> bytes:
+    """The path as bytes. Raises UsageError for a name that no file can have, TypeError for what is no path."""
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        raise TypeError(f"{argument} must be a path (str, bytes or os.PathLike), not {described(path)}")
     try:
         name = os.fsencode(path)
     except UnicodeEncodeError:

@@ -9,6 +9,7 @@ from typing import Optional, Sequence, Tuple, Union
 import numpy
 
 from . import _core
+from ._arguments import integer, number, text
 from ._paths import coded
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
@@ -24,12 +25,15 @@ class Camera:
     width: int
     """pixels"""
     height: int
+    """pixels"""
     fx: float
-    """focal lengths, pixels"""
+    """horizontal focal length, pixels"""
     fy: float
+    """vertical focal length, pixels"""
     cx: float
-    """principal point, pixels"""
+    """x of the principal point, pixels"""
     cy: float
+    """y of the principal point, pixels"""
     distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
     """k1 k2 p1 p2 [k3], as in OpenCV"""
     baseline: float = 0.0
@@ -55,13 +59,13 @@ class Camera:
     @classmethod
     def from_fov(cls, width: int, height: int, degrees: float) -> Camera:
         """A pinhole camera without distortion, with this horizontal field of view in degrees."""
-        return _core.camera_from_fov(width, height, degrees)
+        return _core.camera_from_fov(integer("width", width), integer("height", height), number("degrees", degrees))
 
     @classmethod
     def from_yaml(cls, path: PathLike, sensor: str = "mono") -> Camera:
         """Reads a camera.yaml (docs/reference/camera.md). ``sensor``: its use, "mono", "stereo" or "rgbd".
         Fisheye cameras and unrectified stereo pairs require a Rectifier. Raises InputError."""
-        return _core.read_camera(coded(path), sensor)
+        return _core.read_camera(coded(path), text("sensor", sensor))
 
     def to_yaml(self, path: PathLike) -> None:
         """Writes a camera.yaml for from_yaml() and the program's ``--camera``."""
@@ -75,7 +79,7 @@ class Rectifier:
     """
 
     def __init__(self, path: PathLike, sensor: str = "mono") -> None:
-        self._core = _core.Rectifier(coded(path), sensor)
+        self._core = _core.Rectifier(coded(path), text("sensor", sensor))
 
     @property
     def camera(self) -> Camera:

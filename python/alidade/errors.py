@@ -23,6 +23,10 @@ class InputError(Error):
     status = 3
 
 
+class ArrayError(InputError, TypeError):
+    """An array of a type or shape that its argument cannot have. The message has both."""
+
+
 class NothingMapped(Error):
     """Valid input in which no frame could be tracked."""
 

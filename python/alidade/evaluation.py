@@ -8,6 +8,7 @@ from typing import Any, List, Optional, Sequence, Tuple, Union
 import numpy
 
 from . import _core
+from ._arguments import number, text
 from ._paths import coded
 from .camera import PathLike
 from .errors import UsageError
@@ -21,12 +22,19 @@ class ErrorStatistics:
     """Statistics of a list of errors, in their unit."""
 
     n: int
+    """number of errors"""
     rmse: float
+    """root of the mean square"""
     mean: float
+    """arithmetic mean"""
     median: float
+    """half of the errors are smaller"""
     std: float
+    """standard deviation about the mean"""
     min: float
+    """smallest error"""
     max: float
+    """largest error"""
     scale: float
     """factor applied to the estimate's lengths"""
     coverage: float
@@ -70,11 +78,15 @@ class DepthScore:
     n: int
     """pixels that have both"""
     median_rel: float
+    """median of the relative errors; 0.01: 1 %"""
     p90_rel: float
+    """90 % of the relative errors are smaller"""
     within_2: float
     """share of errors up to 2 %"""
     within_5: float
+    """share of errors up to 5 %"""
     within_10: float
+    """share of errors up to 10 %"""
     rmse_inv: float
     """of inverse depth, 1/m"""
     density: float
@@ -84,6 +96,7 @@ class DepthScore:
     edge_coverage: float
     """share of edge pixels that have depth themselves or at a neighbor"""
     scale: float
+    """factor by which the estimate was multiplied; 1 without fit_scale"""
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -95,6 +108,7 @@ class DepthErrors:
     continuous: DepthScore
     """only where the true depth is continuous, because depth sensors are unreliable at discontinuities"""
     frames: List[Tuple[DepthScore, DepthScore]]
+    """for each frame its scores at all pixels, and where the true depth is continuous"""
     scales: numpy.ndarray
     """of each map, meters per unit"""
 
@@ -122,7 +136,8 @@ def ate(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, align: 
     Raises InputError for values that are not finite, and for fewer than 3 matched poses.
     """
     poses, sensor, span = _estimate(estimate, span)
-    return TrajectoryError(**_core.ate(truth, poses, align, sensor, association, max_dt, span))
+    return TrajectoryError(**_core.ate(truth, poses, text("align", align), sensor, text("association", association),
+                                       number("max_dt", max_dt), span))
 
 
 def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: float = 1.0, unit: str = "s",
@@ -131,7 +146,8 @@ def rpe(truth: numpy.ndarray, estimate: Union[numpy.ndarray, Result], *, delta: 
     pairs: "all", one from every pose as in TUM's tool; "consecutive": without overlap. Other arguments and errors as
     for ate()."""
     poses, sensor, span = _estimate(estimate, span)
-    trans, rot, aligned, why = _core.rpe(truth, poses, delta, unit, pairs, align, sensor, max_dt, span)
+    trans, rot, aligned, why = _core.rpe(truth, poses, number("delta", delta), text("unit", unit), text("pairs", pairs),
+                                              text("align", align), sensor, number("max_dt", max_dt), span)
     return RelativePoseError(ErrorStatistics(**trans), ErrorStatistics(**rot), aligned, why)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 import numpy
 
 from . import _core
+from ._arguments import described, integer, number
 from ._paths import coded, decoded
 from .camera import Camera, PathLike
 from .errors import UsageError
@@ -80,14 +81,17 @@ class MapPart:
 
     @property
     def keyframes(self) -> KeyFrames:
+        """The keyframes as arrays."""
         return KeyFrames(**self._core.keyframes())
 
     @property
     def points(self) -> Points:
+        """The landmarks as arrays."""
         return Points(**self._core.points())
 
     @property
     def observations(self) -> Observations:
+        """Which keyframe sees which point, and where."""
         return Observations(**self._core.observations())
 
     @property
@@ -105,12 +109,12 @@ class MapPart:
 
         voxel: edge length of the cubes within which points are merged, in the map's unit; 0: no merging.
         """
-        return Cloud(**self._core.cloud(voxel))
+        return Cloud(**self._core.cloud(number("voxel", voxel)))
 
     def depth(self, keyframe: int) -> Optional[Tuple[numpy.ndarray, numpy.ndarray]]:
         """Semi-dense depth of a keyframe (by id) and its standard deviation, as two (h, w) float32 arrays along z of
         the undistorted image, 0 = unknown. None if the keyframe has no depth."""
-        return self._core.depth(int(keyframe))
+        return self._core.depth(integer("keyframe", keyframe))
 
 
 def _by_ending(path: str) -> str:
@@ -141,11 +145,23 @@ class Map:
     @classmethod
     def from_bytes(cls, data: bytes) -> Map:
         """Decodes the result of to_bytes(). Raises InputError."""
+        if not isinstance(data, bytes):
+            raise TypeError(f"data must be bytes, not {described(data)}")
         return cls(_core.decode_map(data))
 
     def to_bytes(self) -> bytes:
         """The content of map.alidade. Equal maps give equal bytes."""
         return self._core.encode()
+
+    def __reduce__(self) -> Tuple[Callable[[bytes], Map], Tuple[bytes]]:
+        """Pickles what a file would hold: all but the semi-dense cloud."""
+        return Map.from_bytes, (self.to_bytes(),)
+
+    def __copy__(self) -> Map:
+        return self
+
+    def __deepcopy__(self, memo: Dict[int, object]) -> Map:
+        return self
 
     def save(self, path: PathLike) -> None:
         """Writes a map.alidade; the file is complete or absent."""
@@ -164,6 +180,7 @@ class Map:
 
     @property
     def parts(self) -> List[MapPart]:
+        """The unconnected maps, most keyframes first."""
         return [MapPart(part) for part in self._core.parts()]
 
     def _main(self) -> MapPart:
@@ -174,14 +191,17 @@ class Map:
 
     @property
     def keyframes(self) -> KeyFrames:
+        """The keyframes of the first part as arrays."""
         return self._main().keyframes
 
     @property
     def points(self) -> Points:
+        """The landmarks of the first part as arrays."""
         return self._main().points
 
     @property
     def observations(self) -> Observations:
+        """Which keyframe of the first part sees which point, and where."""
         return self._main().observations
 
     @property
@@ -205,6 +225,7 @@ class Map:
 
     @property
     def sensor(self) -> str:
+        """What the map was made with: mono, stereo or rgbd."""
         return self._core.sensor
 
     @property

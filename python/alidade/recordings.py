@@ -8,6 +8,7 @@ from typing import Iterator, Optional
 import numpy
 
 from . import _core
+from ._arguments import suggesting
 from ._log import tell_warnings
 from ._paths import coded
 from .camera import Camera, PathLike
@@ -26,7 +27,7 @@ class Frame:
     image: Optional[numpy.ndarray]
     """(h, w) uint8, gray; None when it could not be read (see ``problem``)"""
     right: Optional[numpy.ndarray] = None
-    """stereo: the right image, rectified"""
+    """stereo: the right image, (h, w) uint8, rectified"""
     depth: Optional[numpy.ndarray] = None
     """RGB-D: (h, w) uint16 with camera.depth_factor per meter, or float32 in meters"""
     color: Optional[numpy.ndarray] = None
@@ -46,6 +47,7 @@ class Recording:
         self._core = core
         info = core.info()
         self.name: str = info["name"]
+        """short, usable in a file name"""
         self.kind: str = info["kind"]
         """tum, euroc, kitti, images, video, synth, camera"""
         self.sensor: str = info["sensor"]
@@ -79,6 +81,7 @@ class Recording:
         self.close()
 
 
+@suggesting
 def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[PathLike] = None,
          fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False) -> Recording:
     """Opens any source of ``alidade run`` for reading frame by frame as arrays.
@@ -92,6 +95,6 @@ def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[Pat
 
     Raises InputError or UsageError.
     """
-    options = {"source": coded(source), "sensor": sensor, "fov": fov, "first": first, "last": last,
-               "camera_file": None if camera is None else coded(camera)}
+    options = {"source": coded(source, "source"), "sensor": sensor, "fov": fov, "first": first, "last": last,
+               "camera_file": None if camera is None else coded(camera, "camera")}
     return Recording(_core.open(options, color))

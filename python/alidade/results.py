@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import html
 import json
 import os
 import shutil
@@ -97,6 +99,19 @@ class Result:
         if self._map is None:
             self._map = Map.load(self.folder)
         return self._map
+
+    def _repr_html_(self) -> str:
+        """For notebooks: a picture of the place and the camera's path, and what happened."""
+        stats = self.stats
+        told = (f"{html.escape(os.path.basename(self.folder.rstrip('/')))}: {stats['tracked']} of {stats['frames']} "
+                f"frames tracked, {stats['keyframes']} keyframes")
+        picture = _core.result_picture(coded(self.folder))
+        if picture is None:
+            return f"<p>{told}</p>"
+        kind = "png" if picture.startswith(b"\x89PNG") else "jpeg"
+        return (f'<figure style="margin:0"><img style="max-width:100%" alt="The mapped place and the path of the camera" '
+                f'src="data:image/{kind};base64,{base64.b64encode(picture).decode()}"><figcaption>{told}</figcaption>'
+                "</figure>")
 
     def __repr__(self) -> str:
         stats = self.stats

@@ -8,6 +8,7 @@ import tempfile
 from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Tuple, Union
 
 from . import _core
+from ._arguments import suggesting
 from ._log import tell_warnings
 from ._paths import coded
 from ._renamed import warn
@@ -32,11 +33,14 @@ class Progress:
     state: str
     """initializing, tracking or lost"""
     keyframes: int
+    """number of keyframes in the map"""
     points: int
+    """number of landmarks in the map"""
     viewer: Optional[str] = None
     """URL of the viewer, with ``viewer=``"""
 
 
+@suggesting
 def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = False, dynamics: Optional[str] = None,
         detector: Union[None, PathLike, Detector] = None, camera: Union[None, PathLike, Camera] = None,
         fov: Union[None, float, str] = None, calibrate_first: bool = True, profile: str = "desktop",
@@ -83,13 +87,14 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     time; others wait.
     """
     return _run(dict(
-        source=coded(source), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
+        source=coded(source, "source"), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask, "mask"),
         write_masks=write_masks, overwrite=overwrite, **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, load, out, progress)
 
 
+@suggesting
 def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[str] = None,
              dynamics: Optional[str] = None, detector: Union[None, PathLike, Detector] = None,
              camera: Union[None, PathLike, Camera] = None, fov: Union[None, float, str] = None,
@@ -104,15 +109,15 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
-        source=coded(source), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
+        source=coded(source, "source"), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, mask=_path(mask), write_masks=write_masks, overwrite=overwrite, localize=True,
+        first=first, last=last, mask=_path(mask, "mask"), write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
 
 
-def _path(path: Optional[PathLike]) -> Optional[bytes]:
-    return None if path is None else coded(path)
+def _path(path: Optional[PathLike], argument: str) -> Optional[bytes]:
+    return None if path is None else coded(path, argument)
 
 
 def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Optional[int],
@@ -124,26 +129,26 @@ def _watched(record: Any, record_to: Optional[PathLike], viewer: Any, port: Opti
     if viewer is not None and not isinstance(viewer, bool):
         warn("viewer=PORT", "viewer=True, port=PORT", 4)
         viewer, port = True, viewer
-    return dict(record=record, record_to=_path(record_to), viewer=viewer, port=port,
+    return dict(record=record, record_to=_path(record_to, "record_to"), viewer=viewer, port=port,
                 host=host)
 
 
 def _run(options: Dict[str, Any], detector: Any, camera: Any, config: Any, load: Any, out: Any,
          progress: Optional[Callable[[Progress], None]]) -> Result:
     scratch = tempfile.TemporaryDirectory(prefix="alidade-")  # deleted with its last reference
-    options["detector"] = detector if detector is None or callable(detector) else coded(detector)
+    options["detector"] = detector if detector is None or callable(detector) else coded(detector, "detector")
     if isinstance(camera, Camera):
         options["camera_file"] = os.path.join(scratch.name, "camera.yaml")
         camera.to_yaml(options["camera_file"])
     elif camera is not None:
-        options["camera_file"] = coded(camera)
+        options["camera_file"] = coded(camera, "camera")
     if isinstance(load, Map):
         options["load"] = os.path.join(scratch.name, "map.alidade")
         load.save(options["load"])
     elif load is not None:
-        options["load"] = coded(load)
-    options["config"] = None if config is None else coded(config)
-    options["out"] = os.path.join(scratch.name, "result") if out is None else coded(out)
+        options["load"] = coded(load, "map" if options.get("localize") else "load")
+    options["config"] = None if config is None else coded(config, "config")
+    options["out"] = os.path.join(scratch.name, "result") if out is None else coded(out, "out")
 
     outcome: Dict[str, Any] = {}
     last: Dict[str, Any] = {}

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 import atexit
 import dataclasses
+import inspect
 import math
+import os
 import weakref
 from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy
 
 from . import _core
+from ._arguments import described, integer, meant, number, text
 from ._log import tell_warnings
 from ._paths import coded
 from ._renamed import Renamed, warn
 from .camera import Camera, PathLike
+from .errors import UsageError
 from .maps import Map
 from .running import Detector
 
@@ -63,7 +67,9 @@ class FramePose:
     """Current estimate of a frame's pose."""
 
     frame: int
+    """number of previous frames"""
     time: float
+    """seconds"""
     pose: Optional[numpy.ndarray]
     """(4, 4) T_world_camera; None: not tracked"""
     map: Optional[int]
@@ -91,6 +97,16 @@ def _is_swapped(right: Any, depth: Any, sensor: str) -> bool:
     return depth is None and getattr(right, "dtype", None) in (numpy.uint16, numpy.float32)
 
 
+def _check_names(more_settings: Mapping[str, Any]) -> None:
+    """Raises UsageError for a keyword that is neither an argument of Slam nor a setting, but near to one of the former.
+    Slips in names of settings are found with the settings."""
+    arguments = [name for name in inspect.signature(Slam.__init__).parameters if name not in ("self", "more_settings")]
+    for name in more_settings:
+        if "." not in name and name not in _core.setting_names():
+            raise UsageError(f"Slam has no argument and no setting {name!r}"
+                             f"{meant(name, [*arguments, *_core.setting_names()])}")
+
+
 _open: "weakref.WeakSet[Slam]" = weakref.WeakSet()
 
 
@@ -107,6 +123,7 @@ class Slam:
     config: a YAML file of settings. settings: {"tracker.extractor.features": 1500}, with the names of the program's
     ``--set``; alidade.settings() lists them all. Settings may also be passed as keywords: **{"semidense.voxel": 0.02}.
     mounting: Recording.mounting of a rectified recording; trajectory() then refers to the camera as mounted.
+    record: records the stream from the first frame on, as record() does.
     calibrate: the camera is only approximate, such as Camera.from_fov(640, 480, 66). A monocular Slam then estimates
     focal length, distortion and rolling-shutter readout online and adapts the map; see ``camera``.
 
@@ -117,10 +134,11 @@ class Slam:
     logs a warning; see health(). Implies dynamics="full". The function cannot call track(), load(), reset(), finish(),
     close() and trajectory() of its own Slam, which would wait for it: they raise UsageError there.
 
-    A forked process has no copy of the threads of schedule "threaded": there, all methods but close() raise UsageError.
+    A forked process has no copy of the threads of schedule "threaded", view() and record(): there, all methods but
+    close() raise UsageError.
 
-    All methods may be called from any thread. track(), load(), leave_out(), reset() and finish() take turns, and
-    trajectory() waits for a running track(); the others do not wait. Input images are copied only if their pixels are
+    All methods may be called from any thread. track(), load(), leave_out(), reset(), finish(), view() and record() take
+    turns, and trajectory() waits for a running track(); the others do not wait. Input images are copied only if their pixels are
     not contiguous within rows; none is kept.
     """
 
@@ -129,20 +147,25 @@ class Slam:
                  profile: str = "desktop", config: Optional[PathLike] = None,
                  settings: Optional[Mapping[str, Any]] = None, schedule: str = "inline",
                  seed: Optional[int] = None, localize: bool = False, mounting: Optional[numpy.ndarray] = None,
-                 calibrate: bool = False, **more_settings: Any) -> None:
+                 calibrate: bool = False, record: Optional[PathLike] = None, **more_settings: Any) -> None:
         if "localise" in more_settings:
             warn("localise=", "localize=")
             localize = more_settings.pop("localise")
+        _check_names(more_settings)
         options = dict(
             sensor=sensor, semidense=semidense, dynamics=dynamics, profile=profile, schedule=schedule, seed=seed,
             localize=localize, settings={**(settings or {}), **more_settings},
-            detector=detector if detector is None or callable(detector) else coded(detector),
-            config=None if config is None else coded(config))
+            detector=detector if detector is None or callable(detector) else coded(detector, "detector"),
+            config=None if config is None else coded(config, "config"))
+        if not isinstance(camera, (Camera, str, bytes, os.PathLike)):
+            raise TypeError(f"camera must be an alidade.Camera or the path of a camera.yaml, not {described(camera)}")
         if not isinstance(camera, Camera):
             camera = Camera.from_yaml(camera, sensor)
         self._sensor = sensor
         self._core = _core.Slam(camera, options, mounting, calibrate)
         _open.add(self)
+        if record is not None:
+            self.record(record)
 
     # Processing; calls are serialized.
 
@@ -157,19 +180,38 @@ class Slam:
         color: (h, w, 3) blue green red, for clouds, when image is gray. stamp: the time as text for
         save_trajectory().
 
-        Raises InputError for an invalid image or a time that does not increase; the state is unchanged then.
+        Arrays of any memory layout and byte order, and what NumPy can see as an array (tensors of PyTorch on the CPU);
+        depth of another floating-point type is converted to float32.
+
+        Raises ArrayError (an InputError and TypeError) for an array of another type or shape, UsageError for an image
+        that the Slam's sensor does not have, InputError for an image of another size or a time that does not increase.
+        The state is unchanged then.
         """
+        t, stamp = number("t", t), text("stamp", stamp)
+        if self._sensor == "mono":
+            self._refuse(right=right, depth=depth)
         if _is_swapped(right, depth, self._sensor):
             warn("track(t, image, depth, right)", "track(t, image, right, depth)")
             right, depth = depth, right
+        if self._sensor == "stereo":
+            self._refuse(depth=depth)
+        elif self._sensor == "rgbd":
+            self._refuse(right=right)
         try:
             return TrackResult(**self._core.track(t, image, depth, right, color, stamp))
         finally:
             tell_warnings()
 
+    def _refuse(self, **images: Any) -> None:
+        for name, image in images.items():
+            if image is not None:
+                sensor = "rgbd" if name == "depth" else "stereo"
+                raise UsageError(f'{name}= is given, but this Slam has sensor="{self._sensor}", which would ignore it; '
+                                 f'create it with sensor="{sensor}"')
+
     def load(self, map: Union[Map, PathLike]) -> None:
         """Loads a map to continue (a Map, or its path). Call before the first frame."""
-        self._core.load((map if isinstance(map, Map) else Map.load(map))._core)
+        self._core.load(map._core if isinstance(map, Map) else _core.read_map(coded(map, "map")))
 
     def leave_out(self, mask: numpy.ndarray) -> None:
         """Leaves parts of the image out of all frames: a hood, a gripper, a caption. mask: (h, w), uint8, of the shape of
@@ -185,10 +227,34 @@ class Slam:
         """Completes pending work and adjusts the map, for at most `limit` seconds; Ctrl-C stops it early. Returns
         trajectory(). More frames may follow."""
         try:
-            self._core.finish(limit)
+            self._core.finish(number("limit", limit))
         finally:
             tell_warnings()
         return self.trajectory()
+
+    # To be seen.
+
+    def view(self, port: int = 0, host: str = "127.0.0.1") -> str:
+        """Shows the camera, the map and the frames from now on in web browsers, as ``alidade run --viewer`` does. Returns
+        the address to open. Called again: returns the same address.
+
+        port: 0: any free one. host: an address of this machine; beyond 127.0.0.1 the returned address holds a token.
+        Viewers that are too slow miss frames; track() does not wait for them. The page is served until close().
+        Raises UsageError if the port is in use.
+        """
+        return self._core.view(integer("port", port), text("host", host))
+
+    def record(self, path: PathLike) -> None:
+        """Records the stream from now on, as ``alidade run --record`` does. finish(), close() and the end of the ``with``
+        block complete it; for frames after finish(), call record() again.
+
+        path: a folder, created if needed, in which the recording is run.stream (``alidade view FOLDER`` replays it), or
+        a file that ends in .stream or, with ROS 2 messages, in .mcap. An earlier recording of the name is replaced.
+        No frame is left out: track() waits if the disk is too slow.
+        Raises InputError if it cannot be written, UsageError if a recording is going on or the folder holds the results
+        of a run.
+        """
+        self._core.record(coded(path))
 
     def close(self) -> None:
         """Ends all threads and frees all memory."""
@@ -199,27 +265,31 @@ class Slam:
         return self
 
     def __exit__(self, kind: Any, *_: object) -> None:
-        """Calls finish(), unless there was an error. Results remain available."""
-        if kind is None and not self._core.closed:
+        """Calls finish(), unless there was an error. Results remain available, and the recording is complete."""
+        if self._core.closed:
+            return
+        if kind is None:
             self.finish()
+        else:
+            self._core.end_record()
 
     # Results.
 
     def trajectory(self, part: int = 0, *, live: bool = False) -> numpy.ndarray:
         """(n, 8): timestamp tx ty tz qx qy qz qw, T_world_camera of all frames so far in the map with the most frames
         (part 1: the next one), with later corrections; live: as estimated when each frame was processed."""
-        return self._core.trajectory(part, live)
+        return self._core.trajectory(integer("part", part), bool(live))
 
     def save_trajectory(self, path: PathLike, part: int = 0) -> None:
         """Writes the trajectory in TUM format. With the `stamp` arguments of track() it has the same bytes as
         trajectory.txt of ``alidade run``."""
-        text = self._core.trajectory_text(part)
+        text = self._core.trajectory_text(integer("part", part))
         with open(coded(path), "w", encoding="ascii", newline="\n") as file:
             file.write(text)
 
     def frame_poses(self, since: int = 0) -> List[FramePose]:
         """All frames from number `since` on, including lost ones. Poses of the rectified camera."""
-        return [FramePose(*row) for row in self._core.frame_poses(since)]
+        return [FramePose(*row) for row in self._core.frame_poses(integer("since", since))]
 
     def map(self) -> Map:
         """An immutable snapshot of the current map; cheap."""

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "errors.h"
 
 namespace alidade::python {
 namespace {
@@ -13,32 +14,57 @@ std::string ShapeOf(const py::array& array) {
          py::str(array.dtype()).cast<std::string>();
 }
 
+[[noreturn]] void Refuse(const std::string& message) { throw ArrayError(message); }
+
+py::module_ Numpy() { return py::module_::import("numpy"); }
+
 // Pixels are contiguous within rows, and rows are in ascending order.
 bool HasRows(const py::array& array, py::ssize_t pixel_bytes) {
   const bool pixels = array.shape(1) < 2 || array.strides(1) == pixel_bytes;
   const bool channels = array.ndim() < 3 || array.shape(2) < 2 || array.strides(2) == 1;
   const bool rows = array.shape(0) < 2 || array.strides(0) >= array.shape(1) * pixel_bytes;
-  return pixels && channels && rows;
+  const bool aligned = (array.flags() & py::detail::npy_api::NPY_ARRAY_ALIGNED_) != 0;
+  return pixels && channels && rows && aligned;
 }
 
 WrappedImage Wrap(const py::array& given, int type, py::ssize_t pixel_bytes) {
   py::array array = given;
-  if (!HasRows(array, pixel_bytes))
-    array = py::module_::import("numpy").attr("ascontiguousarray")(array);
+  if (!HasRows(array, pixel_bytes)) array = Numpy().attr("require")(array, py::none(), "CA");
   const auto rows = static_cast<int>(array.shape(0)), columns = static_cast<int>(array.shape(1));
   const auto least = static_cast<size_t>(columns * pixel_bytes);
   const size_t step = rows > 1 ? static_cast<size_t>(array.strides(0)) : least;
   return {cv::Mat(rows, columns, type, const_cast<void*>(array.data()), step), array};
 }
 
-py::array ArrayFrom(const py::handle& value, const std::string& name) {
-  py::array array = py::array::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    ThrowInput(name + " is not an array");
+// NumPy's view of the value.
+py::array Seen(const py::handle& value, const std::string& name) {
+  if (py::isinstance<py::array>(value)) return py::reinterpret_borrow<py::array>(value);
+  const bool sequence = PyList_Check(value.ptr()) != 0 || PyTuple_Check(value.ptr()) != 0;
+  const bool shown = sequence || py::hasattr(value, "__array__") ||
+                     py::hasattr(value, "__array_interface__") ||
+                     PyObject_CheckBuffer(value.ptr()) != 0;
+  try {
+    if (shown) return Numpy().attr("asarray")(value);
+    if (py::hasattr(value, "__dlpack__")) return Numpy().attr("from_dlpack")(value);
+  } catch (py::error_already_set& error) {  // on another device, or needs its gradient
+    if (!error.matches(PyExc_Exception)) throw;
+    Refuse(name + " cannot be read as an array: " + py::str(error.value()).cast<std::string>());
   }
-  if (array.size() == 0) ThrowInput(name + " is empty: " + ShapeOf(array));
-  return array;
+  Refuse(name + " must be an array, not " + Described(value));
+}
+
+py::array ArrayFrom(const py::handle& value, const std::string& name) {
+  py::array array = Seen(value, name);
+  if (array.size() == 0) Refuse(name + " is empty: " + ShapeOf(array));
+  // Numbers of one byte have no order.
+  if (array.dtype().attr("isnative").cast<bool>()) return array;
+  return array.attr("astype")(array.dtype().attr("newbyteorder")("="));
+}
+
+// (3, h, w), as networks have it.
+std::string ChannelsFirst(const py::array& array, const std::string& name) {
+  if (array.ndim() != 3 || array.shape(0) > 4 || array.shape(2) <= 4) return "";
+  return "; numpy.moveaxis(" + name + ", 0, -1) puts the channels last";
 }
 
 void FillPose(const Se3& pose, double* out) {
@@ -58,8 +84,8 @@ WrappedImage WrapImage(const py::handle& value, const std::string& name) {
   const bool grey = array.ndim() == 2 || (array.ndim() == 3 && array.shape(2) == 1);
   const bool color = array.ndim() == 3 && (array.shape(2) == 3 || array.shape(2) == 4);
   if (!py::isinstance<py::array_t<uint8_t>>(array) || !(grey || color)) {
-    ThrowInput(name + " must be (height, width) or (height, width, 3) of uint8, not " +
-               ShapeOf(array));
+    Refuse(name + " must be (height, width) or (height, width, 3) of uint8, not " + ShapeOf(array) +
+           ChannelsFirst(array, name));
   }
   const int channels = grey ? 1 : static_cast<int>(array.shape(2));
   return Wrap(array, CV_8UC(channels), channels);
@@ -67,15 +93,22 @@ WrappedImage WrapImage(const py::handle& value, const std::string& name) {
 
 WrappedImage WrapDepth(const py::handle& value, const std::string& name) {
   if (value.is_none()) return {};
-  const py::array array = ArrayFrom(value, name);
+  py::array array = ArrayFrom(value, name);
+  if (array.dtype().kind() == 'f' && !py::isinstance<py::array_t<float>>(array))
+    array = array.attr("astype")("float32");
   const bool whole = py::isinstance<py::array_t<uint16_t>>(array);
   if (array.ndim() != 2 || !(whole || py::isinstance<py::array_t<float>>(array))) {
-    ThrowInput(
-        name +
-        " must be (height, width) of float32 (meters) or uint16 (depth_factor per meter), not " +
-        ShapeOf(array));
+    Refuse(name +
+           " must be (height, width) of float32 (meters) or uint16 (depth_factor per meter), not " +
+           ShapeOf(array));
   }
   return Wrap(array, whole ? CV_16U : CV_32F, whole ? 2 : 4);
+}
+
+std::string Described(const py::handle& value) {
+  if (py::isinstance<py::array>(value))
+    return "an array " + ShapeOf(py::reinterpret_borrow<py::array>(value));
+  return "a " + py::str(py::type::of(value).attr("__name__")).cast<std::string>();
 }
 
 py::object ArrayOf(const cv::Mat& image) {
@@ -122,14 +155,12 @@ py::array_t<double> TrajectoryArray(const Trajectory& poses) {
 }
 
 Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
-  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    ThrowInput(name + " is not an array of numbers");
-  }
-  if (array.ndim() != 2 || array.shape(1) != 8) {
-    ThrowInput(name + " must be (n, 8): timestamp tx ty tz qx qy qz qw, not " + ShapeOf(array));
-  }
+  const py::array given = Seen(value, name);
+  const char kind = given.dtype().kind();
+  const bool numbers = kind == 'f' || kind == 'i' || kind == 'u';
+  if (!numbers || given.ndim() != 2 || given.shape(1) != 8)
+    Refuse(name + " must be (n, 8) numbers: timestamp tx ty tz qx qy qz qw, not " + ShapeOf(given));
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   Trajectory trajectory;
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
     const double* row = array.data(i, 0);

@@ -8,10 +8,12 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/base/nearest_name.h"
 #include "alidade/base/parallel.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/play/loop.h"
 #include "alidade/run/recorder/stream_feed.h"
+#include "alidade/run/report/result_picture.h"
 #include "alidade/run/run.h"
 #include "alidade/run/setup/setting_list.h"
 #include "alidade/serve/viewer_server.h"
@@ -193,6 +195,13 @@ void BindRun(py::module_& core) {
     py::dict all;
     for (const auto& [name, value] : RunSettings{}.All()) all[py::str(name)] = value;
     return all;
+  });
+  core.def("nearest_name", [](const std::string& written, const std::vector<std::string>& known) {
+    return NearestName(written, known);
+  });
+  core.def("result_picture", [](const std::string& folder) -> py::object {
+    const std::string bytes = PictureOfResult(folder);
+    return bytes.empty() ? py::object(py::none()) : py::object(py::bytes(bytes));
   });
   core.def("setting_list", [] {
     py::list all;

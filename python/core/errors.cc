@@ -55,6 +55,8 @@ const char* ExceptionFor(ErrorKind kind) {
 void Translate(std::exception_ptr failure) {
   try {
     if (failure) std::rethrow_exception(failure);
+  } catch (const ArrayError& error) {
+    Raise("ArrayError", error.what());
   } catch (const Error& error) {
     Raise(ExceptionFor(error.kind()), error.what());
   } catch (const std::filesystem::filesystem_error& error) {

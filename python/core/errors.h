@@ -3,7 +3,15 @@
 
 #include <string>
 
+#include "alidade/base/error.h"
+
 namespace alidade::python {
+
+// An array of a type or shape that its argument cannot have; alidade.ArrayError in Python.
+class ArrayError : public Error {
+ public:
+  explicit ArrayError(const std::string& message) : Error(ErrorKind::kInput, message) {}
+};
 
 // Collects the library's warnings in a list, which the package passes to `logging` between two
 // calls. Warnings come from any thread; acquiring the GIL for each could deadlock with a thread

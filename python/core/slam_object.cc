@@ -28,6 +28,17 @@ Eigen::Matrix3d RotationFrom(const py::object& pose) {
   return R;
 }
 
+// The settings of the stream, under their names.
+SlamViewOptions ViewOptionsFrom(const RunSettings& settings, const Eigen::Matrix3d& R) {
+  SlamViewOptions options;
+  options.R_camera_rectified = R;
+  for (auto& setting : settings.All()) {
+    if (setting.first.find("stream.") != std::string::npos)
+      options.settings.push_back(std::move(setting));
+  }
+  return options;
+}
+
 }  // namespace
 
 SlamObject::SlamObject(const py::object& camera, const py::dict& options,
@@ -38,14 +49,16 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localize)
     ThrowUsage("semidense extends the map, which localize must not change: use one of them");
-  SlamSettings settings = SettingsFrom(wanted).slam;
+  const RunSettings all = SettingsFrom(wanted);
+  SlamSettings settings = all.slam;
   settings.localize = wanted.localize;
   settings.sensor = SensorNamed("sensor", wanted.sensor.value_or("mono"));
   settings.threaded = ThreadedFrom(wanted, false);
   if (calibrate) settings.EnableSelfCalibration();
   std::shared_ptr<Detector> detector = wanted.own_detector;
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
-  held_ = std::shared_ptr<Held>(new Held(given, R, settings, std::move(detector)), Delete);
+  held_ = std::shared_ptr<Held>(
+      new Held(given, R, settings, std::move(detector), ViewOptionsFrom(all, R)), Delete);
 }
 
 // The last reference may be dropped with or without the GIL.
@@ -67,7 +80,8 @@ std::shared_ptr<SlamObject::Held> SlamObject::Get() const {
   if (held_->IsForked())
     ThrowUsage(
         "this Slam has threads, which a forked process does not: create it in the process that "
-        "uses it, start processes by multiprocessing's \"spawn\", or use schedule=\"inline\"");
+        "uses it, start processes by multiprocessing's \"spawn\", or use schedule=\"inline\" "
+        "without view() and record()");
   return held_;
 }
 
@@ -97,9 +111,11 @@ TrackedFrame SlamObject::Track(double time, const py::object& image, const py::o
   RunLog& log = held->log;
   log.stamps.push_back(stamp);
   log.numbers.push_back(number);
+  const FrameInput input = {time, seen.image, beside.image, far.image, colored.image};
   try {
-    return {held->slam.Track({time, seen.image, beside.image, far.image, colored.image}), number,
-            time};
+    const TrackResult result = held->slam.Track(input);
+    held->view.Show(input, result);
+    return {result, number, time};
   } catch (...) {
     // Drop those of the rejected frame.
     log.stamps.resize(static_cast<size_t>(held->slam.frames()));
@@ -129,7 +145,36 @@ void SlamObject::Reset() {
 
 void SlamObject::Finish(double limit) {
   const std::shared_ptr<Held> held = GetTurn();
-  WorkInterruptibly([&] { held->slam.Finish(limit); }, [&] { held->slam.CutFinishShort(); });
+  const auto work = [&] {
+    held->slam.Finish(limit);
+    const std::lock_guard<std::mutex> lock(held->turn);
+    held->view.Finished();
+  };
+  WorkInterruptibly(work, [&] { held->slam.CutFinishShort(); });
+}
+
+std::string SlamObject::View(int port, const std::string& host) {
+  const std::shared_ptr<Held> held = GetTurn();
+  const py::gil_scoped_release release;
+  const std::lock_guard<std::mutex> lock(held->turn);
+  std::string address = held->view.Serve(port, host);
+  held->has_threads = true;
+  return address;
+}
+
+void SlamObject::Record(const std::string& path) {
+  const std::shared_ptr<Held> held = GetTurn();
+  const py::gil_scoped_release release;
+  const std::lock_guard<std::mutex> lock(held->turn);
+  held->view.Record(path);
+  held->has_threads = true;
+}
+
+void SlamObject::EndRecord() {
+  const std::shared_ptr<Held> held = GetTurn();
+  const py::gil_scoped_release release;
+  const std::lock_guard<std::mutex> lock(held->turn);
+  held->view.EndRecord();
 }
 
 py::object SlamObject::camera() const { return CameraObject(Get()->slam.camera()); }

@@ -3,10 +3,12 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "alidade/run/live/slam_view.h"
 #include "alidade/run/results/run_log.h"
 #include "alidade/run/results/run_results.h"
 #include "alidade/system/slam.h"
@@ -38,6 +40,9 @@ class SlamObject {
   void LeaveOut(const py::object& mask);
   void Reset();
   void Finish(double limit);
+  std::string View(int port, const std::string& host);
+  void Record(const std::string& path);
+  void EndRecord();
   void Close();
   bool closed() const { return held_ == nullptr; }
 
@@ -60,12 +65,14 @@ class SlamObject {
   // Destroyed without the GIL, because a detector's thread may wait for it.
   struct Held {
     Held(const Camera& camera, const Eigen::Matrix3d& R_rectified, const SlamSettings& used,
-         std::shared_ptr<Detector> detector)
+         std::shared_ptr<Detector> detector, const SlamViewOptions& seen_as)
         : R_camera_rectified(R_rectified),
           settings(used),
           process(getpid()),
           own_detector(detector.get()),
-          slam(camera, used, std::move(detector)) {}
+          slam(camera, used, std::move(detector)),
+          view(slam, seen_as),
+          has_threads(used.threaded) {}
     std::mutex turn;  // serializes Track(), so that stamps and frames correspond
     RunLog log;       // stamps and numbers, for ResultsOf()
     const Eigen::Matrix3d R_camera_rectified;
@@ -73,7 +80,9 @@ class SlamObject {
     const pid_t process;                 // that has the threads
     const Detector* const own_detector;  // null: none
     Slam slam;
-    bool IsForked() const { return settings.threaded && process != getpid(); }
+    SlamView view;                  // under `turn`
+    std::atomic<bool> has_threads;  // its own, or those of viewer or recorder
+    bool IsForked() const { return has_threads && process != getpid(); }
   };
   static void Delete(Held* held);
   std::shared_ptr<Held> Get() const;  // throws Error (usage) after Close() and in a forked process

@@ -5,22 +5,33 @@
 #include <optional>
 
 #include "alidade/base/error.h"
+#include "arrays.h"
 #include "detector.h"
 
 namespace alidade::python {
 namespace {
+
+// What is short as it is written in Python, else its kind.
+std::string InWords(const py::handle& value) {
+  const bool plain = py::isinstance<py::str>(value) || py::isinstance<py::bytes>(value) ||
+                     py::isinstance<py::int_>(value) || py::isinstance<py::float_>(value);
+  return plain ? py::repr(value).cast<std::string>() : Described(value);
+}
 
 template <typename T>
 T Value(const std::string& name, const py::handle& value) {
   try {
     return value.cast<T>();
   } catch (const py::cast_error&) {
-    ThrowUsage(name + " cannot be " + py::repr(value).cast<std::string>());
+    ThrowUsage(name + " cannot be " + InWords(value));
   }
 }
 
 // Numbers and bools as they are written on the command line; paths as bytes.
-std::string Word(const py::handle& value) {
+std::string Word(const std::string& name, const py::handle& value) {
+  if (py::hasattr(value, "__len__") && !py::isinstance<py::str>(value) &&
+      !py::isinstance<py::bytes>(value))  // an array, a list
+    ThrowUsage(name + " cannot be " + InWords(value));
   if (py::isinstance<py::bool_>(value)) return value.cast<bool>() ? "1" : "0";
   if (py::isinstance<py::bytes>(value)) return value.cast<std::string>();
   const auto bytes =
@@ -58,25 +69,26 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
                                                {"last", &options.last},
                                                {"repeat", &options.repeat}};
   if (const auto word = words.find(name); word != words.end()) {
-    *word->second = Word(value);
+    *word->second = Word(name, value);
   } else if (const auto flag = switches.find(name); flag != switches.end()) {
     *flag->second = Value<bool>(name, value);
   } else if (const auto number = numbers.find(name); number != numbers.end()) {
     *number->second = Value<int>(name, value);
   } else if (name == "source") {
-    options.source = Word(value);
+    options.source = Word(name, value);
   } else if (name == "profile") {
-    options.profile = Word(value);
+    options.profile = Word(name, value);
   } else if (name == "seed") {
     options.seed = Value<uint64_t>(name, value);
   } else if (name == "settings") {
     for (const auto& [setting, content] : Value<py::dict>(name, value))
-      options.settings.push_back(Word(setting) + "=" + Word(content));
+      options.settings.push_back(Word("the name of a setting", setting) + "=" +
+                                 Word(Word(name, setting), content));
   } else if (name == "detector") {
     if (PyCallable_Check(value.ptr()) != 0) {
       options.own_detector = DetectorOf(py::reinterpret_borrow<py::object>(value));
     } else {
-      options.detector = Word(value);
+      options.detector = Word(name, value);
     }
   } else {
     ThrowUsage("there is no option '" + name + "'");

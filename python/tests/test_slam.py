@@ -145,7 +145,7 @@ def test_images_that_cannot_be_are_refused(desk):
         with pytest.raises(alidade.InputError, match=words):
             slam.track(0.0, image, depth=frame.depth)
     with pytest.raises(alidade.InputError, match="float32"):
-        slam.track(0.0, frame.image, depth=frame.depth.astype(float))
+        slam.track(0.0, frame.image, depth=frame.depth.astype(int))
     with pytest.raises(alidade.InputError, match="time"):
         slam.track(float("nan"), frame.image)
     assert slam.frames == 0

@@ -30,7 +30,7 @@ SECTIONS = (
     ("Evaluation", ("ate", "rpe", "depth_errors", "TrajectoryError", "RelativePoseError", "ErrorStatistics",
                     "DepthErrors", "DepthScore", "read_trajectory", "write_trajectory")),
     ("Settings", ("settings", "describe_setting", "set_threads")),
-    ("Errors", ("Error", "UsageError", "InputError", "NothingMapped", "RunStopped")),
+    ("Errors", ("Error", "UsageError", "InputError", "ArrayError", "NothingMapped", "RunStopped")),
 )
 
 
@@ -154,7 +154,7 @@ def document_class(name, item):
     methods = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
     init = next((method for method in methods if method.name == "__init__"), None)
     hidden = init is None or any(argument.arg == "core" for argument in init.args.args)
-    bases = [base.__name__ for base in item.__bases__ if base.__name__ in alidade.__all__ or base is ValueError]
+    bases = [base.__name__ for base in item.__bases__ if base.__name__ in alidade.__all__ or base in (ValueError, TypeError)]
     out = [f"### {name}"]
     if not hidden:
         out.append(code(signature(name, init, True)))
@@ -165,7 +165,7 @@ def document_class(name, item):
         init = None
     if bases:
         out.append("A " + " and a ".join(f"`{base}`" for base in bases) + ".")
-    out.append(paragraphs(item.__doc__, argument_names(init) if init else set()))
+    out.append(paragraphs(ast.get_docstring(tree), argument_names(init) if init else set()))
     rows = attributes(tree.body, None) + (attributes(init.body, "self") if init else [])
     for method in methods:
         decorators = [ast.unparse(decorator) for decorator in method.decorator_list]

@@ -22,6 +22,12 @@ std::string Printed(const char* format, double value) {
   return text;
 }
 
+// Cells of the two runs.
+std::string Cells(const std::string& deep, const std::string& single) {
+  return "<td class=\"run0\" data-run=\"deep\">" + deep +
+         "</td><td class=\"run1\" data-run=\"single\">" + single + "</td>";
+}
+
 double Rmse(const std::string& result, const std::string& align) {
   const ProgramResult ate = RunAlidade(
       {"evaluate", "ate", result + "/groundtruth.txt", result, "--align", align, "--json"});
@@ -75,8 +81,8 @@ TEST_F(CompareCommand, ErrorsAreThoseOfEvaluate) {
   const std::string out = *folder_ / "errors.html";
   ASSERT_EQ(Compare({deep_, single_, "--out", out}).status, 0);
   EXPECT_THAT(ReadText(out),
-              HasSubstr("ATE RMSE</th><td>" + Printed("%.6f m", Rmse(deep_, "se3")) + "</td><td>" +
-                        Printed("%.6f m", Rmse(single_, "sim3")) + "</td>"));
+              HasSubstr("ATE RMSE</th>" + Cells(Printed("%.6f m", Rmse(deep_, "se3")),
+                                                Printed("%.6f m", Rmse(single_, "sim3")))));
 }
 
 TEST_F(CompareCommand, WithoutTruthPathsAreLaidOnTheFirst) {
@@ -90,7 +96,7 @@ TEST_F(CompareCommand, WithoutTruthPathsAreLaidOnTheFirst) {
   ASSERT_EQ(Compare({*folder_ / "bare/deep", *folder_ / "bare/single", "--out", out}).status, 0);
   const std::string page = ReadText(out);
   EXPECT_THAT(page, HasSubstr("class=\"curve run1\""));
-  EXPECT_THAT(page, HasSubstr("ATE RMSE</th><td>–</td><td>–</td>"));
+  EXPECT_THAT(page, HasSubstr("ATE RMSE</th>" + Cells("–", "–")));
   EXPECT_THAT(page, Not(HasSubstr("class=\"truth\"")));
 }
 

@@ -95,20 +95,62 @@ inline std::string VideoMessage(Dialect dialect, int64_t stamp, const std::strin
       .Done();
 }
 
+// Fields of Protocol Buffers.
+inline std::string ProtobufVarint(uint64_t value) {
+  std::string bytes;
+  for (; value > 127; value >>= 7) bytes += static_cast<char>(value | 128);
+  return bytes + static_cast<char>(value);
+}
+inline std::string ProtobufBytes(int number, const std::string& bytes) {
+  return static_cast<char>(number << 3 | 2) + ProtobufVarint(bytes.size()) + bytes;
+}
+inline std::string ProtobufTime(int number, int64_t stamp) {
+  return ProtobufBytes(
+      number, "\x08" + ProtobufVarint(static_cast<uint64_t>(stamp / 1'000'000'000)) + "\x10" +
+                  ProtobufVarint(static_cast<uint64_t>(stamp % 1'000'000'000)));
+}
+
 // foxglove.CompressedVideo in Protocol Buffers.
 inline std::string ProtobufVideoMessage(int64_t stamp, const std::string& frame,
                                         const std::string& format, const std::string& data) {
-  const auto varint = [](uint64_t value) {
-    std::string bytes;
-    for (; value > 127; value >>= 7) bytes += static_cast<char>(value | 128);
-    return bytes + static_cast<char>(value);
+  return ProtobufTime(1, stamp) + ProtobufBytes(2, frame) + ProtobufBytes(3, data) +
+         ProtobufBytes(4, format);
+}
+
+// foxglove.CameraCalibration in Protocol Buffers; `packed`: numbers in a row, as proto3 does.
+inline std::string ProtobufCalibrationMessage(int64_t stamp, const InfoFields& info,
+                                              bool packed = true) {
+  const auto raw = [](const auto& value) {
+    return std::string(reinterpret_cast<const char*>(&value), sizeof value);
   };
-  const auto text = [&](char number, const std::string& bytes) {
-    return static_cast<char>(number << 3 | 2) + varint(bytes.size()) + bytes;
+  const auto doubles = [&](int number, const auto& values) {
+    std::string row, single;
+    for (const double value : values) {
+      row += raw(value);
+      single += static_cast<char>(number << 3 | 1) + raw(value);
+    }
+    return packed ? ProtobufBytes(number, row) : single;
   };
-  const std::string time = "\x08" + varint(static_cast<uint64_t>(stamp / 1'000'000'000)) + "\x10" +
-                           varint(static_cast<uint64_t>(stamp % 1'000'000'000));
-  return text(1, time) + text(2, frame) + text(3, data) + text(4, format);
+  return ProtobufTime(1, stamp) + "\x15" + raw(info.width) + "\x1d" + raw(info.height) +
+         ProtobufBytes(4, info.model) + doubles(5, info.D) + doubles(6, info.K) +
+         doubles(7, info.R) + doubles(8, info.P) + ProtobufBytes(9, info.frame);
+}
+
+// foxglove_msgs/CameraCalibration of ROS.
+inline std::string CalibrationMessage(Dialect dialect, int64_t stamp, const InfoFields& info) {
+  MessageBytes bytes(dialect.cdr, dialect.big_endian);
+  bytes.U32(static_cast<uint32_t>(stamp / 1'000'000'000))
+      .U32(static_cast<uint32_t>(stamp % 1'000'000'000))
+      .Text(info.frame)
+      .U32(info.width)
+      .U32(info.height)
+      .Text(info.model)
+      .U32(static_cast<uint32_t>(info.D.size()));
+  for (const double d : info.D) bytes.F64(d);
+  for (const double k : info.K) bytes.F64(k);
+  for (const double r : info.R) bytes.F64(r);
+  for (const double p : info.P) bytes.F64(p);
+  return bytes.Done();
 }
 
 }  // namespace alidade

@@ -187,6 +187,32 @@ TEST_P(VideoTopics, MayBeCompressedImages) {
   for (int i = 0; i < kFrames; ++i) ExpectFrame(source->Next(), i);
 }
 
+TEST_P(VideoTopics, HaveTheCalibrationOfTheirFrame) {
+  InfoFields info;
+  info.D = {0.1, -0.05, 0.001, 0.002, 0};
+  const std::string dialects[] = {"protobuf", "protobuf, numbers apart", "ros1", "cdr"};
+  for (const std::string& dialect : dialects) {
+    const bool ros1 = dialect == "ros1", protobuf = dialect.rfind("protobuf", 0) == 0;
+    auto messages = protobuf ? Protobuf() : Ros({!ros1});
+    messages.insert(
+        messages.begin(),
+        {"/camera/calibration",
+         protobuf ? "foxglove.CameraCalibration" : "foxglove_msgs/CameraCalibration", kStart,
+         protobuf ? ProtobufCalibrationMessage(kStart, info, dialect == "protobuf")
+                  : CalibrationMessage({!ros1}, kStart, info)});
+    const auto source =
+        OpenSource(folder_.Write("walk.mcap", McapBytes({"lz4"}, ros1).Of(messages)));
+    EXPECT_THAT(source->Info().told, HasSubstr("calibration /camera/calibration")) << dialect;
+    EXPECT_FALSE(source->Info().camera_guessed) << dialect;
+    const Camera& camera = source->Info().camera;
+    EXPECT_EQ(camera.fx, 60);
+    EXPECT_EQ(camera.fy, 61);
+    EXPECT_EQ(camera.cx, 31);
+    EXPECT_EQ(camera.cy, 24);
+    EXPECT_EQ(camera.distortion, (std::array<double, 5>{0.1, -0.05, 0.001, 0.002, 0}));
+  }
+}
+
 TEST(VideoTopicsOfOthers, AreRefusedWithTheFormatsThatAreRead) {
   const TempFolder folder;
   const auto refused = [&](const std::string& format, const std::string& data) {

@@ -17,7 +17,9 @@ void Database(std::string_view bytes) {
 // The first byte selects the serialization of the rest.
 void RosMessage(std::string_view bytes) {
   if (bytes.empty()) return UseMessage(bytes, Serialization::kOther);
-  UseMessage(bytes.substr(1), bytes[0] == 'c' ? Serialization::kCdr : Serialization::kRos1);
+  UseMessage(bytes.substr(1), bytes[0] == 'c'   ? Serialization::kCdr
+                              : bytes[0] == 'p' ? Serialization::kProtobuf
+                                                : Serialization::kRos1);
 }
 
 }  // namespace alidade::fuzz

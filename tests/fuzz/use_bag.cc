@@ -6,7 +6,9 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/ros/camera_info.h"
+#include "alidade/io/ros/messages/foxglove_calibration.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
+#include "alidade/io/ros/messages/video_message.h"
 #include "alidade/io/ros/source/choose_topics.h"
 #include "alidade/io/ros/source/topic_stamps.h"
 #include "fuzz/targets.h"
@@ -16,8 +18,7 @@ namespace {
 
 constexpr size_t kMostUsed = 20;  // messages per topic; limits the time spent decoding
 
-void UseCameraInfo(std::string_view message, Serialization serialization) {
-  const RosCameraInfo info = ParseRosCameraInfo(message, serialization);
+void UseCameraInfo(const RosCameraInfo& info) {
   for (const bool rectified : {false, true}) {
     const auto camera = CameraOfInfo(info, rectified);
     if (!camera) continue;
@@ -53,15 +54,32 @@ void UsePicture(std::string_view message, Serialization serialization, bool comp
   if (!any) ThrowInput(problem);
 }
 
+// Decoding is FFmpeg's, and not tested here.
+void UseVideo(std::string_view message, Serialization serialization) {
+  const RosPicture picture = ParseVideo(message, serialization);
+  const bool is_keyframe = IsKeyframe(CodecOfFormat(picture.encoding), picture.data);
+  Expect(!is_keyframe || picture.data.size() > 3, "a keyframe without bytes");
+  try {
+    const int64_t stamp = ParseVideoHeader(message, serialization).stamp;
+    Expect(stamp == picture.header.stamp, "two stamps of one message");
+  } catch (const Error&) {
+    Expect(false, "a message with a header that cannot be read");
+  }
+}
+
 }  // namespace
 
 void UseMessage(std::string_view message, Serialization serialization) {
   bool any = false;
   std::string problem;
-  for (int type = 0; type < 3; ++type) {
+  for (int type = 0; type < 5; ++type) {
     try {
       if (type == 0) {
-        UseCameraInfo(message, serialization);
+        UseCameraInfo(ParseRosCameraInfo(message, serialization));
+      } else if (type == 3) {
+        UseVideo(message, serialization);
+      } else if (type == 4) {
+        UseCameraInfo(ParseFoxgloveCalibration(message, serialization));
       } else {
         UsePicture(message, serialization, type == 1);
       }

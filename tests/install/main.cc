@@ -11,6 +11,7 @@
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/live/slam_view.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ void WriteBitmap(const std::string& path) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  if (count != 2) return Fail("needs a folder to write in");
+  if (count < 2) return Fail("needs a folder to write in");
   const std::string folder = arguments[1];
   if (std::string(ALIDADE_VERSION).empty() || ALIDADE_VERSION_MAJOR < 0) return Fail("no version");
 
@@ -40,7 +41,14 @@ int main(int count, char** arguments) {
   settings.Check();
   alidade::Slam slam(camera, settings);
   const cv::Mat black(480, 640, CV_8UC1, cv::Scalar(0));
-  const alidade::TrackResult result = slam.Track({.time = 0.5, .image = black});
+  alidade::SlamView view(slam);
+  view.Record(folder + "/seen");
+  if (count > 2 && view.Serve().rfind("http://127.0.0.1:", 0) != 0) return Fail("no viewer");
+  const alidade::FrameInput input = {.time = 0.5, .image = black};
+  const alidade::TrackResult result = slam.Track(input);
+  view.Show(input, result);
+  view.Finished();
+  if (!std::ifstream(folder + "/seen/run.stream")) return Fail("nothing was recorded");
   if (result.state != alidade::TrackState::kInitializing) return Fail("black is no start");
   try {
     slam.Track({.time = 0.5, .image = black});

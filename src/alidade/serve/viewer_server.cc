@@ -87,17 +87,22 @@ std::unique_ptr<ViewerServer> StartPhonePage(const ServeSettings& settings,
 }
 
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
-                                          const std::string& replay_path,
-                                          const std::string& title) {
+                                          const std::string& replay_path, const std::string& title,
+                                          const StillMap* still) {
   settings.Check();
   if (hub == nullptr) CheckReplay(replay_path);
-  const nlohmann::json info = {{"mode", hub != nullptr ? "live" : "replay"},
-                               {"title", title},
-                               {"program", "alidade " ALIDADE_VERSION}};
+  nlohmann::json info = {{"mode", hub != nullptr ? "live" : "replay"},
+                         {"title", title},
+                         {"program", "alidade " ALIDADE_VERSION}};
   ServeTask task;
   task.settings = settings;
   task.hub = hub;
   if (hub == nullptr) task.replay_path = replay_path;
+  if (still != nullptr) {
+    info["mode"] = "map";
+    task.cloud_path = still->cloud_path;
+    if (!task.cloud_path.empty()) info["T_world_cloud"] = still->T_world_cloud;
+  }
   return Start(task, info);
 }
 

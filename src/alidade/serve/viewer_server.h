@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -50,11 +51,19 @@ class ViewerServer {
   virtual const std::string& fingerprint() const = 0;
 };
 
+// What the page needs to know of a map that is shown without its run.
+struct StillMap {
+  std::string cloud_path;                                    // semidense.ply; empty: none
+  std::array<double, 7> T_world_cloud{0, 0, 0, 1, 0, 0, 0};  // quaternion x y z w, position
+};
+
 // Serves the live stream of `hub`, which must outlive the server; without a hub the recorded stream
-// in the file `replay_path`. Throws Error when the module is missing, the port is in use, or the
-// file cannot be read. Returns once the server accepts connections.
+// in the file `replay_path`. `still`: the stream is a map without its run; null: it is a run.
+// Throws Error when the module is missing, the port is in use, or the file cannot be read. Returns
+// once the server accepts connections.
 std::unique_ptr<ViewerServer> StartViewer(const ServeSettings& settings, StreamHub* hub,
-                                          const std::string& replay_path, const std::string& title);
+                                          const std::string& replay_path, const std::string& title,
+                                          const StillMap* still = nullptr);
 
 // Serves the phone page. `core_folder`: folder of the WebAssembly core (scripts/wasm/build:
 // build-wasm); empty: none. `frames`: processes images that pages send, must outlive the server;

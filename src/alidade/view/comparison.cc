@@ -12,19 +12,40 @@ std::string Chip(const ComparedRun& run, size_t number) {
   return "<span class=\"chip " + ClassOfRun(number) + "\"></span>" + EscapeHtml(run.name);
 }
 
-std::string Measures(const RunComparison& comparison) {
-  std::string html =
-      "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"figures\">\n"
-      "<table class=\"compared\">\n<thead><tr><td></td>";
-  for (size_t i = 0; i < comparison.runs.size(); ++i)
+// Runs beside each other in one table; more are in further tables below.
+constexpr size_t kColumns = 6;
+
+std::string MeasuresOfRuns(const RunComparison& comparison, size_t begin, size_t end) {
+  const std::string runs =
+      begin == 0 && end == comparison.runs.size()
+          ? ""
+          : " of runs " + std::to_string(begin + 1) + " to " + std::to_string(end);
+  std::string html = "<div class=\"wide\" tabindex=\"0\" role=\"region\" aria-label=\"figures" +
+                     runs +
+                     "\">\n"
+                     "<table class=\"compared\">\n<thead><tr><td></td>";
+  for (size_t i = begin; i < end; ++i)
     html += "<th scope=\"col\">" + Chip(comparison.runs[i], i) + "</th>";
   html += "</tr></thead>\n<tbody>\n";
   for (size_t row = 0; row < comparison.measures.size(); ++row) {
     html += "<tr><th scope=\"row\">" + EscapeHtml(comparison.measures[row]) + "</th>";
-    for (const ComparedRun& run : comparison.runs) html += Cell("td", run.values[row]);
+    // Narrow screens show the cells one below the other, each with its run.
+    for (size_t i = begin; i < end; ++i) {
+      html += "<td class=\"" + ClassOfRun(i) + "\" data-run=\"" +
+              EscapeHtml(comparison.runs[i].name) + "\">" +
+              EscapeHtml(comparison.runs[i].values[row]) + "</td>";
+    }
     html += "</tr>\n";
   }
   return html + "</tbody></table>\n</div>\n";
+}
+
+std::string Measures(const RunComparison& comparison) {
+  std::string html;
+  const size_t count = comparison.runs.size();
+  for (size_t begin = 0; begin < count; begin += kColumns)
+    html += MeasuresOfRuns(comparison, begin, std::min(begin + kColumns, count));
+  return html;
 }
 
 std::string Legend(const RunComparison& comparison, bool with_ends) {

@@ -36,13 +36,15 @@ figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-
 .run0{--own:var(--run0)}.run1{--own:var(--run1)}.run2{--own:var(--run2)}.run3{--own:var(--run3)}.run4{--own:var(--run4)}.run5{--own:var(--run5)}
 .curve{stroke:var(--own);stroke-width:2}.truth{stroke:var(--ink);stroke-width:1.5;stroke-dasharray:5 4}
 .again{stroke-dasharray:9 4}.half{fill:var(--own)}.rest{fill:var(--own);opacity:.4}.mark{stroke:var(--own);stroke-width:2}
-.compared td,.compared thead th{font-variant-numeric:tabular-nums}.compared th:first-child,.compared td:first-child{white-space:nowrap;position:sticky;left:0;background:var(--page)}
+.compared{margin-bottom:1.5rem}.compared td,.compared thead th{font-variant-numeric:tabular-nums;overflow-wrap:anywhere}.compared tbody td{min-width:5.5em}.compared th:first-child,.compared td:first-child{white-space:nowrap;position:sticky;left:0;background:var(--page)}
 .chip{display:inline-block;width:.8em;height:.8em;border-radius:2px;margin-right:.4em;background:var(--own)}
 .legend>span{margin-right:1.2em;white-space:nowrap}.legend .key{margin-left:0}
-@media(max-width:600px){.compared th:first-child{white-space:normal;min-width:6em}.compared tbody td{min-width:5.5em;max-width:8em;overflow-wrap:anywhere}}
 .banner{border-left:4px solid #d43a2f;background:color-mix(in srgb,#d43a2f 8%,var(--page));padding:.4rem 1rem;margin:1rem 0;border-radius:0 6px 6px 0}
 .banner p{margin:.3rem 0;font-weight:600}.banner h2{margin:.5rem 0 .2rem}.banner ul{margin:.2rem 0 .5rem;padding-left:1.2rem}
 .next dd{margin:0 0 .6rem}code{font:13px/1.5 ui-monospace,monospace;background:color-mix(in srgb,var(--line) 40%,var(--page));border-radius:4px;padding:.1em .4em;overflow-wrap:anywhere}
+@media(max-width:600px){.compared thead{display:none}.compared,.compared tbody,.compared tr,.compared th,.compared tbody td{display:block}
+.compared tbody th{padding-top:.7rem}.compared tbody td{display:flex;gap:1rem;justify-content:space-between;padding:0 0 0 .6em;border-left:.3em solid var(--own)}
+.compared tbody td::before{content:attr(data-run);color:var(--soft)}}
 summary{cursor:pointer;font-weight:600}details{margin-top:2rem}
 </style>
 )";

@@ -2,7 +2,8 @@
 // moving keyframes does not change points, edges and the path. Slot 0 is the world, slot 1 is hidden. Keyframes of maps
 // other than the active one are drawn faintly, each map in its own world, because their relative pose is unknown.
 import { DataTexture, FloatType, NearestFilter, RGBAFormat } from 'three';
-import { IDENTITY } from './pose.ts';
+import { IDENTITY, transform } from './pose.ts';
+import type { Vector } from './pose.ts';
 import type { Pose } from './messages.ts';
 import type { State } from './state.ts';
 
@@ -63,6 +64,14 @@ export class Anchors {
     }
     this.uniform.value.needsUpdate = true;
     return several;
+  }
+
+  // World coordinates of a point in a slot; null: not drawn, or in another map.
+  place(slot: number, p: Vector): Vector | null {
+    const at = 8 * slot;
+    const { data } = this;
+    const scale = data[at + 7]!;
+    return scale > 0 ? transform([...data.subarray(at, at + 7)] as unknown as Pose, scale, ...p) : null;
   }
 
   dispose(): void {

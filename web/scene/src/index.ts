@@ -8,5 +8,7 @@ export * as marks from './picture_marks.ts';
 export { LAYERS, NoWebGL, Scene } from './scene.ts';
 export type { Colours, LayerName } from './scene.ts';
 export type { ViewMode } from './view.ts';
+export { readPly } from './ply.ts';
+export type { Ply } from './ply.ts';
 export { alignTruth } from './align.ts';
 export type { Alignment } from './align.ts';

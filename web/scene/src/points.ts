@@ -2,6 +2,7 @@
 import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, GLSL3, Points, ShaderMaterial } from 'three';
 import { PLACE } from './anchors.ts';
 import type { Anchors } from './anchors.ts';
+import type { Vector } from './pose.ts';
 
 const VERTEX = /* glsl */ `
 ${PLACE}
@@ -82,6 +83,9 @@ export class PointLayer {
     this.slots[i] = slot;
     if (this.coloured) this.colours[i] = colour;
   }
+
+  slotOf(i: number): number { return this.slots[i]!; }
+  at(i: number): Vector { return [this.places[3 * i]!, this.places[3 * i + 1]!, this.places[3 * i + 2]!]; }
 
   hide(i: number, slot: number): void {
     this.slots[i] = slot;

@@ -6,7 +6,10 @@ import { CloudUpload, corners, drawEdges, drawFrusta, LandmarkUpload, PathUpload
 import { LineLayer } from './lines.ts';
 import type { Pose } from './messages.ts';
 import { NONE } from './messages.ts';
+import { pick } from './pick.ts';
+import type { Ply } from './ply.ts';
 import { transform } from './pose.ts';
+import type { Vector } from './pose.ts';
 import { PointLayer } from './points.ts';
 import type { State } from './state.ts';
 import { Thinning } from './thinning.ts';
@@ -36,6 +39,7 @@ export class Scene {
   private readonly anchors = new Anchors();
   private readonly resolution = { value: new Vector2(1, 1) };
   private readonly points: { landmarks: PointLayer; cloud: PointLayer };
+  private readonly shape: PointLayer; // a cloud of its own, in the world
   private readonly lines: Record<Exclude<LayerName, 'landmarks' | 'cloud' | 'others'>, LineLayer>;
   private readonly landmarkUpload: LandmarkUpload;
   private readonly cloudUpload: CloudUpload;
@@ -51,6 +55,7 @@ export class Scene {
   private frameRequest = 0;
   private before = 0;
   private errors: ((i: number) => number) | null = null;
+  drew: () => void = () => {}; // called after each image
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     try {
@@ -78,17 +83,19 @@ export class Scene {
       layers[name] = holder;
     });
     this.layers = layers as never;
+    this.shape = new PointLayer(this.anchors, true, 2);
+    (layers.cloud as Group).add(this.shape.object);
     this.landmarkUpload = new LandmarkUpload(this.points.landmarks, this.anchors);
     this.cloudUpload = new CloudUpload(this.points.cloud, this.anchors);
     this.pathUpload = new PathUpload(this.lines.path, this.anchors);
-    this.thinning = new Thinning([this.points.landmarks, this.points.cloud], () => this.invalidate());
+    this.thinning = new Thinning([this.points.landmarks, this.points.cloud, this.shape], () => this.invalidate());
     this.resize();
   }
 
   colours(c: Colours): void {
     this.renderer.setClearColor(c.page, 1);
     this.points.landmarks.ink = c.dot;
-    this.points.landmarks.ground = this.points.cloud.ground = c.page;
+    this.points.landmarks.ground = this.points.cloud.ground = this.shape.ground = c.page;
     this.lines.path.ink(c.path, c.worst);
     this.lines.keyframes.ink(c.path);
     this.lines.covisibility.ink(c.dot);
@@ -181,6 +188,43 @@ export class Scene {
     return { x: (0.5 * at.x + 0.5) * this.canvas.clientWidth, y: (0.5 - 0.5 * at.y) * this.canvas.clientHeight };
   }
 
+  // The drawn point at this place of the canvas, CSS pixels; null: none is near.
+  pick(x: number, y: number): Vector | null {
+    const { camera } = this.view;
+    camera.updateMatrixWorld();
+    const clip = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).multiply(this.world.matrix);
+    const { landmarks, cloud } = this.layers;
+    const layers = [...(landmarks.visible ? [this.points.landmarks] : []), ...(cloud.visible ? [this.points.cloud, this.shape] : [])];
+    return pick(layers, this.anchors, clip.elements, this.canvas.clientWidth, this.canvas.clientHeight, x, y);
+  }
+
+  // CSS pixels of a unit of the map at the distance of the point that the view looks at.
+  get pixelsPerUnit(): number {
+    const { camera, controls } = this.view;
+    return this.canvas.clientHeight / (2 * Math.tan((camera.fov * Math.PI) / 360) * controls.distance);
+  }
+
+  // Shows a cloud with positions in the world of `T_world_cloud`, in the layer of the semi-dense points.
+  setShape({ positions, colours }: Ply, T_world_cloud: Pose): void {
+    const count = positions.length / 3;
+    this.shape.reserve(count);
+    for (let i = 0; i < count; ++i) {
+      const p = transform(T_world_cloud, 1, positions[3 * i]!, positions[3 * i + 1]!, positions[3 * i + 2]!);
+      this.shape.set(i, WORLD, ...p, colours?.[i] ?? 0x8410);
+    }
+    this.shape.count = count;
+    this.shape.changed(0, count);
+    this.invalidate();
+  }
+
+  // Draws with all points, and copies the image into `onto` at the same moment, because the canvas is cleared later.
+  copy(onto: CanvasRenderingContext2D): void {
+    this.thinning?.apply(1);
+    this.renderer.render(this.three, this.view.camera);
+    onto.drawImage(this.canvas, 0, 0);
+    this.invalidate();
+  }
+
   // Widths in CSS pixels on the left and right of the canvas that are covered by other elements.
   insets(left: number, right: number): void {
     this.covered = { left, right };
@@ -195,7 +239,7 @@ export class Scene {
     this.renderer.setSize(width, height, false);
     this.resolution.value.set(width * ratio, height * ratio);
     this.points.landmarks.size = Math.round(2 * ratio);
-    this.points.cloud.size = Math.round(2 * ratio);
+    this.points.cloud.size = this.shape.size = Math.round(2 * ratio);
     this.view.resize(width, height, this.covered.left, this.covered.right);
     this.invalidate();
   }
@@ -229,6 +273,7 @@ export class Scene {
     const moving = this.view.step(seconds);
     this.thinning?.before(now);
     this.renderer.render(this.three, this.view.camera);
+    this.drew();
     if (moving) this.invalidate();
   }
 

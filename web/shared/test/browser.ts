@@ -59,7 +59,7 @@ export async function screenshot(page: Page, clip?: { x: number; y: number; widt
 
 // Screenshot of the canvas without the elements above it.
 export async function sceneOnly(page: Page): Promise<Picture> {
-  await page.evaluate(() => { for (const id of ['picture', 'panel', 'counts', 'status', 'transport', 'panel-toggle', 'notice']) document.getElementById(id)!.style.visibility = 'hidden'; });
+  await page.evaluate(() => { for (const id of ['picture', 'panel', 'counts', 'status', 'transport', 'panel-toggle', 'notice', 'scale']) document.getElementById(id)!.style.visibility = 'hidden'; });
   let last = '';
   let still: Buffer = Buffer.alloc(0);
   for (let i = 0; i < 60; ++i) { // until it no longer changes
@@ -69,7 +69,7 @@ export async function sceneOnly(page: Page): Promise<Picture> {
     last = now;
     await page.waitForTimeout(200);
   }
-  await page.evaluate(() => { for (const id of ['picture', 'panel', 'counts', 'status', 'transport', 'panel-toggle', 'notice']) document.getElementById(id)!.style.visibility = ''; });
+  await page.evaluate(() => { for (const id of ['picture', 'panel', 'counts', 'status', 'transport', 'panel-toggle', 'notice', 'scale']) document.getElementById(id)!.style.visibility = ''; });
   return decodePng(still);
 }
 

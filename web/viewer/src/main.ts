@@ -1,6 +1,6 @@
 // The viewer's page: messages arrive, the player holds the state, and the parts draw it at most once per display frame.
 import { alignTruth, DecodeError, NoWebGL, Scene, StreamFileReader } from '@alidade/scene';
-import type { ViewMode } from '@alidade/scene';
+import type { Pose, ViewMode } from '@alidade/scene';
 import { sceneColours } from '../../shared/src/colours.ts';
 import { byId, write } from '../../shared/src/dom.ts';
 import { fillAbout } from './about.ts';
@@ -10,6 +10,9 @@ import { layerSwitches, Panel } from './panel.ts';
 import { Picture } from './picture.ts';
 import { Player } from './player.ts';
 import { Plot } from './plot.ts';
+import { Ruler } from './ruler.ts';
+import { saveImage } from './snapshot.ts';
+import { StillMap } from './still_map.ts';
 import { onTheme } from './theme.ts';
 import { Timeline } from './timeline.ts';
 
@@ -32,6 +35,8 @@ const plot = new Plot();
 const timeline = new Timeline(() => player, seek);
 const panel = new Panel(() => player, seek);
 const scene = makeScene();
+const ruler = scene && new Ruler(scene, () => player.shown.hello?.unit ?? '', (text) => notice(text, 'measure'));
+let still: StillMap | null = null;
 
 function makeScene(): Scene | null {
   try {
@@ -127,9 +132,10 @@ async function loadRecorded(): Promise<void> {
 async function begin(): Promise<void> {
   try {
     const response = await fetch('info.json' + query());
-    const info = response.ok ? await response.json() as { mode?: string; title?: string } : {};
+    const info = response.ok ? await response.json() as { mode?: string; title?: string; T_world_cloud?: Pose } : {};
     if (info.title) document.title = `${info.title} – Alidade`;
     if (info.mode === 'replay') return await loadRecorded();
+    if (info.mode === 'map') showStill(info.T_world_cloud);
   } catch (error) {
     if (replay) {
       notice(`The recording could not be read: ${(error as Error).message}.`, 'file');
@@ -137,6 +143,14 @@ async function begin(): Promise<void> {
     }
   }
   connect();
+}
+
+function showStill(T_world_cloud: Pose | undefined): void {
+  still = new StillMap(scene, switches);
+  picture.hidden = true;
+  if (T_world_cloud) {
+    void still.load(T_world_cloud).catch((error: Error) => notice(`semidense.ply could not be read: ${error.message}.`, 'cloud')).finally(() => { dirty = true; });
+  }
 }
 
 // The buttons control the program (if it can pause) when the current state is shown, otherwise the playback of the
@@ -194,6 +208,10 @@ function update(): void {
   timeline.update();
   scene?.update(shown);
   switches.get('others')!.parentElement!.hidden = !scene?.several;
+  still?.update(shown, () => {
+    setView('orbit');
+    scene?.fit();
+  });
 }
 
 // Realigns the ground truth when the map changed or the path grew by 30 frames, at most once per second.
@@ -243,6 +261,11 @@ for (const button of document.querySelectorAll<HTMLElement>('[data-view]')) {
   button.addEventListener('click', () => setView(button.dataset.view as ViewMode));
 }
 byId('fit').addEventListener('click', () => scene?.fit());
+const snapshot = () => {
+  if (scene && ruler) void saveImage(scene, ruler, player.shown.hello?.source ?? '').catch((error: Error) => notice(`The image could not be saved: ${error.message}.`, 'snapshot'));
+};
+byId('measure').addEventListener('click', () => ruler?.toggle());
+byId('snapshot').addEventListener('click', snapshot);
 byId('play').addEventListener('click', togglePlay);
 byId('step').addEventListener('click', () => step(1));
 byId('live').addEventListener('click', goLive);
@@ -258,6 +281,8 @@ keys([
   ['2', '2', 'turn freely', () => setView('orbit')],
   ['3', '3', 'from above', () => setView('top')],
   ['f', 'F', 'everything in sight', () => scene?.fit()],
+  ['m', 'M', 'distance between two points', () => ruler?.toggle()],
+  ['s', 'S', 'save the image of the scene', snapshot],
   ['c', 'C', 'camera picture', () => { picture.hidden = !picture.hidden; }],
   ['p', 'P', 'details', togglePanel],
   ['t', 'T', 'light or dark', () => byId('theme').click()],
@@ -269,6 +294,7 @@ Object.assign(window, {
     get state() { return player.shown; },
     get player() { return player; },
     get scene() { return scene; },
+    get ruler() { return ruler; },
     project: (p: readonly number[]) => scene?.project(p) ?? null,
     switches,
   },

@@ -1,6 +1,7 @@
 // report.html and compare.html opened as files, on a screen and on a phone, in light and dark, with and without
 // scripts.
 import assert from 'node:assert/strict';
+import { cpSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Browser, BrowserContextOptions, Page } from 'playwright-core';
 import { differing, launch, open, screenshot, violations } from '../../shared/test/browser.ts';
@@ -8,7 +9,8 @@ import { endAll, inFolder, NO_PROGRAM, run } from '../../shared/test/program.ts'
 
 const options = { skip: NO_PROGRAM, timeout: 600e3 };
 const PHONE = { viewport: { width: 400, height: 800 } };
-const PAGES = ['room/report.html', 'shape/report.html', 'compare.html'];
+const PAGES = ['room/report.html', 'shape/report.html', 'compare.html', 'many.html'];
+const MANY = 7; // runs of many.html, more than fit into one table
 
 let browser: Browser;
 const address = (name: string) => `file://${inFolder(name)}`;
@@ -19,6 +21,9 @@ before(async () => {
   await run('run', 'synth:room?frames=60', '--quiet', '--out', inFolder('room'));
   await run('run', 'synth:desk?frames=60', '--sensor', 'rgbd', '--semidense', '--quiet', '--out', inFolder('shape'));
   await run('compare', inFolder('room'), inFolder('shape'), '--out', inFolder('compare.html'));
+  const copies = Array.from({ length: MANY }, (_, i) => inFolder(`a_run_with_a_long_name_${i}`));
+  for (const copy of copies) cpSync(inFolder('room'), copy, { recursive: true });
+  await run('compare', ...copies, '--out', inFolder('many.html'));
 });
 after(async () => {
   await browser?.close();
@@ -36,6 +41,10 @@ for (const name of PAGES) {
       await page.waitForTimeout(300);
       const wide = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
       assert.ok(wide[0] <= wide[1], `${wide[0]} pixels wide on ${wide[1]}`);
+      if (name === 'many.html') {
+        const tables = await page.evaluate(() => [...document.querySelectorAll('.wide')].map(({ scrollWidth, clientWidth }) => scrollWidth - clientWidth));
+        assert.deepEqual(tables, [0, 0], 'columns are cut off');
+      }
       assert.deepEqual(await violations(page), []);
       assert.deepEqual(problems, []);
       assert.deepEqual(requests.filter((url) => url !== address(name) && !url.startsWith('data:')), []);

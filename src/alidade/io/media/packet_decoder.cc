@@ -5,6 +5,7 @@
 #include <limits>
 #include <thread>
 
+#include "alidade/geometry/picture_size.h"
 #include "alidade/io/media/pixels.h"
 
 namespace alidade {
@@ -24,6 +25,7 @@ class FfmpegDecoder : public PacketDecoder {
     // Threads within a frame only: threads across frames would delay the images by their number.
     codec_->thread_count = static_cast<int>(std::thread::hardware_concurrency());
     codec_->thread_type = FF_THREAD_SLICE;
+    codec_->max_pixels = kMostPixels;
     // An image with concealed damage would be taken for what the camera saw.
     codec_->err_recognition = AV_EF_CRCCHECK | AV_EF_BITSTREAM | AV_EF_BUFFER | AV_EF_EXPLODE;
     return avcodec_open2(codec_.get(), decoder, nullptr) == 0;

@@ -75,10 +75,21 @@ constexpr std::array kFields = {
     Field{"ms_p95", &BatchRow::ms_p95},   Field{"cpu_s", &BatchRow::cpu_s},
     Field{"wall_s", &BatchRow::wall_s},   Field{"peak_mb", &BatchRow::peak_mb}};
 
-std::string Escaped(std::string text) {
-  for (size_t at = 0; (at = text.find('|', at)) != std::string::npos; at += 2)
-    text.insert(at, "\\");
-  return text;
+// As a cell of a Markdown table, which may hold HTML.
+std::string Escaped(const std::string& text) {
+  std::string cell;
+  for (const char c : text) {
+    if (c == '|') {
+      cell += "\\|";
+    } else if (c == '<') {
+      cell += "&lt;";
+    } else if (c == '&') {
+      cell += "&amp;";
+    } else {
+      cell += c >= 0 && c < ' ' ? ' ' : c;
+    }
+  }
+  return cell;
 }
 
 }  // namespace

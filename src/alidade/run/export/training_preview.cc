@@ -29,13 +29,11 @@ cv::Mat TrainingPreview(const TrainingSet& set) {
 
   cv::Mat photo = set.shown;
   if (photo.channels() == 1) cv::cvtColor(set.shown, photo, cv::COLOR_GRAY2BGR);
-  cv::Mat points = 0.25 * photo;
+  cv::Mat points = 0.2 * photo;
   constexpr int kShift = 4;  // cv::circle's fixed point: 1/16 pixel
-  const int radius = std::max(2, photo.cols / 200);
+  const int radius = std::max(2, photo.cols / 180);
   for (const Dot& dot : dots) {
     const cv::Point at(cvRound(dot.at.x * (1 << kShift)), cvRound(dot.at.y * (1 << kShift)));
-    cv::circle(points, at, (radius + 1) << kShift, cv::Scalar::all(255), cv::FILLED, cv::LINE_AA,
-               kShift);
     cv::circle(points, at, radius << kShift, dot.color, cv::FILLED, cv::LINE_AA, kShift);
   }
   cv::Mat both;

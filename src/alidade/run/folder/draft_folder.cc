@@ -13,7 +13,7 @@ namespace alidade {
 DraftFolder::DraftFolder(const std::string& place) : path_(TemporaryBeside(place)) {
   std::error_code error;
   std::filesystem::create_directories(path_, error);
-  if (error) ThrowInput(path_ + ": cannot be created: " + error.message());
+  if (error) ThrowInput(place + ": cannot be created: " + error.message());
   fd_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd_ >= 0) Occupy(fd_);
 }

@@ -32,7 +32,7 @@ class McapRecord : public RecordFile {
     return file_.good();
   }
   void Close(const std::string& results) override {
-    ros_.End(FinalStateIn(results));
+    ros_.End(results.empty() ? FinalState{} : FinalStateIn(results));
     file_.Close();
   }
   size_t bytes() const override { return file_.bytes(); }

@@ -15,7 +15,8 @@ class RecordFile {
   // Adds a message of the stream. Returns false if writing failed (disk full); nothing more is
   // written then. Throws Error for an invalid message.
   virtual bool Write(std::string_view message) = 0;
-  // `results`: the result folder of the run. Throws Error (input) if writing was incomplete.
+  // `results`: the result folder of the run; empty: there is none. Throws Error (input) if writing
+  // was incomplete.
   virtual void Close(const std::string& results) = 0;
   virtual size_t bytes() const = 0;  // so far
   // Whether it needs complete states in addition to changes.

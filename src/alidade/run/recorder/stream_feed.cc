@@ -53,14 +53,22 @@ StreamFeed::~StreamFeed() {
 }
 
 void StreamFeed::Begin(const WatchedRun& run, const std::string& folder) {
-  slam_ = &run.slam;
   log_ = &run.log;
-  folder_ = folder;
+  playback_.may_pause = run.setup.source.kind != "camera";
+  Start(run.slam, SourceOf(program_, run.slam, run.setup), folder);
+}
+
+void StreamFeed::BeginLive(const Slam& slam, StreamSource source) {
+  copies_images_ = true;
+  source.program = program_;
+  Start(slam, std::move(source), "");
+}
+
+void StreamFeed::Start(const Slam& slam, StreamSource source, const std::string& folder) {
+  slam_ = &slam;
   {
     const std::lock_guard<std::mutex> lock(encoder_mutex_);
-    encoder_ =
-        std::make_unique<StreamEncoder>(SourceOf(program_, run.slam, run.setup), settings_.stream);
-    playback_.may_pause = run.setup.source.kind != "camera";
+    encoder_ = std::make_unique<StreamEncoder>(std::move(source), settings_.stream);
     if (file_path_) {
       file_ = MakeRecordFile(file_path_->empty() ? folder + "/run.stream" : *file_path_, program_,
                              settings_);
@@ -89,9 +97,12 @@ void StreamFeed::Frame(const SourceFrame& frame, const TrackResult& result) {
 void StreamFeed::Show(const SourceFrame& frame, const TrackResult& result) {
   Shown shown;
   shown.frame = FrameAsLeft(*slam_, frame.number, frame.time, result, latest_);
-  if (settings_.pictures_hz > 0 && !(frame.time - picture_time_ < 1 / settings_.pictures_hz)) {
+  // The time may be set back between two recordings.
+  const double since = frame.time - picture_time_;
+  if (settings_.pictures_hz > 0 && !(since >= 0 && since < 1 / settings_.pictures_hz)) {
     picture_time_ = frame.time;
     shown.image = frame.color.empty() ? frame.image : frame.color;
+    if (copies_images_) shown.image = shown.image.clone();
   }
   {
     std::unique_lock<std::mutex> lock(queue_mutex_);
@@ -155,9 +166,11 @@ void StreamFeed::Encode(Shown& shown) {
                            EncodeJpeg(image, settings_.picture_quality)};
   }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
+  if (std::exchange(playback_.finished, false)) Tell({encoder_->Playback(playback_)});
   Tell(encoder_->Add(shown.frame));
   ++frames_;
-  if (file_ && file_->takes_whole() && shown.frame.time - whole_time_ >= settings_.whole_seconds) {
+  const double since = shown.frame.time - whole_time_;
+  if (file_ && file_->takes_whole() && (since < 0 || since >= settings_.whole_seconds)) {
     if (whole_time_ > -1e300) {
       for (const std::string& message : encoder_->Whole()) file_->Write(message);
     }
@@ -199,7 +212,8 @@ void StreamFeed::TellEnd() {
   }
   const std::lock_guard<std::mutex> lock(encoder_mutex_);
   Tell(encoder_->End(slam_->Snapshot(), slam_->camera()));
-  if (!log_->truth.empty()) {  // of a rendered source, which tells it frame by frame
+  if (log_ != nullptr &&
+      !log_->truth.empty()) {  // of a rendered source, which tells it frame by frame
     encoder_->SetTruth(TruthOf(log_->truth));
     Tell({encoder_->Hello()});
   }

@@ -30,6 +30,11 @@ class StreamFeed : public RunWatcher, public StreamHub {
              const StreamFeedSettings& settings = {});
   ~StreamFeed() override;
 
+  // For a Slam that its user feeds, instead of Begin(run): `slam` must outlive the calls. Images of
+  // frames are copied, for the user may use their memory again. Frame(), Finished() and Written("")
+  // as for a run; more frames may follow Finished(), but not Written().
+  void BeginLive(const Slam& slam, StreamSource source);
+
   // The run's.
   void Begin(const WatchedRun& run, const std::string& folder) override;
   void Wait(bool (*interrupted)()) override;
@@ -48,6 +53,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
 
  private:
   void Fail() noexcept;  // handles the current exception
+  void Start(const Slam& slam, StreamSource source, const std::string& folder);
   struct Shown {
     StreamFrame frame;
     cv::Mat image;  // image to encode; empty: none
@@ -64,7 +70,7 @@ class StreamFeed : public RunWatcher, public StreamHub {
   const StreamFeedSettings settings_;
   const Slam* slam_ = nullptr;
   const RunLog* log_ = nullptr;
-  std::string folder_;
+  bool copies_images_ = false;
   LatestTimes latest_;                                  // of the previous frame
   double picture_time_ = -1e300, whole_time_ = -1e300;  // seconds of the recording
 

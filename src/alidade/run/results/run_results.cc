@@ -7,12 +7,6 @@
 namespace alidade {
 namespace {
 
-// From the world of the rectified camera to that of the camera as mounted.
-Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified) {
-  const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
-  return turn * T_world_camera * turn.Inverse();
-}
-
 std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frames) {
   std::vector<std::array<double, 2>> spans;
   bool started = false;
@@ -31,6 +25,11 @@ std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frame
 }
 
 }  // namespace
+
+Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified) {
+  const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
+  return turn * T_world_camera * turn.Inverse();
+}
 
 RunResults ResultsOf(const Slam& slam, const RunLog& log,
                      const Eigen::Matrix3d& R_camera_rectified) {

@@ -35,6 +35,9 @@ struct RunResults {
   Eigen::Matrix3d R_camera_rectified;             // turns the map's points into that world
 };
 
+// A pose of the rectified camera as one of the camera as mounted, with the world turned likewise.
+Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified);
+
 // `R_camera_rectified`: SourceInfo's.
 RunResults ResultsOf(const Slam& slam, const RunLog& log,
                      const Eigen::Matrix3d& R_camera_rectified);

@@ -36,6 +36,9 @@ struct RunOptions {
   bool viewer = false;                   // show it in a browser
   std::optional<std::string> port;       // of the viewer; 8090 or the next free one
   std::optional<std::string> host;       // address the viewer listens on; 127.0.0.1
+  // Where the program tells each pose as it comes: "-", "udp:HOST:PORT", or "json:" and one of
+  // them.
+  std::optional<std::string> poses;
 };
 
 // Upper bound on threads: more threads than cores do not help, and each reserves 8 MB of stack.

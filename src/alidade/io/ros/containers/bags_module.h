@@ -46,13 +46,18 @@ class BagFile {
   virtual const std::vector<std::string>& Warnings() const = 0;
 };
 
-// foxglove.CompressedVideo, in any encoding.
+// foxglove.CompressedVideo and foxglove.CameraCalibration, in any encoding.
 inline constexpr char kVideoType[] = "foxglove_msgs/CompressedVideo";
+inline constexpr char kCalibrationType[] = "foxglove_msgs/CameraCalibration";
+
+inline bool IsInfoType(const std::string& type) {
+  return type == "sensor_msgs/CameraInfo" || type == kCalibrationType;
+}
 
 // Types whose messages are indexed; messages of other types are only counted.
 inline bool IsWantedType(const std::string& type) {
   return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage" ||
-         type == "sensor_msgs/CameraInfo" || type == kVideoType;
+         type == kVideoType || IsInfoType(type);
 }
 
 inline constexpr char kBagsModuleFile[] = "libalidade_bags.so";

@@ -13,7 +13,8 @@ constexpr size_t kMostTopics = 100'000;
 constexpr size_t kMostWarnings = 5;
 
 bool HoldsPictures(const BagTopic& topic) {
-  if (topic.serialization == Serialization::kProtobuf) return topic.type == kVideoType;
+  if (topic.serialization == Serialization::kProtobuf)
+    return topic.type == kVideoType || topic.type == kCalibrationType;
   return topic.serialization != Serialization::kOther && IsWantedType(topic.type);
 }
 
@@ -59,6 +60,8 @@ std::string Ros1TypeOf(std::string_view type) {
     plain.replace(at, 2, "/");
   // Protocol Buffers, and IDL of the same schema.
   if (plain == "foxglove.CompressedVideo" || plain == "foxglove/CompressedVideo") return kVideoType;
+  if (plain == "foxglove.CameraCalibration" || plain == "foxglove/CameraCalibration")
+    return kCalibrationType;
   const size_t middle = plain.find("/msg/");
   if (middle != std::string::npos) plain.erase(middle, 4);
   const size_t dds = plain.find("/dds_/");

@@ -40,6 +40,7 @@ std::optional<ProtobufCursor::Field> ProtobufCursor::Next() {
       break;
     case 2:
       field.bytes = Take(Varint());
+      field.is_bytes = true;
       break;
     case 5:
       fixed(4);

@@ -12,7 +12,8 @@ class ProtobufCursor {
  public:
   struct Field {
     uint32_t number = 0;
-    uint64_t value = 0;      // of numbers; 0 for others
+    uint64_t value = 0;      // of numbers, those of floating point as bits; 0 for others
+    bool is_bytes = false;   // `bytes` holds the value
     std::string_view bytes;  // of texts, bytes and messages
   };
 

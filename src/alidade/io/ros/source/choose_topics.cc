@@ -129,7 +129,7 @@ class Chooser {
     if (!asked) return InfoTopicOf(bag_, picture);
     if (asked->empty()) return -1;
     for (size_t i = 0; i < bag_.Topics().size(); ++i) {
-      if (bag_.Topics()[i].name == *asked && bag_.Topics()[i].type == "sensor_msgs/CameraInfo" &&
+      if (bag_.Topics()[i].name == *asked && IsInfoType(bag_.Topics()[i].type) &&
           !bag_.Messages(i).empty())
         return static_cast<int>(i);
     }

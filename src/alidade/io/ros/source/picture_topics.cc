@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/geometry/picture_size.h"
+#include "alidade/io/ros/messages/foxglove_calibration.h"
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/ros/messages/video_message.h"
 #include "alidade/io/ros/source/topic_video.h"
@@ -174,7 +175,7 @@ int InfoTopicOf(BagFile& bag, const PictureTopic& picture) {
   const std::string beside = FolderOfTopic(picture.base) + "/camera_info";
   std::vector<int> of_frame;
   for (size_t i = 0; i < bag.Topics().size(); ++i) {
-    if (bag.Topics()[i].type != "sensor_msgs/CameraInfo" || bag.Messages(i).empty()) continue;
+    if (!IsInfoType(bag.Topics()[i].type) || bag.Messages(i).empty()) continue;
     if (bag.Topics()[i].name == beside) return static_cast<int>(i);
     try {
       const RosCameraInfo info = FirstInfo(bag, i);
@@ -195,7 +196,9 @@ RosCameraInfo FirstInfo(BagFile& bag, size_t topic) {
     std::string failure = bag.Read(messages[i], bytes);
     try {
       if (!failure.empty()) ThrowInput(failure);
-      return ParseRosCameraInfo(bytes, bag.Topics()[topic].serialization);
+      const BagTopic& of = bag.Topics()[topic];
+      return of.type == kCalibrationType ? ParseFoxgloveCalibration(bytes, of.serialization)
+                                         : ParseRosCameraInfo(bytes, of.serialization);
     } catch (const Error& error) {
       problem = error.what();
     }
