@@ -166,8 +166,8 @@ def depth_errors(estimates: Sequence[numpy.ndarray], truths: Sequence[numpy.ndar
     if not len(estimates) == len(truths) == len(images) == len(numbers):
         raise UsageError("depth_errors: as many truths, images and maps as estimates")
     scorer = _core.DepthErrors(fit_scale)
-    for estimate, truth, image, number in zip(estimates, truths, images, numbers):
-        scorer.add(estimate, truth, image, number)
+    for estimate, truth, image, map_index in zip(estimates, truths, images, numbers):
+        scorer.add(estimate, truth, image, map_index)
     every, continuous, frames, scales = scorer.result()
     return DepthErrors(DepthScore(**every), DepthScore(**continuous),
                        [(DepthScore(**a), DepthScore(**b)) for a, b in frames], scales)
