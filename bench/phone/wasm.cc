@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "alidade/base/error.h"
+#include "alidade/base/shell_quoted.h"
 #include "alidade/io/files/file.h"
 #include "bench/phone/phone.h"
-#include "program/shell_quoted.h"
 
 namespace alidade::bench {
 namespace {
