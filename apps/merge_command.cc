@@ -9,8 +9,8 @@
 #include "alidade/base/error.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/file.h"
-#include "alidade/run/export/merge_inputs.h"
-#include "alidade/run/export/merge_outputs.h"
+#include "alidade/run/merge/merge_inputs.h"
+#include "alidade/run/merge/merge_outputs.h"
 #include "commands.h"
 #include "program/terminal.h"
 

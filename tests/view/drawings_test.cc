@@ -154,7 +154,9 @@ TEST(Report, FailureShapeAndNextStepsComeFirst) {
   report.lost_spans = {"1.00 s to 2.00 s: the image was blurred."};
   report.unit = "map units";
   report.on_units = "Lengths are in map units.";
-  report.cloud.cloud.points = {{0, 0, 0}, {1, 2, 4}};
+  report.cloud.path = {{CameraAt(0, 0, 0), CameraAt(0, 0, 1)}};
+  for (int i = 0; i < 100; ++i)
+    report.cloud.cloud.points.emplace_back(0.1f * static_cast<float>(i), 1.f, 2.f);
   report.next = {{"See it", "alidade view 'a b'"}};
   report.facts = {{"source", "walk"}};
   const std::string html = RenderReport(report);

@@ -1,4 +1,4 @@
-#include "alidade/run/export/merge_inputs.h"
+#include "alidade/run/merge/merge_inputs.h"
 
 #include <algorithm>
 #include <filesystem>

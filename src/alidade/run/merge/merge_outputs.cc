@@ -1,4 +1,4 @@
-#include "alidade/run/export/merge_outputs.h"
+#include "alidade/run/merge/merge_outputs.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -42,7 +42,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
   EarlierMerge earlier;
   const std::string file = folder + "/merge.json";
   if (!IsFile(file)) return earlier;
-  const auto json = ordered_json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
+  const auto told = ordered_json::parse(ReadFile(file), nullptr, /*allow_exceptions=*/false);
   // The file may have been written by anybody.
   const auto list_in = [](const ordered_json& object, const char* name) {
     const bool there = object.is_object() && object.contains(name) && object[name].is_array();
@@ -52,7 +52,7 @@ EarlierMerge ReadEarlierMerge(const std::string& folder) {
     const bool there = object.is_object() && object.contains(name) && object[name].is_string();
     return there ? object[name].get<std::string>() : std::string();
   };
-  for (const ordered_json& recording : list_in(json, "recordings")) {
+  for (const ordered_json& recording : list_in(told, "recordings")) {
     const std::string place = word_in(recording, "place");
     earlier.inputs.insert(place.empty() ? PlaceOfMap(word_in(recording, "path")) : place);
     for (const ordered_json& trajectory : list_in(recording, "trajectories")) {

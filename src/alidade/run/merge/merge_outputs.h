@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "alidade/run/export/merge_inputs.h"
+#include "alidade/run/merge/merge_inputs.h"
 
 namespace alidade {
 
