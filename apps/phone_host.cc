@@ -25,12 +25,6 @@ namespace {
 using SessionClock = std::chrono::steady_clock;
 constexpr size_t kFrameHead = 16;  // bytes before the JPEG: number, zero, seconds
 
-const char* NameOfState(TrackState state) {
-  return state == TrackState::kTracking ? "tracking"
-         : state == TrackState::kLost   ? "lost"
-                                        : "initializing";
-}
-
 FrameMessage Text(const nlohmann::json& told) {
   return {told.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), true};
 }
@@ -187,7 +181,7 @@ class PhoneSession : public std::enable_shared_from_this<PhoneSession> {
   static nlohmann::json Answer(uint32_t number, const PhoneFrame& frame) {
     const TrackResult& result = frame.result;
     nlohmann::json told = {{"frame", number},
-                           {"state", NameOfState(result.state)},
+                           {"state", StateName(result.state)},
                            {"failure", nullptr},
                            {"reason", result.state == TrackState::kTracking ? "" : result.reason()},
                            {"milliseconds", frame.milliseconds},

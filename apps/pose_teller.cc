@@ -82,11 +82,6 @@ nlohmann::json JsonOf(const Se3& T_world_camera) {
   return {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
 }
 
-const char* WordFor(TrackState state) {
-  constexpr const char* kStates[] = {"initializing", "tracking", "lost"};
-  return kStates[static_cast<int>(state)];
-}
-
 }  // namespace
 
 PoseTeller::PoseTeller(const std::string& where) {
@@ -123,7 +118,7 @@ void PoseTeller::Frame(const SourceFrame& frame, const TrackResult& result) {
   const std::string stamp = frame.stamp.empty() ? FormatTime(frame.time) : frame.stamp;
   if (!json_) {
     if (!tracked)
-      return Tell("# " + stamp + " " + WordFor(result.state) + " " + FailureName(result.failure) +
+      return Tell("# " + stamp + " " + StateName(result.state) + " " + FailureName(result.failure) +
                   "\n");
     // Poses of different maps are in different worlds.
     if (map_.valid() && map != map_) Tell("# map " + std::to_string(map.value) + "\n");
@@ -133,7 +128,7 @@ void PoseTeller::Frame(const SourceFrame& frame, const TrackResult& result) {
   nlohmann::json line = {{"frame", frame.number},
                          {"time", frame.time},
                          {"stamp", stamp},
-                         {"state", WordFor(result.state)},
+                         {"state", StateName(result.state)},
                          {"keyframe", result.keyframe},
                          {"matches", result.matches},
                          {"pose", nullptr},

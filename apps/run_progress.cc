@@ -13,18 +13,6 @@ namespace {
 
 constexpr double kInterval = 200;  // ms between two updates
 
-const char* NameOf(TrackState state) {
-  switch (state) {
-    case TrackState::kInitializing:
-      return "initializing";
-    case TrackState::kTracking:
-      return "tracking";
-    case TrackState::kLost:
-      return "lost";
-  }
-  return "";
-}
-
 std::string Clock(double seconds) {
   const auto whole = static_cast<long>(std::lround(seconds));
   char text[32];
@@ -80,8 +68,9 @@ void RunProgress::Frame(const SourceFrame& frame, const TrackResult& result) {
   char rate[32];
   std::snprintf(rate, sizeof(rate), "  %.1f/s", fps_);
   if (fps_ > 0) line += rate;
-  line += std::string("  ") + NameOf(result.state) + "  " + std::to_string(map.keyframe_count()) +
-          " keyframes  " + std::to_string(map.landmark_count()) + " landmarks";
+  line += std::string("  ") + StateName(result.state) + "  " +
+          std::to_string(map.keyframe_count()) + " keyframes  " +
+          std::to_string(map.landmark_count()) + " landmarks";
   if (total > 0 && fps_ > 0) line += "  " + Clock((total - frames) / fps_) + " left";
   terminal_.SetProgress(line);
 }

@@ -71,11 +71,10 @@ class Onlooker : public RunWatcher {
   void Warn(const std::string& message) override { KeepWarning(message); }
 
   py::dict Told() const {
-    constexpr const char* kStates[] = {"initializing", "tracking", "lost"};
     const std::lock_guard<std::mutex> lock(mutex_);
     return py::dict("stage"_a = stage_, "frames"_a = frames_, "total"_a = total_,
-                    "state"_a = kStates[static_cast<int>(state_)], "keyframes"_a = keyframes_,
-                    "points"_a = points_, "viewer"_a = viewer_);
+                    "state"_a = StateName(state_), "keyframes"_a = keyframes_, "points"_a = points_,
+                    "viewer"_a = viewer_);
   }
   std::string folder() const { return folder_; }
   MapHolder map() const { return map_; }

@@ -6,10 +6,7 @@ namespace {
 
 using py::literals::operator""_a;
 
-const char* StateOf(const TrackedFrame& frame) {
-  constexpr const char* kStates[] = {"initializing", "tracking", "lost"};
-  return kStates[static_cast<int>(frame.result.state)];
-}
+const char* StateOf(const TrackedFrame& frame) { return StateName(frame.result.state); }
 
 bool IsTracked(const TrackedFrame& frame) { return frame.result.state == TrackState::kTracking; }
 

@@ -8,13 +8,13 @@ extern "C" {
 #include <libavutil/opt.h>
 }
 
-#include <algorithm>
 #include <cstdint>
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
 #include "bags/message_bytes.h"
+#include "support/i420_frame.h"
 
 namespace alidade {
 
@@ -57,14 +57,7 @@ inline std::vector<VideoPacket> EncodeVideo(const std::string& encoder,
         frame->width = codec->width;
         frame->height = codec->height;
         av_frame_get_buffer(frame, 0);
-        cv::Mat planes;
-        cv::cvtColor(images[i], planes, cv::COLOR_BGR2YUV_I420);
-        const uint8_t* from = planes.data;
-        for (int plane = 0; plane < 3; ++plane) {
-          const int width = codec->width >> (plane > 0), height = codec->height >> (plane > 0);
-          for (int y = 0; y < height; ++y, from += width)
-            std::copy(from, from + width, frame->data[plane] + y * frame->linesize[plane]);
-        }
+        FillI420(images[i], frame);
         frame->pts = static_cast<int64_t>(i);
       }
       avcodec_send_frame(codec, i < images.size() ? frame : nullptr);

@@ -9,9 +9,11 @@ extern "C" {
 #include <libavformat/avformat.h>
 }
 
-#include <opencv2/imgproc.hpp>
+#include <opencv2/core.hpp>
 #include <string>
 #include <vector>
+
+#include "support/i420_frame.h"
 
 namespace alidade {
 
@@ -53,14 +55,7 @@ inline void WriteVideoWithBFrames(const std::string& path, const std::vector<cv:
     frame->width = codec->width;
     frame->height = codec->height;
     ASSERT_EQ(av_frame_get_buffer(frame, 0), 0);
-    cv::Mat planes;
-    cv::cvtColor(images[i], planes, cv::COLOR_BGR2YUV_I420);
-    const uint8_t* from = planes.data;
-    for (int plane = 0; plane < 3; ++plane) {
-      const int width = codec->width >> (plane > 0), height = codec->height >> (plane > 0);
-      for (int y = 0; y < height; ++y, from += width)
-        std::copy(from, from + width, frame->data[plane] + y * frame->linesize[plane]);
-    }
+    FillI420(images[i], frame);
     frame->pts = times[i];
     ASSERT_EQ(avcodec_send_frame(codec, frame), 0);
     av_frame_unref(frame);

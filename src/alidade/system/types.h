@@ -21,6 +21,11 @@ enum class TrackState {
   kLost,
   kInitialising [[deprecated("use kInitializing")]] = kInitializing
 };
+// "initializing", "tracking" or "lost", as in every language and protocol.
+constexpr const char* StateName(TrackState state) {
+  constexpr const char* kNames[] = {"initializing", "tracking", "lost"};
+  return kNames[static_cast<int>(state)];
+}
 
 // In the order that track() has in every language.
 struct FrameInput {

@@ -75,7 +75,8 @@ inline constexpr char kTurnableScript[] = R"script(
     const wanted = canvas.clientWidth / 6 / pixels, power = 10 ** Math.floor(Math.log10(wanted));
     const length = power * (wanted / power >= 5 ? 5 : wanted / power >= 2 ? 2 : 1);
     bar.style.width = `${(length * pixels).toFixed(1)}px`;
-    bar.textContent = `${+length.toPrecision(3)} ${source.dataset.unit}`;
+    const unit = length === 1 ? source.dataset.unit.replace(/s$/, '') : source.dataset.unit;
+    bar.textContent = `${+length.toPrecision(3)} ${unit}`;
   };
   function draw() {
     asked = 0;

@@ -7,19 +7,16 @@
 #include <utility>
 
 #include "alidade/base/error.h"
-#include "alidade/geometry/alignment.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/run/export/written_turn.h"
 #include "alidade/run/folder/output_folder.h"
 #include "alidade/run/sources/saved_map.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kSameTime = 1e-6;   // seconds: stamps are written with at least 6 digits
-constexpr double kSamePlace = 1e-6;  // map units: poses are written with 9 digits
-// map units: smallest distance of keyframes that determines a direction
-constexpr double kTold = 1e-2;
+constexpr double kSameTime = 1e-6;  // seconds: stamps are written with at least 6 digits
 
 std::string OwnName(const std::string& path) {
   const std::filesystem::path whole = std::filesystem::path(path + "/").lexically_normal();
@@ -62,29 +59,6 @@ std::vector<std::pair<StampedPose, KeyFrameId>> Known(const Trajectory& written,
   return known;
 }
 
-// Rotation R between both: p_written = R p_map, from the keyframes' positions.
-Eigen::Matrix3d TurnOf(const MapSnapshot& map,
-                       const std::vector<std::pair<StampedPose, KeyFrameId>>& known) {
-  std::vector<Eigen::Vector3d> written{Eigen::Vector3d::Zero()}, mapped{Eigen::Vector3d::Zero()};
-  bool same = true;
-  for (const auto& [pose, id] : known) {
-    const Se3 T = map.Find(id)->T_camera_world.Inverse();
-    same = same && (pose.T_world_camera.t - T.t).norm() < kSamePlace * (1 + T.t.norm()) &&
-           (pose.T_world_camera.R - T.R).norm() < kSamePlace;
-    if (T.t.norm() < kTold) continue;
-    written.push_back(pose.T_world_camera.t);
-    mapped.push_back(T.t);
-    // Rotations also determine R, by their axes: R_written = R R_map Rᵀ.
-    const auto axis = [](const Eigen::Matrix3d& R) {
-      return Eigen::Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
-    };
-    written.push_back(axis(pose.T_world_camera.R));
-    mapped.push_back(axis(T.R));
-  }
-  if (same || written.size() < 3) return Eigen::Matrix3d::Identity();
-  return AlignPoints(written, mapped, /*with_scale=*/false).R;
-}
-
 void ReadPaths(MergeInput& input) {
   const std::map<double, KeyFrameId> by_time = ByTime(input.saved.map);
   const bool is_folder = IsFolder(input.path);
@@ -95,7 +69,8 @@ void ReadPaths(MergeInput& input) {
     if (!IsFile(frames) || !IsFile(keyframes)) break;
     const auto known = Known(ReadTrajectory(keyframes), by_time);
     if (known.empty()) continue;
-    if (!std::exchange(turn_known, true)) input.R_camera_rectified = TurnOf(input.saved.map, known);
+    if (!std::exchange(turn_known, true))
+      input.R_camera_rectified = WrittenTurn(input.saved.map, known);
     std::map<MapId, int> votes;
     for (const auto& [pose, id] : known) ++votes[input.saved.map.MapOf(id)];
     const auto most =

@@ -189,14 +189,26 @@ std::vector<std::string> FailureOf(const RunLog& log, const RunResults& results)
   return lines;
 }
 
+// The options with which the run read its source.
+std::string HowRead(const RunSetup& setup) {
+  const SourceOptions& reading = setup.reading;
+  std::string words;
+  if (reading.sensor) words += std::string(" --sensor ") + NameOf(*reading.sensor);
+  if (reading.camera_file) words += " --camera " + ShellWord(*reading.camera_file);
+  if (reading.fov_degrees)
+    words += Format(reading.fov_rough ? " --fov '~%g'" : " --fov %g", *reading.fov_degrees);
+  return words;
+}
+
 std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& setup,
                                   const RunResults& results, const std::string& folder) {
   if (results.tracked == 0 || settings.localize) return {};
   const std::string result = ShellWord(folder);
   std::vector<ReportStep> steps = {{"Walk through the map in a browser", "alidade view " + result}};
   if (!settings.semidense.enabled) {
-    steps.push_back({"Map surfaces and edges, not only landmarks",
-                     "alidade run " + ShellWord(setup.source_path) + " --semidense"});
+    steps.push_back(
+        {"Map surfaces and edges, not only landmarks",
+         "alidade run " + ShellWord(setup.source_path) + HowRead(setup) + " --semidense"});
   }
   steps.push_back({"Find another recording of the place in this map",
                    "alidade localize RECORDING --map " + ShellWord(folder + "/map.alidade")});

@@ -1,0 +1,36 @@
+#include "alidade/run/export/written_turn.h"
+
+#include "alidade/geometry/alignment.h"
+
+namespace alidade {
+namespace {
+
+constexpr double kSamePlace = 1e-6;  // map units: poses are written with 9 digits
+// map units: smallest distance of keyframes that determines a direction
+constexpr double kTold = 1e-2;
+
+}  // namespace
+
+Eigen::Matrix3d WrittenTurn(const MapSnapshot& map,
+                            const std::vector<std::pair<StampedPose, KeyFrameId>>& known) {
+  std::vector<Eigen::Vector3d> written{Eigen::Vector3d::Zero()}, mapped{Eigen::Vector3d::Zero()};
+  bool same = true;
+  for (const auto& [pose, id] : known) {
+    const Se3 T = map.Find(id)->T_camera_world.Inverse();
+    same = same && (pose.T_world_camera.t - T.t).norm() < kSamePlace * (1 + T.t.norm()) &&
+           (pose.T_world_camera.R - T.R).norm() < kSamePlace;
+    if (T.t.norm() < kTold) continue;
+    written.push_back(pose.T_world_camera.t);
+    mapped.push_back(T.t);
+    // Rotations also determine R, by their axes: R_written = R R_map Rᵀ.
+    const auto axis = [](const Eigen::Matrix3d& R) {
+      return Eigen::Vector3d(R(2, 1) - R(1, 2), R(0, 2) - R(2, 0), R(1, 0) - R(0, 1));
+    };
+    written.push_back(axis(pose.T_world_camera.R));
+    mapped.push_back(axis(T.R));
+  }
+  if (same || written.size() < 3) return Eigen::Matrix3d::Identity();
+  return AlignPoints(written, mapped, /*with_scale=*/false).R;
+}
+
+}  // namespace alidade
