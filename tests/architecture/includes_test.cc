@@ -17,12 +17,12 @@ namespace {
 namespace fs = std::filesystem;
 
 const std::map<std::string, int> kFloors = {
-    {"base", 0},        {"geometry", 1}, {"features", 2}, {"io", 2},         {"detect", 2},
-    {"optimize", 2},    {"synth", 2},    {"place", 3},    {"evaluation", 3}, {"map", 4},
-    {"tracking", 5},    {"mapping", 5},  {"looping", 5},  {"semidense", 5},  {"dynamics", 5},
-    {"calibration", 6}, {"system", 7},   {"view", 8},     {"stream", 8},     {"ros", 8},
-    {"phone", 9},       {"gles", 9},     {"serve", 9},    {"run", 10},       {"apps", 11},
-    {"android", 11},    {"python", 11},  {"bench", 11}};
+    {"base", 0},     {"geometry", 1},    {"inertial", 2}, {"features", 2}, {"io", 2},
+    {"detect", 2},   {"optimize", 2},    {"synth", 2},    {"place", 3},    {"evaluation", 3},
+    {"map", 4},      {"tracking", 5},    {"mapping", 5},  {"looping", 5},  {"semidense", 5},
+    {"dynamics", 5}, {"calibration", 6}, {"system", 7},   {"view", 8},     {"stream", 8},
+    {"ros", 8},      {"phone", 9},       {"gles", 9},     {"serve", 9},    {"run", 10},
+    {"apps", 11},    {"android", 11},    {"python", 11},  {"bench", 11}};
 
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 5> kOuterFolders = {"base/module", "io/files", "io/media", "io/ros",

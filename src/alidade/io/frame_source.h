@@ -5,9 +5,11 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
+#include "alidade/inertial/imu.h"
 
 namespace ALIDADE_API alidade {
 
@@ -42,6 +44,9 @@ struct SourceFrame {
   // True depth of each pixel of `image`: CV_32F, meters along z, 0 = no surface. Rendered
   // recordings only.
   cv::Mat true_depth = {};
+  // Readings of the inertial sensor since the last frame, those up to this image's time included,
+  // in order of time; see FrameInput::imu.
+  std::vector<ImuSample> imu = {};
 };
 
 struct SourceInfo {
@@ -62,6 +67,9 @@ struct SourceInfo {
   // Rotation from the rectified camera's frame to the frame of the camera as mounted, in which
   // trajectories are given.
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();
+  // The inertial sensor whose readings come with the frames; nullopt: none. T_camera_imu is of
+  // `camera`, after any rectification.
+  std::optional<ImuModel> imu;
   int frames = -1;  // -1 when unknown (a live camera, some videos)
 };
 

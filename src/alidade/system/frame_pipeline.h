@@ -45,6 +45,13 @@ class FramePipeline {
   void Load(const SavedMap& saved);
   // See Slam::LeaveOut().
   void LeaveOut(const cv::Mat& mask) { left_out_.Name(mask); }
+  // See Slam::SetImu().
+  void SetImu(const ImuModel& imu) {
+    InertialReport report;
+    report.given = true;
+    report.model = imu;
+    inertial_shown_.Set(report);
+  }
   // The next frame need not continue the last one.
   // `steady`: the time of that frame on the steady clock, seconds.
   void Cut(double steady) {
@@ -63,6 +70,7 @@ class FramePipeline {
   const FrameLog& trajectory() const { return log_; }
   const Published<Camera>& camera() const { return camera_shown_; }
   const Published<std::shared_ptr<const LastFrame>>& last_frame() const { return last_frame_; }
+  const Published<InertialReport>& inertial() const { return inertial_shown_; }
   const PipelineCounts& counts() const { return counts_; }
   const SampleLog& extract_milliseconds() const { return extract_ms_; }
   const SampleLog& track_milliseconds() const { return track_ms_; }
@@ -117,6 +125,7 @@ class FramePipeline {
   std::atomic<int> first_number_{
       0};  // Frame::number of the first frame: larger than those of a loaded map
   SampleLog extract_ms_, track_ms_;
+  Published<InertialReport> inertial_shown_;
   PipelineCounts counts_;
   Published<std::shared_ptr<const LastFrame>> last_frame_;
 };

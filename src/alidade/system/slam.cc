@@ -122,6 +122,13 @@ void Slam::Impl::LeaveOut(const cv::Mat& mask) {
   pipeline_.LeaveOut(mask);
 }
 
+void Slam::Impl::SetImu(const ImuModel& imu) {
+  const std::lock_guard<std::mutex> driving(driving_);
+  if (!pipeline_.trajectory().empty()) ThrowUsage("SetImu() comes before the first frame");
+  imu.Check();
+  pipeline_.SetImu(imu);
+}
+
 void Slam::Impl::Reset() {
   const std::lock_guard<std::mutex> driving(driving_);
   if (pipeline_.trajectory().empty() || restarted_) return;
@@ -141,6 +148,7 @@ Slam::Slam(const Camera& camera, const SlamSettings& settings, std::shared_ptr<D
 Slam::~Slam() = default;
 void Slam::Load(const SavedMap& saved) { impl_->Load(saved); }
 void Slam::LeaveOut(const cv::Mat& mask) { impl_->LeaveOut(mask); }
+void Slam::SetImu(const ImuModel& imu) { impl_->SetImu(imu); }
 TrackResult Slam::Track(const FrameInput& input) { return impl_->Track(input); }
 void Slam::Reset() { impl_->Reset(); }
 std::vector<FramePose> Slam::Finish(double limit) {

@@ -57,6 +57,10 @@ class Slam {
   // the last call counts. Parts that move with the camera are found without it
   // (settings.fixed_parts), too.
   void LeaveOut(const cv::Mat& mask);
+  // FrameInput::imu are readings of this sensor. Before the first frame; without it, readings are
+  // those of a sensor whose place and noise are unknown (ImuModel's defaults).
+  // Throws Error (usage) if a value of the model cannot be.
+  void SetImu(const ImuModel& imu);
   // Processes one frame; frames come in order of time. Throws Error (input) if an image has the
   // wrong size or type, or if the time does not increase. A jump of the time is treated as a cut
   // and reported in TrackResult::cut: the frame need not continue the last one. Forward, a jump is
@@ -107,6 +111,7 @@ class Slam {
   // Standard deviation of the estimated readout time, seconds; 0: it was given, or not estimated.
   double readout_sigma() const;
   SlamCounts Counts() const;
+  InertialReport Inertial() const;    // of the last finished frame
   SemiDenseReport SemiDense() const;  // of the keyframes processed so far
   // Frame::number of the first frame given to Track(); keyframes of a loaded map have smaller ones.
   int first_number() const;

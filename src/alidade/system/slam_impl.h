@@ -19,6 +19,7 @@ class Slam::Impl {
   TrackResult Track(const FrameInput& input);
   void Load(const SavedMap& saved);
   void LeaveOut(const cv::Mat& mask);
+  void SetImu(const ImuModel& imu);
   void Reset();
   void Finish(double limit);
 

@@ -84,6 +84,8 @@ cv::Mat Slam::MoverMask() const {
   return MaskOf(last->belief_of_cells, last->image_size);
 }
 
+InertialReport Slam::Inertial() const { return impl_->pipeline().inertial().Get(); }
+
 SlamCounts Slam::Counts() const {
   const FramePipeline& pipeline = impl_->pipeline();
   SlamCounts counts;

@@ -11,6 +11,8 @@
 #include "alidade/base/timing.h"
 #include "alidade/detect/detector.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/inertial/imu.h"
+#include "alidade/inertial/preintegration.h"
 #include "alidade/tracking/track_failure.h"
 
 namespace ALIDADE_API alidade {
@@ -36,6 +38,9 @@ struct FrameInput {
   // Empty: none.
   cv::Mat depth;
   cv::Mat color = {};  // `image` in color (BGR) when it is gray, for point clouds; empty: none
+  // Readings of an inertial sensor since the last frame (Slam::SetImu()), in order of time. They
+  // may run ahead of the image.
+  std::vector<ImuSample> imu = {};
 };
 
 // How reliable a pose is.
@@ -143,6 +148,23 @@ struct SlamCounts {
   int predicted = 0;    // frames with TrackResult::predicted
   double left_out = 0;  // share of the image left out of every frame: Slam::LeaveOut(), fixed_parts
   LetGoFrames let_go;
+};
+
+// What images and inertial readings together tell so far (Slam::SetImu()).
+struct InertialReport {
+  bool given = false;      // SetImu() was called
+  long samples = 0;        // readings so far
+  bool metric = false;     // lengths of the newest map are meters because of the sensor
+  double scale_sigma = 0;  // relative standard deviation of those lengths; 0: unknown
+  // Direction in which things fall, unit vector in the world of the newest map.
+  std::optional<Eigen::Vector3d> gravity;
+  double gravity_sigma = 0;  // standard deviation of its direction, radians
+  ImuBias bias;
+  ImuModel model;                // as given, with what was estimated of it
+  double rotation_sigma = 0;     // of model.T_camera_imu.R, radians; 0: given or unknown
+  double time_offset_sigma = 0;  // seconds; 0: given or unknown
+  std::string left_out;          // why the readings are not used, as a sentence; empty: they are
+  std::string missing;           // what the readings do not tell yet, as a sentence; empty: nothing
 };
 
 }  // namespace alidade
