@@ -79,6 +79,25 @@ SynthFormat FormatOf(const SynthArguments& arguments) {
   return format;
 }
 
+void CheckImu(const SynthSettings& settings, SynthFormat format) {
+  if (settings.imu == "off" || format == SynthFormat::kTum) return;
+  if (format == SynthFormat::kKitti)
+    ThrowUsage("--imu requires --format tum or euroc: KITTI recordings have no inertial readings");
+  if (settings.imu == "phone" || settings.imu_offset)
+    ThrowUsage(
+        "--imu phone and --imu-offset need --format tum: EuRoC recordings have one clock and a "
+        "known sensor");
+}
+
+// From shortly before the first frame to shortly after the last.
+WrittenImu ReadingsOf(const SynthRecording& recording) {
+  constexpr double kAround = 0.1;  // seconds
+  const SimulatedImu& imu = *recording.imu();
+  const double from = recording.Time(0), to = recording.Time(recording.frames() - 1);
+  const double offset = imu.truth().time_offset;
+  return {imu.told(), imu.Between(from + offset - kAround, to + offset + kAround)};
+}
+
 int RenderAll(SynthArguments arguments) {
   SynthSettings& settings = arguments.settings;
   const SynthFormat format = FormatOf(arguments);
@@ -96,6 +115,7 @@ int RenderAll(SynthArguments arguments) {
   }
   if (format != SynthFormat::kTum && settings.fisheye)
     ThrowUsage("--fisheye needs --format tum: the others are stereo");
+  CheckImu(settings, format);
   SynthFolder folder(arguments.out);
   const std::string marker = folder.draft() + "/" + kSynthMarker;
   ordered_json about = {{"program", "alidade synth"}, {"settings", Describe(settings)}};
@@ -115,6 +135,7 @@ int RenderAll(SynthArguments arguments) {
     }
   }
   if (progress) std::fprintf(stderr, "\n");
+  if (recording.imu() != nullptr) writer->AddReadings(ReadingsOf(recording));
   writer->Finish();
   const SynthStatistics result = statistics.Result();
   about["statistics"] = Describe(result);
