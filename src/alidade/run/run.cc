@@ -178,6 +178,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
   Slam slam(finding.camera, settings, detector);
   if (options.mask) slam.LeaveOut(ReadMaskFile(*options.mask, finding.camera));
+  if (setup.source.imu) slam.SetImu(*setup.source.imu);
   SayScaledDown(finding.camera, slam.camera(), settings);
   if (saved) slam.Load(*saved);
 
