@@ -34,14 +34,21 @@ struct SynthArguments {
 };
 
 ordered_json Describe(const SynthSettings& s) {
-  return {{"scene", s.scene},   {"frames", s.frames},     {"path", s.path},
-          {"speed", s.speed},   {"arm", s.arm},           {"actors", s.actors},
-          {"things", s.things}, {"noise", s.noise},       {"light", s.light},
-          {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
-          {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
-          {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
-          {"height", s.height}, {"fov", s.fov},           {"fps", s.fps},
-          {"held", s.held}};
+  ordered_json told = {
+      {"scene", s.scene},   {"frames", s.frames},     {"path", s.path},
+      {"speed", s.speed},   {"arm", s.arm},           {"actors", s.actors},
+      {"things", s.things}, {"noise", s.noise},       {"light", s.light},
+      {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
+      {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
+      {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
+      {"height", s.height}, {"fov", s.fov},           {"fps", s.fps},
+      {"held", s.held}};
+  if (s.imu != "off") {
+    told["imu"] = s.imu;
+    told["imu_rate"] = s.ImuRate();
+    if (s.imu_offset) told["imu_offset"] = *s.imu_offset;
+  }
+  return told;
 }
 
 ordered_json Describe(const SynthStatistics& s) {
@@ -72,6 +79,25 @@ SynthFormat FormatOf(const SynthArguments& arguments) {
   return format;
 }
 
+void CheckImu(const SynthSettings& settings, SynthFormat format) {
+  if (settings.imu == "off" || format == SynthFormat::kTum) return;
+  if (format == SynthFormat::kKitti)
+    ThrowUsage("--imu requires --format tum or euroc: KITTI recordings have no inertial readings");
+  if (settings.imu == "phone" || settings.imu_offset)
+    ThrowUsage(
+        "--imu phone and --imu-offset need --format tum: EuRoC recordings have one clock and a "
+        "known sensor");
+}
+
+// From shortly before the first frame to shortly after the last.
+WrittenImu ReadingsOf(const SynthRecording& recording) {
+  constexpr double kAround = 0.1;  // seconds
+  const SimulatedImu& imu = *recording.imu();
+  const double from = recording.Time(0), to = recording.Time(recording.frames() - 1);
+  const double offset = imu.truth().time_offset;
+  return {imu.told(), imu.Between(from + offset - kAround, to + offset + kAround)};
+}
+
 int RenderAll(SynthArguments arguments) {
   SynthSettings& settings = arguments.settings;
   const SynthFormat format = FormatOf(arguments);
@@ -89,6 +115,7 @@ int RenderAll(SynthArguments arguments) {
   }
   if (format != SynthFormat::kTum && settings.fisheye)
     ThrowUsage("--fisheye needs --format tum: the others are stereo");
+  CheckImu(settings, format);
   SynthFolder folder(arguments.out);
   const std::string marker = folder.draft() + "/" + kSynthMarker;
   ordered_json about = {{"program", "alidade synth"}, {"settings", Describe(settings)}};
@@ -108,6 +135,7 @@ int RenderAll(SynthArguments arguments) {
     }
   }
   if (progress) std::fprintf(stderr, "\n");
+  if (recording.imu() != nullptr) writer->AddReadings(ReadingsOf(recording));
   writer->Finish();
   const SynthStatistics result = statistics.Result();
   about["statistics"] = Describe(result);
@@ -184,6 +212,17 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   command->add_option(
       "--held", settings.held,
       "Share of frames that are late by 0.2 to 1 s, as on a busy phone; default: 0");
+  command
+      ->add_option("--imu", settings.imu,
+                   "Inertial sensor. ideal: without errors; adis: that of the EuRoC drone, fully "
+                   "known; phone: biased, with an imprecise clock, and nothing known of it. "
+                   "Default: off")
+      ->type_name("off|adis|phone|ideal");
+  command->add_option("--imu-rate", settings.imu_rate,
+                      "Readings of the inertial sensor per second; default: 200, of a phone 60");
+  command->add_option("--imu-offset", settings.imu_offset,
+                      "Time on the clock of the readings minus that of the images, in "
+                      "milliseconds; default: 0, of a phone -30 to 30 by seed");
   command->add_option("--threads", arguments->threads, "Threads for rendering; 0: one per core");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(

@@ -114,7 +114,11 @@ struct SynthRecording::Parts {
         actors(CastActors(looks, layout.walks, path, given.frames / given.fps + delays.back(),
                           given.seed)),
         things(std::move(moved)),
-        renderer(scene, camera, given.fisheye) {}
+        renderer(scene, camera, given.fisheye) {
+    if (given.imu == "off") return;
+    imu = std::make_unique<SimulatedImu>(given, given.frames / given.fps + delays.back(),
+                                         [this](double time) { return path.MotionAt(time); });
+  }
 
   View Capture(double time, const Eigen::Vector3d& p_camera_eye) const {
     Shutter shutter;
@@ -162,6 +166,7 @@ struct SynthRecording::Parts {
   std::vector<Actor> actors;
   std::vector<Thing> things;
   ViewRenderer renderer;
+  std::unique_ptr<SimulatedImu> imu;
 };
 
 SynthRecording::SynthRecording(SynthSettings settings) {
@@ -193,6 +198,7 @@ double SynthRecording::Time(int number) const {
   return number / parts_->settings.fps + parts_->delays[std::clamp(number, 0, last)];
 }
 Se3 SynthRecording::Pose(int number) const { return parts_->path.At(Time(number)); }
+const SimulatedImu* SynthRecording::imu() const { return parts_->imu.get(); }
 
 RenderedFrame SynthRecording::Render(int number) const {
   const SynthSettings& settings = parts_->settings;

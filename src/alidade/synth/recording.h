@@ -7,6 +7,7 @@
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/synth/imu.h"
 #include "alidade/synth/settings.h"
 
 namespace alidade {
@@ -39,6 +40,7 @@ class SynthRecording {
   // T_world_camera, exact; with a rolling shutter, that of the middle row. The world's z is up, the
   // floor is at z = 0. `number` may exceed frames(): the path continues.
   Se3 Pose(int number) const;
+  const SimulatedImu* imu() const;  // nullptr: SynthSettings::imu is "off"
   // Depends only on the settings and `number`, not on threads or previous calls.
   RenderedFrame Render(int number) const;
 

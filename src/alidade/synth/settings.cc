@@ -18,6 +18,7 @@ constexpr NamedScene kScenes[] = {
     {"room", 600},    {"desk", 600},  {"corridor", 1000}, {"wall", 600},  {"loop", 2000},
     {"street", 1320}, {"road", 1987}, {"table", 360},     {"blank", 420}, {"hall", 840}};
 constexpr const char* kPaths[] = {"walk", "turn", "turn-walk", "still"};
+constexpr const char* kImus[] = {"off", "adis", "phone", "ideal"};
 
 }  // namespace
 
@@ -28,6 +29,8 @@ std::vector<std::string> SceneNames() {
 }
 
 std::vector<std::string> PathNames() { return {std::begin(kPaths), std::end(kPaths)}; }
+
+std::vector<std::string> ImuNames() { return {std::begin(kImus), std::end(kImus)}; }
 
 int SceneFrames(const std::string& name) {
   for (const NamedScene& scene : kScenes) {
@@ -43,6 +46,11 @@ double SynthSettings::Focal() const {
   if (fov == 0) return 525.0 * width / 640;  // 62.7°, as Kinect-like cameras have
   const double half = fov / 2 * std::numbers::pi / 180;
   return fisheye ? width / 2.0 / half : width / 2.0 / std::tan(half);
+}
+
+double SynthSettings::ImuRate() const {
+  if (imu == "off") return 0;
+  return imu_rate > 0 ? imu_rate : imu == "phone" ? 60 : 200;
 }
 
 void SynthSettings::Check() const {
@@ -73,6 +81,15 @@ void SynthSettings::Check() const {
   require(width >= 64 && width <= 4096, "width must be between 64 and 4096 pixels");
   require(height >= 48 && height <= 4096, "height must be between 48 and 4096 pixels");
   require(held >= 0 && held <= 0.5, "held must be between 0 and 0.5");
+  const std::vector<std::string> imus = ImuNames();
+  require(std::find(imus.begin(), imus.end(), imu) != imus.end(),
+          "imu must be off, adis, phone or ideal");
+  require(imu_rate == 0 || (imu_rate >= 10 && imu_rate <= 10000),
+          "imu_rate must be between 10 and 10000 readings per second");
+  require(!imu_offset || std::abs(*imu_offset) <= 1000,
+          "imu_offset must be between -1000 and 1000 milliseconds");
+  require(imu != "off" || (imu_rate == 0 && !imu_offset),
+          "imu_rate and imu_offset need a sensor: imu=adis, phone or ideal");
   require(std::isfinite(fps) && fps >= 1 && fps <= 1000, "fps must be between 1 and 1000");
   // r (1 + k1 r²) grows up to r² = -1 / (3 k1) only, where it is 2/3 r: no ray comes further out.
   const double corner = std::hypot(width, height) / 2 / Focal();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,17 +40,28 @@ struct SynthSettings {
   double held = 0;                // share of frames that come .2 to 1 s late: a busy phone
   bool calibrated = true;         // false: sources assume a camera, as if nothing were known of it
 
+  // The inertial sensor: "off"; "ideal", without errors; "adis", that of EuRoC's rig, everything
+  // known of it; "phone", nothing known of it.
+  std::string imu = "off";
+  double imu_rate =
+      0;  // readings per second; 0: the sensor's own, of a phone's browser 60, else 200
+  // An image taken at t was taken at t + imu_offset on the clock of the readings, milliseconds; not
+  // set: 0, of a phone -30 to 30 by seed.
+  std::optional<double> imu_offset;
+
   // What --blur, --rolling and switches of those names stand for: ms of a shutter indoors, of a
   // phone's sensor.
   static constexpr double kUsualBlur = 20, kUsualRolling = 16;
 
-  double Focal() const;  // focal length, pixels; of a fisheye: pixels per radian
-  void Check() const;    // throws Error (usage) naming the field that cannot be
+  double Focal() const;    // focal length, pixels; of a fisheye: pixels per radian
+  double ImuRate() const;  // readings per second; 0: no sensor
+  void Check() const;      // throws Error (usage) naming the field that cannot be
   bool operator==(const SynthSettings&) const = default;
 };
 
 std::vector<std::string> SceneNames();
 std::vector<std::string> PathNames();
+std::vector<std::string> ImuNames();  // "off" first
 int SceneFrames(
     const std::string& scene);  // once round its path; scene must be one of SceneNames()
 

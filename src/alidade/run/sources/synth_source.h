@@ -12,7 +12,7 @@ namespace alidade {
 
 bool IsSynthSource(const std::string& source);  // starts with "synth:"
 
-// Options have the names of the flags of `alidade synth`, with _ instead of -. Default of `frames`:
+// Options have the names of the flags of `alidade synth`, with _ or -. Default of `frames`:
 // once along the path of the scene. Switches (exposure …) may have no value, 0 or 1; blur and
 // rolling also milliseconds. calibrated=0: no calibration; the camera is assumed as for a video.
 // Throws Error (usage).
