@@ -140,6 +140,11 @@ void AddSharedOptions(CLI::App& command, RunOptions& options) {
           "(a hood, a gripper, a caption). Without it, what moves with the camera is found "
           "within about a second")
       ->type_name("FILE");
+  command
+      .add_option("--imu", options.imu,
+                  "Inertial readings: a table of them (time, angular rate x y z, acceleration x y "
+                  "z); off: use none. Default: those of the recording")
+      ->type_name("FILE|off");
   command.add_flag("--write-masks", options.write_masks,
                    "Write the mask of moving objects of each frame to mask/");
   command.add_flag("--quiet", options.quiet, "Print errors only");

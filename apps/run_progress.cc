@@ -103,8 +103,7 @@ void RunProgress::End(const RunSummary& summary, const std::string& folder) {
       "%d of %d frames tracked%s; %d keyframes, %d landmarks%s%s, path %.2f %s%s\n"
       "%s in %s\n",
       summary.tracked, summary.frames, tracked.c_str(), summary.keyframes, summary.landmarks,
-      maps.c_str(), shape.c_str(), summary.path_length,
-      settings.sensor == Sensor::kMono ? "map units" : "m",
+      maps.c_str(), shape.c_str(), summary.path_length, summary.metric ? "m" : "map units",
       summary.maps > 1 ? " in the largest" : "",
       run_->log.interrupted ? "Interrupted: results so far" : "Results", shown.c_str());
   // A localization leaves no map to show.

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/features2d.hpp>
 
 #include "alidade/io/files/open_source.h"
@@ -57,6 +58,84 @@ TEST(EurocSource, PairsTheImagesAndKeepsTheStamps) {
     EXPECT_LE(cv::norm(frame->right, TinyImage(10 * i + 1), cv::NORM_INF), 1);
   }
   EXPECT_FALSE(source->Next());
+}
+
+// Readings every 5 ms from 1.8 s on; their angular rate about x counts them.
+void WriteTinyImu(const TempFolder& folder, int readings) {
+  folder.Folder("mav0/imu0");
+  std::string list =
+      "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],"
+      "a_RS_S_x [m s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\r\n";
+  for (int i = 0; i < readings; ++i)
+    list += std::to_string(1800000000LL + 5000000LL * i) + "," + std::to_string(0.001 * i) +
+            ",0.2,0.3,9.7,-0.5,1.1\r\n";
+  folder.Write("mav0/imu0/data.csv", list);
+  folder.Write("mav0/imu0/sensor.yaml",
+               "sensor_type: imu\nT_BS:\n  cols: 4\n  rows: 4\n  data: [0, -1, 0, 0.01, 1, 0, 0, "
+               "0.02, 0, 0, 1, 0.03, 0, 0, 0, 1]\nrate_hz: 200\ngyroscope_noise_density: 1.7e-4\n"
+               "gyroscope_random_walk: 2e-5\naccelerometer_noise_density: 2e-3\n"
+               "accelerometer_random_walk: 3e-3\n");
+}
+
+TEST(EurocSource, GivesEachFrameTheReadingsSinceTheLastOne) {
+  const TempFolder folder;
+  WriteTinyEuroc(folder, 4, false);
+  folder.Write("mav0/cam0/sensor.yaml", SensorYaml(0.5));
+  WriteTinyImu(folder, 100);
+  const auto source = OpenSource(folder.path());
+  ASSERT_TRUE(source->Info().imu);
+  const ImuModel& imu = *source->Info().imu;
+  EXPECT_TRUE(imu.rotation_known && imu.translation_known && imu.time_offset_known);
+  EXPECT_EQ(imu.rate, 200);
+  EXPECT_EQ(imu.noise.gyro, 1.7e-4);
+  EXPECT_EQ(imu.noise.accel_walk, 3e-3);
+  Eigen::Matrix3d R;
+  R << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  EXPECT_TRUE(imu.T_camera_imu.R.isApprox(R));
+  EXPECT_TRUE(imu.T_camera_imu.t.isApprox(Eigen::Vector3d(0.01 - 0.5, 0.02, 0.03)));
+  // Two passes: a seek starts again.
+  for (int pass = 0; pass < 2; ++pass) {
+    int next = 0;
+    for (int i = 0; i < 4; ++i) {
+      const auto frame = source->Next();
+      ASSERT_FALSE(frame->imu.empty());
+      if (i == 0) {
+        EXPECT_NEAR(frame->imu.front().time, 1.9, 0.006);
+        next = static_cast<int>(std::lround((frame->imu.front().time - 1.8) / 0.005));
+      }
+      for (const ImuSample& sample : frame->imu) {
+        EXPECT_NEAR(sample.angular_rate.x(), 0.001 * next, 1e-9);
+        EXPECT_NEAR(sample.time, 1.8 + 0.005 * next, 1e-6);
+        EXPECT_TRUE(sample.specific_force.isApprox(Eigen::Vector3d(9.7, -0.5, 1.1)));
+        ++next;
+      }
+      EXPECT_GE(frame->imu.back().time, frame->time);
+    }
+    EXPECT_TRUE(source->Seek(0));
+  }
+  // A clip starts with its own past.
+  const auto clip = OpenSource(folder.path(), {.first = 2});
+  EXPECT_NEAR(clip->Next()->imu.front().time, 2.0, 0.006);
+  const auto off = OpenSource(folder.path(), {.imu = "off"});
+  EXPECT_FALSE(off->Info().imu);
+  EXPECT_TRUE(off->Next()->imu.empty());
+}
+
+// Rectification turns the camera towards the slanted baseline.
+TEST(EurocSource, TurnsTheSensorWithTheRectification) {
+  const TempFolder folder;
+  WriteTinyEuroc(folder, 2);
+  WriteTinyImu(folder, 100);
+  std::string right = SensorYaml(0.1);
+  right.replace(right.find("0, 1, 0, 0,"), 11, "0, 1, 0, 0.04,");  // a slanted pair
+  folder.Write("mav0/cam1/sensor.yaml", right);
+  const auto source = OpenSource(folder.path());
+  const Eigen::Matrix3d R_camera_rectified = source->Info().R_camera_rectified;
+  ASSERT_GT((R_camera_rectified - Eigen::Matrix3d::Identity()).norm(), 0.1);
+  const Eigen::Vector3d p_imu(0.3, -0.2, 1);
+  const Eigen::Vector3d p_mounted(0.2 + 0.01, 0.3 + 0.02, 1.03);  // T_BS of the sensor, by hand
+  EXPECT_TRUE(
+      (R_camera_rectified * (source->Info().imu->T_camera_imu * p_imu)).isApprox(p_mounted, 1e-9));
 }
 
 TEST(EurocSource, MonoKeepsTheLensInTheCamera) {

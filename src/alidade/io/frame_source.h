@@ -44,8 +44,8 @@ struct SourceFrame {
   // True depth of each pixel of `image`: CV_32F, meters along z, 0 = no surface. Rendered
   // recordings only.
   cv::Mat true_depth = {};
-  // Readings of the inertial sensor since the last frame, those up to this image's time included,
-  // in order of time; see FrameInput::imu.
+  // Readings of the inertial sensor since those of the last frame, at least up to this image's time
+  // where there are any, in order of time; see FrameInput::imu.
   std::vector<ImuSample> imu = {};
 };
 

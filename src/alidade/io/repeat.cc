@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
 #include "alidade/io/trajectory.h"
 #include "alidade/io/wrappers.h"
 
@@ -18,6 +19,12 @@ class RepeatedSource : public FrameSource {
   RepeatedSource(std::unique_ptr<FrameSource> source, int times)
       : source_(std::move(source)), info_(source_->Info()), legs_(2 * times) {
     if (info_.frames > 0) info_.frames = 1 + legs_ * (info_.frames - 1);
+    if (info_.imu) {
+      LogWarning(
+          "the inertial readings are not used with --repeat: played backward they contradict "
+          "their own bias");
+    }
+    info_.imu.reset();
   }
 
   const SourceInfo& Info() const override { return info_; }
@@ -28,6 +35,7 @@ class RepeatedSource : public FrameSource {
         if (played_ == 0) first_number_ = frame->number;
         ++played_;
         time_ = recorded_time_ = frame->time;
+        frame->imu.clear();
         return frame;
       }
       length_ = played_;
@@ -53,6 +61,7 @@ class RepeatedSource : public FrameSource {
     frame->time = time_;
     frame->stamp = FormatTime(time_);
     frame->number = first_number_ + played_++;
+    frame->imu.clear();
     return frame;
   }
 

@@ -1,8 +1,9 @@
-// Frame sources that wrap another source: a clip of it, or repeated playback. See also
-// read_ahead.h.
+// Frame sources that wrap another source: a clip of it, repeated playback, or its frames with
+// inertial readings. See also read_ahead.h.
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "alidade/io/frame_source.h"
 
@@ -15,7 +16,23 @@ std::unique_ptr<FrameSource> Clip(std::unique_ptr<FrameSource> source, int first
 // Plays a recording forwards and backwards `times` times; 0 returns `source` unchanged. The frame
 // at a turning point is returned once. Frame numbers and times keep increasing: backwards, the
 // intervals between frames are those of the forward pass. After the first pass the stamps are
-// generated from the times. Throws Error (usage) when `source` cannot seek.
+// generated from the times. Inertial readings are left out: played backward, a gyroscope's bias
+// would change its sign. Throws Error (usage) when `source` cannot seek.
 std::unique_ptr<FrameSource> Repeat(std::unique_ptr<FrameSource> source, int times);
+
+// The inertial readings of a recording.
+struct ImuRecording {
+  ImuModel model;
+  std::vector<ImuSample> samples;  // in order of time
+};
+
+// The first frame, and one after a seek, gets the readings from this long before it on; readings
+// run ahead of each image by as much, seconds. Time offsets of phones are up to 0.05 s.
+inline constexpr double kImuAround = 0.1;
+
+// Gives each frame the readings since the frame before it (SourceFrame::imu). A source without
+// readings of its own; `imu.model` becomes that of SourceInfo, so its T_camera_imu is of the
+// rectified camera.
+std::unique_ptr<FrameSource> WithImu(std::unique_ptr<FrameSource> source, ImuRecording imu);
 
 }  // namespace alidade

@@ -101,7 +101,8 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
           results.initialized_at,
           results.lost_spans,
           shape.points.size(),
-          PathLength(results.maps.front().trajectory)};
+          PathLength(results.maps.front().trajectory),
+          IsMetric(setup, results)};
 }
 
 }  // namespace alidade

@@ -45,6 +45,14 @@ void SayScaledDown(const Camera& given, const Camera& used, const SlamSettings& 
              ": larger ones take longer without gain (--set max_image_side=0 keeps their size)");
 }
 
+// Why inertial readings are not used, or what they do not tell.
+void TellOfImu(const InertialReport& report) {
+  if (!report.given) return;
+  for (const std::string& sentence : {report.left_out, report.missing}) {
+    if (!sentence.empty()) LogWarning(sentence);
+  }
+}
+
 // Collects the warnings of the library while it exists.
 class Warnings {
  public:
@@ -178,6 +186,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.detector) detector = OpenDetector(*options.detector, settings.dynamics.detector);
   Slam slam(finding.camera, settings, detector);
   if (options.mask) slam.LeaveOut(ReadMaskFile(*options.mask, finding.camera));
+  if (setup.source.imu) slam.SetImu(*setup.source.imu);
   SayScaledDown(finding.camera, slam.camera(), settings);
   if (saved) slam.Load(*saved);
 
@@ -194,6 +203,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   finding.lens = CheckLens(slam, settings, setup.settings.lens);
   if (const std::string bent = LensInWords(finding.lens, slam.camera()); !bent.empty())
     LogWarning(bent);
+  TellOfImu(slam.Inertial());
   log.warnings = warnings.all();
   if (log.failure && log.frames == 0) std::rethrow_exception(log.failure);
   LeaveResults(folder, slam, masks ? &*masks : nullptr, watchers, outcome);

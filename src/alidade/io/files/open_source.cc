@@ -33,7 +33,8 @@ bool IsKnownFolder(const std::string& path) {
 
 Recording ReadRecording(const std::string& folder, const SourceOptions& options) {
   if (IsTumFolder(folder)) return ReadTumRecording(folder);
-  if (IsEurocFolder(folder)) return ReadEurocRecording(folder);
+  const bool with_imu = !options.imu;
+  if (IsEurocFolder(folder)) return ReadEurocRecording(folder, with_imu);
   if (IsKittiFolder(folder)) return ReadKittiRecording(folder);
   if (IsImageFolder(folder)) {
     return ReadFolderRecording(folder, options.camera_file
@@ -124,7 +125,13 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
     recording.told += (recording.told.empty() || told.empty() ? "" : "\n") + told;
   }
   recording.lens_told = std::move(lens_told);
-  return PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
+  std::optional<ImuRecording> imu = std::move(recording.imu);
+  auto source = PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
+  if (!imu) return source;
+  Se3& T_camera_imu = imu->model.T_camera_imu;
+  const Se3 turn{source->Info().R_camera_rectified.transpose(), Eigen::Vector3d::Zero()};
+  T_camera_imu = turn * T_camera_imu;
+  return WithImu(std::move(source), std::move(*imu));
 }
 
 // The N of "camera:N".

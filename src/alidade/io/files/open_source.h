@@ -20,7 +20,9 @@ struct SourceOptions {
   bool fov_rough = false;  // `fov_degrees` is only approximate; sets SourceInfo::camera_guessed
   int first = 0;           // first frame, counted from 0; frames keep their numbers
   int last = -1;           // last frame, included; -1: to the end
-  bool color = false;      // read the frames' colors as well, if there are any
+  // The inertial readings: a file of them, or "off". nullopt: those that the source brings.
+  std::optional<std::string> imu = {};
+  bool color = false;  // read the frames' colors as well, if there are any
 };
 
 // The kind of source is detected from its content: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/),

@@ -117,8 +117,9 @@ void TellWhatStopped(const TrackResult& result, const Slam& slam, RunLog& log) {
   log.health = std::move(health);
 }
 
-void Feed(const SourceFrame& frame, const SlamSettings& settings, Slam& slam,
-          const std::vector<RunWatcher*>& watchers, RunLog& log, MaskWriter* masks) {
+// `imu`: readings that were not given to `slam` yet; empty afterwards if they were.
+void Feed(const SourceFrame& frame, std::vector<ImuSample>& imu, const SlamSettings& settings,
+          Slam& slam, const std::vector<RunWatcher*>& watchers, RunLog& log, MaskWriter* masks) {
   ++log.frames;
   if (std::isfinite(frame.time)) {
     if (!log.first_time) log.first_time = frame.time;
@@ -138,7 +139,10 @@ void Feed(const SourceFrame& frame, const SlamSettings& settings, Slam& slam,
   log.stamps.push_back(frame.stamp);
   log.numbers.push_back(frame.number);
   try {
-    result = slam.Track(InputOf(frame));
+    FrameInput input = InputOf(frame);
+    input.imu = imu;
+    result = slam.Track(input);
+    imu.clear();
   } catch (...) {
     const std::exception_ptr failure = std::current_exception();
     const std::string what = WhatOf(failure);
@@ -148,6 +152,7 @@ void Feed(const SourceFrame& frame, const SlamSettings& settings, Slam& slam,
       Drop(frame, what, log);
       return;
     }
+    imu.clear();
     // The frame counts, without a pose; the next will do better.
     if (!log.bug) log.bug = failure;
     ++log.untracked_reasons[what];
@@ -192,6 +197,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
   std::optional<int> part;                  // of the frame before
+  std::vector<ImuSample> imu;               // readings of skipped frames go to the next one
   const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
@@ -202,13 +208,15 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
         wall.emplace();
       }
       for (RunWatcher* watcher : watchers) watcher->Wait(Interrupted);
+      if (frame->part != part.value_or(frame->part)) imu.clear();
+      imu.insert(imu.end(), frame->imu.begin(), frame->imu.end());
       const double late = pacer.WaitFor(frame->time);
       if (may_drop && late > settings.time.max_latency && source.ready()) {
         ++log.late;
         continue;
       }
       if (frame->part != std::exchange(part, frame->part).value_or(frame->part)) slam.Reset();
-      Feed(*frame, settings, slam, watchers, log, masks);
+      Feed(*frame, imu, settings, slam, watchers, log, masks);
     }
   } catch (...) {  // whatever it was: what was done until then is kept
     log.failure = std::current_exception();

@@ -135,7 +135,7 @@ void AddErrors(const RunSetup& setup, const RunLog& log, const RunResults& resul
   if (!log.first_time) return;
   const Trajectory truth = log.truth.empty() ? TruthBeside(setup.source_path) : log.truth;
   if (truth.empty()) return;
-  const bool mono = setup.settings.slam.sensor == Sensor::kMono;
+  const bool mono = !IsMetric(setup, results);
   for (size_t i = 0; i < results.maps.size(); ++i) {
     const Trajectory& estimate = results.maps[i].trajectory;
     if (estimate.empty()) continue;
@@ -222,13 +222,13 @@ std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& 
 std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
                        const RunResults& results, const std::string& folder,
                        ReportPictures pictures) {
-  const bool mono = setup.settings.slam.sensor == Sensor::kMono;
-  const std::string unit = mono ? "map units" : "m";
+  const bool metric = IsMetric(setup, results);
+  const std::string unit = metric ? "m" : "map units";
   RunReport report;
   report.title = setup.source.name;
   report.failure = FailureOf(log, results);
   report.unit = unit;
-  if (mono) report.on_units = kOnMapUnits;
+  if (!metric) report.on_units = kOnMapUnits;
   report.next = NextSteps(setup.settings.slam, setup, results, folder);
   report.facts = FactsOf(setup, camera, log, results, unit);
   report.maps = MapsOf(log, results, unit);

@@ -36,11 +36,15 @@ ordered_json ReadingJson(const SourceOptions& reading) {
   const auto optional = [](const auto& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
   };
-  std::optional<std::string> camera = reading.camera_file;
+  std::optional<std::string> camera = reading.camera_file, imu = reading.imu;
   std::error_code error;
-  if (camera) camera = std::filesystem::absolute(*camera, error).lexically_normal().string();
+  for (std::optional<std::string>* path : {&camera, &imu}) {
+    if (*path && **path != "off")
+      *path = std::filesystem::absolute(**path, error).lexically_normal().string();
+  }
   return {{"camera", optional(camera)},
           {"fov", optional(reading.fov_degrees)},
+          {"imu", optional(imu)},
           {"first", reading.first},
           {"last", reading.last}};
 }
@@ -102,6 +106,31 @@ ordered_json CalibrationJson(const CameraFinding& finding) {
           {"wall_s", finding.wall_s}};
 }
 
+ordered_json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// A standard deviation; 0: unknown.
+ordered_json SigmaJson(double sigma) {
+  return sigma > 0 ? ordered_json(sigma) : ordered_json(nullptr);
+}
+
+ordered_json GravityJson(const InertialReport& inertial) {
+  return inertial.gravity ? ToJson(*inertial.gravity) : ordered_json(nullptr);
+}
+
+// What is known of the inertial sensor; null: no readings.
+ordered_json ImuJson(const InertialReport& inertial) {
+  if (!inertial.given) return nullptr;
+  const ImuModel& model = inertial.model;
+  const bool offset = model.time_offset_known || inertial.time_offset_sigma > 0;
+  const bool bias = inertial.gravity && inertial.left_out.empty();
+  return {{"samples", inertial.samples},
+          {"rate", model.rate > 0 ? ordered_json(model.rate) : ordered_json(nullptr)},
+          {"time_offset", offset ? ordered_json(model.time_offset) : ordered_json(nullptr)},
+          {"time_offset_sigma", SigmaJson(inertial.time_offset_sigma)},
+          {"gyro_bias", bias ? ToJson(inertial.bias.gyro) : ordered_json(nullptr)},
+          {"accel_bias", bias ? ToJson(inertial.bias.accel) : ordered_json(nullptr)}};
+}
+
 // Parts that failed and stopped.
 ordered_json StoppedJson(const SlamHealth& health) {
   ordered_json stopped = ordered_json::array();
@@ -127,6 +156,10 @@ ordered_json MapFiles(const RunResults& results) {
 }
 
 }  // namespace
+
+bool IsMetric(const RunSetup& setup, const RunResults& results) {
+  return setup.settings.slam.sensor != Sensor::kMono || results.inertial.metric;
+}
 
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
                       const RunResults& results) {
@@ -155,6 +188,10 @@ std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const 
       {"merges", results.counts.merges},
       {"cuts", results.counts.cuts},
       {"left_out", results.counts.left_out},
+      {"gravity", GravityJson(results.inertial)},
+      {"scale",
+       {{"known", IsMetric(setup, results)}, {"sigma", SigmaJson(results.inertial.scale_sigma)}}},
+      {"imu", ImuJson(results.inertial)},
       {"maps", results.map.Maps().size()},
       {"map_files", MapFiles(results)},
       {"keyframes", results.map.keyframe_count()},

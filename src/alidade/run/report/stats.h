@@ -19,6 +19,9 @@ struct ReportPictures {
   std::vector<ReportKeyframe> keyframes;
 };
 
+// Whether lengths of the largest map are meters.
+bool IsMetric(const RunSetup& setup, const RunResults& results);
+
 // Both as the bytes of the file. Fields and units: docs/reference/stats.md.
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
                       const RunResults& results);

@@ -72,6 +72,16 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
                    [](const MapResults& a, const MapResults& b) {
                      return a.trajectory.size() > b.trajectory.size();
                    });
+  InertialReport& inertial = results.inertial = slam.Inertial();
+  const MapId newest =
+      std::max_element(results.maps.begin(), results.maps.end(),
+                       [](const MapResults& a, const MapResults& b) { return a.id < b.id; })
+          ->id;
+  if (results.maps.front().id != newest) {
+    inertial.metric = false;
+    inertial.gravity.reset();
+  }
+  if (inertial.gravity) inertial.gravity = turn * *inertial.gravity;
   return results;
 }
 

@@ -27,6 +27,9 @@ struct RunResults {
   StageTimes times;
   SlamCounts counts;
   SemiDenseReport semidense;
+  // What is told of the largest map; the gravity is turned into its written world. Without scale
+  // and gravity where another map is the newest.
+  InertialReport inertial;
   int tracked = 0;  // frames, in all maps
 
   std::optional<int> initialized_at;              // number of the first tracked frame

@@ -14,7 +14,8 @@ struct RunSummary {
   std::optional<int> first_tracked;               // its number in the recording
   std::vector<std::array<double, 2>> lost_spans;  // seconds; not before the start
   size_t shape_points = 0;                        // of semidense.ply
-  double path_length = 0;  // through the largest map, metres (mono: map units)
+  double path_length = 0;  // through the largest map, metres if `metric`, else map units
+  bool metric = true;
 };
 
 }  // namespace alidade

@@ -50,6 +50,7 @@ SourceOptions SourceOptionsFrom(const RunOptions& options) {
           *options.fov + "'");
     }
   }
+  source.imu = options.imu;
   source.first = options.first;
   source.last = options.last;
   return source;

@@ -29,6 +29,7 @@ struct RunOptions {
   std::optional<std::string> dynamics, detector;
   std::shared_ptr<Detector> own_detector;  // detector of the caller instead of a file
   bool write_masks = false;
+  std::optional<std::string> imu;        // "off", or a file of readings; nullopt: the source's own
   std::optional<std::string> mask;       // image: what is white in it is left out of all frames
   bool overwrite = false;                // replace any existing results
   bool record = false;                   // the stream, as run.stream in the result folder

@@ -1,4 +1,4 @@
-// What Slam::Track() takes of a recording's frame.
+// What Slam::Track() takes of a recording's frame, without inertial readings.
 #pragma once
 
 #include "alidade/io/frame_source.h"

@@ -5,6 +5,7 @@
 #include "alidade/base/log.h"
 #include "alidade/io/files/euroc_calibration.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/imu_file.h"
 
 namespace alidade {
 namespace {
@@ -51,7 +52,7 @@ Calibration CalibrationOf(const std::string& mav0, bool stereo) {
 
 bool IsEurocFolder(const std::string& folder) { return IsThere(Mav0Of(folder) + "/cam0/data.csv"); }
 
-Recording ReadEurocRecording(const std::string& folder) {
+Recording ReadEurocRecording(const std::string& folder, bool with_imu) {
   const std::string mav0 = Mav0Of(folder);
   Recording recording;
   recording.kind = "euroc";
@@ -60,6 +61,12 @@ Recording ReadEurocRecording(const std::string& folder) {
   if (IsThere(mav0 + "/cam0/sensor.yaml")) {
     recording.calibration =
         CalibrationOf(mav0, recording.has_right && IsThere(mav0 + "/cam1/sensor.yaml"));
+  }
+  if (with_imu && IsThere(mav0 + "/imu0/data.csv")) {
+    std::optional<Se3> T_body_camera;
+    if (recording.calibration)
+      T_body_camera = ReadEurocCamera(mav0 + "/cam0/sensor.yaml").T_body_camera;
+    recording.imu = ReadEurocImu(mav0 + "/imu0", T_body_camera);
   }
   return recording;
 }

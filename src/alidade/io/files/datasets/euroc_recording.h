@@ -1,5 +1,5 @@
 // EuRoC recordings (Burri et al. 2016): mav0/cam0 and cam1, each with data.csv, data/ and
-// sensor.yaml.
+// sensor.yaml; mav0/imu0 with data.csv and sensor.yaml. TUM-VI has the same layout.
 #pragma once
 
 #include <string>
@@ -9,6 +9,6 @@
 namespace alidade {
 
 bool IsEurocFolder(const std::string& folder);  // true when `folder` contains mav0/cam0 or is mav0
-Recording ReadEurocRecording(const std::string& folder);
+Recording ReadEurocRecording(const std::string& folder, bool with_imu = true);
 
 }  // namespace alidade

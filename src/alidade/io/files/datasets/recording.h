@@ -10,6 +10,7 @@
 #include "alidade/io/calibration.h"
 #include "alidade/io/files/datasets/stamped_list.h"
 #include "alidade/io/frame_source.h"
+#include "alidade/io/wrappers.h"
 
 namespace alidade {
 
@@ -30,9 +31,11 @@ struct Recording {
   bool has_right = false, has_depth = false;
   bool color = false;                      // read the frames' colors as well
   std::optional<Calibration> calibration;  // found beside the images
-  double default_depth_factor = 0;         // used when the calibration has none
-  bool depth_assumed = false;              // it was
-  bool fps_assumed = false;                // see SourceInfo
+  // Of the (left) camera as mounted; a calibration with a sensor of its own replaces the model.
+  std::optional<ImuRecording> imu;
+  double default_depth_factor = 0;  // used when the calibration has none
+  bool depth_assumed = false;       // it was
+  bool fps_assumed = false;         // see SourceInfo
 };
 
 // Frames from a list of images in `folder`, in order of time. Entries up to a second out of order

@@ -1,0 +1,32 @@
+// Inertial readings written as a table of text: EuRoC's data.csv, exports of phones and loggers.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "alidade/inertial/imu.h"
+#include "alidade/io/stamp_unit.h"
+
+namespace alidade {
+
+struct ImuTable {
+  std::vector<ImuSample> samples;  // as in the file's order, not cleaned; those with all 7 numbers
+  // The units that were not stated, as a sentence for users: "imu.csv: times are read as
+  // milliseconds, …". Empty: all were stated.
+  std::string told;
+};
+
+// One line per reading: time, angular rate x y z, specific force x y z, separated by commas,
+// semicolons, tabs or blanks. A first line (or a comment before the numbers) with names, in any
+// order and with other columns between, says which column is which; without it the order is as
+// above. Units are those in the names ("[ns]", "(deg/s)", "_ms"). Otherwise: `stamps`, if it is
+// that of the format; the probable unit of times (200 readings per second, more or less); g where
+// the median length of the force is near 1; deg/s where the fastest 5 % of the rates exceed 20 as
+// rad/s (three turns per second, for long), or the median 3. Lines that are no readings are counted
+// in `told`. Throws Error (input) naming the file, and the line, when columns are missing or no
+// line is a reading.
+ImuTable ParseImuTable(std::string_view text, const std::string& name,
+                       std::optional<StampUnit> stamps = {});
+
+}  // namespace alidade
