@@ -137,6 +137,11 @@ void FramePipeline::UseCamera() {
   TakeNews();  // of keyframes that were mapped again
 }
 
+void FramePipeline::SetImu(const ImuModel& imu) {
+  inertial_.SetImu(imu);
+  inertial_shown_.Set(inertial_.report());
+}
+
 // One camera: the lengths of the map become meters, as soon as it is confirmed.
 void FramePipeline::UseInertial() {
   if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
