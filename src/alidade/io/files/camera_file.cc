@@ -10,6 +10,7 @@
 #include "alidade/io/files/calibrations/formats.h"
 #include "alidade/io/files/calibrations/write_calibration.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/imu_file.h"
 #include "alidade/io/files/yaml.h"
 
 namespace alidade {
@@ -28,7 +29,8 @@ double Positive(const YamlFile& file, const YAML::Node& parent, const char* key)
 void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool right) {
   static constexpr std::array kCommon = {"model", "width", "height", "fx",
                                          "fy",    "cx",    "cy",     "distortion"};
-  static constexpr std::array kLeftOnly = {"fps", "readout", "depth_factor", "baseline", "right"};
+  static constexpr std::array kLeftOnly = {"fps",      "readout", "depth_factor",
+                                           "baseline", "right",   "imu"};
   for (const auto& entry : parent) {
     const std::string key = entry.first.Scalar();
     const auto is_key = [&key](const char* known) { return key == known; };
@@ -92,6 +94,7 @@ Calibration ReadOwn(const YamlFile& file, const std::string& which) {
     calibration.depth_factor = file.Number(factor, "depth_factor");
     if (*calibration.depth_factor < 0) file.Fail(factor, "`depth_factor` must not be negative");
   }
+  if (root["imu"]) ImuModelOf(file, root["imu"]);  // ReadImuModel() reads it where it is needed
   if (const YAML::Node right = root["right"]) {
     if (root["baseline"]) file.Fail(root["baseline"], "give either `baseline` or `right`");
     if (!right.IsMap()) file.Fail(right, "`right` must contain the names and values of a camera");

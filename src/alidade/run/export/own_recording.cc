@@ -107,7 +107,7 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
   SourceOptions options;
   options.sensor = SensorNamed("the sensor of the map", saved.sensor);
   options.color = true;
-  options.imu = "off";
+  options.imu = kNoImu;
   options.first = WholeAt(reading, "first", 0);
   options.last = WholeAt(reading, "last", -1);
   const std::string told_camera = WordAt(reading, "camera");
