@@ -197,7 +197,8 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
       ThrowUsage("--imu FILE needs a recording, not a live camera");
     source = OpenLiveCameraSource(*number, options);
   } else if (IsBagSource(path) && !IsKnownFolder(path)) {
-    source = OpenBagSource(path, options);
+    OpenedBag bag = OpenBagSource(path, options);
+    opened = {std::move(bag.source), std::move(bag.imu)};
   } else if (IsFolder(path)) {
     opened = OpenRecording(path, options);
   } else if (!IsThere(path)) {

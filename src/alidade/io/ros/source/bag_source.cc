@@ -12,6 +12,7 @@
 #include "alidade/io/ros/source/bag_file.h"
 #include "alidade/io/ros/source/bag_player.h"
 #include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/imu_topics.h"
 
 namespace alidade {
 namespace {
@@ -88,8 +89,7 @@ Sensor SensorFor(const ChosenTopics& chosen, bool has_right, bool has_depth,
 
 }  // namespace
 
-std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
-                                           const SourceOptions& options) {
+OpenedBag OpenBagSource(const std::string& source, const SourceOptions& options) {
   const BagQuery query = ParseBagQuery(source);
   std::unique_ptr<BagFile> bag = OpenBagFile(query.path);
   for (const std::string& warning : bag->Warnings()) LogWarning(warning);
@@ -105,6 +105,10 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   has_right = chosen.right && (has_right || calibration.right || calibration.baseline > 0);
   if (!calibration.depth_factor) calibration.depth_factor = kMillimetres;
   const bool has_depth = chosen.depth && *calibration.depth_factor > 0;
+
+  BagImu imu;
+  if (!options.imu) imu = ReadBagImu(*bag, query, chosen.image);
+  if (!imu.told.empty()) chosen.told += "; " + imu.told;
 
   auto player = std::make_unique<BagPlayer>(std::move(bag), query.path, chosen, query.max_dt);
   // a frame rate in the user's camera file has priority
@@ -124,7 +128,7 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   info.told = chosen.told;
   if (!calibration.told.empty()) info.told += (info.told.empty() ? "" : "\n") + calibration.told;
   player->Begin(std::move(info), std::move(preparation), options.color);
-  return player;
+  return {std::move(player), std::move(imu.recording)};
 }
 
 }  // namespace alidade
