@@ -47,8 +47,7 @@ std::string MatrixText(const Se3& T, int rows, const char* between) {
 }
 
 std::string FormatImuCsv(const std::vector<ImuSample>& samples) {
-  std::string text =
-      "# t [s],wx [rad/s],wy [rad/s],wz [rad/s],ax [m/s^2],ay [m/s^2],az [m/s^2]\n";
+  std::string text = "# t [s],wx [rad/s],wy [rad/s],wz [rad/s],ax [m/s^2],ay [m/s^2],az [m/s^2]\n";
   for (const ImuSample& sample : samples) text += Fixed(sample.time, 9) + Reading(sample);
   return text;
 }
@@ -58,8 +57,8 @@ std::string FormatEurocImu(const std::vector<ImuSample>& samples, long long star
       "#timestamp [ns],w_RS_S_x [rad s^-1],w_RS_S_y [rad s^-1],w_RS_S_z [rad s^-1],a_RS_S_x [m "
       "s^-2],a_RS_S_y [m s^-2],a_RS_S_z [m s^-2]\n";
   for (const ImuSample& sample : samples)
-    text += std::to_string(start * 1'000'000'000LL + std::llround(sample.time * 1e9)) +
-            Reading(sample);
+    text +=
+        std::to_string(start * 1'000'000'000LL + std::llround(sample.time * 1e9)) + Reading(sample);
   return text;
 }
 
@@ -80,8 +79,9 @@ std::string FormatMotionCsv(const std::vector<ImuSample>& samples) {
 std::string FormatImuBlock(const ImuModel& model) {
   std::string text = "imu:\n  rate: " + ExactText(model.rate) + "\n";
   if (model.rotation_known && model.translation_known)
-    text += "  T_camera_imu: [" + MatrixText(model.T_camera_imu, 4, ", ") + "]\n  gyro_noise: " +
-            ExactText(model.noise.gyro) + "\n  accel_noise: " + ExactText(model.noise.accel) +
+    text += "  T_camera_imu: [" + MatrixText(model.T_camera_imu, 4, ", ") +
+            "]\n  gyro_noise: " + ExactText(model.noise.gyro) +
+            "\n  accel_noise: " + ExactText(model.noise.accel) +
             "\n  gyro_walk: " + ExactText(model.noise.gyro_walk) +
             "\n  accel_walk: " + ExactText(model.noise.accel_walk) + "\n";
   if (model.time_offset_known) text += "  time_offset: " + ExactText(model.time_offset) + "\n";

@@ -85,9 +85,10 @@ class TumWriter : public FolderWriter {
     WriteText("camera.yaml",
               std::string("model: ") + (fisheye_ ? "fisheye" : "pinhole") +
                   "\nwidth: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) +
-                  "\nfx: " + ExactText(c.fx) + "\nfy: " + ExactText(c.fy) + "\ncx: " + ExactText(c.cx) +
-                  "\ncy: " + ExactText(c.cy) + "\ndistortion: [" + JoinNumbers(distortion, ", ") +
-                  "]\nfps: " + ExactText(c.fps) + "\nreadout: " + ExactText(c.readout[1]) +
+                  "\nfx: " + ExactText(c.fx) + "\nfy: " + ExactText(c.fy) +
+                  "\ncx: " + ExactText(c.cx) + "\ncy: " + ExactText(c.cy) + "\ndistortion: [" +
+                  JoinNumbers(distortion, ", ") + "]\nfps: " + ExactText(c.fps) +
+                  "\nreadout: " + ExactText(c.readout[1]) +
                   "\ndepth_factor: " + ExactText(c.depth_factor) + "\n" + imu_block_);
     WriteText("groundtruth.txt", FormatTumTrajectory(truth_));
     WriteText("mask.txt", "# timestamp file (255 = moving people)\n" + mask_);
@@ -129,7 +130,8 @@ class EurocWriter : public FolderWriter {
     const Se3 T_world_body = T_world_camera * T_body_camera_.Inverse();
     const Eigen::Quaterniond q = T_world_body.Quaternion();
     const Eigen::Vector3d& t = T_world_body.t;
-    truth_ += stamp + "," + JoinNumbers({t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}, ",") + "\n";
+    truth_ +=
+        stamp + "," + JoinNumbers({t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}, ",") + "\n";
   }
 
   void Finish() override {

@@ -35,16 +35,6 @@ Vector3d RoundTo(double step, const Vector3d& value) {
   return step * (value / step).array().round().matrix();
 }
 
-// The rig of EuRoC (Burri et al. 2016): inverse of T_BS of cam0.
-Se3 EurocCameraImu() {
-  Se3 T_imu_camera;
-  T_imu_camera.R << 0.0148655429818, -0.999880929698, 0.00414029679422,  //
-      0.999557249008, 0.0149672133247, 0.025715529948,                   //
-      -0.0257744366974, 0.00375618835797, 0.999660727178;
-  T_imu_camera.t << -0.0216401454975, -0.064676986768, 0.00981073058949;
-  return Se3::FromQuaternion(T_imu_camera.Quaternion(), T_imu_camera.t).Inverse();
-}
-
 // A phone's axes: x right, y up, z to the user, as its screen is read upright. It is held upright
 // for an upright picture, else with its top to the left. The camera is near the top of the back,
 // the sensor some centimetres below it, and mounted within a degree or so.
@@ -61,6 +51,19 @@ Se3 PhoneCameraImu(bool upright, Random& random) {
 }
 
 }  // namespace
+
+Se3 EurocCameraImu() {
+  Se3 T_imu_camera;                                                      // T_BS of cam0
+  T_imu_camera.R << 0.0148655429818, -0.999880929698, 0.00414029679422,  //
+      0.999557249008, 0.0149672133247, 0.025715529948,                   //
+      -0.0257744366974, 0.00375618835797, 0.999660727178;
+  T_imu_camera.t << -0.0216401454975, -0.064676986768, 0.00981073058949;
+  return Se3::FromQuaternion(T_imu_camera.Quaternion(), T_imu_camera.t).Inverse();
+}
+
+ImuNoise EurocImuNoise() {
+  return {.gyro = 1.7e-4, .accel = 2e-3, .gyro_walk = 1.9e-5, .accel_walk = 3e-3};
+}
 
 ImuSample PerfectReading(const PathMotion& motion, const Se3& T_camera_imu, double time) {
   const Vector3d& w = motion.angular_rate;
@@ -96,7 +99,7 @@ SimulatedImu::SimulatedImu(const SynthSettings& settings, double seconds,
   } else {
     truth_.T_camera_imu = EurocCameraImu();
     truth_.time_offset = 1e-3 * settings.imu_offset.value_or(0);
-    truth_.noise = {.gyro = 1.7e-4, .accel = 2e-3, .gyro_walk = 1.9e-5, .accel_walk = 3e-3};
+    truth_.noise = EurocImuNoise();
     if (!ideal) errors_.bias = {{-0.002, 0.021, 0.077}, {-0.02, 0.09, 0.04}};
     told_ = truth_;
   }

@@ -3,18 +3,19 @@
 
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
-#include "alidade/inertial/imu.h"
-#include "alidade/inertial/preintegration.h"
 #include "alidade/synth/camera_path.h"
+#include "alidade/synth/imu_track.h"
 #include "alidade/synth/settings.h"
 
 namespace alidade {
 
 // Of the rendered worlds, whose z is up; m/s².
 inline const Eigen::Vector3d kSynthGravity(0, 0, -9.81);
+
+Se3 EurocCameraImu();      // T_camera_imu of EuRoC's left camera (Burri et al. 2016)
+ImuNoise EurocImuNoise();  // of its sensor, an ADIS16448
 
 // What a perfect sensor at `T_camera_imu` reads; its time is that of the motion, seconds. Exact:
 // the lever arm adds centripetal and angular acceleration.
@@ -31,27 +32,22 @@ struct ImuErrors {
   double accel_step = 0;  // m/s²
 };
 
-// One sensor during one recording. Readings depend on the settings and their number only.
-class SimulatedImu {
+// A sensor with the errors of its kind; told() holds all of "adis" and "ideal", nothing of "phone".
+// Readings depend on the settings and their number only.
+class SimulatedImu : public ImuTrack {
  public:
   // The sensor SynthSettings::imu, which is not "off". `motion`: of the camera at a time of the
   // images, seconds, from shortly before 0 to shortly after `seconds`.
   SimulatedImu(const SynthSettings& settings, double seconds,
                std::function<PathMotion(double)> motion);
 
-  // What a user knows of the sensor: all, of "adis" and "ideal"; nothing, of "phone".
-  const ImuModel& told() const { return told_; }
-  // What it is: true rotation, lever arm, offset of the clock, noise.
-  const ImuModel& truth() const { return truth_; }
-  ImuBias BiasAt(double time) const;  // true; `time` on the clock of the images, seconds
-  // Readings with after < time <= until, both on the clock of the samples, in order of time.
-  std::vector<ImuSample> Between(double after, double until) const;
+  ImuBias BiasAt(double time) const override;
+  std::vector<ImuSample> Between(double after, double until) const override;
 
  private:
   ImuSample Reading(long number) const;
 
   std::function<PathMotion(double)> motion_;
-  ImuModel told_, truth_;
   ImuErrors errors_;
   uint64_t seed_;
   std::vector<ImuBias> walk_;  // of the bias, at every kWalkStep seconds

@@ -33,13 +33,25 @@ std::vector<std::string> PathNames() { return {std::begin(kPaths), std::end(kPat
 std::vector<std::string> ImuNames() { return {std::begin(kImus), std::end(kImus)}; }
 
 int SceneFrames(const std::string& name) {
+  if (name == kFlightScene) return 0;
   for (const NamedScene& scene : kScenes) {
     if (name == scene.name) return scene.frames;
   }
   std::string known;
   for (const NamedScene& scene : kScenes)
     known += std::string(known.empty() ? "" : ", ") + scene.name;
-  ThrowUsage("synth: unknown scene \"" + name + "\"; known are " + known);
+  ThrowUsage("synth: unknown scene \"" + name + "\"; known are " + known + ", " + kFlightScene);
+}
+
+SynthSettings SynthDefaults(const std::string& scene) {
+  SynthSettings settings;
+  settings.scene = scene;
+  settings.frames = SceneFrames(scene);
+  if (scene != kFlightScene) return settings;
+  settings.width = 752;
+  settings.height = 480;
+  settings.fov = 78.77;  // a focal length of 458 pixels
+  return settings;
 }
 
 double SynthSettings::Focal() const {
@@ -58,10 +70,15 @@ void SynthSettings::Check() const {
   const auto require = [](bool holds, const char* what) {
     if (!holds) ThrowUsage(std::string("synth: ") + what);
   };
-  require(frames >= 1 && frames <= 1000000, "frames must be between 1 and 1000000");
+  const bool flight = scene == kFlightScene;
+  require(frames >= (flight ? 0 : 1) && frames <= 1000000, "frames must be between 1 and 1000000");
   const std::vector<std::string> paths = PathNames();
-  require(std::find(paths.begin(), paths.end(), path) != paths.end(),
-          "path must be walk, turn, turn-walk or still");
+  const bool named = std::find(paths.begin(), paths.end(), path) != paths.end();
+  require(flight || named, "path must be walk, turn, turn-walk or still");
+  require(!flight || (!named && !path.empty()),
+          "a flight needs a file with the poses of the camera: path=FILE");
+  require(!flight || (actors == 0 && things == 0 && speed == 1 && held == 0),
+          "a flight is as it was recorded: actors, things, speed and held are not for it");
   require(speed > 0 && speed <= 100, "speed must be above 0 and at most 100");
   require(arm >= 0 && arm <= 2, "arm must be between 0 and 2 meters");
   require(arm == 0 || path == "turn", "arm requires the path \"turn\"");
@@ -82,8 +99,12 @@ void SynthSettings::Check() const {
   require(height >= 48 && height <= 4096, "height must be between 48 and 4096 pixels");
   require(held >= 0 && held <= 0.5, "held must be between 0 and 0.5");
   const std::vector<std::string> imus = ImuNames();
-  require(std::find(imus.begin(), imus.end(), imu) != imus.end(),
-          "imu must be off, adis, phone or ideal");
+  const bool simulated = std::find(imus.begin() + 1, imus.end(), imu) != imus.end();
+  require(flight || simulated || imu == "off", "imu must be off, adis, phone or ideal");
+  require(!flight || !simulated, "a flight has the readings of a file: imu=FILE");
+  require(!flight || (imu_rate == 0 && !imu_offset),
+          "the readings of a flight are as recorded: imu_rate and imu_offset are not for it");
+  require(flight || imu_model.empty(), "imu_model is for flights");
   require(imu_rate == 0 || (imu_rate >= 10 && imu_rate <= 10000),
           "imu_rate must be between 10 and 10000 readings per second");
   require(!imu_offset || std::abs(*imu_offset) <= 1000,

@@ -16,6 +16,7 @@
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/text.h"
 #include "alidade/io/wrappers.h"
+#include "alidade/run/sources/flight_files.h"
 #include "alidade/synth/recording.h"
 
 namespace alidade {
@@ -119,7 +120,8 @@ void Set(SynthSettings& settings, const std::string& name, const std::string& va
       {"calibrated", Into(&S::calibrated)},
       {"imu", Into(&S::imu)},
       {"imu_rate", Into(&S::imu_rate)},
-      {"imu_offset", SetImuOffset}};
+      {"imu_offset", SetImuOffset},
+      {"imu_model", Into(&S::imu_model)}};
   std::vector<std::string> names;
   for (const auto& [known, set] : kOptions) {
     if (known == name) {
@@ -152,10 +154,8 @@ Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions
   }
   if (options.camera_file)
     chosen = FitToSize(ReadCameraFile(*options.camera_file), {camera.width, camera.height});
-  if (!options.camera_file) {
-    chosen.baseline = own.baseline;
-    chosen.fps = own.fps;
-  }
+  if (!options.camera_file) chosen.baseline = own.baseline;
+  if (!options.camera_file || !chosen.fps) chosen.fps = own.fps;
   if (!chosen.depth_factor) chosen.depth_factor = own.depth_factor;
   return chosen;
 }
@@ -172,7 +172,7 @@ Sensor ChooseSensor(const SynthSettings& settings, const SourceOptions& options)
 class SynthSource : public ActorSource {
  public:
   SynthSource(SynthSettings settings, const SourceOptions& options)
-      : recording_(settings),
+      : recording_(MakeSynthRecording(settings)),
         calibration_(ToldCalibration(recording_, options)),
         preparation_(calibration_, ChooseSensor(settings, options)) {
     info_.told = calibration_.told;
@@ -183,8 +183,8 @@ class SynthSource : public ActorSource {
     info_.camera_guessed =
         !options.camera_file && (options.fov_degrees ? options.fov_rough : !settings.calibrated);
     info_.R_camera_rectified = preparation_.R_camera_rectified();
-    info_.frames = settings.frames;
-    if (const SimulatedImu* imu = recording_.imu()) {
+    info_.frames = recording_.frames();
+    if (const ImuTrack* imu = recording_.imu()) {
       info_.imu = imu->told();
       const Eigen::Matrix3d R = info_.R_camera_rectified.transpose();
       if (info_.imu->rotation_known)
@@ -242,6 +242,12 @@ class SynthSource : public ActorSource {
 
 }  // namespace
 
+SynthRecording MakeSynthRecording(const SynthSettings& settings) {
+  settings.Check();
+  if (settings.scene != kFlightScene) return SynthRecording(settings);
+  return {settings, ReadFlight(settings)};
+}
+
 std::string SynthStamp(double seconds) {
   char text[40];
   PrintTo(text, sizeof(text), "%.6f", seconds);
@@ -254,9 +260,7 @@ SynthSettings ParseSynthSource(const std::string& source) {
   if (!IsSynthSource(source)) ThrowUsage("not a rendered source: " + source);
   std::string rest = source.substr(sizeof(kPrefix) - 1);
   const size_t question = rest.find('?');
-  SynthSettings settings;
-  settings.scene = rest.substr(0, question);
-  settings.frames = SceneFrames(settings.scene);
+  SynthSettings settings = SynthDefaults(rest.substr(0, question));
   rest = question == std::string::npos ? "" : rest.substr(question + 1);
   while (!rest.empty()) {
     const size_t end = rest.find('&');

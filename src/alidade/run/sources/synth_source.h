@@ -6,6 +6,7 @@
 
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/frame_source.h"
+#include "alidade/synth/recording.h"
 #include "alidade/synth/settings.h"
 
 namespace alidade {
@@ -17,6 +18,9 @@ bool IsSynthSource(const std::string& source);  // starts with "synth:"
 // rolling also milliseconds. calibrated=0: no calibration; the camera is assumed as for a video.
 // Throws Error (usage).
 SynthSettings ParseSynthSource(const std::string& source);
+
+// The recording with these settings; that of a flight reads its files. Throws Error.
+SynthRecording MakeSynthRecording(const SynthSettings& settings);
 
 // Frames are rendered on demand. Options as for recordings on disk. Throws Error (usage) for a
 // sensor that the scene does not have, for example stereo without `stereo`; the default is rgbd
