@@ -12,6 +12,7 @@ from ._arguments import suggesting
 from ._log import tell_warnings
 from ._paths import coded
 from .camera import Camera, PathLike
+from .imu import Imu
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -38,6 +39,8 @@ class Frame:
     """rendered recordings: true pose, (4, 4) T_world_camera, in the scene's world frame"""
     true_depth: Optional[numpy.ndarray] = None
     """rendered recordings: true depth, (h, w) float32, meters along z, 0 = no surface"""
+    imu: Optional[numpy.ndarray] = None
+    """(n, 7), inertial readings since the last frame, for Slam.track(); None: the recording has none"""
 
 
 class Recording:
@@ -56,6 +59,8 @@ class Recording:
         """after rectification, for Slam"""
         self.camera_guessed: bool = info["camera_guessed"]
         """no calibration is known: the field of view is assumed"""
+        self.imu: Optional[Imu] = info["imu"]
+        """what is known of the inertial sensor, for Slam; None: there are no readings"""
         self.frames: Optional[int] = info["frames"] if info["frames"] >= 0 else None
         """number of frames; None: unknown"""
         self.mounting: numpy.ndarray = info["mounting"]
@@ -83,7 +88,8 @@ class Recording:
 
 @suggesting
 def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[PathLike] = None,
-         fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False) -> Recording:
+         fov: Optional[float] = None, first: int = 0, last: int = -1, color: bool = False,
+         imu: Optional[PathLike] = None) -> Recording:
     """Opens any source of ``alidade run`` for reading frame by frame as arrays.
 
     source: folder (TUM RGB-D, EuRoC, KITTI, images), ROS recording, video, "camera:0" or "synth:SCENE?frames=N".
@@ -92,9 +98,11 @@ def open(source: PathLike, *, sensor: Optional[str] = None, camera: Optional[Pat
     fov: horizontal field of view in degrees, used instead of a calibration.
     first, last: frame numbers from 0, both included; -1: to the end.
     color: also read the frames' colors, if available.
+    imu: a table of inertial readings, used instead of the recording's; "off": none.
 
     Raises InputError or UsageError.
     """
     options = {"source": coded(source, "source"), "sensor": sensor, "fov": fov, "first": first, "last": last,
+               "imu": None if imu is None else coded(imu, "imu"),
                "camera_file": None if camera is None else coded(camera, "camera")}
     return Recording(_core.open(options, color))

@@ -49,7 +49,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
         rate: Union[None, float, str] = None, repeat: int = 0, threads: int = 0, seed: Optional[int] = None,
         first: int = 0, last: int = -1, record: bool = False, record_to: Optional[PathLike] = None,
         viewer: bool = False, port: Optional[int] = None, host: Optional[str] = None, mask: Optional[PathLike] = None,
-        write_masks: bool = False, overwrite: bool = False,
+        imu: Optional[PathLike] = None, write_masks: bool = False, overwrite: bool = False,
         progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Runs SLAM on a recording, video or live camera, as ``alidade run`` does: with the same options and names, and
     the same bytes in every file.
@@ -77,7 +77,8 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     record: record the stream as run.stream in the results folder, for `alidade view`; record_to: record it to this
         file instead, as MCAP if it ends in .mcap. viewer: show the run in a browser (Progress.viewer is the URL);
         port, host: where it listens (8090 or the next free port, 127.0.0.1). mask: an image of
-        the shape of the frames; what is white in it is left out of all of them. write_masks: write images of the
+        the shape of the frames; what is white in it is left out of all of them. imu: a table of inertial
+        readings, used instead of the recording's, or "off". write_masks: write images of the
         excluded moving parts.
     progress: called in this thread with a Progress when it changed, at most 20 times per second; an exception it
         raises ends the run.
@@ -89,7 +90,7 @@ def run(source: PathLike, *, sensor: Optional[str] = None, semidense: bool = Fal
     return _run(dict(
         source=coded(source, "source"), sensor=sensor, semidense=semidense, dynamics=dynamics, fov=fov,
         calibrate_first=calibrate_first, profile=profile, settings=settings, schedule=schedule, rate=rate,
-        repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask, "mask"),
+        repeat=repeat, threads=threads, seed=seed, first=first, last=last, mask=_path(mask, "mask"), imu=_path(imu, "imu"),
         write_masks=write_masks, overwrite=overwrite, **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, load, out, progress)
 
@@ -104,14 +105,14 @@ def localize(source: PathLike, map: Union[PathLike, Map], *, sensor: Optional[st
              seed: Optional[int] = None, first: int = 0, last: int = -1,
              record: bool = False, record_to: Optional[PathLike] = None, viewer: bool = False,
              port: Optional[int] = None, host: Optional[str] = None, mask: Optional[PathLike] = None,
-             write_masks: bool = False, overwrite: bool = False,
+             imu: Optional[PathLike] = None, write_masks: bool = False, overwrite: bool = False,
              progress: Optional[Callable[[Progress], None]] = None) -> Result:
     """Estimates the poses of a recording in an existing map without changing it, as ``alidade localize`` does. Poses
     are in the map's world. map: a Map, or its path; other arguments as for run()."""
     return _run(dict(
         source=coded(source, "source"), sensor=sensor, dynamics=dynamics, fov=fov, calibrate_first=calibrate_first,
         profile=profile, settings=settings, schedule=schedule, rate=rate, repeat=repeat, threads=threads, seed=seed,
-        first=first, last=last, mask=_path(mask, "mask"), write_masks=write_masks, overwrite=overwrite, localize=True,
+        first=first, last=last, mask=_path(mask, "mask"), imu=_path(imu, "imu"), write_masks=write_masks, overwrite=overwrite, localize=True,
         **_watched(record, record_to, viewer, port, host)),
         detector, camera, config, map, out, progress)
 

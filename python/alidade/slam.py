@@ -19,6 +19,7 @@ from ._paths import coded
 from ._renamed import Renamed, warn
 from .camera import Camera, PathLike
 from .errors import UsageError
+from .imu import Imu, Inertial
 from .maps import Map
 from .running import Detector
 
@@ -124,6 +125,8 @@ class Slam:
     ``--set``; alidade.settings() lists them all. Settings may also be passed as keywords: **{"semidense.voxel": 0.02}.
     mounting: Recording.mounting of a rectified recording; trajectory() then refers to the camera as mounted.
     record: records the stream from the first frame on, as record() does.
+    imu: the inertial sensor whose readings are given to track(): an Imu, or a dict of its fields, {} if nothing is
+    known of it. Lengths are then in meters once the readings tell them; see ``inertial``.
     calibrate: the camera is only approximate, such as Camera.from_fov(640, 480, 66). A monocular Slam then estimates
     focal length, distortion and rolling-shutter readout online and adapts the map; see ``camera``.
 
@@ -147,7 +150,8 @@ class Slam:
                  profile: str = "desktop", config: Optional[PathLike] = None,
                  settings: Optional[Mapping[str, Any]] = None, schedule: str = "inline",
                  seed: Optional[int] = None, localize: bool = False, mounting: Optional[numpy.ndarray] = None,
-                 calibrate: bool = False, record: Optional[PathLike] = None, **more_settings: Any) -> None:
+                 calibrate: bool = False, record: Optional[PathLike] = None,
+                 imu: Union[None, Imu, Mapping[str, Any]] = None, **more_settings: Any) -> None:
         if "localise" in more_settings:
             warn("localise=", "localize=")
             localize = more_settings.pop("localise")
@@ -162,7 +166,12 @@ class Slam:
         if not isinstance(camera, Camera):
             camera = Camera.from_yaml(camera, sensor)
         self._sensor = sensor
-        self._core = _core.Slam(camera, options, mounting, calibrate)
+        self._has_imu = imu is not None
+        if imu is not None and not isinstance(imu, Imu):
+            if not isinstance(imu, Mapping):
+                raise TypeError(f"imu must be an alidade.Imu or a dict of its fields, not {described(imu)}")
+            imu = Imu(**imu)
+        self._core = _core.Slam(camera, options, mounting, calibrate, imu)
         _open.add(self)
         if record is not None:
             self.record(record)
@@ -171,14 +180,15 @@ class Slam:
 
     def track(self, t: float, image: numpy.ndarray, right: Optional[numpy.ndarray] = None,
               depth: Optional[numpy.ndarray] = None, *, color: Optional[numpy.ndarray] = None,
-              stamp: str = "") -> TrackResult:
+              stamp: str = "", imu: Optional[numpy.ndarray] = None) -> TrackResult:
         """Processes one frame. Call in order of time.
 
         t: seconds. image: (h, w) gray or (h, w, 3) blue green red, uint8, of the camera's size (for red green blue
         pass image[..., ::-1], which costs a copy). right: stereo: the rectified right image. depth: RGB-D: (h, w),
         uint16 with camera.depth_factor per meter or float32 in meters, registered to the image; 0 or NaN = unknown.
         color: (h, w, 3) blue green red, for clouds, when image is gray. stamp: the time as text for
-        save_trajectory().
+        save_trajectory(). imu: with Slam's imu: (n, 7), the readings since the last frame, in order of time and perhaps
+        ahead of the image: time, angular rate x y z (rad/s), specific force x y z (m/s²).
 
         Arrays of any memory layout and byte order, and what NumPy can see as an array (tensors of PyTorch on the CPU);
         depth of another floating-point type is converted to float32.
@@ -197,8 +207,10 @@ class Slam:
             self._refuse(depth=depth)
         elif self._sensor == "rgbd":
             self._refuse(right=right)
+        if imu is not None and not self._has_imu:
+            raise UsageError("imu= is given, but this Slam knows of no inertial sensor; create it with imu=alidade.Imu()")
         try:
-            return TrackResult(**self._core.track(t, image, depth, right, color, stamp))
+            return TrackResult(**self._core.track(t, image, depth, right, color, imu, stamp))
         finally:
             tell_warnings()
 
@@ -321,6 +333,12 @@ class Slam:
     def frames(self) -> int:
         """Number of frames accepted by track()."""
         return self._core.frames()
+
+    @property
+    def inertial(self) -> Optional[Inertial]:
+        """What images and inertial readings together tell so far; None without ``imu``."""
+        told = self._core.inertial()
+        return None if told is None else Inertial(**told)
 
     def features(self) -> Features:
         """The features of the last frame."""

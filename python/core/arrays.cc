@@ -76,6 +76,11 @@ void FillPose(const Se3& pose, double* out) {
   out[15] = 1;
 }
 
+bool HoldsNumbers(const py::array& array) {
+  const char kind = array.dtype().kind();
+  return kind == 'f' || kind == 'i' || kind == 'u';
+}
+
 }  // namespace
 
 WrappedImage WrapImage(const py::handle& value, const std::string& name) {
@@ -154,11 +159,48 @@ py::array_t<double> TrajectoryArray(const Trajectory& poses) {
   return array;
 }
 
+py::array_t<double> ImuArray(const std::vector<ImuSample>& readings) {
+  py::array_t<double> array({static_cast<py::ssize_t>(readings.size()), py::ssize_t{7}});
+  double* out = array.mutable_data();
+  for (const ImuSample& reading : readings) {
+    *out++ = reading.time;
+    for (int axis = 0; axis < 3; ++axis) *out++ = reading.angular_rate[axis];
+    for (int axis = 0; axis < 3; ++axis) *out++ = reading.specific_force[axis];
+  }
+  return array;
+}
+
+std::vector<ImuSample> ImuSamplesOf(const py::handle& value, const std::string& name) {
+  if (value.is_none()) return {};
+  const py::array given = Seen(value, name);
+  if (!HoldsNumbers(given) || given.ndim() != 2 || given.shape(1) != 7)
+    Refuse(name + " must be (n, 7) numbers: time, angular rate x y z, specific force x y z, not " +
+           ShapeOf(given));
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  std::vector<ImuSample> readings;
+  for (py::ssize_t i = 0; i < array.shape(0); ++i) {
+    const double* row = array.data(i, 0);
+    readings.push_back({row[0], {row[1], row[2], row[3]}, {row[4], row[5], row[6]}});
+  }
+  return readings;
+}
+
+Se3 PoseFrom(const py::handle& value, const std::string& name) {
+  const py::array given = Seen(value, name);
+  if (!HoldsNumbers(given) || given.ndim() != 2 || given.shape(0) != 4 || given.shape(1) != 4)
+    Refuse(name + " must be a pose, (4, 4) numbers, not " + ShapeOf(given));
+  const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
+  Se3 pose;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) pose.R(row, column) = *array.data(row, column);
+    pose.t[row] = *array.data(row, 3);
+  }
+  return pose;
+}
+
 Trajectory TrajectoryOf(const py::handle& value, const std::string& name) {
   const py::array given = Seen(value, name);
-  const char kind = given.dtype().kind();
-  const bool numbers = kind == 'f' || kind == 'i' || kind == 'u';
-  if (!numbers || given.ndim() != 2 || given.shape(1) != 8)
+  if (!HoldsNumbers(given) || given.ndim() != 2 || given.shape(1) != 8)
     Refuse(name + " must be (n, 8) numbers: timestamp tx ty tz qx qy qz qw, not " + ShapeOf(given));
   const auto array = py::array_t<double, py::array::c_style | py::array::forcecast>::ensure(given);
   Trajectory trajectory;

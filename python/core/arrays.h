@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "alidade/geometry/se3.h"
+#include "alidade/inertial/imu.h"
 #include "alidade/io/trajectory.h"
 #include "python.h"
 
@@ -37,6 +38,11 @@ py::object ArrayOf(const cv::Mat& image);
 py::array_t<double> PoseArray(const Se3& pose);                // (4, 4)
 py::array_t<double> PoseArray(const std::vector<Se3>& poses);  // (n, 4, 4)
 py::array_t<double> TrajectoryArray(const Trajectory& poses);  // (n, 8): t, translation, x y z w
+py::array_t<double> ImuArray(const std::vector<ImuSample>& readings);  // (n, 7)
+// The same back; none for None. Throws ArrayError when the array is not (n, 7) numbers.
+std::vector<ImuSample> ImuSamplesOf(const py::handle& array, const std::string& name);
+// A pose, (4, 4). Throws ArrayError.
+Se3 PoseFrom(const py::handle& array, const std::string& name);
 // Throws ArrayError when the array is not (n, 8), Error (input), with the row's number, when a row
 // is not a pose.
 Trajectory TrajectoryOf(const py::handle& array, const std::string& name);

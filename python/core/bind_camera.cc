@@ -63,6 +63,7 @@ py::object ReadCamera(const std::string& path, const std::string& sensor) {
 }  // namespace
 
 void BindCamera(py::module_& core) {
+  core.def("check_imu", [](const py::object& imu) { ImuFrom(imu); });
   core.def("check_camera", [](const py::object& camera) { CameraFrom(camera); });
   core.def("read_camera", &ReadCamera, py::arg("path"), py::arg("sensor"));
   core.def("write_camera", [](const std::string& path, const py::object& camera) {

@@ -54,12 +54,14 @@ py::dict FieldsOf(const TrackedFrame& frame) {
 
 void BindSlam(py::module_& core) {
   py::class_<SlamObject>(core, "Slam")
-      .def(py::init<const py::object&, const py::dict&, const py::object&, bool>(), "camera"_a,
-           "options"_a, "mounting"_a, "calibrate"_a)
+      .def(py::init<const py::object&, const py::dict&, const py::object&, bool,
+                    const py::object&>(),
+           "camera"_a, "options"_a, "mounting"_a, "calibrate"_a, "imu"_a)
       .def("track",
            [](SlamObject& slam, double time, const py::object& image, const py::object& depth,
-              const py::object& right, const py::object& color, const std::string& stamp) {
-             return FieldsOf(slam.Track(time, image, depth, right, color, stamp));
+              const py::object& right, const py::object& color, const py::object& imu,
+              const std::string& stamp) {
+             return FieldsOf(slam.Track(time, image, depth, right, color, imu, stamp));
            })
       .def("load", &SlamObject::Load)
       .def("leave_out", &SlamObject::LeaveOut)
@@ -79,6 +81,7 @@ void BindSlam(py::module_& core) {
       .def("frame_poses", &SlamObject::Frames)
       .def("map", &SlamObject::Map)
       .def("health", &SlamObject::Health)
+      .def("inertial", &SlamObject::Inertial)
       .def("counts", &SlamObject::Counts)
       .def("times", &SlamObject::Times)
       .def("features", &SlamObject::Features)

@@ -66,11 +66,13 @@ py::object NextFrame(Source& source) {
   using py::literals::operator""_a;
   const py::object pose = frame->T_world_camera ? py::object(PoseArray(*frame->T_world_camera))
                                                 : py::object(py::none());
-  return py::dict("time"_a = frame->time, "stamp"_a = frame->stamp, "number"_a = frame->number,
-                  "image"_a = ArrayOf(frame->image), "right"_a = ArrayOf(frame->right),
-                  "depth"_a = ArrayOf(frame->depth), "color"_a = ArrayOf(frame->color),
-                  "problem"_a = PathText(frame->problem), "true_pose"_a = pose,
-                  "true_depth"_a = ArrayOf(frame->true_depth));
+  return py::dict(
+      "time"_a = frame->time, "stamp"_a = frame->stamp, "number"_a = frame->number,
+      "image"_a = ArrayOf(frame->image), "right"_a = ArrayOf(frame->right),
+      "depth"_a = ArrayOf(frame->depth), "color"_a = ArrayOf(frame->color),
+      "imu"_a = source.info().imu ? py::object(ImuArray(frame->imu)) : py::object(py::none()),
+      "problem"_a = PathText(frame->problem), "true_pose"_a = pose,
+      "true_depth"_a = ArrayOf(frame->true_depth));
 }
 
 py::dict InfoOf(const Source& source) {
@@ -78,6 +80,7 @@ py::dict InfoOf(const Source& source) {
   using py::literals::operator""_a;
   return py::dict("name"_a = PathText(info.name), "kind"_a = info.kind,
                   "sensor"_a = NameOf(info.sensor), "camera"_a = CameraObject(info.camera),
+                  "imu"_a = info.imu ? ImuObject(*info.imu) : py::object(py::none()),
                   "camera_guessed"_a = info.camera_guessed, "frames"_a = info.frames,
                   "mounting"_a = PoseArray(Se3{info.R_camera_rectified, Eigen::Vector3d::Zero()}));
 }

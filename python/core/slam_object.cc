@@ -42,10 +42,12 @@ SlamViewOptions ViewOptionsFrom(const RunSettings& settings, const Eigen::Matrix
 }  // namespace
 
 SlamObject::SlamObject(const py::object& camera, const py::dict& options,
-                       const py::object& mounting, bool calibrate) {
+                       const py::object& mounting, bool calibrate, const py::object& imu) {
   const RunOptions wanted = OptionsFrom(options);
   const Camera given = CameraFrom(camera);
   const Eigen::Matrix3d R = RotationFrom(mounting);
+  std::optional<ImuModel> sensor;
+  if (!imu.is_none()) sensor = ImuFrom(imu);
   const py::gil_scoped_release release;
   if (wanted.semidense && wanted.localize)
     ThrowUsage("semidense extends the map, which localize must not change: use one of them");
@@ -59,6 +61,7 @@ SlamObject::SlamObject(const py::object& camera, const py::dict& options,
   if (wanted.detector) detector = OpenDetector(*wanted.detector, settings.dynamics.detector);
   held_ = std::shared_ptr<Held>(
       new Held(given, R, settings, std::move(detector), ViewOptionsFrom(all, R)), Delete);
+  if (sensor) held_->slam.SetImu(*sensor);
 }
 
 // The last reference may be dropped with or without the GIL.
@@ -101,17 +104,18 @@ void SlamObject::Close() {
 
 TrackedFrame SlamObject::Track(double time, const py::object& image, const py::object& depth,
                                const py::object& right, const py::object& color,
-                               const std::string& stamp) {
+                               const py::object& imu, const std::string& stamp) {
   const std::shared_ptr<Held> held = GetTurn();
   const WrappedImage seen = WrapImage(image, "image"), beside = WrapImage(right, "right"),
                      far = WrapDepth(depth, "depth"), colored = WrapImage(color, "color");
+  const std::vector<ImuSample> readings = ImuSamplesOf(imu, "imu");
   const py::gil_scoped_release release;
   const std::lock_guard<std::mutex> lock(held->turn);
   const int number = held->slam.frames();
   RunLog& log = held->log;
   log.stamps.push_back(stamp);
   log.numbers.push_back(number);
-  const FrameInput input = {time, seen.image, beside.image, far.image, colored.image};
+  const FrameInput input = {time, seen.image, beside.image, far.image, colored.image, readings};
   try {
     const TrackResult result = held->slam.Track(input);
     held->view.Show(input, result);
@@ -244,6 +248,27 @@ py::object SlamObject::Health() const {
     all[py::str(stage.name)] =
         stage.running ? py::object(py::none()) : py::object(PathText(stage.failure));
   return all;
+}
+
+// Keyword arguments of alidade.Inertial; None without readings.
+py::object SlamObject::Inertial() const {
+  const InertialReport report = Get()->slam.Inertial();
+  if (!report.given) return py::none();
+  const auto sigma = [](double value) {
+    return value > 0 ? py::object(py::float_(value)) : py::object(py::none());
+  };
+  const auto vector = [](const Eigen::Vector3d& v) {
+    return Table(std::vector<double>{v.x(), v.y(), v.z()});
+  };
+  return py::dict(
+      "samples"_a = report.samples, "metric"_a = report.metric,
+      "scale_sigma"_a = sigma(report.scale_sigma),
+      "gravity"_a = report.gravity ? py::object(vector(*report.gravity)) : py::object(py::none()),
+      "gravity_sigma"_a = sigma(report.gravity_sigma), "gyro_bias"_a = vector(report.bias.gyro),
+      "accel_bias"_a = vector(report.bias.accel), "imu"_a = ImuObject(report.model),
+      "rotation_sigma"_a = sigma(report.rotation_sigma),
+      "time_offset_sigma"_a = sigma(report.time_offset_sigma),
+      "left_out"_a = PathText(report.left_out), "missing"_a = PathText(report.missing));
 }
 
 py::dict SlamObject::Counts() const {

@@ -31,11 +31,13 @@ struct TrackedFrame {
 class SlamObject {
  public:
   // `options`: those of a run. `mounting`: R_camera_rectified of the source as (4, 4), or None.
+  // `imu`: an alidade.Imu, or None.
   SlamObject(const py::object& camera, const py::dict& options, const py::object& mounting,
-             bool calibrate);
+             bool calibrate, const py::object& imu);
 
   TrackedFrame Track(double time, const py::object& image, const py::object& depth,
-                     const py::object& right, const py::object& color, const std::string& stamp);
+                     const py::object& right, const py::object& color, const py::object& imu,
+                     const std::string& stamp);
   void Load(const MapHolder& map);
   void LeaveOut(const py::object& mask);
   void Reset();
@@ -55,6 +57,7 @@ class SlamObject {
   py::list Frames(int since) const;
   MapHolder Map() const;
   py::object Health() const;
+  py::object Inertial() const;
   py::dict Counts() const;
   py::dict Times() const;
   py::tuple Features() const;

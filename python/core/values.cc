@@ -44,8 +44,8 @@ std::string Word(const std::string& name, const py::handle& value) {
 }
 
 template <typename T>
-T Member(const py::handle& object, const char* name) {
-  return Value<T>(std::string("camera.") + name, object.attr(name));
+T Member(const py::handle& object, const char* name, const std::string& of = "camera") {
+  return Value<T>(of + "." + name, object.attr(name));
 }
 
 void SetOption(RunOptions& options, const std::string& name, const py::handle& value) {
@@ -56,7 +56,7 @@ void SetOption(RunOptions& options, const std::string& name, const py::handle& v
       {"load", &options.load},         {"fov", &options.fov},
       {"dynamics", &options.dynamics}, {"record_to", &options.record_to},
       {"port", &options.port},         {"host", &options.host},
-      {"mask", &options.mask}};
+      {"mask", &options.mask},         {"imu", &options.imu}};
   const std::map<std::string, bool*> switches = {{"calibrate_first", &options.calibrate_first},
                                                  {"localize", &options.localize},
                                                  {"overwrite", &options.overwrite},
@@ -134,6 +134,32 @@ py::object CameraObject(const Camera& camera) {
               "distortion"_a = py::make_tuple(d[0], d[1], d[2], d[3], d[4]), "fps"_a = camera.fps,
               "depth_factor"_a = camera.depth_factor, "baseline"_a = camera.baseline,
               "readout"_a = readout);
+}
+
+ImuModel ImuFrom(const py::handle& value) {
+  const auto number = [&](const char* name) { return Member<double>(value, name, "imu"); };
+  ImuModel imu;
+  imu.rate = number("rate");
+  imu.noise = {number("gyro_noise"), number("accel_noise"), number("gyro_walk"),
+               number("accel_walk")};
+  imu.time_offset_known = !value.attr("time_offset").is_none();
+  if (imu.time_offset_known) imu.time_offset = number("time_offset");
+  imu.rotation_known = imu.translation_known = !value.attr("T_camera_imu").is_none();
+  if (imu.rotation_known)
+    imu.T_camera_imu = PoseFrom(value.attr("T_camera_imu"), "imu.T_camera_imu");
+  imu.Check();
+  return imu;
+}
+
+py::object ImuObject(const ImuModel& imu) {
+  const py::object type = py::module_::import("alidade.imu").attr("Imu");
+  using py::literals::operator""_a;
+  const py::object none = py::none();
+  return type(
+      "T_camera_imu"_a = imu.rotation_known ? py::object(PoseArray(imu.T_camera_imu)) : none,
+      "rate"_a = imu.rate, "gyro_noise"_a = imu.noise.gyro, "accel_noise"_a = imu.noise.accel,
+      "gyro_walk"_a = imu.noise.gyro_walk, "accel_walk"_a = imu.noise.accel_walk,
+      "time_offset"_a = imu.time_offset_known ? py::object(py::float_(imu.time_offset)) : none);
 }
 
 RunOptions OptionsFrom(const py::dict& values) {

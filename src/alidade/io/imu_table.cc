@@ -9,16 +9,14 @@
 #include <utility>
 
 #include "alidade/base/error.h"
-#include "alidade/base/median.h"
+#include "alidade/inertial/imu_stream.h"
 #include "alidade/io/text.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kGravity = 9.80665;  // m/s² per g
-constexpr double kUsualRate = 200;    // readings per second
-// A hand turns a camera by 10 rad/s at most, and not for long.
-constexpr double kFastRate = 20, kUsualFast = 3;
+constexpr double kGravity = 9.80665;    // m/s² per g
+constexpr double kUsualReadings = 200;  // per second
 
 enum Column { kTime, kRateX, kRateY, kRateZ, kForceX, kForceY, kForceZ, kColumns };
 
@@ -202,11 +200,11 @@ std::string HeaderOf(std::string_view text, const std::vector<TextLine>& lines, 
   return header;
 }
 
-// Of times in steps of about 1 / kUsualRate.
+// Of times in steps of about 1 / kUsualReadings.
 StampUnit ProbableImuUnit(const std::vector<double>& stamps) {
   // ProbableUnit() expects steps of 1/30 s.
   std::vector<double> slower;
-  const double factor = kUsualRate / 30;
+  const double factor = kUsualReadings / 30;
   const double first = stamps.empty() ? 0 : stamps.front();
   for (const double stamp : stamps) slower.push_back(first + factor * (stamp - first));
   return ProbableUnit(slower, StampUnit::kSeconds);
@@ -272,18 +270,11 @@ ImuTable ParseImuTable(std::string_view text, const std::string& name,
     if (sample.specific_force.allFinite()) forces.push_back(sample.specific_force.norm());
   }
   if (!layout.degrees) {
-    layout.degrees = false;
-    if (!rates.empty()) {
-      const auto fast =
-          rates.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(rates.size() - 1));
-      std::nth_element(rates.begin(), fast, rates.end());
-      layout.degrees = *fast > kFastRate || UpperMedian(rates) > kUsualFast;
-    }
+    layout.degrees = SeemInDegrees(rates);
     Tell(units, std::string("angular rates as ") + (*layout.degrees ? "deg/s" : "rad/s"));
   }
   if (!layout.g) {
-    const double median = forces.empty() ? 0 : UpperMedian(forces);
-    layout.g = median > 0.5 && median < 2;
+    layout.g = SeemInG(forces);
     Tell(units, std::string("accelerations as ") + (*layout.g ? "g" : "m/s²"));
   }
   const double rate = *layout.degrees ? std::numbers::pi / 180 : 1,

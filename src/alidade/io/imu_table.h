@@ -21,9 +21,8 @@ struct ImuTable {
 // semicolons, tabs or blanks. A first line (or a comment before the numbers) with names, in any
 // order and with other columns between, says which column is which; without it the order is as
 // above. Units are those in the names ("[ns]", "(deg/s)", "_ms"). Otherwise: `stamps`, if it is
-// that of the format; the probable unit of times (200 readings per second, more or less); g where
-// the median length of the force is near 1; deg/s where the fastest 5 % of the rates exceed 20 as
-// rad/s (three turns per second, for long), or the median 3. Lines that are no readings are counted
+// that of the format; the probable unit of times (200 readings per second, more or less),
+// and g and deg/s by SeemInG() and SeemInDegrees(). Lines that are no readings are counted
 // in `told`. Throws Error (input) naming the file, and the line, when columns are missing or no
 // line is a reading.
 ImuTable ParseImuTable(std::string_view text, const std::string& name,

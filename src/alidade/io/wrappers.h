@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "alidade/io/frame_source.h"
@@ -32,7 +33,9 @@ inline constexpr double kImuAround = 0.1;
 
 // Gives each frame the readings since the frame before it (SourceFrame::imu). A source without
 // readings of its own; `imu.model` becomes that of SourceInfo, so its T_camera_imu is of the
-// rectified camera.
-std::unique_ptr<FrameSource> WithImu(std::unique_ptr<FrameSource> source, ImuRecording imu);
+// rectified camera. `told` is added to SourceInfo::told. Warns when the first
+// image is of another time than all readings.
+std::unique_ptr<FrameSource> WithImu(std::unique_ptr<FrameSource> source, ImuRecording imu,
+                                     const std::string& told = {});
 
 }  // namespace alidade

@@ -90,6 +90,7 @@ OutputClaim ClaimOf(const RunOptions& options, const SourceInfo& source) {
   for (const auto& file : {options.config, options.detector}) {
     if (file) claim.inputs.push_back(*file);
   }
+  if (options.imu && options.imu != kNoImu) claim.inputs.push_back(*options.imu);
   if (options.load) claim.inputs.push_back(SavedMapPath(*options.load));
   return claim;
 }
@@ -169,6 +170,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   InspectedSource inspected = OpenInspected(options.source, wanted);
   std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
   setup.source = source->Info();
+  if (options.imu == kNoImu) setup.source.imu.reset();
   setup.source.told = inspected.told;
   setup.reading = wanted;
   settings.sensor = setup.source.sensor;

@@ -10,6 +10,7 @@
 #include "alidade/io/files/calibrations/formats.h"
 #include "alidade/io/files/calibrations/write_calibration.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/files/imu_file.h"
 #include "alidade/io/files/yaml.h"
 
 namespace alidade {
@@ -28,7 +29,8 @@ double Positive(const YamlFile& file, const YAML::Node& parent, const char* key)
 void WarnOfUnknownKeys(const YamlFile& file, const YAML::Node& parent, bool right) {
   static constexpr std::array kCommon = {"model", "width", "height", "fx",
                                          "fy",    "cx",    "cy",     "distortion"};
-  static constexpr std::array kLeftOnly = {"fps", "readout", "depth_factor", "baseline", "right"};
+  static constexpr std::array kLeftOnly = {"fps",      "readout", "depth_factor",
+                                           "baseline", "right",   "imu"};
   for (const auto& entry : parent) {
     const std::string key = entry.first.Scalar();
     const auto is_key = [&key](const char* known) { return key == known; };
@@ -92,6 +94,7 @@ Calibration ReadOwn(const YamlFile& file, const std::string& which) {
     calibration.depth_factor = file.Number(factor, "depth_factor");
     if (*calibration.depth_factor < 0) file.Fail(factor, "`depth_factor` must not be negative");
   }
+  if (root["imu"]) ImuModelOf(file, root["imu"]);  // ReadImuModel() reads it where it is needed
   if (const YAML::Node right = root["right"]) {
     if (root["baseline"]) file.Fail(root["baseline"], "give either `baseline` or `right`");
     if (!right.IsMap()) file.Fail(right, "`right` must contain the names and values of a camera");
@@ -141,18 +144,20 @@ std::string CameraFilePath(const std::string& given) {
   return mark == std::string::npos || mark == 0 || IsThere(given) ? given : given.substr(0, mark);
 }
 
-Calibration ReadCameraFile(const std::string& given) {
+Calibration ReadCameraFile(const std::string& given, cv::Size images) {
   const std::string path = CameraFilePath(given);
   const std::string which = path.size() < given.size() ? given.substr(path.size() + 1) : "";
-  return ParseCameraFile(ReadFile(path, kMostCalibrationBytes), path, which);
+  return ParseCameraFile(ReadFile(path, kMostCalibrationBytes), path, which, images);
 }
 
 Calibration ParseCameraFile(const std::string& text, const std::string& name,
-                            const std::string& which) {
+                            const std::string& which, cv::Size images) {
   Calibration calibration;
   try {
     calibration = IsColmapCameras(text) ? ReadColmapCameras(text, name, which)
-                                        : ReadYaml(YamlOfCalibration(text, name), which);
+                  : IsRealSenseListing(text)
+                      ? ReadYaml(YamlFile(YamlOfListing(text, name, which, images), name), {})
+                      : ReadYaml(YamlOfCalibration(text, name), which);
   } catch (const YAML::Exception& error) {  // a value where a map is expected, and similar
     ThrowInput(name + (error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1)) +
                ": " + error.msg);

@@ -2,6 +2,7 @@
 // recording without one.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
@@ -22,12 +23,12 @@ inline constexpr size_t kMostCalibrationBytes = size_t{1} << 24;
 // (meters) or `right: {width …, T_left_right: 4x4}`; and the calibrations of other tools that
 // calibrations/formats.h lists, recognized by their content. `path#NAME` chooses a camera of a file
 // with several. Throws Error (input) with file:line for a missing or invalid value; warns of
-// unknown keys. The size stays 0 when the file of
-// another tool does not state it.
-Calibration ReadCameraFile(const std::string& path);
+// unknown keys. `images`: size of the recording's images, by which one of a camera's sizes is
+// chosen (rs-enumerate-devices). The size stays 0 when the file of another tool does not state it.
+Calibration ReadCameraFile(const std::string& path, cv::Size images = {});
 // The same for a file's text; `name` appears in errors, `which` is the chosen camera.
 Calibration ParseCameraFile(const std::string& text, const std::string& name,
-                            const std::string& which = {});
+                            const std::string& which = {}, cv::Size images = {});
 // The file's path without `#NAME`.
 std::string CameraFilePath(const std::string& given);
 

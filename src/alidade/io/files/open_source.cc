@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/datasets/euroc_recording.h"
@@ -15,6 +17,7 @@
 #include "alidade/io/files/depth_size.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/image_file.h"
+#include "alidade/io/files/imu_file.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/files/video_source.h"
 #include "alidade/io/ros/source/bag_file.h"
@@ -37,9 +40,7 @@ Recording ReadRecording(const std::string& folder, const SourceOptions& options)
   if (IsEurocFolder(folder)) return ReadEurocRecording(folder, with_imu);
   if (IsKittiFolder(folder)) return ReadKittiRecording(folder);
   if (IsImageFolder(folder)) {
-    return ReadFolderRecording(folder, options.camera_file
-                                           ? std::optional(ReadCameraFile(*options.camera_file).fps)
-                                           : std::nullopt);
+    return ReadFolderRecording(folder);
   }
   if (NamesIn(folder).empty()) ThrowInput(folder + " is an empty folder");
   ThrowInput(folder +
@@ -101,13 +102,26 @@ std::string DepthSizeOfRecordingTold(const Recording& recording, const std::stri
   return {};
 }
 
-std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const SourceOptions& options) {
+// A source and the inertial readings that are part of it, of the camera as mounted.
+struct Opened {
+  std::unique_ptr<FrameSource> source;
+  std::optional<ImuRecording> imu;
+};
+
+Opened OpenRecording(const std::string& path, const SourceOptions& options) {
   Recording recording = ReadRecording(path, options);
   recording.name = NameAsTyped(path);
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
+  if (!recording.calibration) recording.calibration = CalibrationBeside(path, size, options);
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(recording.calibration, size, options, LensToldBy(recording, options));
+  if (recording.kind == "images") {
+    recording.fps_assumed = !calibration.fps;
+    SetTimes(recording, calibration.fps.value_or(kAssumedFps));
+  } else if (!calibration.fps) {
+    calibration.fps = RateOf(recording);
+  }
   recording.depth_assumed = !calibration.depth_factor;
   if (recording.depth_assumed) calibration.depth_factor = recording.default_depth_factor;
   // A factor of 0 disables depth even when the folder has depth images.
@@ -126,12 +140,45 @@ std::unique_ptr<FrameSource> OpenRecording(const std::string& path, const Source
   }
   recording.lens_told = std::move(lens_told);
   std::optional<ImuRecording> imu = std::move(recording.imu);
-  auto source = PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed);
-  if (!imu) return source;
-  Se3& T_camera_imu = imu->model.T_camera_imu;
-  const Se3 turn{source->Info().R_camera_rectified.transpose(), Eigen::Vector3d::Zero()};
-  T_camera_imu = turn * T_camera_imu;
-  return WithImu(std::move(source), std::move(*imu));
+  return {PlayRecording(std::move(recording), sensor, std::move(preparation), size, guessed),
+          std::move(imu)};
+}
+
+// What is known of the inertial sensor by the user's camera file or that of the recording.
+std::optional<ImuModel> ImuModelTold(const std::string& path, const SourceOptions& options) {
+  std::optional<ImuModel> model;
+  if (options.camera_file) model = ReadImuModel(*options.camera_file);
+  const std::string beside = path + "/camera.yaml";
+  if (!model && IsFile(beside)) model = ReadImuModel(beside);
+  return model;
+}
+
+// Adds the readings: those of a file, those of the source, or those beside it.
+std::unique_ptr<FrameSource> WithReadings(Opened opened, const std::string& path,
+                                          const SourceOptions& options) {
+  std::string told;
+  if (options.imu == kNoImu) return std::move(opened.source);
+  if (options.imu) {
+    opened.imu = ReadImuFile(*options.imu, &told);
+  } else if (!opened.imu) {
+    if (const std::string beside = ImuFileBeside(path); !beside.empty()) {
+      try {
+        opened.imu = ReadImuFile(beside, &told);
+      } catch (const Error& error) {
+        LogWarning(std::string(error.what()) + "; the inertial readings are left out");
+      }
+    }
+  }
+  if (!opened.imu) return std::move(opened.source);
+  ImuModel& model = opened.imu->model;
+  if (std::optional<ImuModel> given = ImuModelTold(path, options)) {
+    if (given->rate <= 0) given->rate = model.rate;
+    model = *given;
+  }
+  const Eigen::Matrix3d& R_camera_rectified = opened.source->Info().R_camera_rectified;
+  model.T_camera_imu =
+      Se3{R_camera_rectified.transpose(), Eigen::Vector3d::Zero()} * model.T_camera_imu;
+  return WithImu(std::move(opened.source), std::move(*opened.imu), told);
 }
 
 // The N of "camera:N".
@@ -149,20 +196,25 @@ std::optional<int> LiveCameraNumber(const std::string& path) {
 
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options) {
   if (options.camera_file && options.fov_degrees) ThrowUsage("give either --camera or --fov");
-  std::unique_ptr<FrameSource> source;
+  Opened opened;
+  std::unique_ptr<FrameSource>& source = opened.source;
   if (const auto number = LiveCameraNumber(path)) {
+    if (options.imu && options.imu != kNoImu)
+      ThrowUsage("--imu FILE needs a recording, not a live camera");
     source = OpenLiveCameraSource(*number, options);
   } else if (IsBagSource(path) && !IsKnownFolder(path)) {
-    source = OpenBagSource(path, options);
+    OpenedBag bag = OpenBagSource(path, options);
+    opened = {std::move(bag.source), std::move(bag.imu)};
   } else if (IsFolder(path)) {
-    source = OpenRecording(path, options);
+    opened = OpenRecording(path, options);
   } else if (!IsThere(path)) {
     ThrowInput("there is no file or folder " + path);
   } else {
     CheckIsFile(path);  // otherwise FFmpeg would wait for a pipe's writer
     source = OpenVideoSource(path, options);
   }
-  return Clip(std::move(source), options.first, options.last);
+  source = Clip(std::move(source), options.first, options.last);
+  return WithReadings(std::move(opened), path, options);
 }
 
 }  // namespace alidade

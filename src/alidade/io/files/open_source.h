@@ -10,6 +10,9 @@
 
 namespace ALIDADE_API alidade {
 
+// SourceOptions::imu: no inertial readings.
+inline constexpr char kNoImu[] = "off";
+
 struct SourceOptions {
   // nullopt: kRgbd when the source has depth, kStereo when it has a second camera, otherwise kMono.
   std::optional<Sensor> sensor = {};
@@ -20,7 +23,7 @@ struct SourceOptions {
   bool fov_rough = false;  // `fov_degrees` is only approximate; sets SourceInfo::camera_guessed
   int first = 0;           // first frame, counted from 0; frames keep their numbers
   int last = -1;           // last frame, included; -1: to the end
-  // The inertial readings: a file of them, or "off". nullopt: those that the source brings.
+  // The inertial readings: a file of them, or kNoImu. nullopt: those that the source brings.
   std::optional<std::string> imu = {};
   bool color = false;  // read the frames' colors as well, if there are any
 };

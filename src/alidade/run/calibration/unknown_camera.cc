@@ -68,8 +68,10 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   }
   const double cpu = ProcessCpuSeconds();
   const Stopwatch clock;
+  SourceOptions images = wanted;
+  images.imu = kNoImu;
   CameraFound found =
-      FindCamera([&] { return OpenAnySource(options.source, wanted); }, settings, calibrate, go_on);
+      FindCamera([&] { return OpenAnySource(options.source, images); }, settings, calibrate, go_on);
   found.windows.clear();
   finding.cpu_s = ProcessCpuSeconds() - cpu;
   finding.wall_s = clock.Milliseconds() * 1e-3;

@@ -55,7 +55,7 @@ std::vector<std::string> ImageFilesOf(const std::string& folder, const std::stri
   if (kind == "tum") recording = ReadTumRecording(folder);
   if (kind == "euroc") recording = ReadEurocRecording(folder);
   if (kind == "kitti") recording = ReadKittiRecording(folder);
-  if (kind == "images") recording = ReadFolderRecording(folder, std::nullopt);
+  if (kind == "images") recording = ReadFolderRecording(folder);
   std::vector<std::string> files;
   for (RecordedFrame& frame : recording.frames) files.push_back(std::move(frame.image));
   return files;
@@ -107,7 +107,7 @@ OwnRecording OpenOwnRecording(const std::string& path, const SavedMap& saved,
   SourceOptions options;
   options.sensor = SensorNamed("the sensor of the map", saved.sensor);
   options.color = true;
-  options.imu = "off";
+  options.imu = kNoImu;
   options.first = WholeAt(reading, "first", 0);
   options.last = WholeAt(reading, "last", -1);
   const std::string told_camera = WordAt(reading, "camera");

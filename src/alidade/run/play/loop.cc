@@ -196,8 +196,9 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   Pacer pacer(rate);
   std::optional<CpuMeter> cpu;
   std::optional<Stopwatch> wall;
-  std::optional<int> part;                  // of the frame before
-  std::vector<ImuSample> imu;               // readings of skipped frames go to the next one
+  std::optional<int> part;     // of the frame before
+  std::vector<ImuSample> imu;  // readings of skipped frames go to the next one
+  const bool with_imu = slam.Inertial().given;
   const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
     while (!Interrupted()) {
@@ -209,7 +210,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
       }
       for (RunWatcher* watcher : watchers) watcher->Wait(Interrupted);
       if (frame->part != part.value_or(frame->part)) imu.clear();
-      imu.insert(imu.end(), frame->imu.begin(), frame->imu.end());
+      if (with_imu) imu.insert(imu.end(), frame->imu.begin(), frame->imu.end());
       const double late = pacer.WaitFor(frame->time);
       if (may_drop && late > settings.time.max_latency && source.ready()) {
         ++log.late;

@@ -39,7 +39,7 @@ ordered_json ReadingJson(const SourceOptions& reading) {
   std::optional<std::string> camera = reading.camera_file, imu = reading.imu;
   std::error_code error;
   for (std::optional<std::string>* path : {&camera, &imu}) {
-    if (*path && **path != "off")
+    if (*path && **path != kNoImu)
       *path = std::filesystem::absolute(**path, error).lexically_normal().string();
   }
   return {{"camera", optional(camera)},

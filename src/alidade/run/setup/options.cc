@@ -20,6 +20,7 @@ void CheckRunOptions(const RunOptions& options) {
   if (options.host && !options.viewer) ThrowUsage("--host requires --viewer");
   if (options.port && !options.viewer) ThrowUsage("--port requires --viewer");
   if (options.record_to && options.record_to->empty()) ThrowUsage("--record-to must not be empty");
+  if (options.imu && options.imu->empty()) ThrowUsage("--imu must be a file, or off");
   if (options.detector && options.own_detector)
     ThrowUsage("give one detector: a file or a function");
   CheckThreads(options.threads);

@@ -154,10 +154,8 @@ Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions
   }
   if (options.camera_file)
     chosen = FitToSize(ReadCameraFile(*options.camera_file), {camera.width, camera.height});
-  if (!options.camera_file) {
-    chosen.baseline = own.baseline;
-    chosen.fps = own.fps;
-  }
+  if (!options.camera_file) chosen.baseline = own.baseline;
+  if (!options.camera_file || !chosen.fps) chosen.fps = own.fps;
   if (!chosen.depth_factor) chosen.depth_factor = own.depth_factor;
   return chosen;
 }

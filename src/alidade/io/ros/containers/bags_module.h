@@ -54,10 +54,15 @@ inline bool IsInfoType(const std::string& type) {
   return type == "sensor_msgs/CameraInfo" || type == kCalibrationType;
 }
 
+inline constexpr char kImuType[] = "sensor_msgs/Imu";
+inline bool IsTransformType(const std::string& type) {
+  return type == "tf2_msgs/TFMessage" || type == "tf/tfMessage";
+}
+
 // Types whose messages are indexed; messages of other types are only counted.
 inline bool IsWantedType(const std::string& type) {
   return type == "sensor_msgs/Image" || type == "sensor_msgs/CompressedImage" ||
-         type == kVideoType || IsInfoType(type);
+         type == kVideoType || IsInfoType(type) || type == kImuType || IsTransformType(type);
 }
 
 inline constexpr char kBagsModuleFile[] = "libalidade_bags.so";

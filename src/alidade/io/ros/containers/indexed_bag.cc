@@ -12,7 +12,7 @@ namespace {
 constexpr size_t kMostTopics = 100'000;
 constexpr size_t kMostWarnings = 5;
 
-bool HoldsPictures(const BagTopic& topic) {
+bool IsWantedTopic(const BagTopic& topic) {
   if (topic.serialization == Serialization::kProtobuf)
     return topic.type == kVideoType || topic.type == kCalibrationType;
   return topic.serialization != Serialization::kOther && IsWantedType(topic.type);
@@ -28,7 +28,7 @@ size_t IndexedBag::TopicOf(std::string_view name, std::string_view type,
     if (topics_.size() == kMostTopics) ThrowInput("lists an impossible number of topics");
     topics_.push_back({Printable(name), Printable(Ros1TypeOf(type)), serialization, 0});
     messages_.emplace_back();
-    wanted_.push_back(HoldsPictures(topics_.back()));
+    wanted_.push_back(IsWantedTopic(topics_.back()));
   }
   return found->second;
 }

@@ -1,5 +1,9 @@
 #include "alidade/io/ros/messages/messages.h"
 
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
 #include "alidade/base/error.h"
 #include "alidade/base/printable.h"
 #include "alidade/io/ros/messages/message_cursor.h"
@@ -8,6 +12,7 @@ namespace alidade {
 namespace {
 
 constexpr uint32_t kMostCoefficients = 64;  // of a lens; the longest model has 14
+constexpr uint32_t kMostTransforms = 10'000;
 
 MessageHeader TakeHeader(MessageCursor& cursor) {
   if (!cursor.cdr()) cursor.Uint32();  // sequence number, ROS 1 only
@@ -24,6 +29,11 @@ std::array<double, N> TakeDoubles(MessageCursor& cursor) {
   std::array<double, N> values;
   for (double& value : values) value = cursor.Double();
   return values;
+}
+
+Eigen::Vector3d TakeVector(MessageCursor& cursor) {
+  const double x = cursor.Double(), y = cursor.Double();
+  return {x, y, cursor.Double()};
 }
 
 }  // namespace
@@ -49,6 +59,42 @@ RosPicture ParseRosPicture(std::string_view message, Serialization serialization
   }
   picture.data = cursor.Bytes();
   return picture;
+}
+
+RosImu ParseRosImu(std::string_view message, Serialization serialization) {
+  MessageCursor cursor(message, serialization);
+  RosImu imu;
+  imu.header = TakeHeader(cursor);
+  TakeDoubles<4>(cursor);  // orientation
+  TakeDoubles<9>(cursor);
+  imu.angular_velocity = TakeVector(cursor);
+  imu.has_rate = TakeDoubles<9>(cursor)[0] != -1;
+  imu.linear_acceleration = TakeVector(cursor);
+  imu.has_force = TakeDoubles<9>(cursor)[0] != -1;
+  return imu;
+}
+
+std::vector<RosFrame> ParseRosTransforms(std::string_view message, Serialization serialization) {
+  MessageCursor cursor(message, serialization);
+  const uint32_t count = cursor.Uint32();
+  if (count > kMostTransforms) ThrowInput("has too many transforms");
+  std::vector<RosFrame> frames;
+  for (uint32_t i = 0; i < count; ++i) {
+    RosFrame frame;
+    frame.parent = TakeHeader(cursor).frame_id;
+    frame.child = cursor.Text();
+    frame.T_parent_child.t = TakeVector(cursor);
+    const Eigen::Vector3d axis = TakeVector(cursor);
+    Eigen::Quaterniond q(cursor.Double(), axis.x(), axis.y(), axis.z());
+    if (!(std::abs(q.norm() - 1) < 0.01) || !frame.T_parent_child.t.allFinite()) continue;
+    frame.T_parent_child.R = q.normalized().toRotationMatrix();
+    // ROS 1 once began names with a slash.
+    for (std::string* name : {&frame.parent, &frame.child}) {
+      if (!name->empty() && name->front() == '/') name->erase(0, 1);
+    }
+    frames.push_back(std::move(frame));
+  }
+  return frames;
 }
 
 RosCameraInfo ParseRosCameraInfo(std::string_view message, Serialization serialization) {

@@ -104,6 +104,8 @@ BagQuery ParseBagQuery(const std::string& source) {
       query.info = value;
     } else if (name == "right_info") {
       query.right_info = value;
+    } else if (name == "imu") {
+      query.imu = value;
     } else if (name == "max_dt") {
       query.max_dt = ParseNumber(value);
       if (!query.max_dt || !(*query.max_dt > 0 && *query.max_dt <= 1))
@@ -111,7 +113,7 @@ BagQuery ParseBagQuery(const std::string& source) {
     } else {
       ThrowUsage("`" + name +
                  "` is not an option of a ROS recording; the options are image, right, depth, "
-                 "info, right_info (topics) and max_dt (seconds)");
+                 "info, right_info, imu (topics) and max_dt (seconds)");
     }
   }
   if (query.image && query.image->empty()) ThrowUsage("image= must name a topic");

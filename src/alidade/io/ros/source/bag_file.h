@@ -14,7 +14,7 @@ namespace alidade {
 struct BagQuery {
   std::string path;
   // Requested topics. Empty: do not use any of that kind. nullopt: choose automatically.
-  std::optional<std::string> image, right, depth, info, right_info;
+  std::optional<std::string> image, right, depth, info, right_info, imu;
   std::optional<double> max_dt;  // largest time difference between associated messages, seconds
 };
 

@@ -5,13 +5,14 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
-#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/ros/camera_info.h"
 #include "alidade/io/ros/source/bag_file.h"
 #include "alidade/io/ros/source/bag_player.h"
 #include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/imu_topics.h"
 
 namespace alidade {
 namespace {
@@ -26,12 +27,6 @@ std::string NameOfRecording(const std::string& path) {
   while (name.has_extension() && (name.extension() == ".zstd" || name.extension() == ".active"))
     name = name.stem();
   return name.stem().string();
-}
-
-std::optional<Calibration> CalibrationBeside(const std::string& path) {
-  const std::string file = IsFolder(path) ? path + "/camera.yaml"
-                                          : (fs::path(path).parent_path() / "camera.yaml").string();
-  return IsFile(file) ? std::optional(ReadCameraFile(file)) : std::nullopt;
 }
 
 // Calibration from the CameraInfo topics of the chosen images; nullopt: none. Sets `has_right` when
@@ -88,8 +83,7 @@ Sensor SensorFor(const ChosenTopics& chosen, bool has_right, bool has_depth,
 
 }  // namespace
 
-std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
-                                           const SourceOptions& options) {
+OpenedBag OpenBagSource(const std::string& source, const SourceOptions& options) {
   const BagQuery query = ParseBagQuery(source);
   std::unique_ptr<BagFile> bag = OpenBagFile(query.path);
   for (const std::string& warning : bag->Warnings()) LogWarning(warning);
@@ -99,16 +93,24 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   std::optional<Calibration> beside;
   if (!options.camera_file) {
     beside = CalibrationTold(*bag, chosen, query.path, has_right);
-    if (!beside) beside = CalibrationBeside(query.path);
+    if (!beside) {
+      const std::string folder =
+          IsFolder(query.path) ? query.path : fs::path(query.path).parent_path().string();
+      beside = CalibrationBeside(folder, chosen.image.size, options);
+    }
   }
   auto [calibration, guessed, lens_told] = ChooseCalibration(beside, chosen.image.size, options);
   has_right = chosen.right && (has_right || calibration.right || calibration.baseline > 0);
   if (!calibration.depth_factor) calibration.depth_factor = kMillimetres;
   const bool has_depth = chosen.depth && *calibration.depth_factor > 0;
 
+  BagImu imu;
+  if (!options.imu) imu = ReadBagImu(*bag, query, chosen.image);
+  if (!imu.told.empty()) chosen.told += "; " + imu.told;
+
   auto player = std::make_unique<BagPlayer>(std::move(bag), query.path, chosen, query.max_dt);
   // a frame rate in the user's camera file has priority
-  if (!options.camera_file) calibration.fps = player->Rate().value_or(calibration.fps);
+  if (player->Rate() && !(options.camera_file && calibration.fps)) calibration.fps = player->Rate();
   const Sensor sensor = SensorFor(chosen, has_right, has_depth, options, query.path);
   if (sensor == Sensor::kMono && chosen.right)
     chosen.told += "; only one camera is used, because the baseline of the two is unknown";
@@ -124,7 +126,7 @@ std::unique_ptr<FrameSource> OpenBagSource(const std::string& source,
   info.told = chosen.told;
   if (!calibration.told.empty()) info.told += (info.told.empty() ? "" : "\n") + calibration.told;
   player->Begin(std::move(info), std::move(preparation), options.color);
-  return player;
+  return {std::move(player), std::move(imu.recording)};
 }
 
 }  // namespace alidade
