@@ -4,8 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "alidade/base/error.h"
@@ -13,6 +15,7 @@
 #include "alidade/base/parallel.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/setup/options.h"
+#include "alidade/run/sources/synth_source.h"
 #include "alidade/synth/recording.h"
 #include "alidade/synth/statistics.h"
 #include "commands.h"
@@ -28,20 +31,37 @@ using nlohmann::ordered_json;
 struct SynthArguments {
   SynthSettings settings;
   std::string out, format;
-  int frames = 0;  // 0: once along the path
+  int frames = 0;             // 0: once along the path
+  int width = 0, height = 0;  // 0: as usual for the scene
+  std::optional<double> fov;
   int threads = 0;
   bool quiet = false;
 };
 
 ordered_json Describe(const SynthSettings& s) {
-  return {{"scene", s.scene},   {"frames", s.frames},     {"path", s.path},
-          {"speed", s.speed},   {"arm", s.arm},           {"actors", s.actors},
-          {"things", s.things}, {"noise", s.noise},       {"light", s.light},
-          {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
-          {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
-          {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
-          {"height", s.height}, {"fov", s.fov},           {"fps", s.fps},
-          {"held", s.held}};
+  ordered_json told = {
+      {"scene", s.scene},   {"frames", s.frames},     {"path", s.path},
+      {"speed", s.speed},   {"arm", s.arm},           {"actors", s.actors},
+      {"things", s.things}, {"noise", s.noise},       {"light", s.light},
+      {"blur", s.blur},     {"exposure", s.exposure}, {"distortion", s.distortion},
+      {"k1", s.k1},         {"fisheye", s.fisheye},   {"rolling_shutter", s.rolling_shutter},
+      {"stereo", s.stereo}, {"seed", s.seed},         {"width", s.width},
+      {"height", s.height}, {"fov", s.fov},           {"fps", s.fps},
+      {"held", s.held}};
+  if (s.scene == kFlightScene) {
+    const auto absolute = [](const std::string& file) {
+      return std::filesystem::absolute(file).lexically_normal().string();
+    };
+    told.erase("fps");
+    told["path"] = absolute(s.path);
+    if (s.imu != "off") told["imu"] = absolute(s.imu);
+    if (!s.imu_model.empty()) told["imu_model"] = absolute(s.imu_model);
+  } else if (s.imu != "off") {
+    told["imu"] = s.imu;
+    told["imu_rate"] = s.ImuRate();
+    if (s.imu_offset) told["imu_offset"] = *s.imu_offset;
+  }
+  return told;
 }
 
 ordered_json Describe(const SynthStatistics& s) {
@@ -50,9 +70,9 @@ ordered_json Describe(const SynthStatistics& s) {
           {"missing_depth", s.missing_depth},   {"actor_share", s.actor_share}};
 }
 
-void Print(const SynthStatistics& s, const SynthArguments& arguments) {
+void Print(const SynthStatistics& s, double fps, const SynthArguments& arguments) {
   std::printf("%s: %d frames (%.1f s) in %s\n", arguments.settings.scene.c_str(), s.frames,
-              s.frames / arguments.settings.fps, arguments.out.c_str());
+              s.frames / fps, arguments.out.c_str());
   std::printf("  path            %.2f m, median speed %.2f m/s\n", s.path_length, s.median_speed);
   std::printf("  median turn     %.1f degrees/s\n", s.median_turn);
   std::printf("  nearly plain    %.1f %% of the image area\n", 100 * s.plain_share);
@@ -72,15 +92,34 @@ SynthFormat FormatOf(const SynthArguments& arguments) {
   return format;
 }
 
+void CheckImu(const SynthSettings& settings, SynthFormat format) {
+  if (settings.imu == "off" || format == SynthFormat::kTum) return;
+  if (format == SynthFormat::kKitti)
+    ThrowUsage("--imu requires --format tum or euroc: KITTI recordings have no inertial readings");
+  if (settings.imu == "phone" || settings.imu_offset)
+    ThrowUsage(
+        "--imu phone and --imu-offset need --format tum: EuRoC recordings have one clock and a "
+        "known sensor");
+}
+
+// From shortly before the first frame to shortly after the last.
+WrittenImu ReadingsOf(const SynthRecording& recording) {
+  constexpr double kAround = 0.1;  // seconds
+  const ImuTrack& imu = *recording.imu();
+  const double from = recording.Time(0), to = recording.Time(recording.frames() - 1);
+  const double offset = imu.truth().time_offset;
+  return {imu.told(), imu.Between(from + offset - kAround, to + offset + kAround)};
+}
+
 int RenderAll(SynthArguments arguments) {
   SynthSettings& settings = arguments.settings;
   const SynthFormat format = FormatOf(arguments);
   settings.stereo = format != SynthFormat::kTum;  // EuRoC and KITTI recordings are stereo
-  const int natural = SceneFrames(settings.scene);
-  if (arguments.frames > 0)
-    settings.frames = arguments.frames;
-  else
-    settings.frames = natural;
+  const SynthSettings usual = SynthDefaults(settings.scene);
+  settings.frames = arguments.frames > 0 ? arguments.frames : usual.frames;
+  settings.width = arguments.width > 0 ? arguments.width : usual.width;
+  settings.height = arguments.height > 0 ? arguments.height : usual.height;
+  settings.fov = arguments.fov.value_or(usual.fov);
   settings.Check();
   CheckThreads(arguments.threads);
   SetThreadCount(arguments.threads);
@@ -89,13 +128,15 @@ int RenderAll(SynthArguments arguments) {
   }
   if (format != SynthFormat::kTum && settings.fisheye)
     ThrowUsage("--fisheye needs --format tum: the others are stereo");
+  CheckImu(settings, format);
   SynthFolder folder(arguments.out);
   const std::string marker = folder.draft() + "/" + kSynthMarker;
   ordered_json about = {{"program", "alidade synth"}, {"settings", Describe(settings)}};
 
-  const SynthRecording recording(settings);
+  const SynthRecording recording = MakeSynthRecording(settings);
   const auto writer = MakeSynthWriter(format, folder.draft(), recording.camera(), settings.fisheye);
-  StatisticsCollector statistics(settings.fps);
+  const double fps = recording.settings().fps;
+  StatisticsCollector statistics(fps);
   const bool progress = !arguments.quiet && isatty(STDERR_FILENO) != 0;
   for (int i = 0; i < recording.frames(); ++i) {
     const RenderedFrame frame = recording.Render(i);
@@ -108,12 +149,13 @@ int RenderAll(SynthArguments arguments) {
     }
   }
   if (progress) std::fprintf(stderr, "\n");
+  if (recording.imu() != nullptr) writer->AddReadings(ReadingsOf(recording));
   writer->Finish();
   const SynthStatistics result = statistics.Result();
   about["statistics"] = Describe(result);
   AtomicWriteFile(marker, about.dump(2) + "\n");
   folder.Place();
-  if (!arguments.quiet) Print(result, arguments);
+  if (!arguments.quiet) Print(result, fps, arguments);
   return 0;
 }
 
@@ -125,7 +167,8 @@ void AddSynthCommand(CLI::App& app, Action& action) {
   auto arguments = std::make_shared<SynthArguments>();
   SynthSettings& settings = arguments->settings;
   std::string names;
-  for (const std::string& name : SceneNames()) names += (names.empty() ? "" : "|") + name;
+  for (const std::string& name : SceneNames()) names += name + "|";
+  names += kFlightScene;
   command->add_option("SCENE", settings.scene, "Scene to render")->required()->type_name(names);
   command
       ->add_option("OUT", arguments->out,
@@ -139,10 +182,12 @@ void AddSynthCommand(CLI::App& app, Action& action) {
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command
-      ->add_option("--path", settings.path,
-                   "Camera motion. walk: the path of the scene; turn: pure rotation; turn-walk: 4 "
-                   "s of pure rotation, then the path of the scene; still: none. Default: walk")
-      ->type_name("walk|turn|turn-walk|still");
+      ->add_option(
+          "--path", settings.path,
+          "Camera motion. walk: the path of the scene; turn: pure rotation; turn-walk: 4 "
+          "s of pure rotation, then the path of the scene; still: none. Default: walk. Of a "
+          "flight: the file with its poses T_world_camera (TUM, EuRoC or KITTI format)")
+      ->type_name("walk|turn|turn-walk|still|FILE");
   command->add_option("--speed", settings.speed,
                       "Speed of the camera relative to the scene's default; default: 1");
   command->add_option(
@@ -177,18 +222,41 @@ void AddSynthCommand(CLI::App& app, Action& action) {
       ->type_name("tum|euroc|kitti");
   command->add_option("--seed", settings.seed,
                       "Seed of textures, clutter, shake, noise and people; default: 1");
-  command->add_option("--width", settings.width, "Width of the images in pixels; default: 640");
-  command->add_option("--height", settings.height, "Height of the images in pixels; default: 480");
-  command->add_option("--fov", settings.fov, "Horizontal field of view in degrees; default: 62.7");
+  command->add_option("--width", arguments->width,
+                      "Width of the images in pixels; default: 640, of a flight 752");
+  command->add_option("--height", arguments->height,
+                      "Height of the images in pixels; default: 480");
+  command->add_option("--fov", arguments->fov,
+                      "Horizontal field of view in degrees; default: 62.7, of a flight 78.77");
   command->add_option("--fps", settings.fps, "Frames per second; default: 30");
   command->add_option(
       "--held", settings.held,
       "Share of frames that are late by 0.2 to 1 s, as on a busy phone; default: 0");
+  command
+      ->add_option("--imu", settings.imu,
+                   "Inertial sensor. ideal: without errors; adis: that of the EuRoC drone, fully "
+                   "known; phone: biased, with an imprecise clock, and nothing known of it. "
+                   "Default: off. Of a flight: the file with its readings, in lines of t [s], "
+                   "angular rate [rad/s], specific force [m/s^2]")
+      ->type_name("off|adis|phone|ideal|FILE");
+  command->add_option("--imu-rate", settings.imu_rate,
+                      "Readings of the inertial sensor per second; default: 200, of a phone 60");
+  command->add_option("--imu-offset", settings.imu_offset,
+                      "Time on the clock of the readings minus that of the images, in "
+                      "milliseconds; default: 0, of a phone -30 to 30 by seed");
+  command
+      ->add_option("--imu-model", settings.imu_model,
+                   "Of a flight: the sensor.yaml of its camera (EuRoC), whose T_BS is the pose of "
+                   "the camera in the frame of the inertial sensor; default: that of the EuRoC "
+                   "drone")
+      ->type_name("FILE");
   command->add_option("--threads", arguments->threads, "Threads for rendering; 0: one per core");
   command->add_flag("--quiet", arguments->quiet, "Print errors only");
   command->footer(
       "\nExamples:\n  alidade synth room my_room --frames 300\n  alidade synth corridor people "
-      "--actors 3 --blur --format euroc\n\n`alidade run` can also render while it runs, without a "
+      "--actors 3 --blur --format euroc\n  alidade synth flight my_flight --path "
+      "groundtruth.txt --imu imu.csv   images along a recorded path\n\n`alidade run` can also "
+      "render while it runs, without a "
       "folder: alidade run \"synth:room?frames=300\".");
   command->callback(
       [arguments, &action] { action = [arguments] { return RenderAll(*arguments); }; });

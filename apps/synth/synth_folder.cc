@@ -90,7 +90,7 @@ void SynthFolder::Place() {
   // marker remains until it is replaced, so that an interrupted recording is still recognized as
   // ours.
   for (const char* name : {"rgb.txt", "depth.txt", "mask.txt", "groundtruth.txt", "camera.yaml",
-                           "times.txt", "poses.txt", "calib.txt"})
+                           "times.txt", "poses.txt", "calib.txt", "imu.csv", "motion.csv"})
     RemoveFile(path_ + "/" + name);
   for (const char* name : {"rgb", "depth", "mask", "mav0", "image_0", "image_1"})
     RemovePictures(path_ + "/" + name);

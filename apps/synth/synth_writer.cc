@@ -13,6 +13,7 @@
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/trajectory.h"
 #include "alidade/run/sources/synth_source.h"
+#include "synth/imu_text.h"
 
 namespace alidade {
 namespace {
@@ -24,38 +25,20 @@ std::string Print(const char* format, double value) {
   std::snprintf(text, sizeof(text), format, value);
   return text;
 }
-std::string Exact(double value) { return Print("%.17g", value); }
-
-std::string Join(const std::vector<double>& values, const char* between) {
-  std::string text;
-  for (size_t i = 0; i < values.size(); ++i) text += (i > 0 ? between : "") + Exact(values[i]);
-  return text;
-}
-
-// Three or four rows of [R t].
-std::string Matrix(const Se3& T, int rows, const char* between) {
-  std::vector<double> values;
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) values.push_back(T.R(row, column));
-    values.push_back(T.t[row]);
-  }
-  if (rows == 4) values.insert(values.end(), {0, 0, 0, 1});
-  return Join(values, between);
-}
-
 class FolderWriter : public SynthWriter {
  public:
   FolderWriter(std::string folder, const Camera& camera, const std::vector<std::string>& parts)
       : folder_(std::move(folder)), camera_(camera) {
-    for (const std::string& part : parts) {
-      std::error_code error;
-      fs::create_directories(folder_ + "/" + part, error);
-      if (error)
-        ThrowInput("cannot create the folder " + folder_ + "/" + part + ": " + error.message());
-    }
+    for (const std::string& part : parts) MakeFolder(part);
   }
 
  protected:
+  void MakeFolder(const std::string& part) const {
+    std::error_code error;
+    fs::create_directories(folder_ + "/" + part, error);
+    if (error)
+      ThrowInput("cannot create the folder " + folder_ + "/" + part + ": " + error.message());
+  }
   void WriteImages(const std::vector<std::pair<std::string, cv::Mat>>& images) const {
     ParallelFor(static_cast<int>(images.size()),
                 [&](int i) { WriteImage(folder_ + "/" + images[i].first, images[i].second); });
@@ -76,6 +59,13 @@ class TumWriter : public FolderWriter {
   TumWriter(const std::string& folder, const Camera& camera, bool fisheye)
       : FolderWriter(folder, camera, {"rgb", "depth", "mask"}), fisheye_(fisheye) {}
 
+  void AddReadings(const WrittenImu& imu) override {
+    WriteText("imu.csv", FormatImuCsv(imu.samples));
+    // As a phone's archive has them, where nothing is known of the sensor.
+    if (!imu.model.rotation_known) WriteText("motion.csv", FormatMotionCsv(imu.samples));
+    imu_block_ = FormatImuBlock(imu.model);
+  }
+
   void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
     const std::string stamp = SynthStamp(frame.time), file = "/" + stamp + ".png";
     WriteImages(
@@ -95,10 +85,11 @@ class TumWriter : public FolderWriter {
     WriteText("camera.yaml",
               std::string("model: ") + (fisheye_ ? "fisheye" : "pinhole") +
                   "\nwidth: " + std::to_string(c.width) + "\nheight: " + std::to_string(c.height) +
-                  "\nfx: " + Exact(c.fx) + "\nfy: " + Exact(c.fy) + "\ncx: " + Exact(c.cx) +
-                  "\ncy: " + Exact(c.cy) + "\ndistortion: [" + Join(distortion, ", ") +
-                  "]\nfps: " + Exact(c.fps) + "\nreadout: " + Exact(c.readout[1]) +
-                  "\ndepth_factor: " + Exact(c.depth_factor) + "\n");
+                  "\nfx: " + ExactText(c.fx) + "\nfy: " + ExactText(c.fy) +
+                  "\ncx: " + ExactText(c.cx) + "\ncy: " + ExactText(c.cy) + "\ndistortion: [" +
+                  JoinNumbers(distortion, ", ") + "]\nfps: " + ExactText(c.fps) +
+                  "\nreadout: " + ExactText(c.readout[1]) +
+                  "\ndepth_factor: " + ExactText(c.depth_factor) + "\n" + imu_block_);
     WriteText("groundtruth.txt", FormatTumTrajectory(truth_));
     WriteText("mask.txt", "# timestamp file (255 = moving people)\n" + mask_);
     WriteText("depth.txt", "# timestamp file\n" + depth_);
@@ -107,7 +98,7 @@ class TumWriter : public FolderWriter {
 
  private:
   bool fisheye_;
-  std::string rgb_, depth_, mask_;
+  std::string rgb_, depth_, mask_, imu_block_;
   Trajectory truth_;
 };
 
@@ -119,6 +110,12 @@ class EurocWriter : public FolderWriter {
                      {"mav0/cam0/data", "mav0/cam1/data", "mav0/depth0/data", "mav0/mask0/data",
                       "mav0/state_groundtruth_estimate0"}) {
     T_body_camera_.R << 0, 0, 1, -1, 0, 0, 0, -1, 0;
+  }
+
+  void AddReadings(const WrittenImu& imu) override {
+    MakeFolder("mav0/imu0");
+    WriteText("mav0/imu0/sensor.yaml", FormatEurocImuSensor(imu.model, T_body_camera_));
+    WriteText("mav0/imu0/data.csv", FormatEurocImu(imu.samples, kSynthEurocStart));
   }
 
   void Add(const RenderedFrame& frame, const Se3& T_world_camera) override {
@@ -133,7 +130,8 @@ class EurocWriter : public FolderWriter {
     const Se3 T_world_body = T_world_camera * T_body_camera_.Inverse();
     const Eigen::Quaterniond q = T_world_body.Quaternion();
     const Eigen::Vector3d& t = T_world_body.t;
-    truth_ += stamp + "," + Join({t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}, ",") + "\n";
+    truth_ +=
+        stamp + "," + JoinNumbers({t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z()}, ",") + "\n";
   }
 
   void Finish() override {
@@ -154,12 +152,12 @@ class EurocWriter : public FolderWriter {
     const Camera& c = camera();
     const auto& k = c.distortion;
     return "# " + comment + ", rendered\nsensor_type: camera\ncomment: rendered " + comment +
-           "\nT_BS:\n  cols: 4\n  rows: 4\n  data: [" + Matrix(T_body_sensor, 4, ", ") +
-           "]\nrate_hz: " + Exact(c.fps) + "\nresolution: [" + std::to_string(c.width) + ", " +
+           "\nT_BS:\n  cols: 4\n  rows: 4\n  data: [" + MatrixText(T_body_sensor, 4, ", ") +
+           "]\nrate_hz: " + ExactText(c.fps) + "\nresolution: [" + std::to_string(c.width) + ", " +
            std::to_string(c.height) + "]\ncamera_model: pinhole\nintrinsics: [" +
-           Join({c.fx, c.fy, c.cx, c.cy}, ", ") +
+           JoinNumbers({c.fx, c.fy, c.cx, c.cy}, ", ") +
            "]\ndistortion_model: radial-tangential\ndistortion_coefficients: [" +
-           Join({k[0], k[1], k[2], k[3]}, ", ") + "]\n";
+           JoinNumbers({k[0], k[1], k[2], k[3]}, ", ") + "]\n";
   }
 
   Se3 T_body_camera_;
@@ -184,9 +182,11 @@ class KittiWriter : public FolderWriter {
                  {std::string("mask") + file, frame.mask}});
     if (count_ == 0) T_first_world_ = T_world_camera.Inverse();
     times_ += Print("%.9e", frame.time) + "\n";
-    poses_ += Matrix(T_first_world_ * T_world_camera, 3, " ") + "\n";
+    poses_ += MatrixText(T_first_world_ * T_world_camera, 3, " ") + "\n";
     ++count_;
   }
+
+  void AddReadings(const WrittenImu&) override {}  // refused by the command
 
   void Finish() override {
     const Camera& c = camera();
@@ -194,7 +194,7 @@ class KittiWriter : public FolderWriter {
     for (int i = 0; i < 4; ++i) {
       const double shift = i % 2 == 1 ? -c.fx * c.baseline : 0;
       calibration += "P" + std::to_string(i) + ": " +
-                     Join({c.fx, 0, c.cx, shift, 0, c.fy, c.cy, 0, 0, 0, 1, 0}, " ") + "\n";
+                     JoinNumbers({c.fx, 0, c.cx, shift, 0, c.fy, c.cy, 0, 0, 0, 1, 0}, " ") + "\n";
     }
     WriteText("calib.txt", calibration);
     WriteText("poses.txt", poses_);

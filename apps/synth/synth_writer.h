@@ -6,6 +6,7 @@
 #include <string>
 
 #include "alidade/synth/recording.h"
+#include "synth/imu_text.h"
 
 namespace alidade {
 
@@ -16,6 +17,8 @@ class SynthWriter {
   virtual ~SynthWriter() = default;
   // Adds the next frame; frames are numbered from 0.
   virtual void Add(const RenderedFrame& frame, const Se3& T_world_camera) = 0;
+  // All readings of the inertial sensor, on its clock. Throws Error (usage) if the format has none.
+  virtual void AddReadings(const WrittenImu& imu) = 0;
   // Writes lists, poses and calibration. Before that, no reader recognizes the folder as a
   // recording.
   virtual void Finish() = 0;

@@ -7,43 +7,16 @@
 #include <vector>
 
 #include "alidade/base/random.h"
+#include "support/smooth_motion.h"
 
 namespace alidade {
 namespace {
 
-const Eigen::Vector3d kGravity(0, 0, -9.81);
-
-// A smooth motion with closed-form position and, along it, rotation by Exp of a smooth vector.
-struct Motion {
-  static Eigen::Vector3d Position(double t) {
-    return {std::sin(1.3 * t), 0.7 * std::cos(2.1 * t), 0.3 * std::sin(3 * t + 1)};
-  }
-  static Eigen::Vector3d Velocity(double t) {
-    return {1.3 * std::cos(1.3 * t), -0.7 * 2.1 * std::sin(2.1 * t), 0.9 * std::cos(3 * t + 1)};
-  }
-  static Eigen::Vector3d Acceleration(double t) {
-    return {-1.69 * std::sin(1.3 * t), -0.7 * 4.41 * std::cos(2.1 * t), -2.7 * std::sin(3 * t + 1)};
-  }
-  static Eigen::Vector3d Turn(double t) {
-    return {0.8 * std::sin(1.7 * t), 0.5 * std::sin(2.3 * t + 0.4), 0.9 * std::cos(1.1 * t)};
-  }
-  static Eigen::Vector3d TurnRate(double t) {
-    return {1.36 * std::cos(1.7 * t), 1.15 * std::cos(2.3 * t + 0.4), -0.99 * std::sin(1.1 * t)};
-  }
-  static ImuSample Reading(double t, const ImuBias& bias) {
-    const Eigen::Matrix3d R = ExpSo3(Turn(t));
-    return {t, RightJacobian(Turn(t)) * TurnRate(t) + bias.gyro,
-            R.transpose() * (Acceleration(t) - kGravity) + bias.accel};
-  }
-  static InertialState At(double t, const ImuBias& bias) {
-    return {{ExpSo3(Turn(t)), Position(t)}, Velocity(t), bias};
-  }
-};
+using Motion = SmoothMotion;
+const Eigen::Vector3d kGravity = Motion::Gravity();
 
 std::vector<ImuSample> Readings(double seconds, double rate, const ImuBias& bias) {
-  std::vector<ImuSample> samples;
-  for (int k = -1; k <= seconds * rate + 1; ++k) samples.push_back(Motion::Reading(k / rate, bias));
-  return samples;
+  return Motion::Readings(-1 / rate, seconds + 1 / rate, rate, bias);
 }
 
 const ImuBias kBias{{0.02, -0.01, 0.03}, {0.1, -0.15, 0.05}};

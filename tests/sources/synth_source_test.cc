@@ -88,5 +88,45 @@ TEST(SynthSource, AKnownFisheyeIsRectified) {
   EXPECT_GT(cv::norm(a(inside), elsewhere, cv::NORM_L1) / inside.area(), 5);
 }
 
+// Readings follow each other from frame to frame; after a jump they begin shortly before the frame.
+TEST(SynthSource, ReadingsComeWithTheFrames) {
+  const std::string table = "synth:table?frames=40&width=64&height=48";
+  EXPECT_FALSE(OpenSynthSource(table)->Info().imu.has_value());
+  for (const char* imu : {"&imu=adis&imu-offset=15", "&imu=phone&imu_rate=200&imu-offset=-12"}) {
+    const auto source = OpenSynthSource(table + imu);
+    const ImuModel model = source->Info().imu.value();
+    std::vector<ImuSample> all, fifth;
+    double last = 0;
+    for (int i = 0; i < 6; ++i) {
+      const SourceFrame frame = source->Next().value();
+      ASSERT_FALSE(frame.imu.empty());
+      EXPECT_LE(frame.imu.back().time, frame.time + model.time_offset);
+      EXPECT_GT(frame.imu.back().time, frame.time + model.time_offset - 0.01);
+      all.insert(all.end(), frame.imu.begin(), frame.imu.end());
+      fifth = frame.imu;
+      last = frame.time;
+    }
+    EXPECT_NEAR(all.front().time, model.time_offset - 0.1, 0.008);
+    EXPECT_NEAR(static_cast<double>(all.size()), 200 * (last + 0.1), 2);
+    for (size_t i = 1; i < all.size(); ++i) EXPECT_NEAR(all[i].time - all[i - 1].time, 5e-3, 4e-3);
+    ASSERT_TRUE(source->Seek(5));
+    const auto again = source->Next().value().imu;
+    ASSERT_GT(again.size(), fifth.size());
+    for (size_t i = 1; i <= fifth.size(); ++i) {
+      EXPECT_EQ(again[again.size() - i].time, fifth[fifth.size() - i].time);
+      EXPECT_EQ(again[again.size() - i].angular_rate, fifth[fifth.size() - i].angular_rate);
+    }
+  }
+}
+
+// The sensor's rotation is told of the camera that is handed out: rectified, of a fisheye.
+TEST(SynthSource, TellsTheSensorInTheRectifiedCamera) {
+  const auto source = OpenSynthSource("synth:table?frames=1&imu=adis&fisheye&fov=90");
+  const ImuModel model = source->Info().imu.value();
+  EXPECT_TRUE(model.rotation_known);
+  EXPECT_LT((model.T_camera_imu.R.col(0) - Eigen::Vector3d(0, -1, 0)).norm(), 0.05);
+  EXPECT_FALSE(OpenSynthSource("synth:table?frames=1&imu=phone")->Info().imu->rotation_known);
+}
+
 }  // namespace
 }  // namespace alidade::synth_source_test

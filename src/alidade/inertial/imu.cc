@@ -1,5 +1,6 @@
 #include "alidade/inertial/imu.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "alidade/base/error.h"
@@ -18,6 +19,12 @@ void ImuModel::Check() const {
     ThrowUsage("imu: noise densities must be above 0");
   if (!std::isfinite(time_offset)) ThrowUsage("imu: time_offset is not a number");
   if (!std::isfinite(rate) || rate < 0) ThrowUsage("imu: rate must not be negative");
+}
+
+ImuNoise InUse(ImuNoise noise) {
+  noise.gyro = std::max(noise.gyro, 5e-4);
+  noise.accel = std::max(noise.accel, 0.02);
+  return noise;
 }
 
 }  // namespace alidade

@@ -51,7 +51,7 @@ ImagePreparation::ImagePreparation(const Calibration& calibration, Sensor sensor
     camera_ = Unrectified(calibration);
     if (sensor == Sensor::kStereo) camera_.baseline = calibration.baseline;
   }
-  camera_.fps = calibration.fps;
+  camera_.fps = calibration.fps.value_or(kAssumedFps);
   camera_.readout_known = calibration.readout.has_value();
   if (calibration.readout) camera_.readout = *calibration.readout;
   camera_.depth_factor = sensor == Sensor::kRgbd ? calibration.depth_factor.value_or(0) : 0;

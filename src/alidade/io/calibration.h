@@ -15,12 +15,15 @@
 
 namespace ALIDADE_API alidade {
 
+// Frames per second where nothing states them.
+inline constexpr double kAssumedFps = 30;
+
 struct Calibration {
   RawCamera left;
   std::optional<RawCamera> right;  // second camera of an unrectified stereo pair
-  Se3 T_left_right;     // pose of the right camera in the left one, meters; used with `right`
-  double baseline = 0;  // meters, of an already rectified pair; 0: no second camera
-  double fps = 30;      // frames per second
+  Se3 T_left_right;           // pose of the right camera in the left one, meters; used with `right`
+  double baseline = 0;        // meters, of an already rectified pair; 0: no second camera
+  std::optional<double> fps;  // frames per second; nullopt: not stated
   // Rolling shutter readout, see Camera; nullopt: not stated.
   std::optional<std::array<double, 2>> readout;
   std::optional<double> depth_factor;  // depth image value per meter; nullopt: not stated

@@ -31,6 +31,15 @@ struct PathTiming {
   double turn_angle = 1.2;  // radians
 };
 
+// Pose of the camera and its exact derivatives by time.
+struct PathMotion {
+  Se3 T_world_camera;
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      // in the world, m/s
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  // in the world, without gravity, m/s²
+  Eigen::Vector3d angular_rate = Eigen::Vector3d::Zero();  // in the camera's axes, rad/s
+  Eigen::Vector3d angular_acceleration = Eigen::Vector3d::Zero();  // in the camera's axes, rad/s²
+};
+
 // Closed uniform cubic B-spline (continuous acceleration of position and angles) with the knots as
 // control points. `turns`: full turns of yaw per period.
 class CameraPath {
@@ -38,6 +47,8 @@ class CameraPath {
   CameraPath(std::vector<PathKnot> knots, double period, int turns, const ShakeSettings& shake,
              uint64_t seed, const PathTiming& timing = {});
   Se3 At(double time) const;  // T_world_camera at any time, seconds
+  // The motion at the same time, from the derivatives of the spline, the shake and the timing.
+  PathMotion MotionAt(double time) const;
   double period() const { return period_; }
   Eigen::Vector3d UnshakenPosition(double time) const;
 
@@ -45,6 +56,13 @@ class CameraPath {
   struct Wave {
     double amplitude, frequency, phase;  // radians per second, radians
   };
+  // A value and its first two derivatives by time.
+  struct Jet {
+    double value, first, second;
+  };
+  std::array<PathKnot, 2> SplineDerivatives(double time) const;  // first and second, by `time`
+  Jet ShakeJet(int axis, double time) const;
+  Jet WalkedJet(double time) const;
   PathKnot Spline(double time) const;
   double Shake(int axis, double time) const;
   double Walked(double time) const;  // seconds along the path

@@ -1,6 +1,8 @@
 #include "alidade/synth/recording.h"
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -8,6 +10,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/random.h"
 #include "alidade/synth/actor.h"
+#include "alidade/synth/imu.h"
 #include "alidade/synth/renderer.h"
 #include "alidade/synth/scenes/scenes.h"
 #include "alidade/synth/sensor.h"
@@ -103,18 +106,89 @@ PathTiming TimingOf(const SynthSettings& settings) {
 
 }  // namespace
 
-struct SynthRecording::Parts {
-  Parts(const SynthSettings& given, const Layout& layout, Scene built,
-        const std::vector<ActorLooks>& looks, std::vector<Thing> moved)
-      : settings(given),
-        delays(DelaysOf(given)),
-        camera(MakeCamera(given)),
-        scene(std::move(built)),
-        path(layout.knots, layout.period, layout.turns, layout.shake, given.seed, TimingOf(given)),
-        actors(CastActors(looks, layout.walks, path, given.frames / given.fps + delays.back(),
-                          given.seed)),
-        things(std::move(moved)),
-        renderer(scene, camera, given.fisheye) {}
+// Where the camera is and what is there; times are in seconds.
+struct RenderedWorld {
+  SynthSettings settings;
+  Scene scene;
+  std::function<Se3(double time)> T_scene_camera;
+  // The scene's origin in the world of SynthRecording::Pose(), meters.
+  Eigen::Vector3d p_world_scene = Eigen::Vector3d::Zero();
+  std::function<double(int number)> time_of;  // of any frame
+  std::vector<Actor> actors;
+  std::vector<Thing> things;
+  std::unique_ptr<ImuTrack> imu;
+};
+
+namespace {
+
+RenderedWorld MakeWorld(SynthSettings settings) {
+  settings.Check();
+  SceneBuilder builder(settings.seed);
+  const Layout layout = LayOutFor(settings, builder);
+  if (settings.things > 0 && !layout.table)
+    ThrowUsage("synth: things need a table, which the scene does not have: \"" + settings.scene +
+               "\"");
+  std::vector<ActorLooks> looks;
+  // Separate stream: the scene is the same with and without people.
+  Random random(settings.seed, 51);
+  for (int i = 0; i < settings.actors; ++i) looks.push_back(DressActor(builder, random));
+  RenderedWorld world;
+  world.settings = settings;
+  if (settings.things > 0)
+    world.things = PutThings(builder, *layout.table, settings.things, settings.seed);
+  world.scene = builder.Build();
+  const std::vector<double> delays = DelaysOf(settings);
+  world.time_of = [delays, fps = settings.fps](int number) {
+    return number / fps + delays[std::clamp(number, 0, static_cast<int>(delays.size()) - 1)];
+  };
+  const CameraPath path(layout.knots, layout.period, layout.turns, layout.shake, settings.seed,
+                        TimingOf(settings));
+  const double seconds = settings.frames / settings.fps + delays.back();
+  world.actors = CastActors(looks, layout.walks, path, seconds, settings.seed);
+  world.T_scene_camera = [path](double time) { return path.At(time); };
+  if (settings.imu != "off")
+    world.imu = std::make_unique<SimulatedImu>(settings, seconds,
+                                               [path](double time) { return path.MotionAt(time); });
+  return world;
+}
+
+RenderedWorld MakeWorld(SynthSettings settings, Flight flight) {
+  settings.scene = kFlightScene;
+  settings.Check();
+  flight.Check();
+  settings.fps = flight.Fps();
+  const int count = static_cast<int>(flight.poses.size());
+  settings.frames = settings.frames == 0 ? count : std::min(settings.frames, count);
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<double> times;
+  for (const FlightPose& pose : flight.poses) {
+    positions.push_back(pose.T_world_camera.t);
+    times.push_back(pose.time);
+  }
+  SceneBuilder builder(settings.seed);
+  RenderedWorld world;
+  world.settings = settings;
+  world.p_world_scene = LayOutFlight(builder, positions);
+  world.scene = builder.Build();
+  world.time_of = [times, count](int number) { return times[std::clamp(number, 0, count - 1)]; };
+  const FlightPath path(std::move(flight.poses));
+  world.T_scene_camera = [path, origin = world.p_world_scene](double time) {
+    Se3 pose = path.At(time);
+    pose.t -= origin;
+    return pose;
+  };
+  if (!flight.readings.empty())
+    world.imu = std::make_unique<RecordedImu>(std::move(flight.readings), flight.imu);
+  return world;
+}
+
+}  // namespace
+
+struct SynthRecording::Parts : RenderedWorld {
+  explicit Parts(RenderedWorld world)
+      : RenderedWorld(std::move(world)),
+        camera(MakeCamera(settings)),
+        renderer(scene, camera, settings.fisheye) {}
 
   View Capture(double time, const Eigen::Vector3d& p_camera_eye) const {
     Shutter shutter;
@@ -124,7 +198,7 @@ struct SynthRecording::Parts {
       return readout > 0 ? time + readout * ((row + 0.5) / camera.height - 0.5) : time;
     };
     shutter.T_world_camera = [this, row_time, p_camera_eye](double row) {
-      Se3 pose = path.At(row_time(row));
+      Se3 pose = T_scene_camera(row_time(row));
       pose.t = pose * p_camera_eye;
       return pose;
     };
@@ -154,32 +228,14 @@ struct SynthRecording::Parts {
     return view;
   }
 
-  SynthSettings settings;
-  std::vector<double> delays;
   Camera camera;
-  Scene scene;
-  CameraPath path;
-  std::vector<Actor> actors;
-  std::vector<Thing> things;
   ViewRenderer renderer;
 };
 
-SynthRecording::SynthRecording(SynthSettings settings) {
-  settings.Check();
-  SceneBuilder builder(settings.seed);
-  const Layout layout = LayOutFor(settings, builder);
-  if (settings.things > 0 && !layout.table)
-    ThrowUsage("synth: things need a table, which the scene does not have: \"" + settings.scene +
-               "\"");
-  std::vector<ActorLooks> looks;
-  // Separate stream: the scene is the same with and without people.
-  Random random(settings.seed, 51);
-  for (int i = 0; i < settings.actors; ++i) looks.push_back(DressActor(builder, random));
-  std::vector<Thing> things;
-  if (settings.things > 0)
-    things = PutThings(builder, *layout.table, settings.things, settings.seed);
-  parts_ = std::make_unique<Parts>(settings, layout, builder.Build(), looks, std::move(things));
-}
+SynthRecording::SynthRecording(SynthSettings settings)
+    : parts_(std::make_unique<Parts>(MakeWorld(std::move(settings)))) {}
+SynthRecording::SynthRecording(SynthSettings settings, Flight flight)
+    : parts_(std::make_unique<Parts>(MakeWorld(std::move(settings), std::move(flight)))) {}
 SynthRecording::~SynthRecording() = default;
 SynthRecording::SynthRecording(SynthRecording&&) noexcept = default;
 SynthRecording& SynthRecording::operator=(SynthRecording&&) noexcept = default;
@@ -188,11 +244,14 @@ const SynthSettings& SynthRecording::settings() const { return parts_->settings;
 const Camera& SynthRecording::camera() const { return parts_->camera; }
 RawCamera SynthRecording::lens() const { return LensOf(parts_->settings, parts_->camera); }
 int SynthRecording::frames() const { return parts_->settings.frames; }
-double SynthRecording::Time(int number) const {
-  const int last = parts_->settings.frames - 1;
-  return number / parts_->settings.fps + parts_->delays[std::clamp(number, 0, last)];
+double SynthRecording::Time(int number) const { return parts_->time_of(number); }
+Se3 SynthRecording::Pose(int number) const {
+  Se3 pose = parts_->T_scene_camera(Time(number));
+  pose.t += parts_->p_world_scene;
+  return pose;
 }
-Se3 SynthRecording::Pose(int number) const { return parts_->path.At(Time(number)); }
+
+const ImuTrack* SynthRecording::imu() const { return parts_->imu.get(); }
 
 RenderedFrame SynthRecording::Render(int number) const {
   const SynthSettings& settings = parts_->settings;

@@ -7,6 +7,8 @@
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/raw_camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/synth/flight.h"
+#include "alidade/synth/imu_track.h"
 #include "alidade/synth/settings.h"
 
 namespace alidade {
@@ -27,6 +29,8 @@ class SynthRecording {
  public:
   // Builds and paints the scene (0.2 to 2 s). Throws Error (usage) on invalid settings.
   explicit SynthRecording(SynthSettings settings);
+  // Along a given path, in a hall around it: images at its poses, `frames` 0 or the first of them.
+  SynthRecording(SynthSettings settings, Flight flight);
   ~SynthRecording();
   SynthRecording(SynthRecording&&) noexcept;
   SynthRecording& operator=(SynthRecording&&) noexcept;
@@ -37,8 +41,9 @@ class SynthRecording {
   int frames() const;
   double Time(int number) const;  // seconds
   // T_world_camera, exact; with a rolling shutter, that of the middle row. The world's z is up, the
-  // floor is at z = 0. `number` may exceed frames(): the path continues.
+  // floor is at z = 0 (of a flight: elsewhere). `number` may exceed frames(): the path continues.
   Se3 Pose(int number) const;
+  const ImuTrack* imu() const;  // nullptr: without
   // Depends only on the settings and `number`, not on threads or previous calls.
   RenderedFrame Render(int number) const;
 

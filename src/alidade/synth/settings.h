@@ -2,19 +2,24 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace alidade {
 
+// The scene that is built around a given path (flight.h).
+inline constexpr char kFlightScene[] = "flight";
+
 // Names are those of the flags of `alidade synth` and of the options of a `synth:` source.
 struct SynthSettings {
-  std::string scene = "room";  // one of SceneNames()
+  std::string scene = "room";  // one of SceneNames(), or kFlightScene
   // Frames to play. A scene's path is walked at a natural speed and comes round once in
   // SceneFrames() frames at 30 per second; fewer play its beginning only, more go round again.
   int frames = 600;
   // The way the camera takes: "walk", the scene's own; "turn", it turns on the spot, about its own
   // centre; "turn-walk", it does so for 4 s and then walks; "still", it stands, as on a tripod.
+  // Of a flight: the file with its poses.
   std::string path = "walk";
   double speed = 1;  // times that of the scene's own
   double arm = 0;    // metres from the axis of a turn to the camera, which looks away
@@ -39,18 +44,31 @@ struct SynthSettings {
   double held = 0;                // share of frames that come .2 to 1 s late: a busy phone
   bool calibrated = true;         // false: sources assume a camera, as if nothing were known of it
 
+  // The inertial sensor: "off"; "ideal", without errors; "adis", that of EuRoC's rig, everything
+  // known of it; "phone", nothing known of it. Of a flight: the file with its readings.
+  std::string imu = "off";
+  double imu_rate = 0;  // readings per second; 0: of a phone 60, as of its browser, else 200
+  // An image taken at t was taken at t + imu_offset on the clock of the readings, milliseconds; not
+  // set: 0, of a phone -30 to 30 by seed.
+  std::optional<double> imu_offset;
+  std::string imu_model;  // of a flight: the file with the sensor's pose; empty: EuRoC's
+
   // What --blur, --rolling and switches of those names stand for: ms of a shutter indoors, of a
   // phone's sensor.
   static constexpr double kUsualBlur = 20, kUsualRolling = 16;
 
-  double Focal() const;  // focal length, pixels; of a fisheye: pixels per radian
-  void Check() const;    // throws Error (usage) naming the field that cannot be
+  double Focal() const;    // focal length, pixels; of a fisheye: pixels per radian
+  double ImuRate() const;  // readings per second; 0: no sensor
+  void Check() const;      // throws Error (usage) naming the field that cannot be
   bool operator==(const SynthSettings&) const = default;
 };
 
 std::vector<std::string> SceneNames();
 std::vector<std::string> PathNames();
-int SceneFrames(
-    const std::string& scene);  // once round its path; scene must be one of SceneNames()
+std::vector<std::string> ImuNames();  // "off" first
+// Frames once round the path of a scene; 0 of kFlightScene: all of its path.
+int SceneFrames(const std::string& scene);
+// The settings to start from: the scene's frames; of a flight the camera of EuRoC's rig.
+SynthSettings SynthDefaults(const std::string& scene);
 
 }  // namespace alidade

@@ -59,6 +59,7 @@ FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
       tracker_(camera, settings.tracker),
       movers_(camera, settings, detector),
       left_out_(camera, settings.fixed_parts),
+      inertial_(settings.sensor),
       young_(camera, settings, workers_),
       early_(settings.early),
       kept_(settings.sensor == Sensor::kMono ? settings.refine.keep_frames : kFixedPartsFrames),
@@ -81,8 +82,11 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   PresentFrame now;
   now.index = log_.size() - 1;
   UseNews(now);
+  inertial_.Take(prepared.imu);
+  UseInertial();
   ExtractFeatures(prepared, time, now);
   TrackResult result = Localize(now);
+  if (inertial_.given()) Observe(time, now);
   if (now.map_left && result.state != TrackState::kTracking)
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);
@@ -131,6 +135,32 @@ void FramePipeline::UseCamera() {
   camera_update_.Apply(*std::exchange(news_.camera, std::nullopt));
   ++counts_.camera_changes;
   TakeNews();  // of keyframes that were mapped again
+}
+
+void FramePipeline::SetImu(const ImuModel& imu) {
+  inertial_.SetImu(imu);
+  inertial_shown_.Set(inertial_.report());
+}
+
+// One camera: the lengths of the map become meters, as soon as it is confirmed.
+void FramePipeline::UseInertial() {
+  if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
+  const auto growth = inertial_.UseAnswer(workers_.map().Snapshot());
+  if (growth && !settings_.localize) workers_.Scale(growth->map, growth->factor);
+  inertial_shown_.Set(inertial_.report());
+}
+
+// A pose for the fit of what the inertial sensor tells, which runs beside the other work.
+void FramePipeline::Observe(double time, const PresentFrame& now) {
+  const MapSnapshot map = workers_.map().Snapshot();
+  if (session_.state() == SessionState::kTracking && tracker_.IsLast(*now.frame)) {
+    inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
+                     map.MapOf(tracker_.reference()), now.placed.covariance);
+  }
+  if (auto question = inertial_.Ask(map)) {
+    workers_.AddErrand(
+        [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
+  }
 }
 
 // Poses of the newest map may have followed the part: a young map of one camera is dropped, and one
@@ -206,6 +236,7 @@ bool FramePipeline::KeepsForFixedParts() const {
 // Pose from an even motion and the local map (ORB-SLAM §V-B to D).
 TrackEstimate FramePipeline::FollowMotion(PresentFrame& now, const MapSnapshot& map) {
   const Stopwatch watch;
+  tracker_.SetTurn(now.frame->time, inertial_.TurnBetween(tracker_.last_time(), now.frame->time));
   tracker_.UndoShutter(*now.frame, map);
   PlacedFrame guess = tracker_.Predict(now.frame, map);
   const double predicting = watch.Milliseconds();
@@ -224,6 +255,7 @@ TrackEstimate FramePipeline::FollowMotion(PresentFrame& now, const MapSnapshot& 
 }
 
 TrackEstimate FramePipeline::FindPlace(PresentFrame& now, const MapSnapshot& map) {
+  tracker_.SetTurn(now.frame->time, inertial_.TurnBetween(tracker_.last_time(), now.frame->time));
   movers_.Judge(*now.frame, nullptr);
   if (map.keyframe_count() == 0) return {};
   const Stopwatch watch;
@@ -349,6 +381,7 @@ void FramePipeline::Reanchor() {
   const MapSnapshot map = workers_.map().Snapshot();
   log_.Reanchor(map);
   tracker_.Reanchor(map);
+  inertial_.Reanchor(map);
   early_.Reanchor(map);
   workers_.map().ReleaseCulledKeyFrames(map.version());
 }

@@ -9,6 +9,7 @@
 #include "alidade/system/camera_update.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
+#include "alidade/system/inertial_watch.h"
 #include "alidade/system/left_out.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
@@ -46,17 +47,13 @@ class FramePipeline {
   // See Slam::LeaveOut().
   void LeaveOut(const cv::Mat& mask) { left_out_.Name(mask); }
   // See Slam::SetImu().
-  void SetImu(const ImuModel& imu) {
-    InertialReport report;
-    report.given = true;
-    report.model = imu;
-    inertial_shown_.Set(report);
-  }
+  void SetImu(const ImuModel& imu);
   // The next frame need not continue the last one.
   // `steady`: the time of that frame on the steady clock, seconds.
   void Cut(double steady) {
     session_.Apply(SessionEvent::kCut, steady);
     left_out_.Cut();
+    inertial_.Cut();
   }
   void BeginRecording();
   // Waits for the workers, `limit` seconds at most, and uses what they found.
@@ -81,6 +78,8 @@ class FramePipeline {
   void TakeNews();
   void FinishWork(bool limited);
   void UseCamera();
+  void UseInertial();
+  void Observe(double time, const PresentFrame& now);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);
@@ -109,6 +108,7 @@ class FramePipeline {
   Tracker tracker_;
   MoverWatch movers_;
   LeftOut left_out_;
+  InertialWatch inertial_;
   YoungMap young_;     // one camera only
   EarlyFrames early_;  // one camera only
   KeptFrames kept_;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +51,12 @@ class Tracker {
                                  double time, int number, const cv::Mat& avoid = {});
   // Changes the readout time (Camera::readout) from the next frame on.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
+  // Rotation R_now_last of the frame at `time` since the last frame, as an inertial sensor tells
+  // it; nullopt: it does not. It replaces that of the motion model.
+  void SetTurn(double time, const std::optional<Eigen::Matrix3d>& R_now_last) {
+    turn_time_ = time;
+    turn_ = R_now_last;
+  }
   // Changes the camera model for the following frames and the stored last frame.
   void SetCamera(const Camera& camera);
   // Rolling shutters: corrects the keypoints with the predicted motion.
@@ -94,6 +101,11 @@ class Tracker {
 
   // Reference keyframe of the last tracked frame.
   KeyFrameId reference() const { return last_anchor_.keyframe; }
+  // Time of the last tracked frame, seconds; NaN if there is none.
+  double last_time() const {
+    return last_.frame ? last_.frame->time : std::numeric_limits<double>::quiet_NaN();
+  }
+  bool IsLast(const Frame& frame) const { return last_.frame.get() == &frame; }
   const Camera& camera() const { return camera_; }
   void KeyFrameInserted(int frame_number) {
     last_keyframe_number_ = frame_number;
@@ -151,6 +163,8 @@ class Tracker {
   PlacedFrame last_;
   Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe
   Motion motion_;       // up to the last frame, in the anchor's scale
+  double turn_time_ = 0;
+  std::optional<Eigen::Matrix3d> turn_;  // R_now_last at turn_time_, by an inertial sensor
   // That the camera is where the motion since the last frame leads.
   struct {
     double log_odds = 0;

@@ -101,6 +101,10 @@ Se3 Tracker::MotionUntil(double time, const MapSnapshot& map) const {
   if (!last_.frame) return {};
   Se3 motion = motion_.After(time - last_.frame->time);
   motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  if (turn_ && turn_time_ == time) {  // the same way, with another rotation
+    motion.t = *turn_ * (motion.R.transpose() * motion.t);
+    motion.R = *turn_;
+  }
   return motion;
 }
 

@@ -47,7 +47,9 @@ std::vector<std::string> GoodTexts() {
       "<?xml version=\"1.0\"?>\n<opencv_storage>\n<camera_matrix type_id=\"opencv-matrix\">\n  "
       "<rows>3</rows>\n  <cols>3</cols>\n  <dt>d</dt>\n  <data>\n    500. 0. 320. 0. 500. 240. 0. "
       "0. "
-      "1.</data></camera_matrix>\n</opencv_storage>\n"};
+      "1.</data></camera_matrix>\n</opencv_storage>\n",
+      " Intrinsic of \"Color\" / 640x480 / {RGB8}\n  Width: 640\n  Height: 480\n  PPX: 320\n  PPY: "
+      "240\n  Fx: 600\n  Fy: 600\n  Distortion: Inverse Brown Conrady\n  Coeffs: 0 0 0 0 0\n"};
   for (const auto style :
        {CalibrationStyle::kAlidade, CalibrationStyle::kKalibr, CalibrationStyle::kRos,
         CalibrationStyle::kOpenCv, CalibrationStyle::kColmap})

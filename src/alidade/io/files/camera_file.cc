@@ -144,18 +144,20 @@ std::string CameraFilePath(const std::string& given) {
   return mark == std::string::npos || mark == 0 || IsThere(given) ? given : given.substr(0, mark);
 }
 
-Calibration ReadCameraFile(const std::string& given) {
+Calibration ReadCameraFile(const std::string& given, cv::Size images) {
   const std::string path = CameraFilePath(given);
   const std::string which = path.size() < given.size() ? given.substr(path.size() + 1) : "";
-  return ParseCameraFile(ReadFile(path, kMostCalibrationBytes), path, which);
+  return ParseCameraFile(ReadFile(path, kMostCalibrationBytes), path, which, images);
 }
 
 Calibration ParseCameraFile(const std::string& text, const std::string& name,
-                            const std::string& which) {
+                            const std::string& which, cv::Size images) {
   Calibration calibration;
   try {
     calibration = IsColmapCameras(text) ? ReadColmapCameras(text, name, which)
-                                        : ReadYaml(YamlOfCalibration(text, name), which);
+                  : IsRealSenseListing(text)
+                      ? ReadYaml(YamlFile(YamlOfListing(text, name, which, images), name), {})
+                      : ReadYaml(YamlOfCalibration(text, name), which);
   } catch (const YAML::Exception& error) {  // a value where a map is expected, and similar
     ThrowInput(name + (error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1)) +
                ": " + error.msg);

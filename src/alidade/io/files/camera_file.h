@@ -2,6 +2,7 @@
 // recording without one.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
@@ -19,15 +20,15 @@ inline constexpr size_t kMostCalibrationBytes = size_t{1} << 24;
 // Reads camera.yaml: `model: pinhole|fisheye`, `width height fx fy cx cy`, `distortion: [k1 k2 p1
 // p2 k3]` (fisheye: [k1 k2 k3 k4]), `fps`, `readout` (rolling shutter, seconds from the top to the
 // bottom row, or [left to right, top to bottom]), `depth_factor`, and for a stereo pair `baseline`
-// (meters) or `right: {width …, T_left_right: 4x4}`, and checks `imu` (ReadImuModel()); and the
-// calibrations of other tools that calibrations/formats.h lists, recognized by their content.
-// `path#NAME` chooses a camera of a file with several. Throws Error (input) with file:line for a
-// missing or invalid value; warns of unknown keys. The size stays 0 when the file of another tool
-// does not state it.
-Calibration ReadCameraFile(const std::string& path);
+// (meters) or `right: {width …, T_left_right: 4x4}`; and the calibrations of other tools that
+// calibrations/formats.h lists, recognized by their content. `path#NAME` chooses a camera of a file
+// with several. Throws Error (input) with file:line for a missing or invalid value; warns of
+// unknown keys. `images`: size of the recording's images, by which one of a camera's sizes is
+// chosen (rs-enumerate-devices). The size stays 0 when the file of another tool does not state it.
+Calibration ReadCameraFile(const std::string& path, cv::Size images = {});
 // The same for a file's text; `name` appears in errors, `which` is the chosen camera.
 Calibration ParseCameraFile(const std::string& text, const std::string& name,
-                            const std::string& which = {});
+                            const std::string& which = {}, cv::Size images = {});
 // The file's path without `#NAME`.
 std::string CameraFilePath(const std::string& given);
 

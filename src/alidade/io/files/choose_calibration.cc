@@ -86,7 +86,10 @@ double FovOfFocalLength35(double millimetres, cv::Size size) {
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& beside, cv::Size size,
                                     const SourceOptions& options, double focal_length_35) {
   std::optional<Calibration> found = beside;
-  if (options.camera_file) found = ReadCameraFile(*options.camera_file);
+  if (options.camera_file) {
+    found = ReadCameraFile(*options.camera_file, size);
+    if (!found->fps && beside) found->fps = beside->fps;
+  }
   if (found && !options.fov_degrees) {
     return {FitToSize(*found, size, options.sensor != Sensor::kMono), false, {}};
   }

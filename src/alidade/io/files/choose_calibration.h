@@ -33,7 +33,8 @@ double FovOfFocalLength35(double millimetres, cv::Size size);
 // `with_right`: the right camera is used.
 Calibration FitToSize(Calibration calibration, cv::Size size, bool with_right = true);
 
-// `found`: calibration beside the images. `size`: size of the recording's images, pixels.
+// `found`: calibration beside the images; with a camera file only its frame rate is used, where the
+// file has none. `size`: size of the recording's images, pixels.
 // `focal_length_35`: focal length stated by the recording, mm in 35 mm equivalents; 0: none. The
 // calibration is adapted by FitToSize().
 ChosenCalibration ChooseCalibration(const std::optional<Calibration>& found, cv::Size size,

@@ -67,7 +67,7 @@ EurocCamera EurocCameraOf(const YamlFile& file, bool need_pose) {
   }
   if (const YAML::Node rate = file.root()["rate_hz"]) {
     camera.fps = file.Number(rate, "rate_hz");
-    if (!(camera.fps > 0)) file.Fail(rate, "`rate_hz` must be positive");
+    if (!(*camera.fps > 0)) file.Fail(rate, "`rate_hz` must be positive");
   }
   if (!need_pose && !file.root()["T_BS"]) return camera;
   const YAML::Node T_BS = file.Need(file.root(), "T_BS");

@@ -1,6 +1,7 @@
 // EuRoC's sensor.yaml of one camera.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "alidade/geometry/raw_camera.h"
@@ -11,8 +12,8 @@ namespace alidade {
 
 struct EurocCamera {
   RawCamera raw;
-  Se3 T_body_camera;  // T_BS, meters
-  double fps = 20;    // rate_hz, frames per second
+  Se3 T_body_camera;          // T_BS, meters
+  std::optional<double> fps;  // rate_hz, frames per second
 };
 
 // Throw Error (input) with file:line. Supported values of distortion_model: radial-tangential (4 or

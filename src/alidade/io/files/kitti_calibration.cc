@@ -52,7 +52,6 @@ Calibration ParseKittiCalibration(const std::string& text, const std::string& pa
   const Projection& P = *left;
   Calibration calibration;
   calibration.origin = path;
-  calibration.fps = 10;
   calibration.left = {Lens::kPinhole, size.width, size.height, P[0], P[5], P[2], P[6], {}};
   // The first number of the last column is -fx times the camera's x position in meters.
   if (const auto right = FindProjection(text, path, right_name)) {

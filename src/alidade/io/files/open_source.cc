@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/datasets/euroc_recording.h"
@@ -39,9 +40,7 @@ Recording ReadRecording(const std::string& folder, const SourceOptions& options)
   if (IsEurocFolder(folder)) return ReadEurocRecording(folder, with_imu);
   if (IsKittiFolder(folder)) return ReadKittiRecording(folder);
   if (IsImageFolder(folder)) {
-    return ReadFolderRecording(folder, options.camera_file
-                                           ? std::optional(ReadCameraFile(*options.camera_file).fps)
-                                           : std::nullopt);
+    return ReadFolderRecording(folder);
   }
   if (NamesIn(folder).empty()) ThrowInput(folder + " is an empty folder");
   ThrowInput(folder +
@@ -114,8 +113,15 @@ Opened OpenRecording(const std::string& path, const SourceOptions& options) {
   recording.name = NameAsTyped(path);
   recording.color = options.color;
   const cv::Size size = SizeOfImages(recording);
+  if (!recording.calibration) recording.calibration = CalibrationBeside(path, size, options);
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(recording.calibration, size, options, LensToldBy(recording, options));
+  if (recording.kind == "images") {
+    recording.fps_assumed = !calibration.fps;
+    SetTimes(recording, calibration.fps.value_or(kAssumedFps));
+  } else if (!calibration.fps) {
+    calibration.fps = RateOf(recording);
+  }
   recording.depth_assumed = !calibration.depth_factor;
   if (recording.depth_assumed) calibration.depth_factor = recording.default_depth_factor;
   // A factor of 0 disables depth even when the folder has depth images.

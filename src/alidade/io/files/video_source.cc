@@ -8,7 +8,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
-#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/trajectory.h"
@@ -155,13 +155,17 @@ class VideoSource : public FrameSource {
 
 std::unique_ptr<FrameSource> MakeSource(SourceInfo info, const std::string& path,
                                         std::unique_ptr<MediaStream> stream,
-                                        const std::optional<Calibration>& beside,
                                         const SourceOptions& options) {
   const std::string name = path.empty() ? info.name : path;
   if (options.sensor.value_or(Sensor::kMono) != Sensor::kMono)
     ThrowUsage(name + " has one camera: use --sensor mono");
   const cv::Mat first = stream->Grab() ? stream->Gray() : cv::Mat();
   if (first.empty()) ThrowInput(name + ": no image can be read");
+  std::optional<Calibration> beside;
+  if (!path.empty() && !options.camera_file) {
+    const std::string folder = std::filesystem::path(path).parent_path().string();
+    beside = CalibrationBeside(folder, first.size(), options);
+  }
   auto [calibration, guessed, lens_told] =
       ChooseCalibration(beside, first.size(), options, stream->FocalLength35());
   const double fps = stream->FramesPerSecond();
@@ -187,18 +191,14 @@ std::unique_ptr<FrameSource> OpenVideoSource(const std::string& path,
   SourceInfo info;
   info.name = file.stem().string();
   info.kind = "video";
-  std::optional<Calibration> beside;
-  const std::filesystem::path camera = file.parent_path() / "camera.yaml";
-  if (!options.camera_file && std::filesystem::is_regular_file(camera))
-    beside = ReadCameraFile(camera.string());
-  return MakeSource(std::move(info), path, OpenVideo(path), beside, options);
+  return MakeSource(std::move(info), path, OpenVideo(path), options);
 }
 
 std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOptions& options) {
   SourceInfo info;
   info.name = "camera" + std::to_string(number);
   info.kind = "camera";
-  return MakeSource(std::move(info), {}, OpenLiveCamera(number), std::nullopt, options);
+  return MakeSource(std::move(info), {}, OpenLiveCamera(number), options);
 }
 
 }  // namespace alidade

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "alidade/base/error.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/sources/any_source.h"
@@ -48,13 +49,14 @@ void AddFile(Fnv1a& hash, const fs::path& path, const std::string& name) {
   hash.Add(static_cast<int64_t>(info.st_mtim.tv_nsec));
 }
 
-// A camera.yaml in the folder of a video or a ROS recording is used without an option; for a folder
+// A calibration in the folder of a video or a ROS recording is used without an option; for a folder
 // of images it is part of the source.
 void AddCalibrationBeside(Fnv1a& hash, const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) return;
-  const std::string file = (path.parent_path() / "camera.yaml").string();
-  hash.Add(IsFile(file) ? ReadFile(file) : "none");
+  const auto files = CalibrationFilesIn(path.parent_path().string());
+  for (const std::string& file : files) hash.Add(IsFile(file) ? ReadFile(file) : "none");
+  if (files.empty()) hash.Add("none");
 }
 
 // A file, or all files of a folder.

@@ -55,7 +55,7 @@ std::vector<std::string> ImageFilesOf(const std::string& folder, const std::stri
   if (kind == "tum") recording = ReadTumRecording(folder);
   if (kind == "euroc") recording = ReadEurocRecording(folder);
   if (kind == "kitti") recording = ReadKittiRecording(folder);
-  if (kind == "images") recording = ReadFolderRecording(folder, std::nullopt);
+  if (kind == "images") recording = ReadFolderRecording(folder);
   std::vector<std::string> files;
   for (RecordedFrame& frame : recording.frames) files.push_back(std::move(frame.image));
   return files;

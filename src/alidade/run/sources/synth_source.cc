@@ -1,5 +1,6 @@
 #include "alidade/run/sources/synth_source.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -15,12 +16,14 @@
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/text.h"
 #include "alidade/io/wrappers.h"
+#include "alidade/run/sources/flight_files.h"
 #include "alidade/synth/recording.h"
 
 namespace alidade {
 namespace {
 
 constexpr char kPrefix[] = "synth:";
+constexpr double kImuBefore = 0.1;  // seconds of readings before the first frame
 
 double Number(const std::string& name, const std::string& value, bool whole) {
   const std::optional<double> number = ParseNumber(value);
@@ -79,15 +82,21 @@ void SetSeed(SynthSettings& settings, const std::string& name, const std::string
   settings.seed = static_cast<uint64_t>(seed);
 }
 
-void SetPath(SynthSettings& settings, const std::string&, const std::string& value) {
-  settings.path = value;
+Setter Into(std::string SynthSettings::*field) {
+  return [field](SynthSettings& settings, const std::string&, const std::string& value) {
+    settings.*field = value;
+  };
+}
+
+void SetImuOffset(SynthSettings& settings, const std::string& name, const std::string& value) {
+  settings.imu_offset = Number(name, value, false);
 }
 
 void Set(SynthSettings& settings, const std::string& name, const std::string& value) {
   using S = SynthSettings;
   static const std::vector<std::pair<std::string, Setter>> kOptions = {
       {"frames", Into(&S::frames)},
-      {"path", SetPath},
+      {"path", Into(&S::path)},
       {"speed", Into(&S::speed)},
       {"arm", Into(&S::arm)},
       {"actors", Into(&S::actors)},
@@ -108,7 +117,11 @@ void Set(SynthSettings& settings, const std::string& name, const std::string& va
       {"fov", Into(&S::fov)},
       {"fps", Into(&S::fps)},
       {"held", Into(&S::held)},
-      {"calibrated", Into(&S::calibrated)}};
+      {"calibrated", Into(&S::calibrated)},
+      {"imu", Into(&S::imu)},
+      {"imu_rate", Into(&S::imu_rate)},
+      {"imu_offset", SetImuOffset},
+      {"imu_model", Into(&S::imu_model)}};
   std::vector<std::string> names;
   for (const auto& [known, set] : kOptions) {
     if (known == name) {
@@ -141,10 +154,8 @@ Calibration ToldCalibration(const SynthRecording& recording, const SourceOptions
   }
   if (options.camera_file)
     chosen = FitToSize(ReadCameraFile(*options.camera_file), {camera.width, camera.height});
-  if (!options.camera_file) {
-    chosen.baseline = own.baseline;
-    chosen.fps = own.fps;
-  }
+  if (!options.camera_file) chosen.baseline = own.baseline;
+  if (!options.camera_file || !chosen.fps) chosen.fps = own.fps;
   if (!chosen.depth_factor) chosen.depth_factor = own.depth_factor;
   return chosen;
 }
@@ -161,7 +172,7 @@ Sensor ChooseSensor(const SynthSettings& settings, const SourceOptions& options)
 class SynthSource : public ActorSource {
  public:
   SynthSource(SynthSettings settings, const SourceOptions& options)
-      : recording_(settings),
+      : recording_(MakeSynthRecording(settings)),
         calibration_(ToldCalibration(recording_, options)),
         preparation_(calibration_, ChooseSensor(settings, options)) {
     info_.told = calibration_.told;
@@ -172,7 +183,13 @@ class SynthSource : public ActorSource {
     info_.camera_guessed =
         !options.camera_file && (options.fov_degrees ? options.fov_rough : !settings.calibrated);
     info_.R_camera_rectified = preparation_.R_camera_rectified();
-    info_.frames = settings.frames;
+    info_.frames = recording_.frames();
+    if (const ImuTrack* imu = recording_.imu()) {
+      info_.imu = imu->told();
+      const Eigen::Matrix3d R = info_.R_camera_rectified.transpose();
+      if (info_.imu->rotation_known)
+        info_.imu->T_camera_imu = Se3{R, Eigen::Vector3d::Zero()} * info_.imu->T_camera_imu;
+    }
   }
 
   const SourceInfo& Info() const override { return info_; }
@@ -185,6 +202,7 @@ class SynthSource : public ActorSource {
     frame.stamp = SynthStamp(rendered.time);
     frame.T_world_camera = recording_.Pose(next_);
     frame.number = next_++;
+    frame.imu = ReadingsUntil(frame.number);
     frame.image = preparation_.Left(rendered.image);
     frame.true_depth = preparation_.Depth(rendered.depth_exact);
     if (info_.sensor == Sensor::kStereo) frame.right = preparation_.Right(rendered.right);
@@ -197,19 +215,38 @@ class SynthSource : public ActorSource {
 
   bool Seek(int frames) override {
     next_ = frames;
+    after_ = -1;
     return true;
   }
 
  private:
+  // Since the frame before; of the first frame that is played, since kImuBefore earlier at least.
+  std::vector<ImuSample> ReadingsUntil(int number) {
+    if (recording_.imu() == nullptr) return {};
+    double from = number > 0 ? recording_.Time(number - 1) : recording_.Time(0) - kImuBefore;
+    if (after_ != number - 1 || number == 0)
+      from = std::min(from, recording_.Time(number) - kImuBefore);
+    after_ = number;
+    const double offset = info_.imu->time_offset;
+    return recording_.imu()->Between(from + offset, recording_.Time(number) + offset);
+  }
+
   SynthRecording recording_;
   Calibration calibration_;
   ImagePreparation preparation_;
   SourceInfo info_;
   cv::Mat mask_;
   int next_ = 0;
+  int after_ = -1;  // number of the frame returned last; -1: none, or another than the one before
 };
 
 }  // namespace
+
+SynthRecording MakeSynthRecording(const SynthSettings& settings) {
+  settings.Check();
+  if (settings.scene != kFlightScene) return SynthRecording(settings);
+  return {settings, ReadFlight(settings)};
+}
 
 std::string SynthStamp(double seconds) {
   char text[40];
@@ -223,9 +260,7 @@ SynthSettings ParseSynthSource(const std::string& source) {
   if (!IsSynthSource(source)) ThrowUsage("not a rendered source: " + source);
   std::string rest = source.substr(sizeof(kPrefix) - 1);
   const size_t question = rest.find('?');
-  SynthSettings settings;
-  settings.scene = rest.substr(0, question);
-  settings.frames = SceneFrames(settings.scene);
+  SynthSettings settings = SynthDefaults(rest.substr(0, question));
   rest = question == std::string::npos ? "" : rest.substr(question + 1);
   while (!rest.empty()) {
     const size_t end = rest.find('&');
@@ -233,7 +268,8 @@ SynthSettings ParseSynthSource(const std::string& source) {
     rest = end == std::string::npos ? "" : rest.substr(end + 1);
     if (item.empty()) continue;
     const size_t equals = item.find('=');
-    const std::string name = item.substr(0, equals);
+    std::string name = item.substr(0, equals);
+    std::replace(name.begin(), name.end(), '-', '_');
     const std::string value = equals == std::string::npos ? "" : item.substr(equals + 1);
     Set(settings, name, value);
   }

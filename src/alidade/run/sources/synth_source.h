@@ -6,17 +6,21 @@
 
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/frame_source.h"
+#include "alidade/synth/recording.h"
 #include "alidade/synth/settings.h"
 
 namespace alidade {
 
 bool IsSynthSource(const std::string& source);  // starts with "synth:"
 
-// Options have the names of the flags of `alidade synth`, with _ instead of -. Default of `frames`:
+// Options have the names of the flags of `alidade synth`, with _ or -. Default of `frames`:
 // once along the path of the scene. Switches (exposure …) may have no value, 0 or 1; blur and
 // rolling also milliseconds. calibrated=0: no calibration; the camera is assumed as for a video.
 // Throws Error (usage).
 SynthSettings ParseSynthSource(const std::string& source);
+
+// The recording with these settings; that of a flight reads its files. Throws Error.
+SynthRecording MakeSynthRecording(const SynthSettings& settings);
 
 // Frames are rendered on demand. Options as for recordings on disk. Throws Error (usage) for a
 // sensor that the scene does not have, for example stereo without `stereo`; the default is rgbd

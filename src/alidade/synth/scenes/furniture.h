@@ -110,4 +110,9 @@ void AddCeiling(Furnisher& furnish, const Eigen::Vector2d& low, const Eigen::Vec
 // facing the room.
 Place AtWall(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double along, double off = 0);
 
+// Objects every 1.5 to 2 m along the wall, except at its openings. `outside`: it may have windows.
+// `kind`: of the first object; moves on through the eight kinds.
+void FillWall(Furnisher& furnish, const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+              const std::vector<Opening>& openings, bool outside, int& kind);
+
 }  // namespace alidade

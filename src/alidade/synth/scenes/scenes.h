@@ -45,6 +45,10 @@ Layout LayOutTable(SceneBuilder& builder);     // a bare table in a bare room
 Layout LayOutBlank(SceneBuilder& builder);     // rotation in a room with one blank wall
 Layout LayOutHall(SceneBuilder& builder);      // along such a wall, and back along another
 
+// A hall around the positions `path` of a camera, 1.5 to 3 m beyond their extent. Returns the
+// corner of the hall that is the scene's origin, in the coordinates of the path (z up), meters.
+Eigen::Vector3d LayOutFlight(SceneBuilder& builder, std::vector<Eigen::Vector3d> path);
+
 // The same scene with a camera that rotates or stands at the start of its path (see
 // SynthSettings::path). `arm`: distance of the camera from the axis of rotation, meters.
 Layout TurnOnTheSpot(Layout layout, double arm);

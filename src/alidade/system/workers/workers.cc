@@ -8,6 +8,7 @@
 
 #include "alidade/base/log.h"
 #include "alidade/calibration/camera_correction.h"
+#include "alidade/map/correction.h"
 #include "alidade/system/prepare.h"
 
 namespace alidade {
@@ -167,6 +168,21 @@ void Workers::ChangeCamera(const Camera& from, const Camera& to) {
     semidense_mapper_.SetCamera(to);
     readout_watch_.SetCamera(to);
     lens_watch_.SetCamera(to);
+  });
+}
+
+void Workers::Scale(MapId id, double factor) {
+  WhileAllRest([&] {
+    map_.Commit([&](MapCommit& commit) {
+      std::vector<KeyFrameCorrection> corrections;
+      commit.state().keyframes.ForEach([&](const KeyFrame& keyframe) {
+        if (keyframe.map != id) return;
+        Se3 T = keyframe.T_camera_world;
+        T.t *= factor;
+        corrections.push_back({keyframe.id, T, factor});
+      });
+      CommitCorrections(commit, corrections);
+    });
   });
 }
 

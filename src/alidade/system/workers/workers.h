@@ -60,6 +60,11 @@ class Workers {
   // Changes all maps to another camera, in steps with an adjustment after each, while no worker
   // runs. Not while a map is unconfirmed: an adjustment needs three keyframes.
   void ChangeCamera(const Camera& from, const Camera& to);
+  // All lengths of a map grow by `factor`. Not while it is unconfirmed.
+  void Scale(MapId map, double factor);
+  // Runs a function in the background (inline: at once), in which it must not wait. What it throws
+  // ends full adjustments.
+  void AddErrand(std::function<void()> errand) { adjusting_.AddErrand(std::move(errand)); }
   int backlog() const { return mapping_.backlog(); }  // keyframes queued or being mapped
   // Calls finish(). `limit` seconds after the start, or with CutShort(), cut() becomes true, and
   // Drain() returns early until the end of finish().

@@ -44,7 +44,7 @@ double NumberOr(const YamlFile& file, const YAML::Node& parent, const std::strin
                 double missing);
 // A number that must be positive.
 double PositiveNumber(const YamlFile& file, const YAML::Node& parent, const std::string& key);
-// Frames per second, or the default of Calibration.
+// Frames per second, if stated.
 void SetFps(const YamlFile& file, const YAML::Node& parent, const std::string& key,
             Calibration& calibration);
 

@@ -1,6 +1,7 @@
 // Calibrations of other tools, recognized by their content.
 #pragma once
 
+#include <opencv2/core.hpp>
 #include <string>
 #include <string_view>
 
@@ -33,6 +34,14 @@ extern const CalibrationFormat kBasaltFormat;
 bool IsColmapCameras(std::string_view text);
 Calibration ReadColmapCameras(std::string_view text, const std::string& name,
                               const std::string& which);
+
+// What `rs-enumerate-devices -c` prints, which is not YAML either.
+bool IsRealSenseListing(std::string_view text);
+// The intrinsics of one stream of the listing as kRealSenseFormat reads them, each on its own line.
+// `which`: "Color" or "Color/640x480"; a stream without a size is that of `images`. Throws Error
+// (input) if that is not one.
+std::string YamlOfListing(const std::string& text, const std::string& name,
+                          const std::string& which, cv::Size images);
 
 // Refuses the choice of a camera where the file has only one.
 void RefuseChoice(const YamlFile& file, const std::string& which);

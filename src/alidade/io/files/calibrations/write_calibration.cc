@@ -89,7 +89,8 @@ std::string OwnCamera(const RawCamera& camera, const std::string& indent) {
 }
 
 std::string OwnText(const Calibration& c) {
-  std::string text = OwnCamera(c.left, "") + "fps: " + Exact(c.fps) + "\n";
+  std::string text = OwnCamera(c.left, "");
+  if (c.fps) text += "fps: " + Exact(*c.fps) + "\n";
   if (c.readout && (*c.readout)[0] == 0) {
     text += "readout: " + Exact((*c.readout)[1]) + "\n";
   } else if (c.readout) {

@@ -1,6 +1,5 @@
 #include "alidade/io/files/datasets/folder_recording.h"
 
-#include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/datasets/image_list.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/trajectory.h"
@@ -9,22 +8,23 @@ namespace alidade {
 
 bool IsImageFolder(const std::string& folder) { return !ImagesIn(folder).empty(); }
 
-Recording ReadFolderRecording(const std::string& folder, std::optional<double> fps) {
+Recording ReadFolderRecording(const std::string& folder) {
   Recording recording;
   recording.kind = "images";
-  const std::string camera = folder + "/camera.yaml";
-  if (IsThere(camera)) recording.calibration = ReadCameraFile(camera);
-  recording.fps_assumed = !fps && !recording.calibration;
-  const double rate = fps ? *fps : recording.calibration ? recording.calibration->fps : 30;
-  const auto images = ImagesIn(folder);
-  for (size_t i = 0; i < images.size(); ++i) {
+  for (const std::string& image : ImagesIn(folder)) {
     RecordedFrame frame;
-    frame.time = static_cast<double>(i) / rate;
-    frame.stamp = FormatTime(frame.time);
-    frame.image = folder + "/" + images[i];
+    frame.image = folder + "/" + image;
     recording.frames.push_back(std::move(frame));
   }
   return recording;
+}
+
+void SetTimes(Recording& recording, double fps) {
+  for (size_t i = 0; i < recording.frames.size(); ++i) {
+    RecordedFrame& frame = recording.frames[i];
+    frame.time = static_cast<double>(i) / fps;
+    frame.stamp = FormatTime(frame.time);
+  }
 }
 
 }  // namespace alidade

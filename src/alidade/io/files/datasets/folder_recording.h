@@ -9,8 +9,8 @@ namespace alidade {
 
 bool IsImageFolder(const std::string& folder);
 
-// `fps`: frame rate of the user's camera file. Without it, that of camera.yaml in the folder is
-// used, else 30.
-Recording ReadFolderRecording(const std::string& folder, std::optional<double> fps);
+// The frames have no times yet.
+Recording ReadFolderRecording(const std::string& folder);
+void SetTimes(Recording& recording, double fps);
 
 }  // namespace alidade

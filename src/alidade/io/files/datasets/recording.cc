@@ -178,6 +178,21 @@ int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::
   return found;
 }
 
+std::optional<double> RateOf(const Recording& recording) {
+  std::vector<double> steps;
+  const RecordedFrame* before = nullptr;
+  for (const RecordedFrame& frame : recording.frames) {
+    if (!frame.problem.empty()) continue;
+    if (before && before->part == frame.part && frame.time > before->time)
+      steps.push_back(frame.time - before->time);
+    before = &frame;
+  }
+  if (steps.empty()) return std::nullopt;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return 1 / *middle;
+}
+
 cv::Size SizeOfImages(const Recording& recording) {
   std::string problem;
   for (const RecordedFrame& frame : recording.frames) {

@@ -55,6 +55,10 @@ int AttachByTime(std::vector<RecordedFrame>& frames, std::string RecordedFrame::
 // Size of the first image whose header can be read. Throws Error (input) when there is none.
 cv::Size SizeOfImages(const Recording& recording);
 
+// Frames per second: 1 / the median step of the frames' times; nullopt: there are no two frames of
+// one part.
+std::optional<double> RateOf(const Recording& recording);
+
 // `preparation` must be made for `sensor`. A frame whose image does not have size `raw_size` gets a
 // problem.
 std::unique_ptr<FrameSource> PlayRecording(Recording recording, Sensor sensor,

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "alidade/base/log.h"
-#include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/file.h"
 
 namespace alidade {
@@ -37,8 +36,6 @@ Recording ReadTumRecording(const std::string& folder) {
       ReadStampedList(folder + "/rgb.txt", StampUnit::kSeconds, true, FindUnit::kYes), folder);
   recording.default_depth_factor = 5000;
   if (IsThere(folder + "/depth.txt")) AddDepth(recording, folder);
-  const std::string camera = folder + "/camera.yaml";
-  if (IsThere(camera)) recording.calibration = ReadCameraFile(camera);
   return recording;
 }
 

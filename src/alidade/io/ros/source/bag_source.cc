@@ -5,7 +5,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
-#include "alidade/io/files/camera_file.h"
+#include "alidade/io/files/calibration_beside.h"
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/ros/camera_info.h"
@@ -27,12 +27,6 @@ std::string NameOfRecording(const std::string& path) {
   while (name.has_extension() && (name.extension() == ".zstd" || name.extension() == ".active"))
     name = name.stem();
   return name.stem().string();
-}
-
-std::optional<Calibration> CalibrationBeside(const std::string& path) {
-  const std::string file = IsFolder(path) ? path + "/camera.yaml"
-                                          : (fs::path(path).parent_path() / "camera.yaml").string();
-  return IsFile(file) ? std::optional(ReadCameraFile(file)) : std::nullopt;
 }
 
 // Calibration from the CameraInfo topics of the chosen images; nullopt: none. Sets `has_right` when
@@ -99,7 +93,11 @@ OpenedBag OpenBagSource(const std::string& source, const SourceOptions& options)
   std::optional<Calibration> beside;
   if (!options.camera_file) {
     beside = CalibrationTold(*bag, chosen, query.path, has_right);
-    if (!beside) beside = CalibrationBeside(query.path);
+    if (!beside) {
+      const std::string folder =
+          IsFolder(query.path) ? query.path : fs::path(query.path).parent_path().string();
+      beside = CalibrationBeside(folder, chosen.image.size, options);
+    }
   }
   auto [calibration, guessed, lens_told] = ChooseCalibration(beside, chosen.image.size, options);
   has_right = chosen.right && (has_right || calibration.right || calibration.baseline > 0);
@@ -112,7 +110,7 @@ OpenedBag OpenBagSource(const std::string& source, const SourceOptions& options)
 
   auto player = std::make_unique<BagPlayer>(std::move(bag), query.path, chosen, query.max_dt);
   // a frame rate in the user's camera file has priority
-  if (!options.camera_file) calibration.fps = player->Rate().value_or(calibration.fps);
+  if (player->Rate() && !(options.camera_file && calibration.fps)) calibration.fps = player->Rate();
   const Sensor sensor = SensorFor(chosen, has_right, has_depth, options, query.path);
   if (sensor == Sensor::kMono && chosen.right)
     chosen.told += "; only one camera is used, because the baseline of the two is unknown";

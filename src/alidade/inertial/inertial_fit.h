@@ -1,0 +1,64 @@
+// What a camera's trajectory and the readings of an inertial sensor tell together: scale, gravity,
+// velocities, biases, and where the sensor sits and how its clock is offset.
+//
+// Maximum a posteriori over a chain of states, one per pose (Campos, Montiel & Tardós 2020, §III,
+// extended): poses of the camera up to a scale are measurements with a covariance, as in
+// loosely coupled fusion, and the states are free, so that the covariances of the results contain
+// the errors of vision. Biases walk from state to state.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "alidade/inertial/imu.h"
+#include "alidade/inertial/preintegration.h"
+
+namespace ALIDADE_API alidade {
+
+inline constexpr double kGravity = 9.81;  // m/s²; it varies by 0.3 % over the earth
+
+struct TimedPose {
+  double time = 0;     // of the image, seconds
+  Se3 T_world_camera;  // map units
+  // T_world_camera * Exp(xi) is the true pose, xi = (translation; rotation) ~ N(0, covariance).
+  Matrix6d covariance = Matrix6d::Zero();
+};
+
+// What is believed before, as standard deviations.
+struct InertialPriors {
+  double scale = 0;              // of the map's unit being a meter, relative; 0: nothing is known
+  double gyro_bias = 0.1;        // rad/s, of zero: sensors of robots have up to 0.08
+  double accel_bias = 0.3;       // m/s², of zero: phones have 0.15
+  double rotation_known = 3e-3;  // rad: a calibrated rotation of the sensor
+  double translation_known = 5e-3;  // m: a calibrated place of the sensor
+  double translation = 0.05;        // m, of zero: phones
+  double time_offset_known = 1e-3;  // s
+  double time_offset = 0.05;        // s, of zero: phones
+  void Check() const;               // throws Error (usage) naming the field that cannot be
+};
+
+struct InertialFit {
+  bool solved = false;     // false: too few poses or readings, or the solution is not a minimum
+  double scale = 1;        // meters per map unit
+  double scale_sigma = 0;  // relative
+  Eigen::Vector3d gravity = Eigen::Vector3d::Zero();  // in the world of the poses, m/s²
+  double gravity_sigma = 0;                           // of its direction, radians
+  // At the times of the poses. T_world_imu is in the world of the poses, in meters.
+  std::vector<InertialState> states;
+  ImuModel model;                // with what was estimated of it
+  double rotation_sigma = 0;     // of model.T_camera_imu.R, radians, largest axis
+  double translation_sigma = 0;  // m
+  double time_offset_sigma = 0;  // s
+  // Square root of the mean squared normalized residual: 1 where noise and covariances are right.
+  // The standard deviations above are multiplied by it when it is above 1.
+  double noise_factor = 1;
+};
+
+// `poses` and `samples` in order of time; poses at least two. Not more than some hundred poses, a
+// few per second, over less than a minute: one scale holds for all of them. `start`: a former
+// result for about the same poses, or null.
+InertialFit FitInertial(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                        const ImuModel& model, const InertialPriors& priors = {},
+                        const InertialFit* start = nullptr);
+
+}  // namespace alidade

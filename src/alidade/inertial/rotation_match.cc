@@ -1,0 +1,121 @@
+#include "alidade/inertial/rotation_match.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace alidade {
+namespace {
+
+struct RatePair {
+  Eigen::Vector3d camera, imu;  // rad/s
+};
+
+// Rotation between two times by the readings alone.
+Eigen::Matrix3d TurnBetween(std::span<const ImuSample> samples, double from, double to) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  ImuSample last = ReadingAt(samples, from);
+  const auto turn_to = [&](const ImuSample& next) {
+    R = R * ExpSo3((next.time - last.time) / 2 * (last.angular_rate + next.angular_rate));
+    last = next;
+  };
+  auto sample = std::upper_bound(samples.begin(), samples.end(), from,
+                                 [](double at, const ImuSample& s) { return at < s.time; });
+  for (; sample != samples.end() && sample->time < to; ++sample) turn_to(*sample);
+  turn_to(ReadingAt(samples, to));
+  return R;
+}
+
+std::vector<RatePair> RatesAt(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                              double offset) {
+  std::vector<RatePair> pairs;
+  for (size_t k = 1; k < poses.size(); ++k) {
+    const double from = poses[k - 1].time + offset, to = poses[k].time + offset;
+    if (from < samples.front().time || to > samples.back().time || to <= from) continue;
+    const Eigen::Matrix3d turn =
+        poses[k - 1].T_world_camera.R.transpose() * poses[k].T_world_camera.R;
+    pairs.push_back(
+        {LogSo3(turn) / (to - from), LogSo3(TurnBetween(samples, from, to)) / (to - from)});
+  }
+  return pairs;
+}
+
+RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, double offset) {
+  RotationMatch match;
+  match.time_offset = offset;
+  if (pairs.size() < 4) return match;
+  Eigen::Vector3d camera = Eigen::Vector3d::Zero(), imu = camera;
+  for (const RatePair& pair : pairs) {
+    camera += pair.camera;
+    imu += pair.imu;
+  }
+  camera /= static_cast<double>(pairs.size());
+  imu /= static_cast<double>(pairs.size());
+  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
+  for (const RatePair& pair : pairs)
+    correlation += (pair.camera - camera) * (pair.imu - imu).transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation,
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  if (svd.singularValues()(0) > 0)
+    match.second_axis = svd.singularValues()(1) / svd.singularValues()(0);
+  Eigen::Matrix3d& R = match.R_camera_imu;
+  if (model.rotation_known) {
+    R = model.T_camera_imu.R;
+  } else {
+    Eigen::Vector3d signs(1, 1, 1);
+    signs.z() = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+    R = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  }
+  match.gyro_bias = imu - R.transpose() * camera;
+  double left = 0, turning = 0;
+  for (const RatePair& pair : pairs) {
+    left += (pair.camera - R * (pair.imu - match.gyro_bias)).squaredNorm();
+    turning += pair.camera.squaredNorm();
+  }
+  match.residual = std::sqrt(left / static_cast<double>(pairs.size()));
+  match.turning = std::sqrt(turning / static_cast<double>(pairs.size()));
+  match.ok = true;
+  return match;
+}
+
+}  // namespace
+
+RotationMatch MatchRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                             const ImuModel& model, double longest_offset) {
+  if (poses.size() < 2 || samples.size() < 2) return {};
+  const auto at = [&](double offset) {
+    return MatchAt(RatesAt(poses, samples, offset), model, offset);
+  };
+  if (model.time_offset_known) return at(model.time_offset);
+  constexpr double kStep = 0.01;  // seconds: half the shortest period of a hand is longer
+  const int steps = static_cast<int>(std::lround(longest_offset / kStep));
+  RotationMatch best;
+  double before = 0, after = 0;  // squared residuals beside the best one
+  double last = 0;
+  bool best_is_last = false;
+  for (int k = -steps; k <= steps; ++k) {
+    const RotationMatch match = at(model.time_offset + k * kStep);
+    if (!match.ok) continue;
+    const double squared = match.residual * match.residual;
+    if (best_is_last) after = squared;
+    best_is_last = !best.ok || match.residual < best.residual;
+    if (best_is_last) {
+      best = match;
+      before = last;
+      after = 0;
+    }
+    last = squared;
+  }
+  if (!best.ok) return best;
+  // The minimum of the parabola through the three squared residuals.
+  const double middle = best.residual * best.residual;
+  const double bend = before + after - 2 * middle;
+  if (before > 0 && after > 0 && bend > 0) {
+    const RotationMatch finer = at(best.time_offset + 0.5 * kStep * (before - after) / bend);
+    if (finer.ok && finer.residual <= best.residual) best = finer;
+  }
+  return best;
+}
+
+}  // namespace alidade
