@@ -24,6 +24,9 @@ const std::map<std::string, int> kFloors = {
     {"ros", 8},      {"phone", 9},       {"gles", 9},     {"serve", 9},    {"run", 10},
     {"apps", 11},    {"android", 11},    {"python", 11},  {"bench", 11}};
 
+// The lower half of its floor: the others of that floor may include it.
+const std::string kLowerHalf = "inertial";
+
 // Folders inside the portable ones that are not: what touches files and heavy libraries.
 const std::array<std::string, 5> kOuterFolders = {"base/module", "io/files", "io/media", "io/ros",
                                                   "detect/onnx"};
@@ -115,7 +118,8 @@ std::optional<std::string> Violation(const std::string& path, const std::string&
   const int from = kFloors.at(folder), to = kFloors.at(other);
   if (to > from)
     return header + " is upstairs (" + folder + " is on floor " + std::to_string(from) + ")";
-  if (to == from) return header + " is next door (both on floor " + std::to_string(from) + ")";
+  if (to == from && other != kLowerHalf)
+    return header + " is next door (both on floor " + std::to_string(from) + ")";
   return std::nullopt;
 }
 
