@@ -83,6 +83,51 @@ TEST_F(RunOutputs, StatsCountThePartThatWasPlayed) {
   EXPECT_GT(stats["peak_mb"], 5.0);
 }
 
+// A table of readings at rest; the gyroscope's y axis may be dead.
+std::string ImuTable(bool dead) {
+  std::string text = "t [s],wx [rad/s],wy,wz,ax [m/s^2],ay,az\n";
+  for (int i = 0; i < 2000; ++i) {
+    const double t = std::stod(SlidingStamp(0)) - 2 + 0.005 * i;
+    text += std::to_string(t) + "," + std::to_string(std::sin(t)) + "," +
+            (dead ? "0.01" : std::to_string(0.01 * std::sin(3 * t))) + "," +
+            std::to_string(std::cos(t)) + "," + std::to_string(0.2 * std::sin(t)) + "," +
+            std::to_string(9.8 + 0.01 * std::sin(7 * t)) + "," + std::to_string(0.3 * std::cos(t)) +
+            "\n";
+  }
+  return text;
+}
+
+TEST_F(RunOutputs, StatsTellOfInertialReadings) {
+  ASSERT_EQ(Run(results_ / "none").status, 0);
+  nlohmann::json stats = Stats(results_ / "none");
+  EXPECT_TRUE(stats["imu"].is_null() && stats["gravity"].is_null());
+  EXPECT_EQ(stats["scale"], (nlohmann::json{{"known", true}, {"sigma", nullptr}}));  // depth
+  EXPECT_TRUE(stats["reading"]["imu"].is_null());
+  // A broken sensor, by an option; then the same beside the images, turned off.
+  const std::string table = recording_.Write("broken.csv", ImuTable(true));
+  ASSERT_EQ(Run(results_ / "broken", {"--imu", table}).status, 0);
+  recording_.Write("imu.csv", ImuTable(false));
+  ASSERT_EQ(Run(results_ / "off", {"--imu", "off"}).status, 0);
+  stats = Stats(results_ / "broken");
+  EXPECT_TRUE(stats["imu"].is_null());
+  EXPECT_THAT(stats["warnings"].dump(), HasSubstr("y axis is dead"));
+  EXPECT_EQ(stats["reading"]["imu"], table);
+  EXPECT_EQ(Stats(results_ / "off")["reading"]["imu"], "off");
+  EXPECT_TRUE(Stats(results_ / "off")["imu"].is_null());
+  for (const std::string name :
+       {"trajectory.txt", "keyframes.txt", "landmarks.ply", "map.alidade"}) {
+    EXPECT_EQ(ReadText(results_ / ("broken/" + name)), ReadText(results_ / ("none/" + name)));
+    EXPECT_EQ(ReadText(results_ / ("off/" + name)), ReadText(results_ / ("none/" + name)));
+  }
+  ASSERT_EQ(Run(results_ / "with").status, 0);
+  stats = Stats(results_ / "with");
+  ASSERT_FALSE(stats["imu"].is_null());
+  EXPECT_NEAR(stats["imu"]["rate"], 200, 0.1);
+  for (const char* key : {"samples", "time_offset", "time_offset_sigma", "gyro_bias", "accel_bias"})
+    EXPECT_TRUE(stats["imu"].contains(key)) << key;
+  EXPECT_EQ(Run(results_ / "typo", {"--imu", results_ / "none.csv"}).status, 3);
+}
+
 TEST_F(RunOutputs, ReportNeedsNothingElse) {
   const std::string out = results_ / "out";
   ASSERT_EQ(Run(out).status, 0);

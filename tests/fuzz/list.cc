@@ -1,8 +1,10 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/inertial/imu_stream.h"
 #include "alidade/io/files/datasets/recording.h"
 #include "alidade/io/files/datasets/stamped_list.h"
+#include "alidade/io/imu_table.h"
 #include "fuzz/targets.h"
 
 namespace alidade::fuzz {
@@ -29,6 +31,15 @@ void Use(const std::vector<StampedName>& list) {
 void List(std::string_view bytes) {
   bool any = false;
   std::string problem;
+  try {
+    ImuStream stream;
+    const auto samples = stream.Add(ParseImuTable(bytes, "imu.csv").samples);
+    for (size_t i = 1; i < samples.size(); ++i)
+      Expect(samples[i - 1].time < samples[i].time, "readings are not in order of time");
+    stream.News();
+    any = true;
+  } catch (const Error&) {
+  }
   for (const StampUnit unit : {StampUnit::kSeconds, StampUnit::kNanoseconds}) {
     for (const bool with_names : {true, false}) {
       try {

@@ -10,6 +10,7 @@
 #include "alidade/io/ros/messages/picture_of_message.h"
 #include "alidade/io/ros/messages/video_message.h"
 #include "alidade/io/ros/source/choose_topics.h"
+#include "alidade/io/ros/source/imu_topics.h"
 #include "alidade/io/ros/source/topic_stamps.h"
 #include "fuzz/targets.h"
 
@@ -91,6 +92,14 @@ void UseMessage(std::string_view message, Serialization serialization) {
   if (!any) ThrowInput(problem);
 }
 
+void CheckReadings(const std::vector<ImuSample>& samples) {
+  for (size_t i = 0; i < samples.size(); ++i) {
+    Expect(samples[i].angular_rate.allFinite() && samples[i].specific_force.allFinite(),
+           "a reading is not finite");
+    Expect(i == 0 || samples[i - 1].time < samples[i].time, "readings are not in order of time");
+  }
+}
+
 void UseBag(BagFile& bag, size_t size) {
   std::string bytes;
   for (size_t topic = 0; topic < bag.Topics().size(); ++topic) {
@@ -108,7 +117,10 @@ void UseBag(BagFile& bag, size_t size) {
       }
     }
   }
-  const ChosenTopics chosen = ChooseTopics(bag, {"file", {}, {}, {}, {}, {}, {}}, {});
+  const BagQuery query = {"file", {}, {}, {}, {}, {}, {}, {}};
+  const ChosenTopics chosen = ChooseTopics(bag, query, {});
+  if (const BagImu imu = ReadBagImu(bag, query, chosen.image); imu.recording)
+    CheckReadings(imu.recording->samples);
   TopicStamps frames(bag, chosen.image.topic);
   PartnerFinder finder(frames, frames, 0.02);
   for (size_t i = 0; i < std::min(frames.size(), kMostUsed); ++i) {
