@@ -1,6 +1,8 @@
 // Gives a saved map another calibration of its camera.
 #pragma once
 
+#include <functional>
+
 #include "alidade/map/map_file.h"
 #include "alidade/map/map_store.h"
 #include "alidade/system/settings.h"

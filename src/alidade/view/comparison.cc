@@ -78,7 +78,8 @@ std::string Paths(const RunComparison& comparison) {
   const auto drawn = [&](PlaceView view) {
     std::string html;
     for (const ComparedPlace& place : comparison.places) html += DrawPlace(comparison, place, view);
-    return comparison.places.size() > 1 ? "<div class=\"stages\">\n" + html + "</div>\n" : html;
+    return comparison.places.size() > 1 ? "<div class=\"stages places\">\n" + html + "</div>\n"
+                                        : html;
   };
   if (comparison.places.empty()) return "";
   return "<h2>From above</h2>\n" + drawn(PlaceView::kAbove) + "<h2>From the side</h2>\n" +
