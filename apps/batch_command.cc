@@ -10,6 +10,7 @@
 #include "alidade/base/timing.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/batch/batch_compare.h"
+#include "alidade/run/batch/batch_merge.h"
 #include "alidade/run/batch/batch_process.h"
 #include "alidade/run/folder/folder_lock.h"
 #include "alidade/run/play/loop.h"
@@ -136,24 +137,30 @@ std::vector<BatchRow> Summarise(const BatchFolder& folder, const std::vector<Bat
   return rows;
 }
 
-// Merges all maps. Returns false, with a message, if that failed.
+// Merges the maps that can be merged, each group into a folder of its own, and prints why others
+// cannot. Returns false, with a message, if merging failed.
 bool MergeAll(const BatchFolder& folder, const std::vector<BatchRow>& rows) {
-  ProcessTask task{{OwnProgram(), "merge"}, folder.path() + "/log/merged.txt"};
+  std::vector<std::string> maps;
   for (const BatchRow& row : rows) {
     if (row.ok() && IsFile(folder.path() + "/" + row.name + "/map.alidade"))
-      task.words.push_back(folder.path() + "/" + row.name);
+      maps.push_back(folder.path() + "/" + row.name);
   }
-  if (task.words.size() < 4) {
-    std::printf("Nothing to merge: there are fewer than two maps\n");
-    return true;
+  const MergePlan plan = PlanMerge(maps);
+  for (const std::string& why : plan.left_out) std::printf("Not merged: %s\n", why.c_str());
+  if (plan.groups.empty())
+    std::printf("Nothing to merge: there are no two maps of one sensor and camera\n");
+  bool good = true;
+  for (size_t i = 0; i < plan.groups.size(); ++i) {
+    const std::string name = MergedName(i);
+    ProcessTask task{{OwnProgram(), "merge"}, folder.path() + "/log/" + name + ".txt"};
+    task.words.insert(task.words.end(), plan.groups[i].begin(), plan.groups[i].end());
+    task.words.insert(task.words.end(), {"--out", folder.path() + "/" + name, "--overwrite"});
+    ProcessEvents events;
+    events.ended = [&](size_t, const ProcessEnd& end) { good = good && end.status == 0; };
+    RunProcesses({task}, 1, events);
+    std::fputs(ReadFile(task.log).c_str(), stdout);
   }
-  task.words.insert(task.words.end(), {"--out", folder.path() + "/merged", "--overwrite"});
-  int status = 0;
-  ProcessEvents events;
-  events.ended = [&](size_t, const ProcessEnd& end) { status = end.status; };
-  RunProcesses({task}, 1, events);
-  std::fputs(ReadFile(task.log).c_str(), stdout);
-  return status == 0;
+  return good;
 }
 
 int RunOnly(const BatchArguments& arguments, BatchFolder& folder,

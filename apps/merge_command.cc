@@ -33,6 +33,13 @@ std::string AndOf(const std::vector<std::string>& names) {
 
 void Tell(const std::vector<MergeInput>& inputs, const MergedMaps& merged,
           const MergePlaces& places) {
+  for (size_t i = 0; i < inputs.size(); ++i) {
+    if (merged.camera_shifts[i] > 0)
+      std::printf(
+          "%s was made with another calibration of the camera (%.2g pixels apart, within its "
+          "uncertainty): that of the largest map is used\n",
+          inputs[i].name.c_str(), merged.camera_shifts[i]);
+  }
   const std::vector<MergedWorld> worlds = WorldsOf(merged);
   for (const MergedWorld& world : worlds) {
     std::vector<std::string> names;

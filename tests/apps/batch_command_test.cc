@@ -243,6 +243,23 @@ TEST(BatchCommand, CtrlCLeavesWhatIsDone) {
   EXPECT_TRUE(std::filesystem::exists(out + "/merged/map.alidade"));
 }
 
+TEST(BatchCommand, MergesWhatCanBeMerged) {
+  const TempFolder folder;
+  const std::string list = folder / "list.txt", out = folder / "out";
+  WriteLines(list, {kRoom + "15 --out a --sensor rgbd", kRoom + "15 --out again --sensor rgbd",
+                    kRoom + "16&seed=2 --out b --sensor rgbd",
+                    kRoom + "12 --out wide --sensor rgbd "
+                            "--fov 70"});
+  const ProgramResult result = Batch({list, "--out", out, "--merge"});
+  EXPECT_EQ(result.status, 0) << result.out << result.err;
+  EXPECT_THAT(result.out, HasSubstr("Not merged: again is the same map as a"));
+  EXPECT_THAT(result.out, HasSubstr("Not merged: wide with "));
+  EXPECT_THAT(result.out, HasSubstr("another camera"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/merged/a.txt"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/merged/b.txt"));
+  EXPECT_FALSE(std::filesystem::exists(out + "/merged/wide.txt"));
+}
+
 TEST(BatchCommand, RefusesAWrongListBeforeAnythingIsRun) {
   const TempFolder folder;
   const std::string list = folder / "list.txt", out = folder / "out";

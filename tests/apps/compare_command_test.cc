@@ -100,6 +100,31 @@ TEST_F(CompareCommand, WithoutTruthPathsAreLaidOnTheFirst) {
   EXPECT_THAT(page, Not(HasSubstr("class=\"truth\"")));
 }
 
+// In the room's own coordinates: they say nothing about the desk's.
+TEST_F(CompareCommand, DifferentPlacesAreDrawnSideBySide) {
+  const std::string room = *folder_ / "room";
+  ASSERT_EQ(RunAlidade({"run", "synth:room?frames=20&width=320&height=240", "--sensor", "rgbd",
+                        "--out", room})
+                .status,
+            0);
+  const std::string out = *folder_ / "places.html";
+  ASSERT_EQ(Compare({deep_, room, single_, "--out", out}).status, 0);
+  const std::string page = ReadText(out);
+  EXPECT_THAT(page, HasSubstr("different places"));
+  std::vector<std::string> figures;
+  for (size_t at = page.find("<figure>"); at != std::string::npos;
+       at = page.find("<figure>", at + 1))
+    figures.push_back(page.substr(at, page.find("</figure>", at) - at));
+  ASSERT_EQ(figures.size(), 4u);  // two places, from above and from the side
+  for (size_t i = 0; i < figures.size(); ++i) {
+    const bool of_desk = i % 2 == 0;
+    EXPECT_EQ(figures[i].find("class=\"curve run0\"") != std::string::npos, of_desk);
+    EXPECT_EQ(figures[i].find("class=\"curve run1\"") != std::string::npos, !of_desk);
+    EXPECT_EQ(figures[i].find("class=\"curve run2\"") != std::string::npos, of_desk);
+    EXPECT_THAT(figures[i], HasSubstr("class=\"truth\""));
+  }
+}
+
 TEST_F(CompareCommand, RunsInWhichNothingWasMappedAreShownToo) {
   folder_->Write("dark/stats.json", R"({"frames": 5, "tracked": 0, "span": [0, 1], "ms": 3})");
   const std::string out = *folder_ / "dark.html";

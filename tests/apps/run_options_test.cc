@@ -118,6 +118,7 @@ TEST_F(RunOptions, SemiDenseMappingIsAFlagAndASetting) {
   EXPECT_EQ(Settings()["semidense.enabled"], 1);
   ASSERT_EQ(Run({"--last", "3"}).status, 0);
   EXPECT_EQ(Settings()["semidense.enabled"], 0);
+  EXPECT_THAT(ReadText(results_ / "out/report.html"), HasSubstr(" --last 3 --semidense"));
 }
 
 TEST_F(RunOptions, LocalizeMapsNoShape) {

@@ -6,12 +6,35 @@
 #include <fstream>
 #include <string>
 
+// All of the table in docs/reference/cpp.md.
+#include "alidade/base/error.h"
+#include "alidade/base/log.h"
+#include "alidade/detect/detector.h"
 #include "alidade/detect/onnx/open_detector.h"
 #include "alidade/evaluation/ate.h"
+#include "alidade/evaluation/depth_error.h"
+#include "alidade/evaluation/rpe.h"
+#include "alidade/geometry/camera.h"
+#include "alidade/geometry/eigen_transforms.h"
+#include "alidade/geometry/rectify.h"
+#include "alidade/geometry/se3.h"
+#include "alidade/geometry/sim3.h"
+#include "alidade/io/cloud.h"
+#include "alidade/io/colmap.h"
+#include "alidade/io/files/camera_file.h"
 #include "alidade/io/files/image_file.h"
 #include "alidade/io/files/open_source.h"
 #include "alidade/io/files/trajectory_file.h"
+#include "alidade/io/frame_source.h"
+#include "alidade/io/trajectory.h"
+#include "alidade/map/keyframe.h"
+#include "alidade/map/landmark.h"
+#include "alidade/map/map_file.h"
+#include "alidade/map/map_store.h"
 #include "alidade/run/live/slam_view.h"
+#include "alidade/system/merge_maps.h"
+#include "alidade/system/settings.h"
+#include "alidade/system/types.h"
 
 namespace {
 
@@ -61,6 +84,10 @@ int main(int count, char** arguments) {
       !alidade::Se3::Exp(alidade::Vector6d::Ones()).R.isUnitary(1e-9)) {
     return Fail("matrices are laid out otherwise in the library");
   }
+
+  const alidade::Se3 pose = alidade::Se3::Exp(alidade::Vector6d::Ones());
+  if (!alidade::FromMatrix(alidade::ToIsometry(pose).matrix()).R.isApprox(pose.R))
+    return Fail("a pose as a matrix");
 
   const std::string path = folder + "/trajectory.txt";
   std::ofstream(path) << "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n3 1 1 0 0 0 0 1\n4 1 1 1 0 0 0 1\n";

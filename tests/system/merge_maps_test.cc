@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "alidade/geometry/alignment.h"
 #include "alidade/slam.h"
 #include "support/check_map.h"
 #include "support/expect_error.h"
@@ -31,15 +33,17 @@ RenderedFrames& Scene(const std::string& name) {
 }
 
 // Frames `first`, `first` + 3, … of a scene's path.
-Visit Play(const std::string& scene, int first, int last, Sensor sensor = Sensor::kRgbd) {
+Visit Play(const std::string& scene, int first, int last, Sensor sensor = Sensor::kRgbd,
+           const std::optional<Camera>& calibration = {}) {
   RenderedFrames& recording = Scene(scene);
   SlamSettings settings;
   settings.sensor = sensor;
-  Slam slam(recording.camera(), settings);
+  Slam slam(calibration.value_or(recording.camera()), settings);
   Visit visit;
   for (int i = first; i <= last; i += 3) {
     const RenderedFrame& frame = recording.Frame(i);
-    slam.Track({0.1 * static_cast<double>(visit.numbers.size()), frame.image, {}, frame.depth});
+    const cv::Mat depth = sensor == Sensor::kRgbd ? frame.depth : cv::Mat();
+    slam.Track({0.1 * static_cast<double>(visit.numbers.size()), frame.image, {}, depth});
     visit.numbers.push_back(i);
   }
   slam.Finish();
@@ -146,6 +150,64 @@ TEST_F(MergeMapsOfARoom, WhatCannotBeTogetherIsSaid) {
   other.saved.sensor = "rgbd";
   other.saved.camera.fx *= 1.1;
   EXPECT_THAT(complaint(ErrorKind::kInput, {early_->map, other}), HasSubstr("another camera"));
+}
+
+// Mean distance of a part's keyframes to the truth, meters, after the best similarity.
+double MeanOffTruth(const MergedMaps& merged, const UnitedPart& part, const Visit& visit) {
+  std::vector<Eigen::Vector3d> truth, found;
+  for (KeyFrameId id : merged.saved.map.KeyFrames()) {
+    if (id.value < part.first_keyframe || id.value >= part.end_keyframe) continue;
+    const KeyFrame& keyframe = *merged.saved.map.Find(id);
+    const int number =
+        visit.numbers[static_cast<size_t>(keyframe.frame->number - part.first_frame)];
+    truth.push_back(Scene("room").Pose(number).t);
+    found.push_back(keyframe.Centre());
+  }
+  const Sim3 T = AlignPoints(truth, found, true);
+  double sum = 0;
+  for (size_t i = 0; i < truth.size(); ++i) sum += (T * found[i] - truth[i]).norm();
+  return sum / static_cast<double>(truth.size());
+}
+
+// One camera, calibrated twice: by the truth, and 0.8 % off with a little distortion.
+TEST(MergeMapsOfOneCamera, AnotherCalibrationIsReplaced) {
+  Camera good = Scene("room").camera();
+  good.depth_factor = 0;
+  good.focal_sigma = 0.003;
+  Camera off = good;
+  off.fx *= 1.008;
+  off.fy *= 1.008;
+  off.distortion = {0.01, 0, 0, 0, 0};
+  const Visit early = Play("room", 0, 210, Sensor::kMono, good);
+  const Visit late = Play("room", 90, 240, Sensor::kMono, off);
+  ASSERT_GT(early.map.saved.map.keyframe_count(), late.map.saved.map.keyframe_count());
+  EXPECT_DOUBLE_EQ(late.map.saved.camera.focal_sigma, 0.003);
+
+  ASSERT_GT(late.map.saved.map.keyframe_count(), 4);
+
+  const MergedMaps merged = MergeMaps({early.map, late.map});
+  ExpectConsistent(merged.saved.map);
+  EXPECT_DOUBLE_EQ(merged.saved.camera.fx, good.fx);
+  EXPECT_EQ(merged.camera_shifts[0], 0);
+  EXPECT_NEAR(merged.camera_shifts[1], CameraShift(good, off), 1e-9);
+  EXPECT_EQ(merged.saved.map.Maps().size(), 1u);
+  EXPECT_LT(MeanOffTruth(merged, merged.parts[0], early), 0.03);
+  EXPECT_LT(MeanOffTruth(merged, merged.parts[1], late), 0.03);
+  // The good camera has no distortion: its keypoints are where they are in the image.
+  for (KeyFrameId id : merged.saved.map.KeyFrames()) {
+    const Frame& frame = *merged.saved.map.Find(id)->frame;
+    ASSERT_NEAR(frame.keypoints.front().x, frame.keypoints.front().raw_x, 1e-3);
+    ASSERT_NEAR(frame.keypoints.back().y, frame.keypoints.back().raw_y, 1e-3);
+  }
+
+  MapToMerge sure = late.map;  // says that it is exact
+  MapToMerge other = early.map;
+  sure.saved.camera.focal_sigma = other.saved.camera.focal_sigma = 0;
+  EXPECT_THAT(MessageOf(ErrorKind::kInput,
+                        [&] {
+                          MergeMaps({other, sure});
+                        }),
+              testing::HasSubstr("another camera"));
 }
 
 }  // namespace

@@ -17,9 +17,12 @@ struct Camera {
   double fx = 0, fy = 0;      // focal lengths, pixels
   double cx = 0, cy = 0;      // principal point, pixels; the center of the top-left pixel is (0, 0)
   std::array<double, 5> distortion{};  // k1 k2 p1 p2 k3 (Brown), unitless
-  double fps = 30;                     // frames per second, used when there are no time stamps
-  double depth_factor = 0;             // depth image value per meter; 0 = no depth image
-  double baseline = 0;  // between left and right camera, meters; 0 = no second camera
+  // Standard deviation of the focal lengths, relative, of a camera that was estimated or assumed;
+  // 0: given, or not known.
+  double focal_sigma = 0;
+  double fps = 30;          // frames per second, used when there are no time stamps
+  double depth_factor = 0;  // depth image value per meter; 0 = no depth image
+  double baseline = 0;      // between left and right camera, meters; 0 = no second camera
   // Rolling-shutter readout time, seconds from the first to the last column (x) and row (y);
   // negative if read from last to first, 0 for a global shutter. A phone held upright reads its
   // images along x.

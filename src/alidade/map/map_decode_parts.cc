@@ -111,6 +111,9 @@ Camera DecodeCamera(const fb::Camera& from) {
   camera.depth_factor = from.depth_factor();
   camera.baseline = from.baseline();
   camera.readout = {from.readout_x(), from.readout_y()};
+  camera.focal_sigma = from.focal_sigma();
+  Require(camera.focal_sigma >= 0 && camera.focal_sigma <= 1e3,
+          "the camera's focal_sigma is impossible");
   camera.Check();
   Require(camera.width <= kMaxImageSide && camera.height <= kMaxImageSide &&
               int64_t{camera.width} * camera.height <= kMaxImageArea,

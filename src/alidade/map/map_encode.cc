@@ -75,7 +75,7 @@ Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera
   const auto distortion = builder.CreateVector(camera.distortion.data(), camera.distortion.size());
   return fb::CreateCamera(builder, camera.width, camera.height, camera.fx, camera.fy, camera.cx,
                           camera.cy, distortion, camera.fps, camera.depth_factor, camera.baseline,
-                          camera.readout[0], camera.readout[1]);
+                          camera.readout[0], camera.readout[1], camera.focal_sigma);
 }
 
 // Checks the FlatBuffers limit of 2 GB (about 25,000 keyframes with 1000 keypoints), since the

@@ -41,7 +41,17 @@ SavedMap DecodeMap(std::string_view bytes);
 // `saved`: another image size; a displacement of at least 0.5 pixels by focal lengths, principal
 // point and distortion together; or a depth scale (baseline, depth_factor where both have one) that
 // differs by at least 0.5 %. Files of one calibration differ by rounding only, repeated
-// calibrations of one camera often by more.
+// calibrations of one camera often by more: the message says what to do.
+inline constexpr double kSameCamera = 0.5;  // pixels
 void CheckSameCamera(const Camera& saved, const Camera& now);
+
+// Whether two cameras of maps without depth may be calibrations of one camera. The pixels of one
+// direction differ by no more than 0.5 pixels + 3 sqrt(sa² + sb²) r, at most 3 % of r, with their
+// Camera::focal_sigma sa and sb and half the image's diagonal r; a sigma of 0 counts as the
+// other's. Their mean difference, another principal point, is left out: it is nearly a rotation,
+// and hardly determined by images. It may be 3 % of r. False if neither has a sigma.
+bool MayBeOneCamera(const Camera& a, const Camera& b);
+// Largest distance of the two cameras' pixels of one direction; infinite for different image sizes.
+double CameraShift(const Camera& a, const Camera& b);
 
 }  // namespace alidade

@@ -150,6 +150,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   RunLog& log = outcome.log;
   setup.source_path = options.source;
   setup.profile = options.profile;
+  setup.repeat_words = RepeatWords(options);
   setup.settings = SettingsFrom(options);
   SlamSettings& settings = setup.settings.slam;
   log.untracked.set_look(setup.settings.look);

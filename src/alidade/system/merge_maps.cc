@@ -8,8 +8,8 @@
 
 #include "alidade/base/error.h"
 #include "alidade/looping/loop_closer.h"
-#include "alidade/map/adjust.h"
 #include "alidade/mapping/fuse.h"
+#include "alidade/system/change_camera.h"
 #include "alidade/system/setting_names.h"
 #include "alidade/system/settings.h"
 
@@ -55,17 +55,10 @@ std::vector<size_t> BySize(const std::vector<MapToMerge>& maps) {
   return order;
 }
 
+// Throws Error (input) if the maps cannot be merged.
 void CheckTogether(const MapToMerge& first, const MapToMerge& other) {
-  const std::string both = other.name + " cannot be merged with " + first.name + ": ";
-  if (first.saved.sensor != other.saved.sensor) {
-    ThrowInput(both + "it was made with a " + other.saved.sensor + " camera, the other with a " +
-               first.saved.sensor + " camera; run both with the same --sensor");
-  }
-  try {
-    CheckSameCamera(first.saved.camera, other.saved.camera);
-  } catch (const Error& error) {
-    ThrowInput(both + error.what());
-  }
+  const std::string why = WhyNotTogether(first.saved, other.saved);
+  if (!why.empty()) ThrowInput(other.name + " cannot be merged with " + first.name + ": " + why);
 }
 
 class Merger {
@@ -168,29 +161,10 @@ class Merger {
     });
   }
 
-  // Adjusts a whole map, removes outliers, and adjusts it once more.
   void Adjust(MapId id) {
-    for (const char* round : {"adjusting all keyframes", "adjusting all keyframes again"}) {
-      const MapSnapshot map = map_.Snapshot();
-      const std::vector<KeyFrameId> ids = map.KeyFramesOf(id);
-      if (progress_) progress_(round, 0, static_cast<int>(ids.size()));
-      std::vector<KeyFrameId> free, fixed;
-      for (KeyFrameId keyframe : ids)
-        (map.Find(keyframe)->parent.valid() ? free : fixed).push_back(keyframe);
-      const AdjustSettings settings{settings_.loop.noise, settings_.loop.bundle};
-      const Adjustment adjusted = AdjustKeyFrames(map, free, fixed, camera_, settings, nullptr);
-      map_.Commit([&](MapCommit& commit) {
-        CommitAdjustment(commit, map, adjusted);
-        const size_t needed = camera_.bf() > 0 ? 1 : 2;  // observations that determine a position
-        for (const auto& [landmark, keyframe] : adjusted.outliers) {
-          const Landmark* left = commit.Find(landmark);
-          if (left && left->observations.size() < needed) commit.Remove(landmark);
-        }
-        for (const auto& [landmark, p_world] : adjusted.points) commit.RefreshLandmark(landmark);
-        for (KeyFrameId keyframe : ids) commit.RefreshCovisibility(keyframe);
-        commit.CountCorrection();
-      });
-    }
+    AdjustWholeMap(map_, id, camera_, settings_, [&](const char* round, int keyframes) {
+      if (progress_) progress_(round, 0, keyframes);
+    });
   }
 
   bool IsJoined(const MapSnapshot& map, KeyFrameId id) const {
@@ -212,6 +186,21 @@ class Merger {
 
 }  // namespace
 
+std::string WhyNotTogether(const SavedMap& first, const SavedMap& other) {
+  if (first.sensor != other.sensor) {
+    return "it was made with a " + other.sensor + " camera, the other with a " + first.sensor +
+           " camera; run both with the same --sensor";
+  }
+  if (first.sensor == NameOf(Sensor::kMono) && MayBeOneCamera(first.camera, other.camera))
+    return {};
+  try {
+    CheckSameCamera(first.camera, other.camera);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
 MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& progress) {
   if (maps.size() < 2) ThrowUsage("nothing to merge: give at least two maps");
   const std::vector<size_t> order = BySize(maps);
@@ -219,8 +208,19 @@ MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& p
   for (size_t i : order) {
     if (i != order.front()) CheckTogether(first, maps[i]);
   }
+  std::vector<double> shifts(maps.size(), 0);
   std::vector<MapSnapshot> sorted;
-  for (size_t i : order) sorted.push_back(maps[i].saved.map);
+  for (size_t i : order) {
+    const SavedMap& saved = maps[i].saved;
+    const double shift = CameraShift(first.saved.camera, saved.camera);
+    if (shift < kSameCamera) {
+      sorted.push_back(saved.map);
+      continue;
+    }
+    if (progress) progress("changing the camera", 0, saved.map.keyframe_count());
+    shifts[i] = shift;
+    sorted.push_back(WithCamera(saved, first.saved.camera, SettingsOf(first.saved)).map);
+  }
   const MapUnion all = Unite(sorted);
   Merger merger(first.saved, all, progress);
   merger.Run();
@@ -231,6 +231,7 @@ MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& p
   merged.saved.places = merger.places();
   merged.joins = merger.joins();
   merged.ties = merger.ties();
+  merged.camera_shifts = std::move(shifts);
   merged.parts.resize(maps.size());
   for (size_t i = 0; i < order.size(); ++i) merged.parts[order[i]] = all.parts[i];
   return merged;

@@ -29,7 +29,15 @@ struct MergedMaps {
   std::vector<UnitedPart> parts;  // one per given map, in the same order
   std::vector<MapJoin> joins;
   int ties = 0;  // further matches between joined maps
+  // Pixels, per given map: how far its calibration was from the camera of the largest map, which
+  // replaced it (WithCamera()); 0: the same camera.
+  std::vector<double> camera_shifts;
 };
+
+// Why `other` cannot be merged with `first`, the larger one, in words; empty: it can. Maps of one
+// camera without depth may have two calibrations of it (MayBeOneCamera()). The maps themselves are
+// not looked at.
+std::string WhyNotTogether(const SavedMap& first, const SavedMap& other);
 
 // Progress: step `what` has processed `done` of `total` keyframes. Called for each keyframe.
 using MergeProgress = std::function<void(const char* what, int done, int total)>;
@@ -39,7 +47,7 @@ using MergeProgress = std::function<void(const char* what, int done, int total)>
 // shows no place of another map stays unchanged in its own world. Every keyframe is matched with
 // places of the other maps, with all gates of LoopSettings, as saved in the largest map. Throws
 // Error: usage for fewer than two maps; input for maps of different sensors or cameras
-// (CheckSameCamera()), or a map that is given twice.
+// (WhyNotTogether()), or a map that is given twice.
 MergedMaps MergeMaps(const std::vector<MapToMerge>& maps, const MergeProgress& progress = {});
 
 }  // namespace alidade

@@ -104,7 +104,9 @@ SemiDenseReport Slam::SemiDense() const { return impl_->pipeline().workers().Sem
 SavedMap Slam::Saved() const {
   // Places first: then they never refer to keyframes that the snapshot does not have yet.
   SavedPlaces places = impl_->pipeline().workers().places().Save();
-  return {Snapshot(), impl_->CameraNow(), NameOf(impl_->settings().sensor), impl_->settings().All(),
+  Camera camera = impl_->CameraNow();
+  if (const auto found = camera_found()) camera.focal_sigma = found->focal_sigma;
+  return {Snapshot(), camera, NameOf(impl_->settings().sensor), impl_->settings().All(),
           std::move(places)};
 }
 

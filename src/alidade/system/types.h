@@ -31,12 +31,12 @@ constexpr const char* StateName(TrackState state) {
 
 // In the order that track() has in every language.
 struct FrameInput {
-  double time = 0;  // seconds
-  cv::Mat image;    // 8-bit gray or BGR, of the camera's size
-  cv::Mat right;    // stereo: the rectified right image
+  double time = 0;     // seconds
+  cv::Mat image;       // 8-bit gray or BGR, of the camera's size
+  cv::Mat right = {};  // stereo: the rectified right image
   // RGB-D: registered depth, CV_16U in units of 1 / camera.depth_factor metres or CV_32F in metres.
   // Empty: none.
-  cv::Mat depth;
+  cv::Mat depth = {};
   cv::Mat color = {};  // `image` in color (BGR) when it is gray, for point clouds; empty: none
   // Readings of an inertial sensor since the last frame (Slam::SetImu()), in order of time. They
   // may run ahead of the image.

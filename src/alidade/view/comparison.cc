@@ -1,6 +1,7 @@
 #include "alidade/view/comparison.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "alidade/view/page.h"
 #include "alidade/view/svg.h"
@@ -48,28 +49,41 @@ std::string Measures(const RunComparison& comparison) {
   return html;
 }
 
-std::string Legend(const RunComparison& comparison, bool with_ends) {
-  std::string html = "<p class=\"soft legend\">";
-  for (size_t i = 0; i < comparison.runs.size(); ++i)
-    html += "<span>" + Chip(comparison.runs[i], i) + "</span> ";
-  if (with_ends) {
-    if (!comparison.truth.empty()) html += "<span>dashed: ground truth</span> ";
-    html +=
-        "<span><span class=\"key\" style=\"background:#1a9d50;margin-left:0\"></span>start</span> "
-        "<span><span class=\"key\" style=\"background:#d43a2f;margin-left:0\"></span>end</span>";
-  }
-  return html + "</p>\n";
+std::string Names(const RunComparison& comparison, const std::vector<size_t>& runs) {
+  std::string html;
+  for (const size_t i : runs) html += "<span>" + Chip(comparison.runs[i], i) + "</span> ";
+  return html;
+}
+
+std::string AllNames(const RunComparison& comparison) {
+  std::vector<size_t> all(comparison.runs.size());
+  std::iota(all.begin(), all.end(), size_t{0});
+  return "<p class=\"soft legend\">" + Names(comparison, all) + "</p>\n";
+}
+
+constexpr char kEnds[] =
+    "<span><span class=\"key\" style=\"background:#1a9d50;margin-left:0\"></span>start</span> "
+    "<span><span class=\"key\" style=\"background:#d43a2f;margin-left:0\"></span>end</span>";
+
+std::string DrawPlace(const RunComparison& comparison, const ComparedPlace& place, PlaceView view) {
+  std::vector<DrawnPath> paths(comparison.runs.size());  // the others stay empty: colors by run
+  for (const size_t i : place.runs) paths[i] = comparison.runs[i].path;
+  return "<figure>\n<div class=\"framed\">" + DrawPaths(paths, place.truth, view, place.unit) +
+         "</div>\n<figcaption class=\"legend\">" + Names(comparison, place.runs) +
+         (place.truth.empty() ? "" : "<span>dashed: ground truth</span> ") + kEnds +
+         "</figcaption>\n</figure>\n";
 }
 
 std::string Paths(const RunComparison& comparison) {
-  std::vector<DrawnPath> paths;
-  for (const ComparedRun& run : comparison.runs) paths.push_back(run.path);
   const auto drawn = [&](PlaceView view) {
-    return "<div class=\"framed\">" + DrawPaths(paths, comparison.truth, view, comparison.unit) +
-           "</div>\n";
+    std::string html;
+    for (const ComparedPlace& place : comparison.places) html += DrawPlace(comparison, place, view);
+    return comparison.places.size() > 1 ? "<div class=\"stages places\">\n" + html + "</div>\n"
+                                        : html;
   };
-  return "<h2>From above</h2>\n" + drawn(PlaceView::kAbove) + Legend(comparison, true) +
-         "<h2>From the side</h2>\n" + drawn(PlaceView::kSide);
+  if (comparison.places.empty()) return "";
+  return "<h2>From above</h2>\n" + drawn(PlaceView::kAbove) + "<h2>From the side</h2>\n" +
+         drawn(PlaceView::kSide);
 }
 
 std::string Errors(const RunComparison& comparison) {
@@ -83,7 +97,7 @@ std::string Errors(const RunComparison& comparison) {
   return "<h2>Distance to the ground truth</h2>\n" +
          DrawCurves(curves, comparison.seconds, "s", "m",
                     "distance to the ground truth over time") +
-         Legend(comparison, false);
+         AllNames(comparison);
 }
 
 std::string Stage(const RunComparison& comparison, size_t stage) {

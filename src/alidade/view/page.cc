@@ -30,7 +30,7 @@ font-size:13px;white-space:nowrap;pointer-events:none}
 .turn canvas:focus-visible{outline:2px solid var(--path)}button{font:inherit;color:inherit;background:none;border:1px solid var(--line);border-radius:4px;padding:.1em .6em;cursor:pointer}
 .keyframes-shown{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem}.keyframes-shown div{display:flex;gap:4px}.keyframes-shown img{flex:1;min-width:0;border-radius:3px}
 figure{margin:0}figcaption{color:var(--soft)}.stages{display:grid;grid-template-columns:1fr 1fr;gap:1rem 1.6rem;margin-top:1rem}
-.stages text{font-size:13px}.bar{fill:var(--path);opacity:.75}.median,.p95{stroke:var(--ink);stroke-width:1.5}.p95{stroke-dasharray:4 3}
+.stages text{font-size:13px}.stages.places text{font-size:26px}.bar{fill:var(--path);opacity:.75}.median,.p95{stroke:var(--ink);stroke-width:1.5}.p95{stroke-dasharray:4 3}
 @media(max-width:600px){.stages{grid-template-columns:1fr}.stages text{font-size:15px}.shape,.keyframes-shown{grid-template-columns:1fr}.turn.on canvas{aspect-ratio:1}}
 .key{display:inline-block;width:.7em;height:.7em;border-radius:50%;margin:0 .3em 0 1em}.key:first-child{margin-left:0}
 .run0{--own:var(--run0)}.run1{--own:var(--run1)}.run2{--own:var(--run2)}.run3{--own:var(--run3)}.run4{--own:var(--run4)}.run5{--own:var(--run5)}

@@ -57,7 +57,7 @@ bool IsBatchsOwn(const std::string& name) {
   static const std::set<std::string> kOwn = {"log",        "done",   "batch.json",
                                              "batch.md",   "merged", "batch.log",
                                              "batch.lock", "slurm",  "compare.html"};
-  return kOwn.count(name) > 0;
+  return kOwn.count(name) > 0 || name.rfind("merged-", 0) == 0;
 }
 
 void CheckFolderName(const std::string& name) {

@@ -89,6 +89,7 @@ Camera CameraOfSize(const Camera& camera, const Camera& of) {
   result.fx = result.fy = camera.fx * of.width / camera.width;
   result.distortion = camera.distortion;
   result.readout = camera.readout;
+  result.focal_sigma = camera.focal_sigma;
   // Pixel centres are at whole numbers, image borders at ±0.5.
   result.cx = (camera.cx + 0.5) * of.width / camera.width - 0.5;
   result.cy = (camera.cy + 0.5) * of.height / camera.height - 0.5;

@@ -6,6 +6,7 @@
 #include "alidade/base/print.h"
 #include "alidade/base/timing.h"
 #include "alidade/io/files/camera_file.h"
+#include "alidade/map/map_file.h"
 #include "alidade/run/sources/any_source.h"
 
 namespace alidade {
@@ -18,6 +19,24 @@ std::string AssumedInWords(const SourceInfo& source, const Camera& camera) {
   PrintTo(text, sizeof(text), "a horizontal field of view of %.1f degrees is assumed",
           FovDegrees(camera));
   return source.lens_told.empty() ? text : text + (", from its metadata: " + source.lens_told);
+}
+
+// The map's camera instead of another calibration of the same one.
+void TakeCameraOfMap(const Camera& saved, const SourceInfo& source, CameraFinding& finding) {
+  if (source.sensor != Sensor::kMono) return;
+  Camera there = CameraOfSize(saved, source.camera);
+  const double shift = CameraShift(there, source.camera);
+  if (shift < kSameCamera || !MayBeOneCamera(there, source.camera)) return;
+  char text[200];
+  PrintTo(text, sizeof(text),
+          "the camera of the map is used; the calibration of the recording differs from it by %.2g "
+          "pixels, which is within its uncertainty",
+          shift);
+  LogWarning(text);
+  there.readout_known = source.camera.readout_known;
+  if (there.readout_known) there.readout = source.camera.readout;
+  finding.camera = there;
+  finding.known = "file";
 }
 
 void WarnOfDoubt(CameraEstimate estimate, const Camera& taken) {
@@ -39,6 +58,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   finding.camera = source.camera;
   if (!source.camera_guessed) {
     finding.known = options.camera_file || options.fov ? "given" : "file";
+    if (saved) TakeCameraOfMap(*saved, source, finding);
     return finding;
   }
   finding.known = "assumed";
@@ -63,6 +83,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
   }
   if (!looked_for) {
     settings.readout.enabled = false;  // a wrong lens may be taken for it
+    finding.camera.focal_sigma = finding.focal_sigma;
     LogWarning("the camera is unknown: " + AssumedInWords(source, finding.camera) + kBetter);
     return finding;
   }
@@ -81,6 +102,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
     finding.focal_sigma = found.estimate.focal_sigma;
     if (!told_wary) wary = 3 * finding.focal_sigma;
   }
+  finding.camera.focal_sigma = finding.focal_sigma;
   if (!found.estimate.known) settings.readout.enabled = false;  // the lens may be taken for it
   if (found.estimate.known) {
     finding.known = "estimated";

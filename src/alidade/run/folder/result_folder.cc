@@ -116,9 +116,9 @@ ResultFolder ReadResultFolder(const std::string& path) {
   const std::string truth = path + "/groundtruth.txt";
   // The working directory may have changed since the run.
   const json folder = stats.contains("folder") ? stats["folder"] : json();
-  const std::string place = WordIn(folder, "source");
-  result.truth =
-      IsFile(truth) ? ReadTrajectory(truth) : TruthBeside(place.empty() ? result.source : place);
+  result.place = WordIn(folder, "source");
+  result.truth = IsFile(truth) ? ReadTrajectory(truth)
+                               : TruthBeside(result.place.empty() ? result.source : result.place);
   if (!result.trajectory.empty()) {
     result.span = {result.trajectory.front().time, result.trajectory.back().time};
     if (!result.first_pose) result.first_pose = result.span.first;

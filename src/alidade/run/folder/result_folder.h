@@ -15,6 +15,7 @@ namespace alidade {
 struct ResultFolder {
   std::string path;
   std::string source, sensor;
+  std::string place;  // the source as an absolute path, where it is one; empty: not known
   // Of stats.json; what it does not say, or older versions did not, is empty.
   std::optional<double> frames, tracked, coverage, initialized_at, keyframes, landmarks, loops,
       relocalizations, maps, cpu_s, peak_mb;

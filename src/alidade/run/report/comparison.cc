@@ -7,6 +7,7 @@
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
 #include "alidade/run/folder/result_folder.h"
+#include "alidade/run/report/compared_places.h"
 #include "alidade/run/results/run_results.h"
 #include "alidade/run/sources/truth.h"
 #include "alidade/view/comparison.h"
@@ -63,44 +64,6 @@ std::vector<FateSpan> FatesOf(const ResultFolder& result, double start) {
     fates.push_back({from - start, to - start, FrameFate::kLost});
   return fates;
 }
-
-// Transforms from the world of the first result to the page, and then for the others.
-class Layout {
- public:
-  Layout(const ResultFolder& first, const std::optional<TruthErrors>& errors)
-      : first_(first), errors_(errors) {}
-
-  std::string unit() const { return first_.mono() && !errors_ ? "map units" : "m"; }
-
-  // T_page_world; nullopt, with a note, if it has too little in common with the first.
-  std::optional<Sim3> Of(const ResultFolder& run, const std::optional<TruthErrors>& errors,
-                         std::string* problem) const {
-    if (run.trajectory.empty()) {
-      *problem = "nothing was mapped";
-      return std::nullopt;
-    }
-    const Sim3 first = errors_ ? errors_->ate.T_truth_estimate : Sim3{};
-    if (&run == &first_) return first;
-    if (errors_ && errors) return errors->ate.T_truth_estimate;
-    if (first_.trajectory.empty()) {
-      *problem = "its trajectory cannot be aligned with that of the first run, which has none";
-      return std::nullopt;
-    }
-    AteSettings settings;
-    settings.align = run.mono() || first_.mono() ? Alignment::kSim3 : Alignment::kSe3;
-    try {
-      return first * EvaluateAte(first_.trajectory, run.trajectory, settings).T_truth_estimate;
-    } catch (const Error& error) {
-      *problem = std::string("its trajectory cannot be aligned with that of the first run: ") +
-                 error.what();
-      return std::nullopt;
-    }
-  }
-
- private:
-  const ResultFolder& first_;
-  const std::optional<TruthErrors>& errors_;
-};
 
 std::vector<std::pair<std::string, std::string>> MeasuresOf(
     const ResultFolder& result, const std::optional<TruthErrors>& errors) {
@@ -161,12 +124,7 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     if (!problem.empty())
       page.notes.push_back(names[i] + ": no errors against ground truth: " + problem);
   }
-  const Layout layout(results.front(), errors.front());
-  page.unit = layout.unit();
-  if (errors.front()) {
-    const TimeSpan& span = results.front().span;
-    page.truth = PathOf(Between(results.front().truth, span.first, span.last));
-  }
+  const std::vector<PlacedRuns> places = PlacesOf(results, errors);
   for (size_t i = 0; i < results.size(); ++i) {
     const ResultFolder& result = results[i];
     ComparedRun run;
@@ -177,10 +135,7 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
       page.measures.push_back(measure);
       run.values.push_back(value);
     }
-    std::string problem;
-    if (const auto T = layout.Of(result, errors[i], &problem))
-      run.path = PathOf(result.trajectory, *T);
-    if (!problem.empty()) page.notes.push_back(names[i] + ": " + problem);
+    if (result.trajectory.empty()) page.notes.push_back(names[i] + ": nothing was mapped");
     if (result.maps.value_or(0) > 1)
       page.notes.push_back(names[i] +
                            ": of its maps, the one with the most frames is shown and evaluated");
@@ -190,6 +145,25 @@ std::string CompareResults(const std::vector<ComparedFolder>& folders) {
     page.seconds = std::max(page.seconds, result.span.last - starts[i]);
     page.runs.push_back(std::move(run));
   }
+  for (const PlacedRuns& placed : places) {
+    const size_t first = placed.runs.front();
+    ComparedPlace& place = page.places.emplace_back();
+    place.runs = placed.runs;
+    place.unit = results[first].mono() && !errors[first] ? "map units" : "m";
+    if (errors[first]) {
+      const TimeSpan& span = results[first].span;
+      place.truth = PathOf(Between(results[first].truth, span.first, span.last));
+    }
+    for (size_t k = 0; k < placed.runs.size(); ++k) {
+      const size_t i = placed.runs[k];
+      page.runs[i].path = PathOf(results[i].trajectory, placed.T_place_world[k]);
+    }
+  }
+  if (places.size() > 1)
+    page.notes.push_back(
+        "The runs are of different places or recordings: their paths are drawn side by side, each "
+        "at "
+        "its own scale");
   return RenderComparison(page);
 }
 

@@ -206,9 +206,9 @@ std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& 
   const std::string result = ShellWord(folder);
   std::vector<ReportStep> steps = {{"Walk through the map in a browser", "alidade view " + result}};
   if (!settings.semidense.enabled) {
-    steps.push_back(
-        {"Map surfaces and edges, not only landmarks",
-         "alidade run " + ShellWord(setup.source_path) + HowRead(setup) + " --semidense"});
+    steps.push_back({"Map surfaces and edges, not only landmarks",
+                     "alidade run " + ShellWord(setup.source_path) + HowRead(setup) +
+                         setup.repeat_words + " --semidense"});
   }
   steps.push_back({"Find another recording of the place in this map",
                    "alidade localize RECORDING --map " + ShellWord(folder + "/map.alidade")});

@@ -2,6 +2,7 @@
 
 #include "alidade/base/choice.h"
 #include "alidade/base/error.h"
+#include "alidade/base/shell_quoted.h"
 #include "alidade/io/text.h"
 #include "alidade/run/setup/settings_file.h"
 
@@ -85,6 +86,29 @@ RunSettings SettingsFrom(const RunOptions& options) {
         "out from the start");
   all.Check();
   return all;
+}
+
+std::string RepeatWords(const RunOptions& options) {
+  std::string words;
+  const auto add = [&](const std::string& name, const std::string& value) {
+    words += " " + name + " " + ShellWord(value);
+  };
+  const auto add_if = [&](const std::string& name, const std::optional<std::string>& value) {
+    if (value) add(name, *value);
+  };
+  if (options.profile != "desktop") add("--profile", options.profile);
+  add_if("--config", options.config);
+  for (const std::string& assignment : options.settings) add("--set", assignment);
+  if (options.seed) add("--seed", std::to_string(*options.seed));
+  if (!options.calibrate_first) words += " --no-calibrate-first";
+  if (options.first > 0) add("--first", std::to_string(options.first));
+  if (options.last >= 0) add("--last", std::to_string(options.last));
+  add_if("--load", options.load);
+  add_if("--dynamics", options.dynamics);
+  add_if("--detector", options.detector);
+  add_if("--mask", options.mask);
+  add_if("--schedule", options.schedule);
+  return words;
 }
 
 bool ThreadedFrom(const RunOptions& options, bool live) {

@@ -71,6 +71,10 @@ SourceOptions SourceOptionsFrom(const RunOptions& options);
 // the file).
 RunSettings SettingsFrom(const RunOptions& options);
 
+// The options that decide what a run computes, apart from those of SourceOptions and --semidense,
+// as words for a shell with a space before each: " --profile phone --set tracker.min_found=20".
+std::string RepeatWords(const RunOptions& options);
+
 // True if stages run in their own threads: as requested, by default only for a live camera.
 bool ThreadedFrom(const RunOptions& options, bool live);
 

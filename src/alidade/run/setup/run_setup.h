@@ -15,6 +15,7 @@ struct RunSetup {
   SourceOptions reading;    // how it was opened
   RunSettings settings;     // as used
   std::string profile;
+  std::string repeat_words;  // RepeatWords() of the options
   int threads = 0;
 };
 
