@@ -23,6 +23,9 @@ constexpr double kMostNoise = 6;
 // of it, in this many fits in a row.
 constexpr double kTurning = 0.1;  // rad/s
 constexpr int kContradictions = 3;
+// Readings are used once rotations have agreed in this many fits: until then nothing tells that
+// they are of this camera.
+constexpr int kAgreements = 2;
 // The rotation of the sensor is known well enough to predict frames.
 constexpr double kRotationSigma = 0.03;  // radians
 // Poses of a map have errors in common that their covariance does not contain.
@@ -174,7 +177,7 @@ void InertialWatch::Answer(InertialAnswer answer) {
 }
 
 bool InertialWatch::Accepts(const InertialFit& fit) const {
-  return fit.solved && fit.noise_factor < kMostNoise && fit.scale_sigma < kScaleSigma &&
+  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoise && fit.scale_sigma < kScaleSigma &&
          fit.gravity_sigma < kGravitySigma;
 }
 
@@ -182,7 +185,9 @@ bool InertialWatch::Accepts(const InertialFit& fit) const {
 void InertialWatch::Judge(const InertialAnswer& answer) {
   const RotationMatch& match = answer.rotation;
   if (!match.ok || match.turning < kTurning) return;
-  contradictions_ = match.residual > 0.5 * match.turning ? contradictions_ + 1 : 0;
+  const bool agree = match.residual < 0.5 * match.turning;
+  contradictions_ = agree ? 0 : contradictions_ + 1;
+  if (agree) ++agreements_;
   if (contradictions_ < kContradictions) return;
   report_.left_out =
       "the inertial readings contradict the images: the gyroscope does not turn as the camera does "
@@ -228,7 +233,8 @@ std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot&
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
-  if (!report_.given || !report_.left_out.empty() || samples_.size() < 2) return std::nullopt;
+  if (agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
+    return std::nullopt;
   const ImuModel& model = report_.model;
   const bool known = model.rotation_known || (fit_ && fit_->rotation_sigma < kRotationSigma);
   from += model.time_offset;
@@ -239,27 +245,6 @@ std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to
   const Preintegration motion = Preintegrate(samples, from, to, report_.bias, {});
   const Eigen::Matrix3d& R = model.T_camera_imu.R;
   return R * motion.dR.transpose() * R.transpose();
-}
-
-std::optional<Se3> InertialWatch::DeadReckoned(double to, const MapSnapshot& map) const {
-  if (!report_.metric || metric_map_ != map_ || !fit_ || placements_.empty()) return std::nullopt;
-  // Velocity by the poses of the last second, with all else as it is known.
-  InertialPriors priors;
-  priors.scale = 0.01;
-  priors.rotation_known = 1e-3;
-  ImuModel model = report_.model;
-  model.rotation_known = model.translation_known = model.time_offset_known = true;
-  const std::vector<TimedPose> poses = PosesIn(map, placements_.back().time - 1.05);
-  if (poses.size() < 4) return std::nullopt;
-  const auto samples = SamplesFrom(poses.front().time + model.time_offset - kMargin);
-  if (samples.empty() || to + model.time_offset > samples.back().time + 0.02) return std::nullopt;
-  const InertialFit fit = FitInertial(poses, samples, model, priors, &*fit_);
-  if (!fit.solved) return std::nullopt;
-  const Preintegration motion =
-      Preintegrate(samples, poses.back().time + fit.model.time_offset, to + fit.model.time_offset,
-                   fit.states.back().bias, {});
-  return Predict(fit.states.back(), motion, fit_->gravity).T_world_imu *
-         fit.model.T_camera_imu.Inverse();
 }
 
 }  // namespace alidade

@@ -60,8 +60,8 @@ class InertialWatch {
   std::optional<InertialQuestion> Ask(const MapSnapshot& map);
   // Any thread.
   void Answer(InertialAnswer answer);
-  // Uses an answer that has come. Returns the factor by which all lengths of map `report().map`
-  // are to grow to be meters; nullopt: none.
+  // Uses an answer that has come. Returns the map whose lengths are to grow to be meters, and
+  // by which factor; nullopt: none.
   struct Growth {
     MapId map;
     double factor = 1;
@@ -71,9 +71,6 @@ class InertialWatch {
   // Rotation of the camera between two times of images by the gyroscope alone: R_to_from. nullopt
   // if its rotation to the camera is not known, or the readings do not cover the time.
   std::optional<Eigen::Matrix3d> TurnBetween(double from, double to) const;
-  // Pose of the camera at `to`, dead reckoned from the poses before `from`; nullopt before the map
-  // is in meters. Valid for the map the last poses are in.
-  std::optional<Se3> DeadReckoned(double to, const MapSnapshot& map) const;
 
   const InertialReport& report() const { return report_; }
 
@@ -98,6 +95,7 @@ class InertialWatch {
   std::optional<InertialFit> fit_;  // the last one accepted or refused that was solved
   double asked_at_ = -1e18;         // time of the newest pose of the last question
   bool awaiting_ = false;
+  int agreements_ = 0;      // answers in which the rotations agree
   int contradictions_ = 0;  // consecutive answers in which rotations disagree
   std::mutex mutex_;
   std::optional<InertialAnswer> answer_;  // under mutex_

@@ -1,0 +1,111 @@
+// A rendered room with the simulated inertial sensor of a phone, of which nothing is known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "alidade/evaluation/ate.h"
+#include "alidade/slam.h"
+#include "alidade/synth/recording.h"
+
+namespace alidade::inertial_test {
+namespace {
+
+constexpr int kFrames = 210;  // 7 s
+
+SynthSettings Room() {
+  SynthSettings settings;
+  settings.width = 400;
+  settings.height = 300;
+  settings.imu = "phone";
+  settings.imu_rate = 200;
+  settings.frames = kFrames;
+  return settings;
+}
+
+struct Run {
+  std::vector<FramePose> trajectory;
+  InertialReport report;
+};
+
+// `spoil` changes the readings; null: they are not given at all.
+template <typename Spoil>
+Run RunWith(const SynthRecording& recording, Spoil&& spoil, bool give) {
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  Slam slam(recording.camera(), settings);
+  double last = -1;
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame rendered = recording.Render(i);
+    FrameInput frame;
+    frame.time = rendered.time;
+    frame.image = rendered.image;
+    if (give) frame.imu = spoil(recording.imu()->Between(last, rendered.time));
+    last = rendered.time;
+    slam.Track(frame);
+  }
+  return {slam.Finish(), slam.Inertial()};
+}
+
+using Samples = std::vector<ImuSample>;
+constexpr auto kAsTheyAre = [](Samples samples) { return samples; };
+
+TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
+  const SynthRecording recording(Room());
+  const Run run = RunWith(recording, kAsTheyAre, true);
+  ASSERT_TRUE(run.report.metric) << run.report.missing;
+  EXPECT_GT(run.report.samples, 1300);
+  EXPECT_TRUE(run.report.left_out.empty()) << run.report.left_out;
+
+  // Lengths: distances between the poses and between the true ones.
+  double path = 0, truth = 0;
+  const FramePose* before = nullptr;
+  const FramePose* first = nullptr;
+  for (const FramePose& pose : run.trajectory) {
+    if (!pose.tracked) continue;
+    if (!first) first = &pose;
+    if (before && pose.index - before->index < 15) continue;
+    if (before) {
+      path += (pose.T_world_camera.t - before->T_world_camera.t).norm();
+      truth += (recording.Pose(pose.index).t - recording.Pose(before->index).t).norm();
+    }
+    before = &pose;
+  }
+  ASSERT_GT(truth, 1);
+  EXPECT_NEAR(path / truth, 1, std::max(0.02, 3 * run.report.scale_sigma));
+
+  ASSERT_TRUE(run.report.gravity);
+  const Eigen::Matrix3d R_scene_map =
+      recording.Pose(first->index).R * first->T_world_camera.R.transpose();
+  const Eigen::Vector3d down = R_scene_map * *run.report.gravity;
+  EXPECT_LT(std::acos(std::min(1.0, -down.z())), 0.02);  // 1 degree
+
+  const ImuModel& sensor = recording.imu()->truth();
+  EXPECT_LT(RotationAngle(run.report.model.T_camera_imu, sensor.T_camera_imu), 0.02);
+  EXPECT_NEAR(run.report.model.time_offset, sensor.time_offset, 0.004);
+}
+
+TEST(Inertial, ReadingsOfAnotherMotionAreLeftOutAndChangeNothing) {
+  const SynthRecording recording(Room());
+  const Run without = RunWith(recording, kAsTheyAre, false);
+  const Run other = RunWith(
+      recording,
+      [](Samples samples) {
+        for (ImuSample& sample : samples) {
+          const double t = sample.time;
+          sample.angular_rate = {std::sin(3 * t), 0.8 * std::cos(2 * t), std::sin(5 * t)};
+        }
+        return samples;
+      },
+      true);
+  EXPECT_FALSE(other.report.metric);
+  EXPECT_NE(other.report.left_out.find("contradict"), std::string::npos);
+  ASSERT_EQ(other.trajectory.size(), without.trajectory.size());
+  for (size_t i = 0; i < without.trajectory.size(); ++i) {
+    EXPECT_EQ(other.trajectory[i].tracked, without.trajectory[i].tracked) << i;
+    EXPECT_EQ(other.trajectory[i].T_world_camera.t, without.trajectory[i].T_world_camera.t) << i;
+  }
+}
+
+}  // namespace
+}  // namespace alidade::inertial_test
