@@ -86,7 +86,7 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   UseInertial();
   ExtractFeatures(prepared, time, now);
   TrackResult result = Localize(now);
-  if (inertial_.given()) Observe(time, now);
+  Observe(time, now);
   if (now.map_left && result.state != TrackState::kTracking)
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);
@@ -135,32 +135,6 @@ void FramePipeline::UseCamera() {
   camera_update_.Apply(*std::exchange(news_.camera, std::nullopt));
   ++counts_.camera_changes;
   TakeNews();  // of keyframes that were mapped again
-}
-
-void FramePipeline::SetImu(const ImuModel& imu) {
-  inertial_.SetImu(imu);
-  inertial_shown_.Set(inertial_.report());
-}
-
-// One camera: the lengths of the map become meters, as soon as it is confirmed.
-void FramePipeline::UseInertial() {
-  if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
-  const auto growth = inertial_.UseAnswer(workers_.map().Snapshot());
-  if (growth && !settings_.localize) workers_.Scale(growth->map, growth->factor);
-  inertial_shown_.Set(inertial_.report());
-}
-
-// A pose for the fit of what the inertial sensor tells, which runs beside the other work.
-void FramePipeline::Observe(double time, const PresentFrame& now) {
-  const MapSnapshot map = workers_.map().Snapshot();
-  if (session_.state() == SessionState::kTracking && tracker_.IsLast(*now.frame)) {
-    inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
-                     map.MapOf(tracker_.reference()), now.placed.covariance);
-  }
-  if (auto question = inertial_.Ask(map)) {
-    workers_.AddErrand(
-        [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
-  }
 }
 
 // Poses of the newest map may have followed the part: a young map of one camera is dropped, and one

@@ -63,14 +63,12 @@ void InertialWatch::SetImu(const ImuModel& model) {
 void InertialWatch::Take(std::span<const ImuSample> samples) {
   if (samples.empty()) return;
   if (!report_.given) SetImu({});
-  for (const ImuSample& sample : samples) {
-    if (!std::isfinite(sample.time) || !sample.angular_rate.allFinite() ||
-        !sample.specific_force.allFinite())
-      continue;
-    if (!samples_.empty() && sample.time <= samples_.back().time) continue;
+  for (const ImuSample& sample : stream_.Add({samples.begin(), samples.end()})) {
+    if (!samples_.empty() && sample.time <= samples_.back().time) samples_.clear();  // set back
     samples_.push_back(sample);
     ++report_.samples;
   }
+  if (report_.left_out.empty()) report_.left_out = stream_.broken();
   if (samples_.empty()) return;
   // What no pose will need any more.
   const double oldest =
@@ -84,6 +82,7 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
 }
 
 void InertialWatch::Cut() {
+  stream_.Restart();
   samples_.clear();
   placements_.clear();
 }
@@ -177,8 +176,8 @@ void InertialWatch::Answer(InertialAnswer answer) {
 }
 
 bool InertialWatch::Accepts(const InertialFit& fit) const {
-  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoise && fit.scale_sigma < kScaleSigma &&
-         fit.gravity_sigma < kGravitySigma;
+  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoise &&
+         fit.scale_sigma < kScaleSigma && fit.gravity_sigma < kGravitySigma;
 }
 
 // Readings of another device, or images that were stabilized, do not turn as the camera does.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/inertial/imu_stream.h"
 #include "alidade/inertial/inertial_fit.h"
 #include "alidade/inertial/rotation_match.h"
 #include "alidade/io/frame_source.h"
@@ -47,8 +48,7 @@ class InertialWatch {
 
   void SetImu(const ImuModel& model);
   bool given() const { return report_.given; }
-  // Readings since the last call. Those that are not finite, or not newer than the last one, are
-  // dropped.
+  // Readings since the last call, cleaned by an ImuStream.
   void Take(std::span<const ImuSample> samples);
   // The frame of `time` (seconds, on the clock of the images) has a pose.
   void Placed(double time, const Anchor& anchor, MapId map, const Matrix6d& covariance);
@@ -88,6 +88,7 @@ class InertialWatch {
   Sensor sensor_;
   ImuModel given_model_;  // as given
   InertialReport report_;
+  ImuStream stream_;
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
   MapId map_;                       // that placements_ are in

@@ -1,5 +1,6 @@
 #include "alidade/run/sources/any_source.h"
 
+#include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/sources/synth_source.h"
 
@@ -7,7 +8,11 @@ namespace alidade {
 
 std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
                                            const SourceOptions& options) {
-  if (IsSynthSource(source)) return OpenSynthSource(source, options);
+  if (IsSynthSource(source)) {
+    if (options.imu && options.imu != kNoImu)
+      ThrowUsage("--imu FILE needs a recording; a rendered scene has readings with ?imu=phone");
+    return OpenSynthSource(source, options);
+  }
   return OpenSource(source, options);
 }
 
