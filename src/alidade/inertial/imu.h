@@ -43,10 +43,10 @@ struct ImuModel {
   void Check() const;  // throws Error (usage) naming the value that cannot be
 };
 
-// The noise that readings of a moving sensor are given: at least 0.02 m/s²/√Hz and 5e-4 rad/s/√Hz,
-// which cover vibration, scale factors and axes that are not quite perpendicular. With the data
-// sheet's 0.002 m/s²/√Hz, errors of the scale along three EuRoC flights are three times the
-// standard deviations told, with 0.02 about as large.
+// The noise that readings of a moving sensor are given: at least 0.02 m/s²/√Hz and 5e-4 rad/s/√Hz.
+// It covers vibration, scale factors, and axes that are not quite perpendicular, which data sheets
+// of a sensor at rest leave out
+// (docs/development/decisions/0035-inertial-fit.md).
 ImuNoise InUse(ImuNoise noise);
 
 }  // namespace alidade
