@@ -11,31 +11,29 @@
 namespace alidade::inertial_test {
 namespace {
 
-constexpr int kFrames = 210;  // 7 s
-
-SynthSettings Room() {
+SynthSettings Room(int frames) {
   SynthSettings settings;
   settings.width = 400;
   settings.height = 300;
   settings.imu = "phone";
   settings.imu_rate = 200;
-  settings.frames = kFrames;
+  settings.frames = frames;
   return settings;
 }
 
-struct Run {
+struct Ran {
   std::vector<FramePose> trajectory;
   InertialReport report;
 };
 
 // `spoil` changes the readings; null: they are not given at all.
 template <typename Spoil>
-Run RunWith(const SynthRecording& recording, Spoil&& spoil, bool give) {
+Ran Travel(const SynthRecording& recording, Spoil&& spoil, bool give) {
   SlamSettings settings;
   settings.ApplyProfile("phone");
   Slam slam(recording.camera(), settings);
   double last = -1;
-  for (int i = 0; i < kFrames; ++i) {
+  for (int i = 0; i < recording.frames(); ++i) {
     const RenderedFrame rendered = recording.Render(i);
     FrameInput frame;
     frame.time = rendered.time;
@@ -51,10 +49,10 @@ using Samples = std::vector<ImuSample>;
 constexpr auto kAsTheyAre = [](Samples samples) { return samples; };
 
 TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
-  const SynthRecording recording(Room());
-  const Run run = RunWith(recording, kAsTheyAre, true);
+  const SynthRecording recording(Room(300));
+  const Ran run = Travel(recording, kAsTheyAre, true);
   ASSERT_TRUE(run.report.metric) << run.report.missing;
-  EXPECT_GT(run.report.samples, 1300);
+  EXPECT_GT(run.report.samples, 1900);
   EXPECT_TRUE(run.report.left_out.empty()) << run.report.left_out;
 
   // Lengths: distances between the poses and between the true ones.
@@ -86,9 +84,9 @@ TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
 }
 
 TEST(Inertial, ReadingsOfAnotherMotionAreLeftOutAndChangeNothing) {
-  const SynthRecording recording(Room());
-  const Run without = RunWith(recording, kAsTheyAre, false);
-  const Run other = RunWith(
+  const SynthRecording recording(Room(120));
+  const Ran without = Travel(recording, kAsTheyAre, false);
+  const Ran other = Travel(
       recording,
       [](Samples samples) {
         for (ImuSample& sample : samples) {
