@@ -104,11 +104,11 @@ class FramePipeline {
   Camera camera_;
   Published<Camera> camera_shown_;  // camera_, for other threads
   bool dense_;                      // semi-dense mapping is on
+  InertialWatch inertial_;  // outlives the workers, in which its fits run
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;
   LeftOut left_out_;
-  InertialWatch inertial_;
   YoungMap young_;     // one camera only
   EarlyFrames early_;  // one camera only
   KeptFrames kept_;

@@ -61,7 +61,7 @@ void InertialWatch::SetImu(const ImuModel& model) {
 }
 
 void InertialWatch::Take(std::span<const ImuSample> samples) {
-  if (samples.empty()) return;
+  if (!kInertial || samples.empty()) return;
   if (!report_.given) SetImu({});
   for (const ImuSample& sample : stream_.Add({samples.begin(), samples.end()})) {
     if (!samples_.empty() && sample.time <= samples_.back().time) samples_.clear();  // set back
@@ -143,7 +143,8 @@ std::span<const ImuSample> InertialWatch::SamplesFrom(double time) const {
 }
 
 std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
-  if (!report_.given || awaiting_ || placements_.size() < 8 || !report_.left_out.empty())
+  if (!kInertial || !report_.given || awaiting_ || placements_.size() < 8 ||
+      !report_.left_out.empty())
     return std::nullopt;
   const double newest = placements_.back().time;
   if (newest - asked_at_ < kAskEvery || newest - placements_.front().time < kFirstSeconds)
@@ -232,7 +233,7 @@ std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot&
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
-  if (agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
+  if (!kInertial || agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
     return std::nullopt;
   const ImuModel& model = report_.model;
   const bool known = model.rotation_known || (fit_ && fit_->rotation_sigma < kRotationSigma);

@@ -20,6 +20,13 @@
 
 namespace alidade {
 
+// Whether readings are used. The module for browsers, which is limited in size, does not use them.
+#ifdef __EMSCRIPTEN__
+inline constexpr bool kInertial = false;
+#else
+inline constexpr bool kInertial = true;
+#endif
+
 // Poses and readings of one stretch of time, to be fitted in any thread.
 struct InertialQuestion {
   std::vector<TimedPose> poses;
