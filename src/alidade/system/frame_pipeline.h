@@ -9,7 +9,7 @@
 #include "alidade/system/camera_update.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
-#include "alidade/system/inertial_watch.h"
+#include "alidade/system/inertial/inertial_watch.h"
 #include "alidade/system/left_out.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"

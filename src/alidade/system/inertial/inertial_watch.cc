@@ -1,4 +1,4 @@
-#include "alidade/system/inertial_watch.h"
+#include "alidade/system/inertial/inertial_watch.h"
 
 #include <algorithm>
 #include <cmath>
