@@ -104,7 +104,7 @@ class FramePipeline {
   Camera camera_;
   Published<Camera> camera_shown_;  // camera_, for other threads
   bool dense_;                      // semi-dense mapping is on
-  InertialWatch inertial_;  // outlives the workers, in which its fits run
+  InertialWatch inertial_;          // outlives the workers, in which its fits run
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;
