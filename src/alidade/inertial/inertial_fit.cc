@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "alidade/base/error.h"
 #include "alidade/inertial/chain_system.h"
@@ -29,7 +30,7 @@ Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& direction) {
   return B;
 }
 
-// L with L Lᵀ = covariance⁻¹ for whitening, as an upper factor: |U r|² = rᵀ covariance⁻¹ r.
+// U with Uᵀ U = covariance⁻¹, so that |U r|² = rᵀ covariance⁻¹ r.
 template <int N>
 Eigen::Matrix<double, N, N> Whitening(const Eigen::Matrix<double, N, N>& covariance) {
   const Eigen::Matrix<double, N, N> information =
@@ -50,32 +51,31 @@ class Fit {
 
   InertialFit Run(const InertialFit* start) {
     if (!Begin(start)) return {};
-    if (!Minimize()) return {};
-    return Result();
+    ChainSystem system = Build();
+    return Minimize(system) ? ResultOf(system) : InertialFit{};
   }
 
  private:
-  // Levenberg–Marquardt. False if no step is possible.
-  bool Minimize() {
-    double last = Build().cost();
+  // Levenberg–Marquardt; `system` is that of the present state. False if no step is possible.
+  bool Minimize(ChainSystem& system) {
     double damping = 1e-8;
     for (int i = 0; i < kMostIterations; ++i) {
+      const double last = system.cost();
       const Fit before = *this;
-      const ChainSystem::Solution step = Build().Solve(damping);
+      const ChainSystem::Solution step = ChainSystem(system).Solve(damping);
       const bool possible = step.ok && Apply(step);
-      const double cost = possible ? Build().cost() : 0;
-      if (!possible || !(cost <= last * (1 + 1e-9))) {
+      ChainSystem next = possible ? Build() : ChainSystem(0);
+      if (!possible || !(next.cost() <= last * (1 + 1e-9))) {
         *this = before;
         damping *= 30;
         if (damping > 1e3) return i > 0;
         continue;
       }
-      const bool done = last - cost < 1e-5 * (1 + last);
-      last = cost;
+      system = std::move(next);
       damping = std::max(1e-9, damping / 30);
-      if (done) break;
+      if (last - system.cost() < 1e-5 * (1 + system.cost())) break;
     }
-    return std::isfinite(last);
+    return std::isfinite(system.cost());
   }
 
   bool Begin(const InertialFit* start) {
@@ -253,8 +253,8 @@ class Fit {
     return true;
   }
 
-  InertialFit Result() const {
-    ChainSystem system = Build();
+  // `system`: of the present state; it is destroyed.
+  InertialFit ResultOf(ChainSystem& system) const {
     // States are determined by as many residuals as they have parameters.
     const int spare = system.residuals() - kState * static_cast<int>(states_.size()) - kCommon;
     InertialFit fit;
@@ -305,6 +305,7 @@ void InertialPriors::Check() const {
 InertialFit FitInertial(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                         const ImuModel& model, const InertialPriors& priors,
                         const InertialFit* start) {
+  priors.Check();
   return Fit(poses, samples, model, priors).Run(start);
 }
 

@@ -56,7 +56,7 @@ struct InertialFit {
 
 // `poses` and `samples` in order of time; poses at least two. Not more than some hundred poses, a
 // few per second, over less than a minute: one scale holds for all of them. `start`: a former
-// result for about the same poses, or null.
+// result for about the same poses, or null. Throws Error (usage) if a prior cannot be.
 InertialFit FitInertial(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                         const ImuModel& model, const InertialPriors& priors = {},
                         const InertialFit* start = nullptr);

@@ -17,6 +17,20 @@ ImuSample Between(const ImuSample& a, const ImuSample& b, double time) {
           a.specific_force + share * (b.specific_force - a.specific_force)};
 }
 
+// Calls `step` with the readings at the ends of each interval between `from` and `to`.
+template <typename Step>
+void ForEachStep(std::span<const ImuSample> samples, double from, double to, Step&& step) {
+  if (samples.empty()) return;
+  auto sample = std::upper_bound(samples.begin(), samples.end(), from,
+                                 [](double at, const ImuSample& s) { return at < s.time; });
+  ImuSample last = ReadingAt(samples, from);
+  for (; sample != samples.end() && sample->time < to; ++sample) {
+    step(last, *sample);
+    last = *sample;
+  }
+  step(last, ReadingAt(samples, to));
+}
+
 }  // namespace
 
 Eigen::Matrix3d RightJacobian(const Eigen::Vector3d& v) {
@@ -97,24 +111,25 @@ Preintegration Preintegrate(std::span<const ImuSample> samples, double from, dou
                             const ImuBias& bias, const ImuNoise& noise) {
   Preintegration motion;
   motion.bias = bias;
-  if (samples.empty()) return motion;
-  const auto after =
-      std::upper_bound(samples.begin(), samples.end(), from,
-                       [](double at, const ImuSample& sample) { return at < sample.time; });
-  ImuSample last = ReadingAt(samples, from);
-  const auto step_to = [&](const ImuSample& next) {
+  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next) {
     const double span = next.time - last.time;
     const int steps = std::max(1, static_cast<int>(std::ceil(span / kLongestStep)));
     for (int k = 0; k < steps; ++k) {
       const ImuSample middle = Between(last, next, last.time + span * (k + 0.5) / steps);
       motion.Append(span / steps, middle.angular_rate, middle.specific_force, noise);
     }
-    last = next;
-  };
-  for (auto sample = after; sample != samples.end() && sample->time < to; ++sample)
-    step_to(*sample);
-  step_to(ReadingAt(samples, to));
+  });
   return motion;
+}
+
+Eigen::Matrix3d TurnOf(std::span<const ImuSample> samples, double from, double to,
+                       const Eigen::Vector3d& gyro_bias) {
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
+  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next) {
+    const Eigen::Vector3d rate = (last.angular_rate + next.angular_rate) / 2 - gyro_bias;
+    R = R * ExpSo3((next.time - last.time) * rate);
+  });
+  return R;
 }
 
 InertialState Predict(const InertialState& state, const Preintegration& motion,

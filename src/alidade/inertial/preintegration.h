@@ -51,6 +51,11 @@ struct Preintegration {
 Preintegration Preintegrate(std::span<const ImuSample> samples, double from, double to,
                             const ImuBias& bias, const ImuNoise& noise);
 
+// Rotation from time `from` to time `to` by the gyroscope alone, as above: Preintegration::dR
+// without its derivatives.
+Eigen::Matrix3d TurnOf(std::span<const ImuSample> samples, double from, double to,
+                       const Eigen::Vector3d& gyro_bias = Eigen::Vector3d::Zero());
+
 // The reading at `time`, as above. `samples` is not empty.
 ImuSample ReadingAt(std::span<const ImuSample> samples, double time);
 

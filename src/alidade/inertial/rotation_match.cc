@@ -1,7 +1,6 @@
 #include "alidade/inertial/rotation_match.h"
 
 #include <Eigen/SVD>
-#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -12,21 +11,6 @@ struct RatePair {
   Eigen::Vector3d camera, imu;  // rad/s
 };
 
-// Rotation between two times by the readings alone.
-Eigen::Matrix3d TurnBetween(std::span<const ImuSample> samples, double from, double to) {
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  ImuSample last = ReadingAt(samples, from);
-  const auto turn_to = [&](const ImuSample& next) {
-    R = R * ExpSo3((next.time - last.time) / 2 * (last.angular_rate + next.angular_rate));
-    last = next;
-  };
-  auto sample = std::upper_bound(samples.begin(), samples.end(), from,
-                                 [](double at, const ImuSample& s) { return at < s.time; });
-  for (; sample != samples.end() && sample->time < to; ++sample) turn_to(*sample);
-  turn_to(ReadingAt(samples, to));
-  return R;
-}
-
 std::vector<RatePair> RatesAt(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                               double offset) {
   std::vector<RatePair> pairs;
@@ -35,8 +19,7 @@ std::vector<RatePair> RatesAt(std::span<const TimedPose> poses, std::span<const 
     if (from < samples.front().time || to > samples.back().time || to <= from) continue;
     const Eigen::Matrix3d turn =
         poses[k - 1].T_world_camera.R.transpose() * poses[k].T_world_camera.R;
-    pairs.push_back(
-        {LogSo3(turn) / (to - from), LogSo3(TurnBetween(samples, from, to)) / (to - from)});
+    pairs.push_back({LogSo3(turn) / (to - from), LogSo3(TurnOf(samples, from, to)) / (to - from)});
   }
   return pairs;
 }

@@ -15,8 +15,8 @@
 namespace alidade {
 namespace {
 
-constexpr double kGravity = 9.80665;    // m/s² per g
-constexpr double kUsualReadings = 200;  // per second
+constexpr double kMetersPerG = 9.80665;  // m/s² per g, by definition
+constexpr double kUsualReadings = 200;   // per second
 
 enum Column { kTime, kRateX, kRateY, kRateZ, kForceX, kForceY, kForceZ, kColumns };
 
@@ -278,7 +278,7 @@ ImuTable ParseImuTable(std::string_view text, const std::string& name,
     Tell(units, std::string("accelerations as ") + (*layout.g ? "g" : "m/s²"));
   }
   const double rate = *layout.degrees ? std::numbers::pi / 180 : 1,
-               force = *layout.g ? kGravity : 1;
+               force = *layout.g ? kMetersPerG : 1;
   for (size_t i = 0; i < table.samples.size(); ++i) {
     ImuSample& sample = table.samples[i];
     sample.time = ParseNumber(StampInSeconds(written[i], unit)).value_or(times[i]);

@@ -1,41 +1,21 @@
 #include "alidade/run/sources/flight_files.h"
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
-#include "alidade/io/files/file.h"
+#include "alidade/inertial/rotation_match.h"
+#include "alidade/io/files/imu_file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/io/files/yaml.h"
-#include "alidade/io/text.h"
 #include "alidade/synth/imu.h"
 
 namespace alidade {
 namespace {
-
-std::vector<ImuSample> ReadReadings(const std::string& path) {
-  const std::string text = ReadFile(path);
-  CheckIsText(text, path);
-  std::vector<ImuSample> samples;
-  for (const TextLine& line : ContentLines(text)) {
-    std::vector<double> numbers;
-    for (const std::string_view field : Fields(line.text)) {
-      const std::optional<double> number = ParseNumber(field);
-      if (number && std::isfinite(*number)) numbers.push_back(*number);
-    }
-    if (numbers.size() != 7)
-      ThrowInput(path + ":" + std::to_string(line.number) +
-                 ": expected 7 numbers: seconds, angular rate [rad/s], specific force [m/s^2]");
-    samples.push_back(
-        {numbers[0], {numbers[1], numbers[2], numbers[3]}, {numbers[4], numbers[5], numbers[6]}});
-  }
-  if (samples.size() < 2) ThrowInput(path + " has no inertial readings");
-  return samples;
-}
 
 ImuModel ReadModel(const std::string& path) {
   ImuModel model;
@@ -57,24 +37,12 @@ ImuModel ReadModel(const std::string& path) {
   return model;
 }
 
-// Root mean square of the rotations between poses as the path and as the gyroscope tell them,
-// rad/s; without what a constant bias makes.
-double TurnsApart(const std::vector<FlightPose>& poses, const std::vector<ImuSample>& readings,
-                  const Eigen::Matrix3d& R_camera_imu) {
-  std::vector<Eigen::Vector3d> apart;  // rad/s
-  for (size_t i = 0; i + 1 < poses.size(); ++i) {
-    const double from = poses[i].time, to = poses[i + 1].time;
-    if (from < readings.front().time || to > readings.back().time) continue;
-    const Eigen::Vector3d told =
-        LogSo3(poses[i].T_world_camera.R.transpose() * poses[i + 1].T_world_camera.R);
-    const Eigen::Vector3d read = LogSo3(Preintegrate(readings, from, to, {}, {}).dR);
-    apart.push_back((told - R_camera_imu * read) / (to - from));
-  }
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (const auto& each : apart) mean += each / static_cast<double>(apart.size());
-  double sum = 0;
-  for (const auto& each : apart) sum += (each - mean).squaredNorm();
-  return apart.empty() ? 0 : std::sqrt(sum / static_cast<double>(apart.size()));
+// RotationMatch::residual, rad/s.
+double TurnsApart(const Flight& flight, const std::vector<FlightPose>& poses) {
+  std::vector<TimedPose> timed;
+  for (const FlightPose& pose : poses)
+    timed.push_back({pose.time, pose.T_world_camera, Matrix6d::Zero()});
+  return MatchRotations(timed, flight.readings, flight.imu).residual;
 }
 
 // The same file with its quaternions read as w x y z of the rotation T_camera_world.
@@ -89,11 +57,10 @@ std::vector<FlightPose> ReadTheOtherWay(std::vector<FlightPose> poses) {
 // Paths are known to be written with other quaternions than the format's; the gyroscope tells.
 void CheckQuaternions(const SynthSettings& settings, Flight& flight) {
   constexpr double kAgree = 0.1;  // rad/s; a drone's vibration and rounded poses stay below
-  const Eigen::Matrix3d& R = flight.imu.T_camera_imu.R;
-  const double apart = TurnsApart(flight.poses, flight.readings, R);
+  const double apart = TurnsApart(flight, flight.poses);
   if (apart < kAgree) return;
   std::vector<FlightPose> other = ReadTheOtherWay(flight.poses);
-  if (TurnsApart(other, flight.readings, R) < std::min(kAgree, apart / 4)) {
+  if (TurnsApart(flight, other) < std::min(kAgree, apart / 4)) {
     LogWarning(settings.path +
                ": as qx qy qz qw of T_world_camera the quaternions contradict the gyroscope; they "
                "are read as qw qx qy qz of T_camera_world, with which it agrees");
@@ -112,13 +79,13 @@ Flight ReadFlight(const SynthSettings& settings) {
     flight.poses.push_back({pose.time, pose.T_world_camera});
   flight.imu = ReadModel(settings.imu_model);
   if (settings.imu == "off") return flight;
-  flight.readings = ReadReadings(settings.imu);
-  std::vector<double> intervals;
-  for (size_t i = 1; i < flight.readings.size(); ++i)
-    intervals.push_back(flight.readings[i].time - flight.readings[i - 1].time);
-  const auto middle = intervals.begin() + static_cast<long>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  flight.imu.rate = *middle > 0 ? 1 / *middle : 0;
+  std::string told;
+  std::optional<ImuRecording> readings = ReadImuFile(settings.imu, &told);
+  if (!readings || readings->samples.size() < 2)
+    ThrowInput(settings.imu + " has no inertial readings that can be used");
+  if (!told.empty()) LogWarning(told);
+  flight.readings = std::move(readings->samples);
+  flight.imu.rate = readings->model.rate;
   if (flight.readings.front().time > flight.poses.back().time ||
       flight.readings.back().time < flight.poses.front().time)
     ThrowInput(settings.imu + " and " + settings.path + " have no time in common");

@@ -11,11 +11,15 @@ namespace {
 
 constexpr double kSpacing = 0.09;      // seconds between poses that are fitted
 constexpr size_t kMostPoses = 240;     // about 24 s
+constexpr size_t kFewest = 8;          // poses
 constexpr double kFirstSeconds = 1.5;  // span of the poses of the first fit
 constexpr double kAskEvery = 0.5;      // seconds
 constexpr double kMargin = 0.3;        // seconds of readings kept beside the poses
 // A map is in meters when its scale is known to 5 %: refined from then on.
 constexpr double kScaleSigma = 0.05;
+// In standard deviations of the scale: a map is scaled again when it is off by more than the first,
+// and one that must not be scaled is in meters when it is off by less than the second.
+constexpr double kRescale = 0.3, kMetric = 3;
 constexpr double kGravitySigma = 0.035;  // radians: 2 degrees
 // Noise several times what is assumed: the model is wrong.
 constexpr double kMostNoise = 6;
@@ -57,6 +61,14 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
 void InertialWatch::SetImu(const ImuModel& model) {
   report_.given = true;
   report_.model = given_model_ = model;
+  ForgetMap();
+}
+
+void InertialWatch::ForgetMap() {
+  fit_.reset();
+  report_.metric = false;
+  report_.gravity.reset();
+  report_.scale_sigma = report_.gravity_sigma = 0;
   report_.missing = "scale is not observable yet";
 }
 
@@ -85,6 +97,7 @@ void InertialWatch::Cut() {
   stream_.Restart();
   samples_.clear();
   placements_.clear();
+  asked_at_ = kNever;
 }
 
 void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
@@ -93,11 +106,7 @@ void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
   if (map != map_) {
     placements_.clear();
     map_ = map;
-    if (metric_map_ != map) {
-      report_.metric = false;
-      report_.gravity.reset();
-      report_.scale_sigma = report_.gravity_sigma = 0;
-    }
+    ForgetMap();
   }
   if (!placements_.empty() && time - placements_.back().time < kSpacing) return;
   placements_.push_back({time, anchor, covariance});
@@ -111,10 +120,10 @@ void InertialWatch::Reanchor(const MapSnapshot& map) {
                 [](const Placement& placement) { return !placement.anchor.keyframe.valid(); });
 }
 
-std::vector<TimedPose> InertialWatch::PosesIn(const MapSnapshot& map, double since) const {
+std::vector<TimedPose> InertialWatch::PosesIn(const MapSnapshot& map) const {
   std::vector<TimedPose> poses;
   for (const Placement& placement : placements_) {
-    if (placement.time < since || map.MapOf(placement.anchor.keyframe) != map_) continue;
+    if (map.MapOf(placement.anchor.keyframe) != map_) continue;
     TimedPose pose;
     pose.time = placement.time;
     pose.T_world_camera = PoseOf(map.state(), placement.anchor).Inverse();
@@ -143,26 +152,25 @@ std::span<const ImuSample> InertialWatch::SamplesFrom(double time) const {
 }
 
 std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
-  if (!kInertial || !report_.given || awaiting_ || placements_.size() < 8 ||
+  if (!kInertial || !report_.given || awaiting_ || placements_.size() < kFewest ||
       !report_.left_out.empty())
     return std::nullopt;
   const double newest = placements_.back().time;
   if (newest - asked_at_ < kAskEvery || newest - placements_.front().time < kFirstSeconds)
     return std::nullopt;
   InertialQuestion question;
-  question.poses = PosesIn(map, -1e18);
-  if (question.poses.size() < 8) return std::nullopt;
-  const double offset = fit_ ? fit_->model.time_offset : report_.model.time_offset;
+  question.poses = PosesIn(map);
+  const double offset = report_.model.time_offset;
   // The newest poses may be later than the readings.
   while (!question.poses.empty() && !samples_.empty() &&
          question.poses.back().time + offset > samples_.back().time)
     question.poses.pop_back();
-  if (question.poses.size() < 8) return std::nullopt;
+  if (question.poses.size() < kFewest) return std::nullopt;
   const auto samples = SamplesFrom(question.poses.front().time + offset - kMargin);
   question.samples.assign(samples.begin(), samples.end());
   question.model = given_model_;  // the priors are about what was given
   if (sensor_ != Sensor::kMono) question.priors.scale = 0.01;
-  if (fit_) question.start = fit_;
+  question.start = fit_;
   question.map = map_;
   question.reference = placements_.back().anchor.keyframe;
   question.scale = map.ScaleOf(question.reference);
@@ -214,19 +222,18 @@ std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot&
   report_.model.time_offset = fit.model.time_offset;
   report_.rotation_sigma = fit.rotation_sigma;
   report_.time_offset_sigma = fit.time_offset_sigma;
-  const bool accepted = Accepts(fit);
   std::optional<Growth> growth;
-  if (accepted) {
-    report_.metric = true;
-    report_.missing.clear();
-    metric_map_ = map_;
-    report_.gravity = fit.gravity.normalized();
-    report_.gravity_sigma = fit.gravity_sigma;
-    report_.scale_sigma = fit.scale_sigma;
-    if (sensor_ == Sensor::kMono && std::abs(std::log(fit.scale)) > 0.3 * fit.scale_sigma) {
+  if (Accepts(fit)) {
+    const double off = std::abs(std::log(fit.scale)) / fit.scale_sigma;
+    if (sensor_ == Sensor::kMono && may_scale_ && off > kRescale) {
       growth = Growth{map_, fit.scale};
       fit.scale = 1;
     }
+    report_.metric = growth || off < kMetric;
+    report_.missing = report_.metric ? "" : "the map is in another unit, and it is not changed";
+    report_.gravity = fit.gravity.normalized();
+    report_.gravity_sigma = fit.gravity_sigma;
+    report_.scale_sigma = fit.scale_sigma;
   }
   fit_ = std::move(fit);
   return growth;
@@ -236,15 +243,16 @@ std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to
   if (!kInertial || agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
     return std::nullopt;
   const ImuModel& model = report_.model;
-  const bool known = model.rotation_known || (fit_ && fit_->rotation_sigma < kRotationSigma);
+  const bool known = model.rotation_known ||
+                     (report_.rotation_sigma > 0 && report_.rotation_sigma < kRotationSigma);
   from += model.time_offset;
   to += model.time_offset;
   if (!known || from < samples_.front().time || to > samples_.back().time + 0.01 || to < from)
     return std::nullopt;
   const auto samples = SamplesFrom(from - 0.1);
-  const Preintegration motion = Preintegrate(samples, from, to, report_.bias, {});
+  const Eigen::Matrix3d turn = TurnOf(samples, from, to, report_.bias.gyro);
   const Eigen::Matrix3d& R = model.T_camera_imu.R;
-  return R * motion.dR.transpose() * R.transpose();
+  return R * turn.transpose() * R.transpose();
 }
 
 }  // namespace alidade

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <deque>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -51,7 +50,8 @@ InertialAnswer AnswerOf(const InertialQuestion& question);
 
 class InertialWatch {
  public:
-  explicit InertialWatch(Sensor sensor) : sensor_(sensor) {}
+  // `may_scale`: maps may be changed; false when localizing in them.
+  InertialWatch(Sensor sensor, bool may_scale) : sensor_(sensor), may_scale_(may_scale) {}
 
   void SetImu(const ImuModel& model);
   bool given() const { return report_.given; }
@@ -87,21 +87,23 @@ class InertialWatch {
     Anchor anchor;
     Matrix6d covariance = Matrix6d::Zero();
   };
-  std::vector<TimedPose> PosesIn(const MapSnapshot& map, double since) const;
+  static constexpr double kNever = -1e18;  // seconds
+  void ForgetMap();                        // what was found of a map that the camera has left
+  std::vector<TimedPose> PosesIn(const MapSnapshot& map) const;
   std::span<const ImuSample> SamplesFrom(double time) const;
   bool Accepts(const InertialFit& fit) const;
   void Judge(const InertialAnswer& answer);
 
   Sensor sensor_;
+  bool may_scale_;
   ImuModel given_model_;  // as given
   InertialReport report_;
   ImuStream stream_;
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
   MapId map_;                       // that placements_ are in
-  MapId metric_map_;                // the map of report_.metric
-  std::optional<InertialFit> fit_;  // the last one accepted or refused that was solved
-  double asked_at_ = -1e18;         // time of the newest pose of the last question
+  std::optional<InertialFit> fit_;  // the last one that was solved, in map_
+  double asked_at_ = kNever;        // time of the newest pose of the last question
   bool awaiting_ = false;
   int agreements_ = 0;      // answers in which the rotations agree
   int contradictions_ = 0;  // consecutive answers in which rotations disagree

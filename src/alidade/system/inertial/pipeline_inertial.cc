@@ -14,7 +14,7 @@ void FramePipeline::SetImu(const ImuModel& imu) {
 void FramePipeline::UseInertial() {
   if (!kInertial || !inertial_.given() || session_.state() == SessionState::kConfirming) return;
   const auto growth = inertial_.UseAnswer(workers_.map().Snapshot());
-  if (growth && !settings_.localize) workers_.Scale(growth->map, growth->factor);
+  if (growth) workers_.Scale(growth->map, growth->factor);
   inertial_shown_.Set(inertial_.report());
 }
 

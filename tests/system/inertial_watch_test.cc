@@ -1,0 +1,107 @@
+// What the watch makes of poses of a known motion in maps of known scale; no images.
+#include "alidade/system/inertial/inertial_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "support/smooth_motion.h"
+
+namespace alidade::inertial_watch_test {
+namespace {
+
+// One keyframe at the origin, to which all poses of a map are relative.
+KeyFrameId AddMap(MapStore& maps) {
+  KeyFrameId id;
+  maps.Commit([&](MapCommit& commit) {
+    KeyFrame keyframe;
+    keyframe.frame = std::make_shared<Frame>();
+    id = commit.Add(std::move(keyframe));
+  });
+  return id;
+}
+
+struct Walk {
+  explicit Walk(bool may_scale) : watch(Sensor::kMono, may_scale) {}
+
+  // Moves on for `seconds`; the unit of the map is `meters`, its axes are turned by `R_map_world`.
+  void Go(double seconds, KeyFrameId keyframe, double meters, const Eigen::Matrix3d& R_map_world) {
+    for (const double end = time + seconds; time < end; time += 0.05) {
+      watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
+      Se3 T_map_camera = SmoothMotion::At(time, {}).T_world_imu;
+      T_map_camera.R = R_map_world * T_map_camera.R;
+      T_map_camera.t = R_map_world * T_map_camera.t / (meters * scaled);
+      const MapSnapshot map = maps.Snapshot();
+      Matrix6d covariance = 1e-6 * Matrix6d::Identity();
+      watch.Placed(time, AnchorTo(map.state(), keyframe, T_map_camera.Inverse()),
+                   map.MapOf(keyframe), covariance);
+      if (auto question = watch.Ask(map)) watch.Answer(AnswerOf(*question));
+      if (const auto growth = watch.UseAnswer(map)) {
+        // As Workers::Scale() does: keyframes and what is relative to them grow.
+        scaled /= growth->factor;
+        maps.Commit([&](MapCommit& commit) { commit.Edit(keyframe)->scale *= growth->factor; });
+      }
+    }
+  }
+
+  MapStore maps;
+  InertialWatch watch;
+  double time = 0;
+  double scaled = 1;  // meters of a map unit, relative to those before any growth
+};
+
+double AngleToGravity(const Walk& walk, const Eigen::Matrix3d& R_map_world) {
+  const Eigen::Vector3d down = R_map_world * SmoothMotion::Gravity().normalized();
+  return std::acos(std::min(1.0, walk.watch.report().gravity->dot(down)));
+}
+
+const Eigen::Matrix3d kTilted = ExpSo3({0.4, -0.2, 0.9}), kOther = ExpSo3({-1.9, 0.3, 0.2});
+
+TEST(InertialWatch, ScalesAMapToMeters) {
+  Walk walk(true);
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
+  EXPECT_NEAR(2.5 * walk.scaled, 1, 0.02);
+  EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, BeginsAnewInTheNextMap) {
+  Walk walk(true);
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  ASSERT_TRUE(walk.watch.report().metric);
+  walk.scaled = 1;
+  const KeyFrameId next = AddMap(walk.maps);
+  walk.Go(0.2, next, 0.3, kOther);
+  EXPECT_FALSE(walk.watch.report().metric);
+  EXPECT_FALSE(walk.watch.report().gravity);
+  EXPECT_FALSE(walk.watch.report().missing.empty());
+  walk.Go(6, next, 0.3, kOther);
+  ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
+  EXPECT_NEAR(0.3 * walk.scaled, 1, 0.02);
+  EXPECT_LT(AngleToGravity(walk, kOther), 0.01);
+}
+
+TEST(InertialWatch, DoesNotCallAMapMetricThatItMustNotScale) {
+  Walk other(false);
+  other.Go(6, AddMap(other.maps), 2.5, kTilted);
+  EXPECT_FALSE(other.watch.report().metric);
+  EXPECT_NE(other.watch.report().missing.find("another unit"), std::string::npos);
+  Walk meters(false);
+  meters.Go(6, AddMap(meters.maps), 1, kTilted);
+  EXPECT_TRUE(meters.watch.report().metric);
+}
+
+TEST(InertialWatch, GoesOnWhenTheClockIsSetBack) {
+  Walk walk(true);
+  walk.time = 1000;
+  walk.Go(3, AddMap(walk.maps), 2.5, kTilted);
+  walk.time = 0;
+  walk.scaled = 1;
+  walk.watch.Cut();
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  EXPECT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
+}
+
+}  // namespace
+}  // namespace alidade::inertial_watch_test
