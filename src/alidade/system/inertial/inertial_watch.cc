@@ -94,6 +94,7 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
 }
 
 void InertialWatch::Cut() {
+  if (!kInertial) return;
   stream_.Restart();
   samples_.clear();
   placements_.clear();
@@ -102,7 +103,7 @@ void InertialWatch::Cut() {
 
 void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
                            const Matrix6d& covariance) {
-  if (!report_.given) return;
+  if (!given()) return;
   if (map != map_) {
     placements_.clear();
     map_ = map;
@@ -114,6 +115,7 @@ void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
 }
 
 void InertialWatch::Reanchor(const MapSnapshot& map) {
+  if (!kInertial) return;
   for (Placement& placement : placements_)
     placement.anchor = Reanchored(map.state(), placement.anchor);
   std::erase_if(placements_,
@@ -148,12 +150,11 @@ std::span<const ImuSample> InertialWatch::SamplesFrom(double time) const {
   const auto first =
       std::lower_bound(samples_.begin(), samples_.end(), time,
                        [](const ImuSample& sample, double at) { return sample.time < at; });
-  return {first, samples_.end()};
+  return std::span(samples_).subspan(static_cast<size_t>(first - samples_.begin()));
 }
 
 std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
-  if (!kInertial || !report_.given || awaiting_ || placements_.size() < kFewest ||
-      !report_.left_out.empty())
+  if (!given() || awaiting_ || placements_.size() < kFewest || !report_.left_out.empty())
     return std::nullopt;
   const double newest = placements_.back().time;
   if (newest - asked_at_ < kAskEvery || newest - placements_.front().time < kFirstSeconds)
@@ -203,6 +204,7 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
 }
 
 std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot& map) {
+  if (!kInertial) return std::nullopt;
   std::optional<InertialAnswer> answer;
   {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -54,7 +54,7 @@ class InertialWatch {
   InertialWatch(Sensor sensor, bool may_scale) : sensor_(sensor), may_scale_(may_scale) {}
 
   void SetImu(const ImuModel& model);
-  bool given() const { return report_.given; }
+  bool given() const { return kInertial && report_.given; }
   // Readings since the last call, cleaned by an ImuStream.
   void Take(std::span<const ImuSample> samples);
   // The frame of `time` (seconds, on the clock of the images) has a pose.

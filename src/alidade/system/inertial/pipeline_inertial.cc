@@ -12,7 +12,7 @@ void FramePipeline::SetImu(const ImuModel& imu) {
 
 // One camera: the lengths of the map become meters, as soon as it is confirmed.
 void FramePipeline::UseInertial() {
-  if (!kInertial || !inertial_.given() || session_.state() == SessionState::kConfirming) return;
+  if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
   const auto growth = inertial_.UseAnswer(workers_.map().Snapshot());
   if (growth) workers_.Scale(growth->map, growth->factor);
   inertial_shown_.Set(inertial_.report());
@@ -26,9 +26,7 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
     inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
                      map.MapOf(tracker_.reference()), now.placed.covariance);
   }
-  if constexpr (kInertial) {
-    auto question = inertial_.Ask(map);
-    if (!question) return;
+  if (auto question = inertial_.Ask(map)) {
     workers_.AddErrand(
         [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
   }
