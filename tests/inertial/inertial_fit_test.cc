@@ -156,7 +156,7 @@ TEST(InertialFit, HoldsOnRealFlights) {
   R_imu_camera << 0.0148655, -0.9998809, 0.0041403, 0.9995572, 0.0149672, 0.0257155, -0.0257744,
       0.0037562, 0.9996607;
   for (const std::string flight : {"V102", "MH04"}) {
-    const std::string folder = std::string(data) + "/data/euroc_flights/" + flight;
+    const std::string folder = std::string(data) + "/euroc_flights/" + flight;
     std::vector<ImuSample> samples;
     for (const auto& r : NumbersIn(folder + "/imu.csv"))
       samples.push_back({r[0], {r[1], r[2], r[3]}, {r[4], r[5], r[6]}});

@@ -118,7 +118,7 @@ TEST(Flight, RealPathsAgreeWithTheirReadings) {
   const char* data = std::getenv("ALIDADE_DATA");
   if (data == nullptr) GTEST_SKIP() << "ALIDADE_DATA is not set";
   for (const std::string name : {"V102", "V203", "MH04"}) {
-    const std::string folder = std::string(data) + "/data/euroc_flights/" + name;
+    const std::string folder = std::string(data) + "/euroc_flights/" + name;
     const Flight flight = ReadFlight(SettingsOf(folder + "/groundtruth.txt", folder + "/imu.csv"));
     const Eigen::Matrix3d& R_camera_imu = flight.imu.T_camera_imu.R;
     const ImuBias bias{{-0.002, 0.021, 0.077}, {0, 0, 0}};
