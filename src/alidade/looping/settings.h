@@ -55,6 +55,9 @@ struct LoopSettings {
   // Of the median depth: always allowed.
   double max_drift_floor = 0.5;
   double max_turn = 0.6;
+  // Errors of a rotation grow with the rotation: 1 % of it where the focal length is known to 1 %.
+  // Four times that.
+  double turn_drift = 0.04;
   // Largest ratio of scales where the place is beyond doubt.
   double max_plain_scale = 20;
   double max_scale = 1.7;

@@ -21,6 +21,7 @@ constexpr double kPlainShare = 0.35;
 // Drift limit as a share of the path length when the monocular scale has failed.
 constexpr double kBrokenDrift = 0.6;
 constexpr size_t kPoseKeyFrames = 4;  // additional keyframes around the place used for the pose
+constexpr double kTurnFloor = 0.1;    // radians: a loop may always turn a keyframe this far
 constexpr int kMinRatios = 10;        // landmarks known in both maps, needed for a scale estimate
 // Largest ratio of the upper to the lower quartile of the depth ratios.
 constexpr double kMaxSpread = 1.3;
@@ -249,7 +250,9 @@ class Verifier {
     const double growth = std::max(alignment_.growth, 1 / alignment_.growth);
     const bool broken = growth > settings_.max_scale;
     if (broken && (growth > settings_.max_plain_scale || !IsPlain())) return false;
-    if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) > settings_.max_turn)
+    const double turned = settings_.turn_drift * TurnBetween(map_, a_.id, b_.id);
+    if (RotationAngle(alignment_.T_camera_world, a_.T_camera_world) >
+        std::min(settings_.max_turn, kTurnFloor + turned))
       return false;
     const double way = WayBetween(map_, a_.id, b_.id);
     const double shift = (alignment_.T_camera_world.Inverse().t - a_.Centre()).norm();

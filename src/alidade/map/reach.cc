@@ -26,6 +26,22 @@ std::optional<double> FastestOf(std::span<const TimedPlace> way, double span) {
   return fastest;
 }
 
+// Sum of `step` over consecutive keyframes between two keyframes of a map.
+template <typename Step>
+double SumBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b, const Step& step) {
+  double sum = 0;
+  const KeyFrame* after = nullptr;
+  const MapId in = map.MapOf(a);
+  map.keyframes().ForEachFromLast([&](const KeyFrame& here) {
+    if (here.id > std::max(a, b) || here.map != in) return true;
+    if (here.id < std::min(a, b)) return false;
+    if (after) sum += step(here, *after);
+    after = &here;
+    return true;
+  });
+  return sum;
+}
+
 }  // namespace
 
 std::span<const Setting> ReachSettings::Table() {
@@ -64,17 +80,15 @@ double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double dep
 }
 
 double WayBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b) {
-  double way = 0;
-  const KeyFrame* after = nullptr;
-  const MapId in = map.MapOf(a);
-  map.keyframes().ForEachFromLast([&](const KeyFrame& here) {
-    if (here.id > std::max(a, b) || here.map != in) return true;
-    if (here.id < std::min(a, b)) return false;
-    if (after) way += (after->Centre() - here.Centre()).norm();
-    after = &here;
-    return true;
+  return SumBetween(map, a, b, [](const KeyFrame& here, const KeyFrame& after) {
+    return (after.Centre() - here.Centre()).norm();
   });
-  return way;
+}
+
+double TurnBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b) {
+  return SumBetween(map, a, b, [](const KeyFrame& here, const KeyFrame& after) {
+    return RotationAngle(here.T_camera_world, after.T_camera_world);
+  });
 }
 
 }  // namespace alidade

@@ -55,4 +55,7 @@ double DoubtOf(std::span<const TimedPlace> way, const TimedPlace& to, double dep
 // Length of the path between two keyframes of a map, along the keyframes with ids in between.
 double WayBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b);
 
+// Sum of the rotations between consecutive keyframes on that path, radians.
+double TurnBetween(const MapSnapshot& map, KeyFrameId a, KeyFrameId b);
+
 }  // namespace alidade

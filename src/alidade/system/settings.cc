@@ -57,6 +57,8 @@ void SlamSettings::WaryOfTurns() {
   constexpr double kAssumedLens = 0.6;
   double& wary = start.two_view.lens_uncertainty;
   if (wary == 0) wary = kAssumedLens;
+  // A wrong focal length makes all rotations wrong by the same share.
+  loop.turn_drift = std::max(loop.turn_drift, kAssumedLens);
 }
 
 void SlamSettings::EnableSelfCalibration() {
