@@ -12,57 +12,18 @@
 
 #include "alidade/base/random.h"
 #include "alidade/inertial/rotation_match.h"
-#include "support/smooth_motion.h"
+#include "support/inertial_problem.h"
 
 namespace alidade {
 namespace {
 
 double Degrees(double radians) { return radians * 180 / M_PI; }
 
-struct Truth {
-  double scale = 0.4;  // meters per map unit
-  double time_offset = 0.023;
-  ImuBias bias{{0.02, -0.01, 0.03}, {0.1, -0.15, 0.05}};
-  Se3 T_camera_imu{ExpSo3({0.3, 2.8, -0.4}), {0.03, -0.05, 0.01}};
-  Eigen::Matrix3d R_map_world = ExpSo3({0.7, -0.3, 1.1});
-};
-
-struct Problem {
-  std::vector<TimedPose> poses;
-  std::vector<ImuSample> samples;
-};
-
-// Poses at 8 Hz with 4 mm and 0.001 rad of noise, readings at 200 Hz with the noise of a phone.
-Problem Make(const Truth& truth, double seconds, uint64_t seed) {
-  Problem problem;
-  Random random(seed, 1);
-  const auto noise = [&random](double sigma) -> Eigen::Vector3d {
-    return sigma * Eigen::Vector3d(random.Gaussian(), random.Gaussian(), random.Gaussian());
-  };
-  problem.samples = SmoothMotion::Readings(-0.3, seconds + 0.3, 200, truth.bias);
-  for (ImuSample& sample : problem.samples) {
-    sample.angular_rate += noise(5e-4 * std::sqrt(200.0));
-    sample.specific_force += noise(0.02 * std::sqrt(200.0));
-  }
-  constexpr double kPosition = 0.004, kRotation = 0.001;
-  for (double t = 0; t <= seconds; t += 0.125) {
-    Se3 T = SmoothMotion::At(t + truth.time_offset, {}).T_world_imu * truth.T_camera_imu.Inverse();
-    TimedPose pose;
-    pose.time = t;
-    pose.T_world_camera.R = truth.R_map_world * T.R * ExpSo3(noise(kRotation));
-    pose.T_world_camera.t = truth.R_map_world * (T.t + noise(kPosition)) / truth.scale;
-    pose.covariance.diagonal() << Eigen::Vector3d::Constant(std::pow(kPosition / truth.scale, 2)),
-        Eigen::Vector3d::Constant(kRotation * kRotation);
-    problem.poses.push_back(pose);
-  }
-  return problem;
-}
-
 TEST(InertialFit, FindsEverythingOfAnUnknownSensor) {
-  Truth truth;
+  InertialTruth truth;
   for (const double scale : {0.4, 7.0}) {
     truth.scale = scale;
-    const Problem problem = Make(truth, 8, 1);
+    const InertialProblem problem(truth, 8, 1);
     const InertialFit fit = FitInertial(problem.poses, problem.samples, {});
     ASSERT_TRUE(fit.solved);
     EXPECT_NEAR(fit.scale / truth.scale, 1, 4 * fit.scale_sigma);
@@ -82,11 +43,11 @@ TEST(InertialFit, FindsEverythingOfAnUnknownSensor) {
 }
 
 TEST(InertialFit, StandardDeviationsAreThoseOfManyRuns) {
-  Truth truth;
+  InertialTruth truth;
   double scale = 0, offset = 0;
   constexpr int kRuns = 40;
   for (int run = 0; run < kRuns; ++run) {
-    const Problem problem = Make(truth, 4, 10 + run);
+    const InertialProblem problem(truth, 4, 10 + run);
     const InertialFit fit = FitInertial(problem.poses, problem.samples, {});
     ASSERT_TRUE(fit.solved) << run;
     scale += std::pow((fit.scale / truth.scale - 1) / fit.scale_sigma, 2) / kRuns;
@@ -99,8 +60,8 @@ TEST(InertialFit, StandardDeviationsAreThoseOfManyRuns) {
 }
 
 TEST(InertialFit, TellsThatAnEvenMotionHasNoScale) {
-  const Truth truth;
-  Problem problem = Make(truth, 6, 3);
+  const InertialTruth truth;
+  InertialProblem problem(truth, 6, 3);
   // At a constant velocity without turning nothing tells how long the path is.
   Random random(5, 1);
   const Eigen::Matrix3d R = truth.T_camera_imu.R.transpose();
@@ -120,8 +81,8 @@ TEST(InertialFit, TellsThatAnEvenMotionHasNoScale) {
 }
 
 TEST(RotationMatch, TellsReadingsOfAnotherMotion) {
-  const Truth truth;
-  Problem problem = Make(truth, 8, 4);
+  const InertialTruth truth;
+  InertialProblem problem(truth, 8, 4);
   const RotationMatch right = MatchRotations(problem.poses, problem.samples, {});
   EXPECT_LT(RotationAngle(Se3{right.R_camera_imu, {}}, truth.T_camera_imu), 0.02);
   EXPECT_NEAR(right.time_offset, truth.time_offset, 0.004);

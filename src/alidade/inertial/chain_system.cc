@@ -1,6 +1,7 @@
 #include "alidade/inertial/chain_system.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace alidade {
 
@@ -8,6 +9,15 @@ void ChainSystem::AddCommon(int index, double value, double weight) {
   common_(index, index) += weight;
   common_right_(index) -= weight * value;
   cost_ += weight * value * value;
+}
+
+ChainSystem ChainSystem::Reversed() const {
+  ChainSystem other = *this;
+  std::reverse(other.links_.begin(), other.links_.end());
+  const size_t count = links_.size();
+  for (size_t k = 0; k + 1 < count; ++k)
+    other.links_[k].next = links_[count - 2 - k].next.transpose();
+  return other;
 }
 
 ChainSystem::Solution ChainSystem::Solve(double damping) {
@@ -36,7 +46,12 @@ ChainSystem::Solution ChainSystem::Solve(double damping) {
   const Eigen::LLT<CommonMatrix> common(common_);
   if (common.info() != Eigen::Success) return solution;
   solution.common = common.solve(common_right_);
-  solution.common_covariance = common.solve(CommonMatrix::Identity());
+  const CommonMatrix common_covariance = common.solve(CommonMatrix::Identity());
+  const BorderMatrix by_common = factors.back().solve(links_.back().border);
+  solution.last_covariance << factors.back().solve(StateMatrix::Identity()) +
+                                  by_common * common_covariance * by_common.transpose(),
+      -by_common * common_covariance, -common_covariance * by_common.transpose(),
+      common_covariance;
 
   // Backward.
   solution.states.resize(count);

@@ -15,6 +15,7 @@ class ChainSystem {
   using BorderMatrix = Eigen::Matrix<double, kState, kCommon>;
   using CommonMatrix = Eigen::Matrix<double, kCommon, kCommon>;
   using CommonVector = Eigen::Matrix<double, kCommon, 1>;
+  using JointMatrix = Eigen::Matrix<double, kState + kCommon, kState + kCommon>;
 
   explicit ChainSystem(int states) : links_(states) {}
 
@@ -48,8 +49,10 @@ class ChainSystem {
     bool ok = false;  // the matrix is positive definite
     std::vector<StateVector> states;
     CommonVector common = CommonVector::Zero();
-    CommonMatrix common_covariance = CommonMatrix::Zero();
+    JointMatrix last_covariance = JointMatrix::Zero();  // of (last state; common)
   };
+  // The same chain from its last state to its first.
+  ChainSystem Reversed() const;
   // Solves with `damping` times the diagonal added to it. Destroys the system.
   Solution Solve(double damping);
   double cost() const { return cost_; }

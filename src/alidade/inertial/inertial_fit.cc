@@ -8,27 +8,15 @@
 
 #include "alidade/base/error.h"
 #include "alidade/inertial/chain_system.h"
+#include "alidade/inertial/pose_measurement.h"
 #include "alidade/inertial/rotation_match.h"
 
 namespace alidade {
 namespace {
 
-// Order of a state's increment: (rotation; velocity; position; gyro bias; accel bias).
 constexpr int kState = ChainSystem::kState, kCommon = ChainSystem::kCommon;
-// Order of the common parameters' increment. That of the scale is relative, and positions and
-// velocities of all states grow with it: positions are known well in map units, so that the
-// increments are nearly independent and the residuals linear in the scale.
-constexpr int kScale = 0, kTilt = 1, kTurn = 3, kArm = 6, kOffset = 9;
 constexpr int kMostIterations = 15;
 constexpr double kLeastGrowth = 0.02;  // factor of the scale in one step
-
-// Two unit vectors perpendicular to `direction`, as columns.
-Eigen::Matrix<double, 3, 2> TangentsOf(const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d a = direction.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> B;
-  B << a, direction.cross(a);
-  return B;
-}
 
 // U with Uᵀ U = covariance⁻¹, so that |U r|² = rᵀ covariance⁻¹ r.
 template <int N>
@@ -44,10 +32,11 @@ class Fit {
       const InertialPriors& priors)
       : poses_(poses),
         samples_(samples),
-        model_(model),
         given_(model),
         noise_(InUse(model.noise)),
-        priors_(priors) {}
+        priors_(priors) {
+    common_.model = model;
+  }
 
   InertialFit Run(const InertialFit* start) {
     if (!Begin(start)) return {};
@@ -82,30 +71,31 @@ class Fit {
     if (poses_.size() < 3 || samples_.size() < 10) return false;
     ImuBias bias;
     if (start && start->solved) {
-      model_ = start->model;
-      scale_ = start->scale;
-      down_ = start->gravity.normalized();
+      common_.model = start->model;
+      common_.scale = start->scale;
+      common_.down = start->gravity.normalized();
       bias = start->states.back().bias;
     } else {
-      const RotationMatch match = MatchRotations(poses_, samples_, model_);
+      const RotationMatch match = MatchRotations(poses_, samples_, common_.model);
       if (!match.ok) return false;
-      model_.T_camera_imu.R = match.R_camera_imu;
-      model_.time_offset = match.time_offset;
+      common_.model.T_camera_imu.R = match.R_camera_imu;
+      common_.model.time_offset = match.time_offset;
       bias.gyro = match.gyro_bias;
+      bias.accel = priors_.bias.accel;
       // At rest the specific force points up; over some seconds the mean acceleration is small.
       Eigen::Vector3d force = Eigen::Vector3d::Zero();
       for (const TimedPose& pose : poses_) {
-        force += pose.T_world_camera.R * model_.T_camera_imu.R *
-                 ReadingAt(samples_, pose.time + model_.time_offset).specific_force;
+        force += pose.T_world_camera.R * common_.model.T_camera_imu.R *
+                 ReadingAt(samples_, pose.time + common_.model.time_offset).specific_force;
       }
       if (force.norm() == 0) return false;
-      down_ = -force.normalized();
+      common_.down = -force.normalized();
     }
     for (const TimedPose& pose : poses_) {
       InertialState state;
       Se3 T_world_camera = pose.T_world_camera;
-      T_world_camera.t *= scale_;
-      state.T_world_imu = T_world_camera * model_.T_camera_imu;
+      T_world_camera.t *= common_.scale;
+      state.T_world_imu = T_world_camera * common_.model.T_camera_imu;
       state.bias = bias;
       states_.push_back(state);
     }
@@ -131,31 +121,11 @@ class Fit {
   void AddPose(size_t k, ChainSystem& system) const {
     const TimedPose& pose = poses_[k];
     const InertialState& state = states_[k];
-    const Se3 T_world_camera = state.T_world_imu * model_.T_camera_imu.Inverse();
-    const Eigen::Matrix3d Rm_t = pose.T_world_camera.R.transpose();
-    const Eigen::Matrix3d& R = T_world_camera.R;
-    const Eigen::Matrix3d& R_ci = model_.T_camera_imu.R;
     const Eigen::Vector3d rate =
-        ReadingAt(samples_, pose.time + model_.time_offset).angular_rate - state.bias.gyro;
-    Vector6d r;  // (translation; rotation)
-    // In map units, in which the poses are measured.
-    r.head<3>() = Rm_t * (T_world_camera.t / scale_ - pose.T_world_camera.t);
-    r.tail<3>() = LogSo3(Rm_t * R);
-    const Eigen::Matrix3d by_turn = InverseRightJacobian(r.tail<3>()) * R_ci;
-    const Eigen::Matrix3d way_by_turn = Rm_t * R * Skew(model_.T_camera_imu.t) * R_ci / scale_;
-    Eigen::Matrix<double, 6, kState> by_state = Eigen::Matrix<double, 6, kState>::Zero();
-    by_state.block<3, 3>(0, 0) = way_by_turn;
-    by_state.block<3, 3>(0, 6) = Rm_t / scale_;
-    by_state.block<3, 3>(3, 0) = by_turn;
-    Eigen::Matrix<double, 6, kCommon> by_common = Eigen::Matrix<double, 6, kCommon>::Zero();
-    by_common.block<3, 1>(0, kScale) = Rm_t * (state.T_world_imu.t - T_world_camera.t) / scale_;
-    by_common.block<3, 3>(0, kTurn) = -way_by_turn;
-    by_common.block<3, 3>(3, kTurn) = -by_turn;
-    by_common.block<3, 3>(0, kArm) = -Rm_t * R / scale_;
-    by_common.block<3, 1>(0, kOffset) = Rm_t * state.velocity / scale_ + way_by_turn * rate;
-    by_common.block<3, 1>(3, kOffset) = by_turn * rate;
+        ReadingAt(samples_, pose.time + common_.model.time_offset).angular_rate;
+    const PoseMeasurement m = MeasurementOf(state, common_, pose.T_world_camera, rate);
     const Matrix6d W = Whitening<6>(pose.covariance);
-    system.Add<6>(static_cast<int>(k), W * r, W * by_state, nullptr, W * by_common);
+    system.Add<6>(static_cast<int>(k), W * m.error, W * m.by_state, nullptr, W * m.by_common);
   }
 
   static Vector9d MovedByScale(const Matrix9d& by_state, const InertialState& state) {
@@ -165,10 +135,10 @@ class Fit {
 
   void AddMotion(size_t k, ChainSystem& system) const {
     const InertialState &i = states_[k], &j = states_[k + 1];
-    const double offset = model_.time_offset;
+    const double offset = common_.model.time_offset;
     const Preintegration motion = Preintegrate(samples_, poses_[k].time + offset,
                                                poses_[k + 1].time + offset, i.bias, noise_);
-    const MotionResidual residual = ResidualOf(i, j, motion, kGravity * down_);
+    const MotionResidual residual = ResidualOf(i, j, motion, kGravity * common_.down);
     const Matrix9d W = Whitening<9>(motion.covariance);
     Eigen::Matrix<double, 9, kState> by_state, by_next = Eigen::Matrix<double, 9, kState>::Zero();
     by_state << residual.by_i, residual.by_bias;
@@ -176,7 +146,7 @@ class Fit {
     Eigen::Matrix<double, 9, kCommon> by_common = Eigen::Matrix<double, 9, kCommon>::Zero();
     by_common.col(kScale) = MovedByScale(residual.by_i, i) + MovedByScale(residual.by_j, j);
     by_common.middleCols<2>(kTilt) =
-        residual.by_gravity * (-kGravity * Skew(down_)) * TangentsOf(down_);
+        residual.by_gravity * (-kGravity * Skew(common_.down)) * TangentsOf(common_.down);
     const Eigen::Matrix<double, 9, kState> weighted_next = W * by_next;
     system.Add<9>(static_cast<int>(k), W * residual.error, W * by_state, &weighted_next,
                   W * by_common);
@@ -196,7 +166,7 @@ class Fit {
   void AddPriors(ChainSystem& system) const {
     const InertialState& first = states_.front();
     Vector6d bias, inverse_sigma;
-    bias << first.bias.gyro, first.bias.accel;
+    bias << first.bias.gyro - priors_.bias.gyro, first.bias.accel - priors_.bias.accel;
     inverse_sigma << Eigen::Vector3d::Constant(1 / priors_.gyro_bias),
         Eigen::Vector3d::Constant(1 / priors_.accel_bias);
     Eigen::Matrix<double, 6, kState> by_state = Eigen::Matrix<double, 6, kState>::Zero();
@@ -205,11 +175,11 @@ class Fit {
                   Eigen::Matrix<double, 6, kCommon>::Zero());
     const auto weight = [](double sigma) { return 1 / (sigma * sigma); };
     // Without a prior: one that keeps the matrix regular.
-    system.AddCommon(kScale, priors_.scale > 0 ? std::log(scale_) : 0,
+    system.AddCommon(kScale, priors_.scale > 0 ? std::log(common_.scale) : 0,
                      priors_.scale > 0 ? weight(priors_.scale) : 1e-12);
     for (int k = 0; k < 2; ++k) system.AddCommon(kTilt + k, 0, 1e-9);
-    const Eigen::Vector3d turn = LogSo3(given_.T_camera_imu.R.transpose() * model_.T_camera_imu.R);
-    const Eigen::Vector3d arm = model_.T_camera_imu.t - given_.T_camera_imu.t;
+    const Eigen::Vector3d turn = LogSo3(given_.T_camera_imu.R.transpose() * common_.model.T_camera_imu.R);
+    const Eigen::Vector3d arm = common_.model.T_camera_imu.t - given_.T_camera_imu.t;
     for (int k = 0; k < 3; ++k) {
       system.AddCommon(kTurn + k, given_.rotation_known ? turn[k] : 0,
                        given_.rotation_known ? weight(priors_.rotation_known) : 1e-6);
@@ -218,7 +188,7 @@ class Fit {
           weight(given_.translation_known ? priors_.translation_known : priors_.translation));
     }
     system.AddCommon(
-        kOffset, model_.time_offset - given_.time_offset,
+        kOffset, common_.model.time_offset - given_.time_offset,
         weight(given_.time_offset_known ? priors_.time_offset_known : priors_.time_offset));
   }
 
@@ -226,30 +196,12 @@ class Fit {
   bool Apply(const ChainSystem::Solution& step) {
     const double growth = 1 + step.common(kScale);
     if (!step.common.allFinite() || !(growth > kLeastGrowth)) return false;
-    scale_ *= growth;
-    // The tilt is a rotation vector perpendicular to the direction.
-    const Eigen::Vector3d tilt = TangentsOf(down_) * step.common.segment<2>(kTilt);
-    model_.T_camera_imu.R = model_.T_camera_imu.R * ExpSo3(step.common.segment<3>(kTurn));
-    model_.T_camera_imu.t += step.common.segment<3>(kArm);
-    const double later = step.common(kOffset);
     for (size_t k = 0; k < states_.size(); ++k) {
-      InertialState& state = states_[k];
-      const auto& d = step.states[k];
-      state.T_world_imu.R = state.T_world_imu.R * ExpSo3(d.head<3>());
-      state.velocity = growth * state.velocity + d.segment<3>(3);
-      state.T_world_imu.t = growth * state.T_world_imu.t + d.segment<3>(6);
-      state.bias.gyro += d.segment<3>(9);
-      state.bias.accel += d.segment<3>(12);
-      // The state is now that of a later time.
-      const ImuSample reading = ReadingAt(samples_, poses_[k].time + model_.time_offset);
-      const Eigen::Matrix3d R = state.T_world_imu.R;
-      state.T_world_imu.R = R * ExpSo3(later * (reading.angular_rate - state.bias.gyro));
-      state.T_world_imu.t += later * state.velocity;
-      state.velocity +=
-          later * (kGravity * down_ + R * (reading.specific_force - state.bias.accel));
+      const ImuSample reading =
+          ReadingAt(samples_, poses_[k].time + common_.model.time_offset);
+      Increase(states_[k], step.states[k], step.common, common_, reading);
     }
-    model_.time_offset += later;
-    down_ = ExpSo3(tilt) * down_;
+    common_.Increase(step.common);
     return true;
   }
 
@@ -259,10 +211,13 @@ class Fit {
     const int spare = system.residuals() - kState * static_cast<int>(states_.size()) - kCommon;
     InertialFit fit;
     fit.noise_factor = std::sqrt(system.cost() / std::max(1, spare));
+    ChainSystem reversed = system.Reversed();
     const ChainSystem::Solution solution = system.Solve(0);
-    if (!solution.ok) return {};
-    const ChainSystem::CommonMatrix covariance =
-        solution.common_covariance * std::max(1.0, fit.noise_factor * fit.noise_factor);
+    const ChainSystem::Solution backwards = reversed.Solve(0);
+    if (!solution.ok || !backwards.ok) return {};
+    const double more = std::max(1.0, fit.noise_factor * fit.noise_factor);
+    const MotionBelief::Matrix joint = more * solution.last_covariance;
+    const ChainSystem::CommonMatrix covariance = joint.bottomRightCorner<kCommon, kCommon>();
     const auto largest = [&](int at, int size) {
       const Eigen::MatrixXd block = covariance.block(at, at, size, size);
       const double value =
@@ -270,26 +225,29 @@ class Fit {
       return std::sqrt(std::max(0.0, value));
     };
     fit.solved = true;
-    fit.scale = scale_;
+    fit.scale = common_.scale;
     fit.scale_sigma = largest(kScale, 1);
-    fit.gravity = kGravity * down_;
+    fit.gravity = kGravity * common_.down;
     fit.gravity_sigma = largest(kTilt, 2);
     fit.states = states_;
-    fit.model = model_;
+    fit.model = common_.model;
     fit.rotation_sigma = largest(kTurn, 3);
     fit.translation_sigma = largest(kArm, 3);
     fit.time_offset_sigma = largest(kOffset, 1);
+    fit.gyro_bias_sigma = std::sqrt(joint.diagonal().segment<3>(9).maxCoeff());
+    fit.accel_bias_sigma = std::sqrt(joint.diagonal().segment<3>(12).maxCoeff());
+    fit.first = {poses_.front().time, states_.front(), common_, more * backwards.last_covariance};
+    fit.last = {poses_.back().time, states_.back(), common_, joint};
     return fit;
   }
 
   std::span<const TimedPose> poses_;
   std::span<const ImuSample> samples_;
-  ImuModel model_, given_;
+  ImuModel given_;
+  CommonParameters common_;
   ImuNoise noise_;
   InertialPriors priors_;
   std::vector<InertialState> states_;
-  double scale_ = 1;
-  Eigen::Vector3d down_ = Eigen::Vector3d::UnitZ();
 };
 
 }  // namespace

@@ -11,24 +11,17 @@
 #include <vector>
 
 #include "alidade/inertial/imu.h"
+#include "alidade/inertial/motion_belief.h"
 #include "alidade/inertial/preintegration.h"
 
 namespace ALIDADE_API alidade {
 
-inline constexpr double kGravity = 9.81;  // m/s²; it varies by 0.3 % over the earth
-
-struct TimedPose {
-  double time = 0;     // of the image, seconds
-  Se3 T_world_camera;  // map units
-  // T_world_camera * Exp(xi) is the true pose, xi = (translation; rotation) ~ N(0, covariance).
-  Matrix6d covariance = Matrix6d::Zero();
-};
-
 // What is believed before, as standard deviations.
 struct InertialPriors {
   double scale = 0;              // of the map's unit being a meter, relative; 0: nothing is known
-  double gyro_bias = 0.1;        // rad/s, of zero: sensors of robots have up to 0.08
-  double accel_bias = 0.3;       // m/s², of zero: phones have 0.15
+  ImuBias bias;                  // of the first state; the next two are deviations from it
+  double gyro_bias = 0.1;        // rad/s: sensors of robots have up to 0.08
+  double accel_bias = 0.3;       // m/s²: phones have 0.15
   double rotation_known = 3e-3;  // rad: a calibrated rotation of the sensor
   double translation_known = 5e-3;  // m: a calibrated place of the sensor
   double translation = 0.05;        // m, of zero: phones
@@ -49,6 +42,8 @@ struct InertialFit {
   double rotation_sigma = 0;     // of model.T_camera_imu.R, radians, largest axis
   double translation_sigma = 0;  // m
   double time_offset_sigma = 0;  // s
+  double gyro_bias_sigma = 0, accel_bias_sigma = 0;  // of the last state, rad/s, m/s², largest axis
+  MotionBelief first, last;  // of the states at the first and the last pose
   // Square root of the mean squared normalized residual: 1 where noise and covariances are right.
   // The standard deviations above are multiplied by it when it is above 1.
   double noise_factor = 1;
