@@ -34,10 +34,9 @@ struct Walk {
       T_map_camera.t = R_map_world * T_map_camera.t / (meters * scaled);
       const MapSnapshot map = maps.Snapshot();
       Matrix6d covariance = 1e-6 * Matrix6d::Identity();
-      watch.Placed(time, AnchorTo(map.state(), keyframe, T_map_camera.Inverse()),
-                   map.MapOf(keyframe), covariance);
+      watch.Placed(time, AnchorTo(map.state(), keyframe, T_map_camera.Inverse()), covariance, map);
       if (auto question = watch.Ask(map)) watch.Answer(AnswerOf(*question));
-      if (const auto growth = watch.UseAnswer(map)) {
+      if (const auto growth = watch.UseAnswer(map).growth) {
         // As Workers::Scale() does: keyframes and what is relative to them grow.
         scaled /= growth->factor;
         maps.Commit([&](MapCommit& commit) { commit.Edit(keyframe)->scale *= growth->factor; });

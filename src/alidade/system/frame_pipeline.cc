@@ -230,6 +230,7 @@ TrackEstimate FramePipeline::FollowMotion(PresentFrame& now, const MapSnapshot& 
 
 TrackEstimate FramePipeline::FindPlace(PresentFrame& now, const MapSnapshot& map) {
   tracker_.SetTurn(now.frame->time, inertial_.TurnBetween(tracker_.last_time(), now.frame->time));
+  Reckon(now.frame->time, map);
   movers_.Judge(*now.frame, nullptr);
   if (map.keyframe_count() == 0) return {};
   const Stopwatch watch;

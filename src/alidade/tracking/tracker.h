@@ -57,6 +57,12 @@ class Tracker {
     turn_time_ = time;
     turn_ = R_now_last;
   }
+  // Pose T_camera_world of the frame at `time`, which does not follow a tracked one, by dead
+  // reckoning; nullopt: it is not known. It replaces the motion model.
+  void SetReckoned(double time, const std::optional<Se3>& T_camera_world) {
+    reckoned_time_ = time;
+    reckoned_ = T_camera_world;
+  }
   // Changes the camera model for the following frames and the stored last frame.
   void SetCamera(const Camera& camera);
   // Rolling shutters: corrects the keypoints with the predicted motion.
@@ -93,8 +99,8 @@ class Tracker {
   void Forget();  // resets last frame and motion, e.g. after a cut
   // The frame has no pose; the last frame and the motion are kept.
   void Lose() { passing_.Clear(); }
-  // Extrapolated T_camera_world of a frame without a pose; nullopt if no motion is known or the
-  // last frame is older than settings.predict_seconds.
+  // T_camera_world of a frame without a pose by dead reckoning, or extrapolated; nullopt if neither
+  // is known: no motion, or a last frame older than settings.predict_seconds.
   std::optional<Se3> PredictedPose(double time, const MapSnapshot& map) const;
   // Moves the last frame's anchor to a live keyframe if its keyframe was culled in `map`.
   void Reanchor(const MapSnapshot& map);
@@ -165,6 +171,8 @@ class Tracker {
   Motion motion_;       // up to the last frame, in the anchor's scale
   double turn_time_ = 0;
   std::optional<Eigen::Matrix3d> turn_;  // R_now_last at turn_time_, by an inertial sensor
+  double reckoned_time_ = 0;
+  std::optional<Se3> reckoned_;  // T_camera_world at reckoned_time_
   // That the camera is where the motion since the last frame leads.
   struct {
     double log_odds = 0;

@@ -84,7 +84,7 @@ PlacedFrame Tracker::PredictByMotion(std::shared_ptr<const Frame> frame, const M
   const float radius = has_depth_ ? settings_.last_frame_radius_depth : settings_.last_frame_radius;
   PlacedFrame best;
   for (float widen : {1.0f, 2.0f, 4.0f}) {
-    guess.T_camera_world = motion_.known() ? motion * T_last_world : T_last_world;
+    guess.T_camera_world = motion * T_last_world;  // not moved if no motion is known
     MatchLastFrame(guess, map, widen * radius);
     const double share = Optimise(guess, map);
     // A window that misses the true positions still finds chance matches, but few of them agree on
@@ -101,6 +101,8 @@ Se3 Tracker::MotionUntil(double time, const MapSnapshot& map) const {
   if (!last_.frame) return {};
   Se3 motion = motion_.After(time - last_.frame->time);
   motion.t *= map.ScaleOf(reference()) / last_anchor_.scale;
+  if (reckoned_ && reckoned_time_ == time)
+    return *reckoned_ * PoseOf(map.state(), last_anchor_).Inverse();
   if (turn_ && turn_time_ == time) {  // the same way, with another rotation
     motion.t = *turn_ * (motion.R.transpose() * motion.t);
     motion.R = *turn_;
@@ -109,6 +111,7 @@ Se3 Tracker::MotionUntil(double time, const MapSnapshot& map) const {
 }
 
 std::optional<Se3> Tracker::PredictedPose(double time, const MapSnapshot& map) const {
+  if (reckoned_ && reckoned_time_ == time) return reckoned_;
   if (!last_.frame || !motion_.known() || !map.Find(reference())) return std::nullopt;
   if (!(time - last_.frame->time <= settings_.predict_seconds)) return std::nullopt;
   return MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);

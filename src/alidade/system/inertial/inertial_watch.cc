@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "alidade/inertial/map_bridge.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
@@ -32,6 +33,15 @@ constexpr int kContradictions = 3;
 constexpr int kAgreements = 2;
 // The rotation of the sensor is known well enough to predict frames.
 constexpr double kRotationSigma = 0.03;  // radians
+// A dead-reckoned position is of use up to this standard deviation, as a share of the distance of
+// what is seen: 5 degrees. Maps are joined up to the same.
+constexpr double kOfUse = 0.09;
+// Readings without a pose are kept this long, seconds.
+constexpr double kLongestGap = 30;
+// What one map tells of the sensor holds in the next, but not better than this: temperature and
+// flexing change it.
+constexpr double kRotationHolds = 3e-3, kArmHolds = 5e-3, kClockHolds = 1e-3;  // rad, m, s
+constexpr double kGyroHolds = 1e-3, kAccelHolds = 0.03;                        // rad/s, m/s²
 // Poses of a map have errors in common that their covariance does not contain.
 constexpr double kLeastRotation = 7e-4;    // radians
 constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
@@ -42,6 +52,7 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
   InertialAnswer answer;
   answer.map = question.map;
   answer.reference = question.reference;
+  answer.T_reference_world = question.T_reference_world;
   answer.scale = question.scale;
   const InertialFit* start = question.start ? &*question.start : nullptr;
   ImuModel found = question.model;
@@ -60,12 +71,15 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
 
 void InertialWatch::SetImu(const ImuModel& model) {
   report_.given = true;
-  report_.model = given_model_ = model;
+  report_.model = model;
+  calibration_ = {model, {}};
+  learned_.reset();
   ForgetMap();
 }
 
 void InertialWatch::ForgetMap() {
   fit_.reset();
+  reckoner_.Forget();
   report_.metric = false;
   report_.gravity.reset();
   report_.scale_sigma = report_.gravity_sigma = 0;
@@ -83,6 +97,10 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
   if (report_.left_out.empty()) report_.left_out = stream_.broken();
   if (samples_.empty()) return;
   // What no pose will need any more.
+  if (!placements_.empty() && samples_.back().time - placements_.back().time > kLongestGap) {
+    placements_.clear();
+    reckoner_.Forget();
+  }
   const double oldest =
       (placements_.empty() ? samples_.back().time - 5 : placements_.front().time) - 2 * kMargin;
   const auto keep =
@@ -98,20 +116,58 @@ void InertialWatch::Cut() {
   stream_.Restart();
   samples_.clear();
   placements_.clear();
+  reckoner_.Forget();
+  former_.reset();
   asked_at_ = kNever;
 }
 
-void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
-                           const Matrix6d& covariance) {
-  if (!given()) return;
-  if (map != map_) {
-    placements_.clear();
-    map_ = map;
-    ForgetMap();
+// The camera is in another map: one that the last one was merged into, or one that it started after
+// it was lost.
+void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
+  const bool merged = !placements_.empty() &&
+                      snapshot.MapOf(placements_.back().anchor.keyframe) == map;
+  const bool metric = report_.metric;
+  map_ = map;
+  if (merged) {
+    fit_.reset();  // in the axes of the map that is gone
+    return;
   }
+  former_.reset();
+  if (metric && reckoner_.known()) {
+    if (auto belief = reckoner_.At(time, snapshot, samples_)) {
+      former_.emplace();
+      former_->Start(
+          *belief, AnchorTo(snapshot.state(), reckoner_.reference(),
+                            belief->Camera(samples_).T_world_camera.Inverse()));
+    }
+  }
+  placements_.clear();
+  if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
+  ForgetMap();
+}
+
+void InertialWatch::Placed(double time, const Anchor& anchor, const Matrix6d& covariance,
+                           const MapSnapshot& map) {
+  if (!given()) return;
+  const MapId in = map.MapOf(anchor.keyframe);
+  if (in != map_) Enter(in, time, map);
   if (!placements_.empty() && time - placements_.back().time < kSpacing) return;
   placements_.push_back({time, anchor, covariance});
   while (placements_.size() > kMostPoses) placements_.pop_front();
+  FollowPoses(map);
+}
+
+// Takes the poses since the last fit into account.
+void InertialWatch::FollowPoses(const MapSnapshot& map) {
+  if (!reckoner_.known() || placements_.empty()) return;
+  const double distance = DistanceIn(map);
+  const double covered = samples_.empty() ? kNever : samples_.back().time - report_.model.time_offset;
+  for (const Placement& placement : placements_) {
+    if (!reckoner_.known()) return;
+    if (placement.time <= reckoner_.time() || placement.time > covered) continue;
+    if (map.MapOf(placement.anchor.keyframe) != map_) continue;
+    reckoner_.See(PoseIn(map, placement, distance), placement.anchor.keyframe, map, samples_);
+  }
 }
 
 void InertialWatch::Reanchor(const MapSnapshot& map) {
@@ -120,29 +176,37 @@ void InertialWatch::Reanchor(const MapSnapshot& map) {
     placement.anchor = Reanchored(map.state(), placement.anchor);
   std::erase_if(placements_,
                 [](const Placement& placement) { return !placement.anchor.keyframe.valid(); });
+  if (reckoner_.known()) reckoner_.Reanchor(map);
+  if (former_) former_->Reanchor(map);
+}
+
+double InertialWatch::DistanceIn(const MapSnapshot& map) const {
+  const KeyFrame* newest = map.Find(placements_.back().anchor.keyframe);
+  return newest ? MedianDepth(map, *newest).value_or(1) : 1;
+}
+
+TimedPose InertialWatch::PoseIn(const MapSnapshot& map, const Placement& placement,
+                                double distance) const {
+  TimedPose pose;
+  pose.time = placement.time;
+  pose.T_world_camera = PoseOf(map.state(), placement.anchor).Inverse();
+  pose.covariance = placement.covariance;
+  const double growth = map.ScaleOf(placement.anchor.keyframe) / placement.anchor.scale;
+  pose.covariance.topRows<3>() *= growth;
+  pose.covariance.leftCols<3>() *= growth;
+  pose.covariance.diagonal().head<3>().array() += std::pow(kLeastPosition * distance, 2);
+  pose.covariance.diagonal().tail<3>().array() += kLeastRotation * kLeastRotation;
+  return pose;
 }
 
 std::vector<TimedPose> InertialWatch::PosesIn(const MapSnapshot& map) const {
   std::vector<TimedPose> poses;
+  if (placements_.empty()) return poses;
+  const double distance = DistanceIn(map);
   for (const Placement& placement : placements_) {
-    if (map.MapOf(placement.anchor.keyframe) != map_) continue;
-    TimedPose pose;
-    pose.time = placement.time;
-    pose.T_world_camera = PoseOf(map.state(), placement.anchor).Inverse();
-    pose.covariance = placement.covariance;
-    const double growth = map.ScaleOf(placement.anchor.keyframe) / placement.anchor.scale;
-    pose.covariance.topRows<3>() *= growth;
-    pose.covariance.leftCols<3>() *= growth;
-    poses.push_back(pose);
+    if (map.MapOf(placement.anchor.keyframe) == map_)
+      poses.push_back(PoseIn(map, placement, distance));
   }
-  if (poses.empty()) return poses;
-  double distance = 1;
-  if (const KeyFrame* newest = map.Find(placements_.back().anchor.keyframe))
-    distance = MedianDepth(map, *newest).value_or(1);
-  Vector6d least;
-  least << Eigen::Vector3d::Constant(std::pow(kLeastPosition * distance, 2)),
-      Eigen::Vector3d::Constant(kLeastRotation * kLeastRotation);
-  for (TimedPose& pose : poses) pose.covariance.diagonal() += least;
   return poses;
 }
 
@@ -169,11 +233,13 @@ std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
   if (question.poses.size() < kFewest) return std::nullopt;
   const auto samples = SamplesFrom(question.poses.front().time + offset - kMargin);
   question.samples.assign(samples.begin(), samples.end());
-  question.model = given_model_;  // the priors are about what was given
+  question.model = calibration_.model;
+  question.priors = calibration_.priors;
   if (sensor_ != Sensor::kMono) question.priors.scale = 0.01;
   question.start = fit_;
   question.map = map_;
   question.reference = placements_.back().anchor.keyframe;
+  question.T_reference_world = map.state().PoseOf(question.reference);
   question.scale = map.ScaleOf(question.reference);
   asked_at_ = newest;
   awaiting_ = true;
@@ -203,42 +269,104 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
       "(stabilized images, or readings of another device?)";
 }
 
-std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot& map) {
-  if (!kInertial) return std::nullopt;
+InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
+  if (!kInertial) return {};
   std::optional<InertialAnswer> answer;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     answer = std::exchange(answer_, std::nullopt);
   }
-  if (!answer) return std::nullopt;
+  if (!answer) return {};
   awaiting_ = false;
   Judge(*answer);
   if (!report_.left_out.empty() || !answer->fit.solved || answer->map != map_ ||
       !map.Find(answer->reference))
-    return std::nullopt;
+    return {};
   InertialFit& fit = answer->fit;
-  // The map may have been scaled since the question.
-  fit.scale /= map.ScaleOf(answer->reference) / answer->scale;
   report_.bias = fit.states.back().bias;
   report_.model.T_camera_imu = fit.model.T_camera_imu;
   report_.model.time_offset = fit.model.time_offset;
   report_.rotation_sigma = fit.rotation_sigma;
   report_.time_offset_sigma = fit.time_offset_sigma;
-  std::optional<Growth> growth;
-  if (Accepts(fit)) {
+  Changes changes;
+  const bool accepted = Accepts(fit);
+  if (accepted) changes.join = JoinBy(fit, map);
+  // The map may have been scaled since the question.
+  fit.scale /= map.ScaleOf(answer->reference) / answer->scale;
+  if (accepted) {
     const double off = std::abs(std::log(fit.scale)) / fit.scale_sigma;
     if (sensor_ == Sensor::kMono && may_scale_ && off > kRescale) {
-      growth = Growth{map_, fit.scale};
+      changes.growth = Growth{map_, fit.scale};
       fit.scale = 1;
     }
-    report_.metric = growth || off < kMetric;
+    report_.metric = changes.growth || off < kMetric;
     report_.missing = report_.metric ? "" : "the map is in another unit, and it is not changed";
     report_.gravity = fit.gravity.normalized();
     report_.gravity_sigma = fit.gravity_sigma;
     report_.scale_sigma = fit.scale_sigma;
+    learned_ = LearnedFrom(fit);
+    Se3 T_world_camera = fit.last.state.T_world_imu * fit.model.T_camera_imu.Inverse();
+    T_world_camera.t /= fit.last.common.scale;
+    reckoner_.Start(fit.last, {answer->reference,
+                               T_world_camera.Inverse() * answer->T_reference_world.Inverse(),
+                               answer->scale});
+    FollowPoses(map);
   }
   fit_ = std::move(fit);
-  return growth;
+  if (changes.join) {
+    // The map takes the axes and the unit of the older one.
+    changes.growth.reset();
+    report_.gravity = changes.join->T_older_younger.R * *report_.gravity;
+    map_ = changes.join->older;
+    fit_.reset();
+    reckoner_.Forget();
+    former_.reset();
+  }
+  return changes;
+}
+
+InertialWatch::Calibration InertialWatch::LearnedFrom(const InertialFit& fit) {
+  Calibration learned;
+  learned.model = fit.model;
+  learned.model.rotation_known = learned.model.translation_known = true;
+  learned.model.time_offset_known = true;
+  InertialPriors& priors = learned.priors;
+  priors.rotation_known = std::hypot(kRotationHolds, fit.rotation_sigma);
+  priors.translation_known = std::hypot(kArmHolds, fit.translation_sigma);
+  priors.time_offset_known = std::hypot(kClockHolds, fit.time_offset_sigma);
+  priors.bias = fit.states.back().bias;
+  priors.gyro_bias = std::hypot(kGyroHolds, fit.gyro_bias_sigma);
+  priors.accel_bias = std::hypot(kAccelHolds, fit.accel_bias_sigma);
+  return learned;
+}
+
+// The map before this one, if dead reckoning leads well enough from there to here.
+std::optional<InertialWatch::Join> InertialWatch::JoinBy(const InertialFit& fit,
+                                                         const MapSnapshot& map) {
+  if (!former_ || !may_scale_ || !former_->known()) return std::nullopt;
+  const auto there = former_->At(former_->time(), map, samples_);
+  if (!there || there->time != fit.first.time) return std::nullopt;
+  const std::optional<MapBridge> bridge = BridgeOf(*there, fit.first);
+  const MapId older = map.MapOf(former_->reference());
+  if (!(older < map_)) return std::nullopt;
+  const double distance = fit.scale * DistanceIn(map);
+  if (!bridge || bridge->sigma > kOfUse * distance || bridge->rotation > kOfUse)
+    return std::nullopt;
+  return Join{map_, older, bridge->T_a_b, former_->reference()};
+}
+
+std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
+                                                                   const MapSnapshot& map) const {
+  if (!kInertial || !reckoner_.known() || !report_.metric || samples_.empty()) return std::nullopt;
+  if (time + report_.model.time_offset > samples_.back().time + 0.05 || time < reckoner_.time())
+    return std::nullopt;
+  const auto belief = reckoner_.At(time, map, samples_);
+  const KeyFrame* reference = map.Find(reckoner_.reference());
+  if (!belief || !reference) return std::nullopt;
+  const TimedPose pose = belief->Camera(samples_);
+  const double sigma = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
+  if (!(sigma < kOfUse * MedianDepth(map, *reference).value_or(1))) return std::nullopt;
+  return Reckoned{pose, reference->map};
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {

@@ -15,6 +15,7 @@
 #include "alidade/inertial/rotation_match.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/map/anchor.h"
+#include "alidade/system/inertial/dead_reckoner.h"
 #include "alidade/system/types.h"
 
 namespace alidade {
@@ -35,7 +36,8 @@ struct InertialQuestion {
   std::optional<InertialFit> start;
   MapId map;
   KeyFrameId reference;  // of the newest pose
-  double scale = 1;      // KeyFrame::scale of it
+  Se3 T_reference_world;  // pose and KeyFrame::scale of that keyframe when it was asked
+  double scale = 1;
 };
 
 struct InertialAnswer {
@@ -43,6 +45,7 @@ struct InertialAnswer {
   RotationMatch rotation;
   MapId map;
   KeyFrameId reference;
+  Se3 T_reference_world;
   double scale = 1;
 };
 
@@ -58,7 +61,8 @@ class InertialWatch {
   // Readings since the last call, cleaned by an ImuStream.
   void Take(std::span<const ImuSample> samples);
   // The frame of `time` (seconds, on the clock of the images) has a pose.
-  void Placed(double time, const Anchor& anchor, MapId map, const Matrix6d& covariance);
+  void Placed(double time, const Anchor& anchor, const Matrix6d& covariance,
+              const MapSnapshot& map);
   void Cut();  // the next readings and poses do not continue the last ones
   // Poses relative to culled keyframes become relative to live ones.
   void Reanchor(const MapSnapshot& map);
@@ -67,13 +71,29 @@ class InertialWatch {
   std::optional<InertialQuestion> Ask(const MapSnapshot& map);
   // Any thread.
   void Answer(InertialAnswer answer);
-  // Uses an answer that has come. Returns the map whose lengths are to grow to be meters, and
-  // by which factor; nullopt: none.
+  // Uses an answer that has come, and tells what is to be changed in the map: the lengths of a map
+  // grow to be meters by a factor, or a map is joined to the one before it.
   struct Growth {
     MapId map;
     double factor = 1;
   };
-  std::optional<Growth> UseAnswer(const MapSnapshot& map);
+  struct Join {
+    MapId younger, older;
+    Sim3 T_older_younger;
+    KeyFrameId anchor;  // keyframe of `older` that the first one of `younger` follows
+  };
+  struct Changes {
+    std::optional<Growth> growth;
+    std::optional<Join> join;
+  };
+  Changes UseAnswer(const MapSnapshot& map);
+  // The pose of the camera at `time` (later than the last pose) by the readings since, with its
+  // covariance, and the map it is in; nullopt: it is not known well enough to be of use.
+  struct Reckoned {
+    TimedPose pose;
+    MapId map;
+  };
+  std::optional<Reckoned> DeadReckoned(double time, const MapSnapshot& map) const;
 
   // Rotation of the camera between two times of images by the gyroscope alone: R_to_from. nullopt
   // if its rotation to the camera is not known, or the readings do not cover the time.
@@ -87,21 +107,36 @@ class InertialWatch {
     Anchor anchor;
     Matrix6d covariance = Matrix6d::Zero();
   };
+  // Priors of the fits in one map: what was given, or what the maps before told.
+  struct Calibration {
+    ImuModel model;
+    InertialPriors priors;
+  };
   static constexpr double kNever = -1e18;  // seconds
   void ForgetMap();                        // what was found of a map that the camera has left
   std::vector<TimedPose> PosesIn(const MapSnapshot& map) const;
+  TimedPose PoseIn(const MapSnapshot& map, const Placement& placement, double distance) const;
+  double DistanceIn(const MapSnapshot& map) const;
+  void FollowPoses(const MapSnapshot& map);
+  void Enter(MapId map, double time, const MapSnapshot& snapshot);
+  static Calibration LearnedFrom(const InertialFit& fit);
+  std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
   std::span<const ImuSample> SamplesFrom(double time) const;
   bool Accepts(const InertialFit& fit) const;
   void Judge(const InertialAnswer& answer);
 
   Sensor sensor_;
   bool may_scale_;
-  ImuModel given_model_;  // as given
   InertialReport report_;
   ImuStream stream_;
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
   MapId map_;                       // that placements_ are in
+  DeadReckoner reckoner_;           // in map_, once its lengths are meters
+  // Where dead reckoning from the map before map_ leads at the first pose in map_.
+  std::optional<DeadReckoner> former_;
+  Calibration calibration_;                // priors of the fits in map_
+  std::optional<Calibration> learned_;  // in map_, for the next one
   std::optional<InertialFit> fit_;  // the last one that was solved, in map_
   double asked_at_ = kNever;        // time of the newest pose of the last question
   bool awaiting_ = false;

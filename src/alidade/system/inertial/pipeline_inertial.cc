@@ -10,11 +10,16 @@ void FramePipeline::SetImu(const ImuModel& imu) {
   inertial_shown_.Set(inertial_.report());
 }
 
-// One camera: the lengths of the map become meters, as soon as it is confirmed.
+// One camera: the lengths of the map become meters, as soon as it is confirmed, and a map that the
+// camera started after it had been lost is joined to the one before.
 void FramePipeline::UseInertial() {
   if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
-  const auto growth = inertial_.UseAnswer(workers_.map().Snapshot());
-  if (growth) workers_.Scale(growth->map, growth->factor);
+  const InertialWatch::Changes changes = inertial_.UseAnswer(workers_.map().Snapshot());
+  if (changes.growth) workers_.Scale(changes.growth->map, changes.growth->factor);
+  if (changes.join) {
+    const auto& [younger, older, T_older_younger, anchor] = *changes.join;
+    workers_.Join(younger, older, T_older_younger, anchor);
+  }
   inertial_shown_.Set(inertial_.report());
 }
 
@@ -24,12 +29,20 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
   const MapSnapshot map = workers_.map().Snapshot();
   if (session_.state() == SessionState::kTracking && tracker_.IsLast(*now.frame)) {
     inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
-                     map.MapOf(tracker_.reference()), now.placed.covariance);
+                     now.placed.covariance, map);
   }
   if (auto question = inertial_.Ask(map)) {
     workers_.AddErrand(
         [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
   }
+}
+
+// Tells where a frame that does not follow a tracked one is by dead reckoning.
+void FramePipeline::Reckon(double time, const MapSnapshot& map) {
+  const auto reckoned = inertial_.DeadReckoned(time, map);
+  tracker_.SetReckoned(time, reckoned ? std::optional(reckoned->pose.T_world_camera.Inverse())
+                                      : std::nullopt);
+  relocalizer_.SetReckoned(reckoned);
 }
 
 }  // namespace alidade

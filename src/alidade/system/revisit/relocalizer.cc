@@ -1,6 +1,8 @@
 #include "alidade/system/revisit/relocalizer.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 
 #include "alidade/features/subset.h"
 #include "alidade/map/reach.h"
@@ -21,7 +23,7 @@ bool Contains(const std::vector<MapId>& maps, MapId map) {
 
 Relocalizer::Found Relocalizer::Find(const std::shared_ptr<const Frame>& frame,
                                      const MapSnapshot& map, bool lost) const {
-  if (tracker_.PredictedPose(frame->time, map)) {
+  if (std::isfinite(tracker_.last_time()) && tracker_.PredictedPose(frame->time, map)) {
     TrackEstimate estimate = tracker_.GoOn(frame, map);
     if (estimate.tracked) return {std::move(estimate), true};
   }
@@ -36,6 +38,9 @@ bool Relocalizer::CanBeThere(const TrackEstimate& found, const MapSnapshot& map)
   const double share =
       found.placed.inliers / std::max<double>(1, static_cast<double>(found.sightings.size()));
   if (share >= settings.plain_share) return true;
+  if (reckoned_ && found.placed.frame->time == reckoned_->pose.time &&
+      map.MapOf(found.reference) == reckoned_->map)
+    return AgreesWithReckoned(found.placed.T_camera_world);
   // The trajectory is relative to the current map: useless if that was corrected since `map`.
   if (workers_.map().Snapshot().corrections() != map.corrections()) return false;
   const MapId in = map.MapOf(found.reference);
@@ -55,6 +60,16 @@ bool Relocalizer::CanBeThere(const TrackEstimate& found, const MapSnapshot& map)
   const TimedPlace here{found.placed.frame->time, found.placed.T_camera_world.Inverse().t};
   const double depth = MedianDepth(map, *map.Find(found.reference)).value_or(0);
   return share >= settings.plain_share * DoubtOf(trajectory, here, depth, gone, settings);
+}
+
+// Whether the pose is within the errors of dead reckoning: chi² of the position, 99.9 %, with twice
+// its standard deviation.
+bool Relocalizer::AgreesWithReckoned(const Se3& T_camera_world) const {
+  constexpr double kChiSquared3 = 16.3, kWider = 4;
+  const TimedPose& pose = reckoned_->pose;
+  const Eigen::Vector3d gap = (pose.T_world_camera.Inverse() * T_camera_world.Inverse()).t;
+  const Eigen::Matrix3d covariance = kWider * pose.covariance.topLeftCorner<3, 3>();
+  return gap.dot(covariance.llt().solve(gap)) < kChiSquared3;
 }
 
 // Keyframes that may show what the frame shows: the last tracked one, then the most similar ones.

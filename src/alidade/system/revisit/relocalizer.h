@@ -4,9 +4,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "alidade/system/frame_log.h"
+#include "alidade/system/inertial/inertial_watch.h"
 #include "alidade/system/settings.h"
 #include "alidade/system/workers/workers.h"
 #include "alidade/tracking/tracker.h"
@@ -23,12 +26,18 @@ class Relocalizer {
     bool by_motion = false;  // where the last motion leads
   };
   // `lost`: the last tracked frame's keyframe is tried first.
+  // Where the next frame is by dead reckoning; nullopt: it is not known.
+  void SetReckoned(std::optional<InertialWatch::Reckoned> reckoned) {
+    reckoned_ = std::move(reckoned);
+  }
   Found Find(const std::shared_ptr<const Frame>& frame, const MapSnapshot& map, bool lost) const;
 
  private:
   bool CanBeThere(const TrackEstimate& found, const MapSnapshot& map) const;
+  bool AgreesWithReckoned(const Se3& T_camera_world) const;
   std::vector<KeyFrameId> PlacesLike(const Frame& frame, const MapSnapshot& map, bool lost) const;
 
+  std::optional<InertialWatch::Reckoned> reckoned_;
   const SlamSettings& settings_;
   Workers& workers_;
   Tracker& tracker_;

@@ -186,6 +186,14 @@ void Workers::Scale(MapId id, double factor) {
   });
 }
 
+void Workers::Join(MapId younger, MapId older, const Sim3& T_older_younger, KeyFrameId anchor) {
+  WhileAllRest([&] {
+    map_.Commit([&](MapCommit& commit) {
+      CommitMerge(commit, younger, older, T_older_younger, anchor);
+    });
+  });
+}
+
 void Workers::CutNow() {
   cut_short_ = true;
   for (Stage* stage : {&mapping_, &looping_, &adjusting_, &semidense_}) stage->GiveUp();

@@ -62,6 +62,8 @@ class Workers {
   void ChangeCamera(const Camera& from, const Camera& to);
   // All lengths of a map grow by `factor`. Not while it is unconfirmed.
   void Scale(MapId map, double factor);
+  // Moves the map `younger` into `older` (CommitMerge()); they need not show anything in common.
+  void Join(MapId younger, MapId older, const Sim3& T_older_younger, KeyFrameId anchor);
   // Runs a function in the background (inline: at once), in which it must not wait. What it throws
   // ends full adjustments.
   void AddErrand(std::function<void()> errand) { adjusting_.AddErrand(std::move(errand)); }
