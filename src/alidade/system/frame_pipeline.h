@@ -79,6 +79,7 @@ class FramePipeline {
   void FinishWork(bool limited);
   void UseCamera();
   void UseInertial();
+  void KeepWorld();
   void Observe(double time, const PresentFrame& now);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);

@@ -29,6 +29,7 @@ void FramePipeline::Load(const SavedMap& saved) {
                NameOf(settings_.sensor));
   }
   workers_.Restore(saved);
+  inertial_.Know(saved.map.state().worlds);
   const std::vector<KeyFrameId> keyframes = saved.map.KeyFrames();
   int number = first_number_;
   for (KeyFrameId id : keyframes) number = std::max(number, saved.map.Find(id)->frame->number + 1);

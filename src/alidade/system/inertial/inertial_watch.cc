@@ -35,6 +35,8 @@ constexpr double kRotationSigma = 0.03;  // radians
 // Poses of a map have errors in common that their covariance does not contain.
 constexpr double kLeastRotation = 7e-4;    // radians
 constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
+// Relative standard deviation of the lengths of a loaded map in meters, at least: drift.
+constexpr double kLeastScale = 2e-3;
 
 }  // namespace
 
@@ -171,6 +173,9 @@ std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
   question.samples.assign(samples.begin(), samples.end());
   question.model = given_model_;  // the priors are about what was given
   if (sensor_ != Sensor::kMono) question.priors.scale = 0.01;
+  const MapWorld* known = FindWorld(loaded_, map_);
+  if (sensor_ == Sensor::kMono && known && known->meters)
+    question.priors.scale = std::max(known->scale_sigma, kLeastScale);
   question.start = fit_;
   question.map = map_;
   question.reference = placements_.back().anchor.keyframe;
@@ -239,6 +244,12 @@ std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot&
   }
   fit_ = std::move(fit);
   return growth;
+}
+
+std::optional<MapWorld> InertialWatch::World() const {
+  if (!given() || !report_.gravity || !map_.valid()) return std::nullopt;
+  return MapWorld{map_, report_.metric, report_.scale_sigma, *report_.gravity,
+                  report_.gravity_sigma};
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/inertial/imu_stream.h"
@@ -15,6 +16,7 @@
 #include "alidade/inertial/rotation_match.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/map/anchor.h"
+#include "alidade/map/map_world.h"
 #include "alidade/system/types.h"
 
 namespace alidade {
@@ -54,6 +56,8 @@ class InertialWatch {
   InertialWatch(Sensor sensor, bool may_scale) : sensor_(sensor), may_scale_(may_scale) {}
 
   void SetImu(const ImuModel& model);
+  // What is known of maps that were loaded: their scale is not estimated from nothing.
+  void Know(std::vector<MapWorld> loaded) { loaded_ = std::move(loaded); }
   bool given() const { return kInertial && report_.given; }
   // Readings since the last call, cleaned by an ImuStream.
   void Take(std::span<const ImuSample> samples);
@@ -80,6 +84,8 @@ class InertialWatch {
   std::optional<Eigen::Matrix3d> TurnBetween(double from, double to) const;
 
   const InertialReport& report() const { return report_; }
+  // What it tells of the world of the map that the camera is in; nullopt: nothing yet.
+  std::optional<MapWorld> World() const;
 
  private:
   struct Placement {
@@ -96,6 +102,7 @@ class InertialWatch {
 
   Sensor sensor_;
   bool may_scale_;
+  std::vector<MapWorld> loaded_;
   ImuModel given_model_;  // as given
   InertialReport report_;
   ImuStream stream_;
