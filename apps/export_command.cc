@@ -96,10 +96,13 @@ void AddExportCommand(CLI::App& app, Action& action) {
                    "of a result folder, but keyframes for tum")
       ->type_name("frames|keyframes");
   command
-      ->add_option("--up", options->how.up,
-                   "Trajectories: z turns the world so that z is up, by the mean upright axis of "
-                   "the camera, as gravity is not measured")
-      ->type_name("map|z");
+      ->add_option(
+          "--up", options->how.up,
+          "Which way is up: gravity turns the world so that z is up by the gravity that the "
+          "map knows (colmap, gsplat: y is down, as their programs expect); z, for "
+          "trajectories: by the mean upright axis of the camera; map: as in the map. "
+          "Default: gravity if it is known")
+      ->type_name("map|gravity|z");
   command
       ->add_option("--scale-by", options->scale_by,
                    "Maps of one camera: lengths become meters, by two places A and B and the "

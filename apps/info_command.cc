@@ -12,6 +12,7 @@
 
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/sources/saved_map.h"
+#include "alidade/run/world/moved_map.h"
 #include "commands.h"
 
 namespace alidade {
@@ -40,6 +41,15 @@ json ObservationsOf(const MapSnapshot& map, const std::vector<LandmarkId>& landm
           {"max", counts.back()}};
 }
 
+// What is known of its world; null: nothing.
+json WorldJson(const MapWorld& world) {
+  const auto sigma = [](double value) { return value > 0 ? json(value) : json(nullptr); };
+  const Eigen::Vector3d& down = world.down;
+  return {{"gravity", world.KnowsDown() ? json({down.x(), down.y(), down.z()}) : json(nullptr)},
+          {"gravity_sigma", sigma(world.down_sigma)},
+          {"scale_sigma", sigma(world.scale_sigma)}};
+}
+
 json PartInfo(const SavedMap& saved, const MapPart& part) {
   const Trajectory trajectory = TrajectoryOf(saved, part);
   Eigen::AlignedBox3d box;
@@ -52,13 +62,17 @@ json PartInfo(const SavedMap& saved, const MapPart& part) {
   const Eigen::Vector3d size = box.sizes();
   size_t loop_ends = 0;
   for (KeyFrameId id : part.keyframes) loop_ends += saved.map.Find(id)->loops.size();
-  return {{"keyframes", part.keyframes.size()},
-          {"landmarks", part.landmarks.size()},
-          {"observations", ObservationsOf(saved.map, part.landmarks)},
-          {"time", {trajectory.front().time, trajectory.back().time}},
-          {"loops", loop_ends / 2},
-          {"path_length", length},
-          {"extent", {size.x(), size.y(), size.z()}}};
+  const MapWorld world = WorldOf(saved, part);
+  json info = {{"keyframes", part.keyframes.size()},
+               {"landmarks", part.landmarks.size()},
+               {"observations", ObservationsOf(saved.map, part.landmarks)},
+               {"time", {trajectory.front().time, trajectory.back().time}},
+               {"loops", loop_ends / 2},
+               {"path_length", length},
+               {"extent", {size.x(), size.y(), size.z()}},
+               {"meters", InMeters(saved, world.map)}};
+  info.update(WorldJson(world));
+  return info;
 }
 
 json InfoOf(const SavedMap& saved, const std::string& path) {
@@ -88,12 +102,33 @@ json InfoOf(const SavedMap& saved, const std::string& path) {
           {"settings", settings}};
 }
 
-void PrintPart(const json& part, const char* unit) {
+void PrintWorld(const json& part) {
+  constexpr double kDegrees = 57.29577951308232;
+  if (!part["scale_sigma"].is_null()) {
+    std::printf("  lengths       meters, known to %.1f %%\n",
+                100 * part["scale_sigma"].get<double>());
+  } else {
+    std::printf("  lengths       %s\n", part["meters"].get<bool>() ? "meters" : "map units");
+  }
+  if (part["gravity"].is_null()) {
+    std::printf("  gravity       unknown\n");
+    return;
+  }
+  const auto down = part["gravity"].get<std::array<double, 3>>();
+  std::printf("  gravity       %.4f %.4f %.4f", down[0], down[1], down[2]);
+  if (!part["gravity_sigma"].is_null())
+    std::printf(", known to %.2f degrees", kDegrees * part["gravity_sigma"].get<double>());
+  std::printf("\n");
+}
+
+void PrintPart(const json& part) {
+  const char* unit = part["meters"].get<bool>() ? "m" : "units";
   std::printf("  keyframes     %d, %.3f to %.3f s\n", part["keyframes"].get<int>(),
               part["time"][0].get<double>(), part["time"][1].get<double>());
   std::printf("  path          %.2f %s within %.2f x %.2f x %.2f %s\n",
               part["path_length"].get<double>(), unit, part["extent"][0].get<double>(),
               part["extent"][1].get<double>(), part["extent"][2].get<double>(), unit);
+  PrintWorld(part);
   if (part["loops"] > 0) std::printf("  loops         %d\n", part["loops"].get<int>());
   const json& seen = part["observations"];
   if (seen["total"] == 0) {
@@ -125,7 +160,7 @@ void PrintInfo(const json& info, const std::string& path) {
   std::printf("maps            %zu\n", maps.size());
   for (size_t i = 0; i < maps.size(); ++i) {
     if (maps.size() > 1) std::printf("map %zu\n", i);
-    PrintPart(maps[i], sensor == "mono" ? "units" : "m");
+    PrintPart(maps[i]);
   }
 }
 

@@ -104,6 +104,26 @@ class MapPart:
         """(l, 2): ids of keyframes connected by loop closures."""
         return self._core.loops()
 
+    @property
+    def metric(self) -> bool:
+        """Whether lengths are meters: by stereo or depth, an inertial sensor, or a survey."""
+        return self._core.metric
+
+    @property
+    def scale_sigma(self) -> Optional[float]:
+        """Relative standard deviation of the lengths; None: unknown."""
+        return self._core.scale_sigma
+
+    @property
+    def gravity(self) -> Optional[numpy.ndarray]:
+        """(3,), unit vector in the world, in which things fall; None: unknown."""
+        return self._core.gravity
+
+    @property
+    def gravity_sigma(self) -> Optional[float]:
+        """Standard deviation of the direction of gravity, radians; None: unknown."""
+        return self._core.gravity_sigma
+
     def cloud(self, voxel: float = 0.0) -> Cloud:
         """The semi-dense cloud (``semidense=True``). Empty for a map read from a file, because files do not contain it.
 
@@ -130,8 +150,8 @@ class Map:
     """An immutable map, from Slam.map(), Result.map or Map.load().
 
     Maps that were never connected have separate world frames: ``parts``, sorted by descending number of keyframes.
-    The properties ``keyframes``, ``points``, ``observations``, ``covisibility``, ``loops`` and ``cloud()`` refer to
-    the first part.
+    The properties ``keyframes``, ``points``, ``observations``, ``covisibility``, ``loops``, ``metric``,
+    ``scale_sigma``, ``gravity``, ``gravity_sigma`` and ``cloud()`` refer to the first part.
     """
 
     def __init__(self, core: _core.Map) -> None:
@@ -213,6 +233,26 @@ class Map:
     def loops(self) -> numpy.ndarray:
         """(l, 2): ids of keyframes connected by loop closures."""
         return self._main().loops
+
+    @property
+    def metric(self) -> bool:
+        """Whether lengths are meters: by stereo or depth, an inertial sensor, or a survey."""
+        return self._main().metric
+
+    @property
+    def scale_sigma(self) -> Optional[float]:
+        """Relative standard deviation of the lengths; None: unknown."""
+        return self._main().scale_sigma
+
+    @property
+    def gravity(self) -> Optional[numpy.ndarray]:
+        """(3,), unit vector in the world, in which things fall; None: unknown."""
+        return self._main().gravity
+
+    @property
+    def gravity_sigma(self) -> Optional[float]:
+        """Standard deviation of the direction of gravity, radians; None: unknown."""
+        return self._main().gravity_sigma
 
     def cloud(self, voxel: float = 0.0) -> Cloud:
         """As MapPart.cloud()."""

@@ -10,6 +10,7 @@
 #include "alidade/run/export/export_path.h"
 #include "alidade/run/export/map_files.h"
 #include "alidade/run/sources/saved_map.h"
+#include "alidade/run/world/moved_map.h"
 #include "arrays.h"
 #include "map_value.h"
 #include "values.h"
@@ -153,6 +154,17 @@ py::object DepthOf(const Part& part, uint32_t keyframe_id) {
   return py::make_tuple(ArrayOf(metres), ArrayOf(sigma));
 }
 
+py::object GravityOf(const Part& part) {
+  const MapWorld world = WorldOf(*part.saved, part.ids);
+  if (!world.KnowsDown()) return py::none();
+  return Table(std::vector<double>{world.down.x(), world.down.y(), world.down.z()});
+}
+
+// A standard deviation; 0: unknown.
+py::object SigmaOf(double sigma) {
+  return sigma > 0 ? py::object(py::float_(sigma)) : py::object(py::none());
+}
+
 MapHolder Read(const std::string& path) {
   const py::gil_scoped_release release;
   return std::make_shared<MapValue>(ReadSavedMap(path));
@@ -187,7 +199,7 @@ py::str Export(const MapHolder& saved, const std::string& out, const std::string
     const py::gil_scoped_release release;
     ExportSettings settings = HowToExport(to, format, part, min_observations);
     if (to == "colmap") settings.with_images = false;  // a map has none
-    told = ExportMap(*saved, settings, out);
+    told = ExportSaved(*saved, settings, out);
   }
   return PathText(told);
 }
@@ -221,7 +233,18 @@ void BindMap(py::module_& core) {
       .def("covisibility", &CovisibilityOf)
       .def("loops", &LoopsOf)
       .def("cloud", &CloudOf, py::arg("voxel"))
-      .def("depth", &DepthOf, py::arg("keyframe"));
+      .def("depth", &DepthOf, py::arg("keyframe"))
+      .def_property_readonly("metric",
+                             [](const Part& part) {
+                               return InMeters(*part.saved, WorldOf(*part.saved, part.ids).map);
+                             })
+      .def_property_readonly(
+          "scale_sigma",
+          [](const Part& part) { return SigmaOf(WorldOf(*part.saved, part.ids).scale_sigma); })
+      .def_property_readonly("gravity", &GravityOf)
+      .def_property_readonly("gravity_sigma", [](const Part& part) {
+        return SigmaOf(WorldOf(*part.saved, part.ids).down_sigma);
+      });
   py::class_<MapValue, MapHolder>(core, "Map")
       .def_property_readonly("sensor", [](const MapValue& map) { return map.sensor; })
       .def_property_readonly("camera", [](const MapValue& map) { return CameraObject(map.camera); })

@@ -106,3 +106,9 @@ def test_an_empty_map_says_so():
     assert slam.map().parts == [] and slam.trajectory().shape == (0, 8)
     with pytest.raises(alidade.UsageError, match="empty"):
         _ = slam.map().points
+
+
+def test_a_map_with_depth_is_metric_and_knows_no_gravity(slam):
+    made = slam.map()
+    assert made.metric and made.parts[0].metric
+    assert made.scale_sigma is None and made.gravity is None and made.gravity_sigma is None

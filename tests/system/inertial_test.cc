@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "alidade/evaluation/ate.h"
@@ -24,6 +25,7 @@ SynthSettings Room(int frames) {
 struct Ran {
   std::vector<FramePose> trajectory;
   InertialReport report;
+  std::string map;  // as saved
 };
 
 // `spoil` changes the readings; null: they are not given at all.
@@ -42,11 +44,28 @@ Ran Travel(const SynthRecording& recording, Spoil&& spoil, bool give) {
     last = rendered.time;
     slam.Track(frame);
   }
-  return {slam.Finish(), slam.Inertial()};
+  return {slam.Finish(), slam.Inertial(), slam.SaveMap()};
 }
 
 using Samples = std::vector<ImuSample>;
 constexpr auto kAsTheyAre = [](Samples samples) { return samples; };
+
+// Continues in a saved map without readings: what it knows of its world stays.
+void ExpectKnownAfterLoading(const SynthRecording& recording, const Ran& run) {
+  const SavedMap saved = DecodeMap(run.map);
+  const MapWorld* world = saved.map.WorldOf(saved.map.Maps().front());
+  ASSERT_NE(world, nullptr);
+  EXPECT_TRUE(world->meters);
+  EXPECT_EQ(world->scale_sigma, run.report.scale_sigma);
+  EXPECT_EQ(world->down, *run.report.gravity);
+  EXPECT_EQ(world->down_sigma, run.report.gravity_sigma);
+  SlamSettings settings;
+  settings.ApplyProfile("phone");
+  Slam slam(recording.camera(), settings);
+  slam.Load(saved);
+  EXPECT_EQ(*slam.Snapshot().WorldOf(world->map), *world);
+  EXPECT_EQ(slam.SaveMap(), run.map);
+}
 
 TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
   const SynthRecording recording(Room(300));
@@ -81,6 +100,7 @@ TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
   const ImuModel& sensor = recording.imu()->truth();
   EXPECT_LT(RotationAngle(run.report.model.T_camera_imu, sensor.T_camera_imu), 0.02);
   EXPECT_NEAR(run.report.model.time_offset, sensor.time_offset, 0.004);
+  ExpectKnownAfterLoading(recording, run);
 }
 
 TEST(Inertial, ReadingsOfAnotherMotionAreLeftOutAndChangeNothing) {

@@ -37,6 +37,13 @@ TEST(Upright, WithoutTurningTheCamerasOwnUpDecides) {
   EXPECT_NEAR(AngleFromUp(axes), 0.2 / kDegree, 1e-6);
 }
 
+TEST(Upright, IsAgainstGravityWhereThatIsKnown) {
+  const Eigen::Vector3d down = Eigen::Vector3d(0.3, 0.9, 0.1).normalized();
+  const Eigen::Matrix3d axes = UprightAxes({{Held(0.3, 0.2), Held(0.5, 0.4)}}, down);
+  EXPECT_LT((axes * down + Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+  EXPECT_NEAR(axes.determinant(), 1, 1e-12);
+}
+
 TEST(Upright, WithoutAPathIsTheWorldsOwnCamera) {
   const Eigen::Matrix3d axes = UprightAxes({});
   EXPECT_EQ(axes.row(0), Eigen::RowVector3d(1, 0, 0));

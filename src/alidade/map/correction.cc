@@ -13,6 +13,20 @@ struct Move {
   double growth = 1;
 };
 
+void KeepWorldOf(MapCommit& commit, MapId older, MapId younger,
+                 const Eigen::Matrix3d& R_older_younger) {
+  const MapWorld* gone = FindWorld(commit.state().worlds, younger);
+  const MapWorld* kept = FindWorld(commit.state().worlds, older);
+  if (gone && gone->KnowsDown() && !(kept && kept->KnowsDown())) {
+    MapWorld world = kept ? *kept : MapWorld{};
+    world.map = older;
+    world.down = (R_older_younger * gone->down).normalized();
+    world.down_sigma = gone->down_sigma;
+    commit.SetWorld(world);
+  }
+  commit.ForgetWorld(younger);
+}
+
 }  // namespace
 
 void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>& corrections) {
@@ -69,6 +83,7 @@ void CommitMerge(MapCommit& commit, MapId younger, MapId older, const Sim3& T_ol
     while (anchor.valid() && anchor > keyframe->id) anchor = commit.Find(anchor)->parent;
     keyframe->parent = anchor;
   }
+  KeepWorldOf(commit, older, younger, T_older_younger.R);
 }
 
 }  // namespace alidade

@@ -19,7 +19,9 @@ struct KeyFrameCorrection {
 void CommitCorrections(MapCommit& commit, const std::vector<KeyFrameCorrection>& corrections);
 
 // Moves the map `younger` into the world frame of `older`: p_older = T_older_younger * p_younger.
-// Its first keyframe becomes a descendant of `anchor`, a keyframe of `older`.
+// Its first keyframe becomes a descendant of `anchor`, a keyframe of `older`. What is known of the
+// world of `older` holds (MapWorld); the vertical is taken over from `younger` if only that knows
+// it.
 void CommitMerge(MapCommit& commit, MapId younger, MapId older, const Sim3& T_older_younger,
                  KeyFrameId anchor);
 

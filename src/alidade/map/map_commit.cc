@@ -175,6 +175,18 @@ void MapCommit::Remove(MapId id) {
   });
   for (KeyFrameId keyframe : keyframes) state_.keyframes.Erase(keyframe.value, state_.version);
   for (KeyFrameId keyframe : culled) state_.culled.Erase(keyframe.value, state_.version);
+  ForgetWorld(id);
+}
+
+void MapCommit::ForgetWorld(MapId map) {
+  std::erase_if(state_.worlds, [&](const MapWorld& world) { return world.map == map; });
+}
+
+void MapCommit::SetWorld(const MapWorld& world) {
+  ForgetWorld(world.map);
+  const auto after = std::find_if(state_.worlds.begin(), state_.worlds.end(),
+                                  [&](const MapWorld& other) { return other.map > world.map; });
+  state_.worlds.insert(after, world);
 }
 
 MapId MapCommit::Split(KeyFrameId first) {
@@ -211,6 +223,11 @@ MapId MapCommit::Split(KeyFrameId first) {
       std::erase(Edit(other)->loops, id);
     }
     RefreshCovisibility(id);
+  }
+  if (const MapWorld* world = FindWorld(state_.worlds, older)) {
+    MapWorld same = *world;
+    same.map = younger;
+    SetWorld(same);
   }
   CountCorrection();
   return younger;

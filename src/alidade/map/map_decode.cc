@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -90,6 +91,7 @@ class Decoder {
     state->next_keyframe = file_.next_keyframe();
     state->next_landmark = file_.next_landmark();
     state->next_map = NextMap();
+    ReadWorlds(*state);
     saved.map = MapSnapshot(std::move(state));
     return saved;
   }
@@ -149,6 +151,24 @@ class Decoder {
       Require(other && other != &keyframe && other->map == keyframe.map &&
                   std::binary_search(other->loops.begin(), other->loops.end(), keyframe.id),
               "a loop refers to a keyframe that does not exist");
+    }
+  }
+
+  void ReadWorlds(MapState& state) {
+    constexpr double kUnit = 1e-6;  // of the length of a direction
+    const auto is_sigma = [](double sigma) { return std::isfinite(sigma) && sigma >= 0; };
+    for (uint32_t i = 0; i < SizeOf(file_.worlds()); ++i) {
+      const fb::World& from = *file_.worlds()->Get(i);
+      MapWorld world{{from.map()}, from.meters(), from.scale_sigma(), {}, from.down_sigma()};
+      world.down = from.down() ? PointOf(*from.down()) : Eigen::Vector3d::Zero();
+      Require(world.map.value < NextMap(), "a world is of a map that never existed");
+      Require(state.worlds.empty() || state.worlds.back().map < world.map,
+              "worlds are out of order");
+      Require(is_sigma(world.scale_sigma) && is_sigma(world.down_sigma),
+              "the standard deviation of a world is not one");
+      Require(!from.down() || std::abs(world.down.norm() - 1) < kUnit,
+              "the vertical of a world is not a direction");
+      state.worlds.push_back(world);
     }
   }
 

@@ -78,6 +78,19 @@ Offset<fb::Camera> EncodeCamera(FlatBufferBuilder& builder, const Camera& camera
                           camera.readout[0], camera.readout[1], camera.focal_sigma);
 }
 
+// Of maps that exist.
+std::vector<Offset<fb::World>> EncodeWorlds(FlatBufferBuilder& builder, const MapSnapshot& map) {
+  std::vector<Offset<fb::World>> worlds;
+  for (MapId id : map.Maps()) {
+    const MapWorld* world = map.WorldOf(id);
+    if (!world) continue;
+    const fb::Vec3 down = Encode(world->down);
+    worlds.push_back(fb::CreateWorld(builder, id.value, world->meters, world->scale_sigma,
+                                     world->KnowsDown() ? &down : nullptr, world->down_sigma));
+  }
+  return worlds;
+}
+
 // Checks the FlatBuffers limit of 2 GB (about 25,000 keyframes with 1000 keypoints), since the
 // builder does not report an overflow.
 void CheckSize(const MapState& state) {
@@ -117,11 +130,12 @@ std::string EncodeMap(const SavedMap& saved) {
   }
   const auto nodes = EncodeList<fb::PlaceNode>(builder, saved.places.nodes);
   const auto places = fb::CreatePlaces(builder, nodes, saved.places.grown_at);
+  const auto worlds = EncodeWorlds(builder, saved.map);
   const fb::Checksum unknown(0);
-  const auto root =
-      fb::CreateMapDirect(builder, kMapVersion, &unknown, saved.sensor.c_str(),
-                          EncodeCamera(builder, saved.camera), &settings, state.next_keyframe,
-                          state.next_landmark, &keyframes, &landmarks, state.next_map, places);
+  const auto root = fb::CreateMapDirect(
+      builder, kMapVersion, &unknown, saved.sensor.c_str(), EncodeCamera(builder, saved.camera),
+      &settings, state.next_keyframe, state.next_landmark, &keyframes, &landmarks, state.next_map,
+      places, worlds.empty() ? nullptr : &worlds);
   fb::FinishMapBuffer(builder, root);
 
   uint8_t* bytes = builder.GetBufferPointer();

@@ -24,6 +24,12 @@ struct SavedMap {
   uint32_t version = 0;     // format version it was read from; EncodeMap() always writes the newest
 };
 
+// Whether lengths of one of its maps are meters: by its sensor, or by what is known of its world.
+inline bool InMeters(const SavedMap& saved, MapId map) {
+  const MapWorld* world = saved.map.WorldOf(map);
+  return saved.sensor != "mono" || (world && world->meters);
+}
+
 // Encodes live objects only: no records of culled keyframes or fused landmarks. The result is
 // decoded once as a check before it is returned. Throws Error (input) if it exceeds the format's
 // limit (2 GB), std::logic_error if the check fails (a bug).

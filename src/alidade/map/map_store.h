@@ -13,6 +13,7 @@
 #include "alidade/map/id_table.h"
 #include "alidade/map/keyframe.h"
 #include "alidade/map/landmark.h"
+#include "alidade/map/map_world.h"
 
 namespace ALIDADE_API alidade {
 
@@ -38,6 +39,7 @@ struct MapState {
   IdTable<Landmark> landmarks;
   IdTable<CulledKeyFrame> culled;
   std::vector<Forward> forwards;  // sorted by old id; kept until released, see MapStore
+  std::vector<MapWorld> worlds;   // of maps of which something is known, by map
   uint32_t next_keyframe = 0, next_landmark = 0, next_map = 0;  // next ids to issue
   uint64_t corrections = 0;  // number of loop closures, merges and full adjustments so far
   uint64_t version = 0;
@@ -63,6 +65,9 @@ class MapSnapshot {
   Se3 PoseOf(KeyFrameId id) const { return state_->PoseOf(id); }  // see MapState
   double ScaleOf(KeyFrameId id) const { return state_->ScaleOf(id); }
   MapId MapOf(KeyFrameId id) const { return state_->MapOf(id); }
+
+  // What is known of a map's world; null: nothing.
+  const MapWorld* WorldOf(MapId map) const { return FindWorld(state_->worlds, map); }
 
   std::vector<MapId> Maps() const;                       // maps with keyframes, in order of ids
   std::vector<KeyFrameId> KeyFramesOf(MapId map) const;  // live, in order of ids
@@ -127,6 +132,9 @@ class MapCommit {
   // `first` is the first keyframe of a map, nothing is changed and its map's id is returned; if it
   // does not exist, an invalid id.
   MapId Split(KeyFrameId first);
+  // Replaces what is known of the world of `world.map`.
+  void SetWorld(const MapWorld& world);
+  void ForgetWorld(MapId map);
   void AddLoop(KeyFrameId a, KeyFrameId b);
   void CountCorrection() { ++state_.corrections; }
 

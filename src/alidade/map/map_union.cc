@@ -86,6 +86,10 @@ MapUnion Unite(std::span<const MapSnapshot> maps) {
       const uint32_t id = moved->id.value;
       state->landmarks.Set(id, std::move(moved), /*version=*/0);
     });
+    for (MapWorld world : map.state().worlds) {
+      world.map = Moved(world.map, part.first_map);
+      state->worlds.push_back(world);
+    }
     all.parts.push_back(part);
   }
   all.map = MapSnapshot(std::move(state));

@@ -102,7 +102,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
           results.lost_spans,
           shape.points.size(),
           PathLength(results.maps.front().trajectory),
-          IsMetric(setup, results)};
+          IsMetric(setup, results.maps.front())};
 }
 
 }  // namespace alidade

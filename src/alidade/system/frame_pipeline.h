@@ -80,6 +80,7 @@ class FramePipeline {
   void UseCamera();
   void UseInertial();
   void Reckon(double time, const MapSnapshot& map);
+  void KeepWorld();
   void Observe(double time, const PresentFrame& now);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);

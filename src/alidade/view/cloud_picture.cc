@@ -99,7 +99,7 @@ Subject SubjectOf(const CloudScene& scene, const Eigen::Matrix3d& axes) {
 
 Eye LookAt(const CloudScene& scene, CloudView view, const CloudPictureSettings& settings) {
   Eye eye;
-  eye.axes = ViewAxes(UprightAxes(scene.path), view);
+  eye.axes = ViewAxes(UprightAxes(scene.path, scene.gravity), view);
   const double width = kFiner * settings.width, height = kFiner * settings.height;
   const double wide = std::tan(0.5 * settings.field_of_view * std::numbers::pi / 180);
   const double tall = wide * height / width;
@@ -209,7 +209,7 @@ cv::Vec3b Lifted(const std::array<uint8_t, 3>& rgb) {
 std::vector<Dot> Dots(const CloudScene& scene, const Eye& eye, cv::Size size, double most_sigma) {
   const Cloud& cloud = scene.cloud;
   const std::vector<Se3> witnesses = Witnesses(scene);
-  const Eigen::Vector3d p_eye = eye.Centre(), up = UprightAxes(scene.path).row(2);
+  const Eigen::Vector3d p_eye = eye.Centre(), up = UprightAxes(scene.path, scene.gravity).row(2);
   std::vector<Dot> dots;
   dots.reserve(cloud.points.size());
   for (size_t i = 0; i < cloud.points.size(); ++i) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <vector>
 
 #include "alidade/geometry/se3.h"
@@ -14,6 +15,8 @@ namespace alidade {
 struct CloudScene {
   Cloud cloud;
   std::vector<std::vector<Se3>> path;  // T_world_camera; one list per uninterrupted stretch
+  std::optional<Eigen::Vector3d> gravity =
+      {};  // unit vector in which things fall; nullopt: unknown
 };
 
 enum class CloudView {

@@ -7,7 +7,7 @@
 namespace alidade {
 
 std::string DrawPlace(const PlaceDrawing& place, PlaceView view) {
-  const PlacePage page({place.path, place.truth}, place.landmarks, place.path, view);
+  const PlacePage page({place.path, place.truth}, place.landmarks, place.path, view, place.gravity);
   std::string svg = OpenSvg(kPictureWidth, page.height(),
                             std::string("trajectory and landmarks from ") +
                                 (view == PlaceView::kAbove ? "above" : "the side"));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,12 @@ struct PlaceDrawing {
   std::vector<Eigen::Vector3d> keyframes, landmarks;
   std::string unit;      // of the scale bar, for example "m"
   DrawnPath truth = {};  // ground truth; empty: unknown
+  std::optional<Eigen::Vector3d> gravity =
+      {};  // unit vector in which things fall; nullopt: unknown
 };
 
-// Up is estimated from the camera path (UprightAxes()). Distant landmarks are omitted, and at most
-// a few thousand are drawn.
+// Up is against gravity, or estimated from the camera path (UprightAxes()). Distant landmarks are
+// omitted, and at most a few thousand are drawn.
 std::string DrawPlace(const PlaceDrawing& place, PlaceView view);
 
 // The state of each frame along time, as one bar.

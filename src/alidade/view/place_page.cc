@@ -23,8 +23,9 @@ std::array<double, 2> MiddleRange(std::vector<double> values) {
   return {rank(0.02), rank(0.98)};
 }
 
-Eigen::Matrix<double, 2, 3> AxesOf(const DrawnPath& path, PlaceView view) {
-  const Eigen::Matrix3d axes = UprightAxes(path);  // rows: right, forward, up
+Eigen::Matrix<double, 2, 3> AxesOf(const DrawnPath& path, PlaceView view,
+                                   const std::optional<Eigen::Vector3d>& gravity) {
+  const Eigen::Matrix3d axes = UprightAxes(path, gravity);  // rows: right, forward, up
   if (view == PlaceView::kAbove) return axes.topRows<2>();
   Eigen::Vector3d low = Eigen::Vector3d::Constant(INFINITY), high = -low;
   for (const auto& stretch : path) {
@@ -42,8 +43,8 @@ Eigen::Matrix<double, 2, 3> AxesOf(const DrawnPath& path, PlaceView view) {
 
 PlacePage::PlacePage(const std::vector<DrawnPath>& paths,
                      const std::vector<Eigen::Vector3d>& landmarks, const DrawnPath& upright,
-                     PlaceView view)
-    : axes_(AxesOf(upright, view)), height_(view == PlaceView::kAbove ? 620 : 320) {
+                     PlaceView view, const std::optional<Eigen::Vector3d>& gravity)
+    : axes_(AxesOf(upright, view, gravity)), height_(view == PlaceView::kAbove ? 620 : 320) {
   std::vector<Eigen::Vector2d> points;
   for (const DrawnPath& path : paths) {
     for (const auto& stretch : path) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,10 @@ enum class PlaceView {
 // except for distant outliers.
 class PlacePage {
  public:
-  // `upright`: the path from which up and forward are estimated.
+  // `upright`: the path from which forward is taken, and up is estimated unless `gravity` is known.
   PlacePage(const std::vector<DrawnPath>& paths, const std::vector<Eigen::Vector3d>& landmarks,
-            const DrawnPath& upright, PlaceView view);
+            const DrawnPath& upright, PlaceView view,
+            const std::optional<Eigen::Vector3d>& gravity = {});
 
   double height() const { return height_; }
   double scale() const { return scale_; }  // pixels per unit

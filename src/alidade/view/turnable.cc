@@ -59,7 +59,8 @@ struct Packed {
 };
 
 Packed Pack(const CloudScene& scene) {
-  const Eigen::Matrix3f axes = UprightAxes(scene.path).cast<float>();  // rows: right, forward, up
+  const Eigen::Matrix3f axes =
+      UprightAxes(scene.path, scene.gravity).cast<float>();  // rows: right, forward, up
   std::vector<Eigen::Vector3f> points, path;
   for (const Eigen::Vector3f& p : scene.cloud.points) points.emplace_back(axes * p);
   Packed packed;

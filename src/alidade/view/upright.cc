@@ -32,8 +32,9 @@ Eigen::Vector3d UpOf(const std::vector<std::vector<Se3>>& path) {
 
 }  // namespace
 
-Eigen::Matrix3d UprightAxes(const std::vector<std::vector<Se3>>& path) {
-  const Eigen::Vector3d up = UpOf(path);
+Eigen::Matrix3d UprightAxes(const std::vector<std::vector<Se3>>& path,
+                            const std::optional<Eigen::Vector3d>& gravity) {
+  const Eigen::Vector3d up = gravity ? Eigen::Vector3d(-*gravity) : UpOf(path);
   Eigen::Vector3d forward =
       path.empty() ? Eigen::Vector3d::UnitZ() : Eigen::Vector3d(path.front().front().R.col(2));
   forward -= up * up.dot(forward);

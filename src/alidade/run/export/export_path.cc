@@ -12,6 +12,7 @@
 #include "alidade/run/export/trajectory_export.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/sources/saved_map.h"
+#include "alidade/run/world/moved_map.h"
 #include "alidade/version.h"
 
 namespace alidade {
@@ -28,11 +29,27 @@ std::string InWords(const McapCounts& counts, const char* frames) {
          " landmarks, " + shape + megabytes;
 }
 
-// Returns the factor.
-double Scale(const std::string& path, const ExportSettings& settings, SavedMap& saved) {
-  const double scale = ScaleFor(path, saved, settings);
-  if (settings.scale_by) ScaleMap(saved, PartFor(saved, settings), scale);
-  return scale;
+// How the map was moved.
+struct Move {
+  Sim3 T_now_then;
+  Sim3 T_now_written;  // from the world of the folder's trajectories
+};
+
+// Gives the map its unit, and makes it upright.
+Move MoveAsAsked(const std::string& path, const ExportSettings& settings, SavedMap& saved) {
+  Move move;
+  move.T_now_then.s = ScaleFor(path, saved, settings);
+  move.T_now_then.R = TurnFor(saved, settings);
+  move.T_now_written = move.T_now_then;
+  ExportSettings all = settings;  // rarely seen landmarks, too
+  all.min_observations = 1;
+  const MapPart part = PartFor(saved, all);
+  if (!move.T_now_then.R.isIdentity(0)) {
+    move.T_now_written.R *= WrittenTurnIn(saved, part, ResultFolderOf(path)).transpose();
+    MoveMap(saved, part, {1, move.T_now_then.R, Eigen::Vector3d::Zero()});
+  }
+  if (settings.scale_by) ScaleMap(saved, part, move.T_now_then.s);
+  return move;
 }
 
 std::string ExportToMcap(const std::string& path, const ExportSettings& settings,
@@ -50,7 +67,7 @@ std::string ExportToMcap(const std::string& path, const ExportSettings& settings
   }
   if (map) {
     SavedMap saved = ReadSavedMap(path);
-    Scale(path, settings, saved);
+    MoveAsAsked(path, settings, saved);
     return InWords(ExportMapToMcap(saved, PartFor(saved, settings), out, program), "keyframes");
   }
   return InWords(
@@ -75,13 +92,13 @@ std::string InWords(const TrainingSet& set) {
 }
 
 std::string ExportImages(const std::string& path, const SavedMap& saved,
-                         const ExportSettings& settings, double scale, const std::string& out,
+                         const ExportSettings& settings, const Move& move, const std::string& out,
                          const ExportProgress& progress) {
   const MapPart part = PartFor(saved, settings);
   if (part.keyframes.empty()) ThrowInput(path + ": the map is empty");
   ExportFolder folder(out);  // before the recording is read
   OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
-  recording.scale = scale;
+  recording.T_now_then = move.T_now_then;
   TrainingSettings training;
   training.choice = FrameChoiceNamed(settings.images);
   training.min_observations = settings.LeastObservations();
@@ -100,7 +117,37 @@ std::string ExportImages(const std::string& path, const SavedMap& saved,
   return InWords(set);
 }
 
+// "120 poses" with the world they are in.
+std::string Told(const std::string& what, const SavedMap& saved, const ExportSettings& settings) {
+  const std::string world = WorldInWords(saved, settings);
+  return world.empty() ? what : what + ", " + world;
+}
+
+// Of a map that was moved as asked.
+std::string WriteExport(const std::string& path, const SavedMap& saved,
+                        const ExportSettings& settings, const Move& move, const std::string& out,
+                        const ExportProgress& progress) {
+  if (settings.IsTrajectory())
+    return ExportTrajectory(path, saved, settings, move.T_now_written, out);
+  if (settings.colors) {
+    const MapPart part = PartFor(saved, settings);
+    OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
+    recording.T_now_then = move.T_now_then;
+    const Cloud cloud = ColoredCloud(saved, part, recording, progress);
+    WriteCloud(cloud, settings, out);
+    return std::to_string(cloud.points.size()) + " colored points";
+  }
+  if (settings.WithImages()) return ExportImages(path, saved, settings, move, out, progress);
+  return ExportMap(saved, settings, out);
+}
+
 }  // namespace
+
+std::string ExportSaved(SavedMap saved, const ExportSettings& settings, const std::string& out) {
+  settings.Check();
+  MoveAsAsked("", settings, saved);
+  return Told(ExportMap(saved, settings, out), saved, settings);
+}
 
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
                        const std::string& out, const ExportProgress& progress) {
@@ -112,18 +159,8 @@ std::string ExportPath(const std::string& path, const ExportSettings& settings,
   }
   CheckIsNoResult(out);
   SavedMap saved = ReadSavedMap(path);
-  const double scale = Scale(path, settings, saved);
-  if (settings.IsTrajectory()) return ExportTrajectory(path, saved, settings, scale, out);
-  if (settings.colors) {
-    const MapPart part = PartFor(saved, settings);
-    OwnRecording recording = OpenOwnRecording(path, saved, settings.source, settings.camera);
-    recording.scale = scale;
-    const Cloud cloud = ColoredCloud(saved, part, recording, progress);
-    WriteCloud(cloud, settings, out);
-    return std::to_string(cloud.points.size()) + " colored points";
-  }
-  if (settings.WithImages()) return ExportImages(path, saved, settings, scale, out, progress);
-  return ExportMap(saved, settings, out);
+  const Move move = MoveAsAsked(path, settings, saved);
+  return Told(WriteExport(path, saved, settings, move, out, progress), saved, settings);
 }
 
 }  // namespace alidade

@@ -16,4 +16,7 @@ namespace alidade {
 std::string ExportPath(const std::string& path, const ExportSettings& settings,
                        const std::string& out, const ExportProgress& progress = {});
 
+// As ExportMap(), of a map moved as `settings` say (scale_by, up). Throws Error.
+std::string ExportSaved(SavedMap saved, const ExportSettings& settings, const std::string& out);
+
 }  // namespace alidade

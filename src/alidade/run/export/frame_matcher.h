@@ -14,8 +14,8 @@ class FrameMatcher {
  public:
   // See PosedFrames. `saved` must outlive this object.
   FrameMatcher(const SavedMap& saved, const MapPart& part, const std::string& folder,
-               const Eigen::Matrix3d& R_camera_rectified, double scale)
-      : saved_(saved), poses_(saved, part, folder, R_camera_rectified, scale), check_(saved) {}
+               const Eigen::Matrix3d& R_camera_rectified, const Sim3& T_now_then)
+      : saved_(saved), poses_(saved, part, folder, R_camera_rectified, T_now_then), check_(saved) {}
 
   const PosedFrames& poses() const { return poses_; }
   // The keyframe that was made of this frame, or its pose in the trajectory; nullopt: it has none,

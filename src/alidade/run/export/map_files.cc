@@ -15,6 +15,8 @@
 #include "alidade/run/export/own_recording.h"
 #include "alidade/run/export/posed_frames.h"
 #include "alidade/run/export/trajectory_export.h"
+#include "alidade/run/world/moved_map.h"
+#include "alidade/run/world/trajectory_file_for.h"
 #include "alidade/version.h"
 
 namespace alidade {
@@ -74,9 +76,13 @@ Plan PlanOf(const ExportSettings& settings) {
     ThrowUsage("--format cannot be '" + settings.format + "': trajectories are text");
   Choice<bool>("--poses", settings.poses,
                {{"default", true}, {"frames", true}, {"keyframes", true}});
-  Choice<bool>("--up", settings.up, {{"map", true}, {"z", true}});
-  if (!trajectory && (settings.poses != "default" || settings.up != "map"))
-    ThrowUsage("--poses and --up are for --to tum, evo, kitti and euroc");
+  Choice<bool>("--up", settings.up,
+               {{"default", true}, {"map", true}, {"gravity", true}, {"z", true}});
+  if (!trajectory && settings.poses != "default")
+    ThrowUsage("--poses is for --to tum, evo, kitti and euroc");
+  if (!trajectory && settings.up == "z") ThrowUsage("--up z is for --to tum, evo, kitti and euroc");
+  if (settings.up == "gravity" && (target == Target::kMap || target == Target::kMcap))
+    ThrowUsage("--up gravity is not for --to map and mcap, which keep the world of the map");
   const bool model = target == Target::kColmap || target == Target::kGsplat;
   if (!model && form == Form::kBoth) {
     ThrowUsage("--format both is for --to colmap, whose model is a folder");
@@ -149,6 +155,34 @@ double ScaleFor(const std::string& path, const SavedMap& saved, const ExportSett
   const std::string file = TrajectoryFileFor(saved, part, ResultFolderOf(path));
   return MetersPerUnit(saved, part, file.empty() ? Trajectory{} : ReadTrajectory(file),
                        *settings.scale_by);
+}
+
+Eigen::Matrix3d TurnFor(const SavedMap& saved, const ExportSettings& settings) {
+  const Target target = PlanOf(settings).target;
+  const bool keeps = target == Target::kMap || target == Target::kMcap;
+  const bool asked = settings.up == "gravity";
+  if (keeps || (settings.up != "default" && !asked)) return Eigen::Matrix3d::Identity();
+  const MapWorld world = WorldOf(saved, PartOf(saved, settings.part));
+  if (world.KnowsDown()) return Upright(world.down, /*y_down=*/IsFolderTarget(target));
+  if (asked) {
+    ThrowUsage(
+        "--up gravity: the map does not know gravity. It does after a run with the readings of an "
+        "inertial sensor (--imu), and after `alidade georeference`");
+  }
+  return Eigen::Matrix3d::Identity();
+}
+
+std::string WorldInWords(const SavedMap& saved, const ExportSettings& settings) {
+  const Target target = PlanOf(settings).target;
+  const MapWorld world = WorldOf(saved, PartOf(saved, settings.part));
+  std::string words = settings.scale_by || InMeters(saved, world.map) ? "in meters" : "";
+  const bool keeps = target == Target::kMap || target == Target::kMcap;
+  const bool by_gravity = settings.up == "default" || settings.up == "gravity";
+  if (!keeps && (settings.up == "z" || (by_gravity && world.KnowsDown())))
+    words += std::string(words.empty() ? "" : ", ") +
+             (target == Target::kNerfstudio || !IsFolderTarget(target) ? "z up" : "y down") +
+             (settings.up == "z" ? " by the camera's upright axis" : " by gravity");
+  return words;
 }
 
 std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings) {

@@ -29,7 +29,10 @@ struct ExportSettings {
   // Of trajectories: frames, keyframes, or default: frames of a result folder, but keyframes for
   // tum.
   std::string poses = "default";
-  std::string up = "map";  // z: the world is turned so that z is up (trajectory_export.h)
+  // Which way is up. map: as in the map; gravity: z (images and models: -y, as their readers
+  // expect) is up by the map's gravity; z: by the mean upright axis of the camera (trajectories,
+  // trajectory_export.h); default: gravity if the map knows it, but map for --to map and mcap.
+  std::string up = "default";
   // Of ply and pcd: colors of the recording's images.
   bool colors = false;
   std::optional<KnownDistance> scale_by;      // of maps of one camera: lengths are then meters
@@ -47,6 +50,13 @@ MapPart PartFor(const SavedMap& saved, const ExportSettings& settings);
 
 // Meters per map unit by scale_by; 1 without it. `path`: of the map or its result folder.
 double ScaleFor(const std::string& path, const SavedMap& saved, const ExportSettings& settings);
+
+// Rotation to the upright world by `up`; identity if it stays. Throws Error (usage) if `up` is
+// gravity and the map does not know it.
+Eigen::Matrix3d TurnFor(const SavedMap& saved, const ExportSettings& settings);
+
+// "in meters, z up", for what was written; empty: nothing is known.
+std::string WorldInWords(const SavedMap& saved, const ExportSettings& settings);
 
 // The files of a COLMAP model in the form that --format names.
 std::vector<ColmapFile> EncodeColmap(const ColmapModel& model, const ExportSettings& settings);

@@ -6,7 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/text.h"
-#include "alidade/map/correction.h"
+#include "alidade/run/world/moved_map.h"
 
 namespace alidade {
 namespace {
@@ -89,19 +89,11 @@ double MetersPerUnit(const SavedMap& saved, const MapPart& part, const Trajector
 }
 
 void ScaleMap(SavedMap& saved, const MapPart& part, double factor) {
-  std::vector<KeyFrameCorrection> scaled;
-  for (KeyFrameId id : part.keyframes) {
-    Se3 T_camera_world = saved.map.Find(id)->T_camera_world;
-    T_camera_world.t *= factor;
-    scaled.push_back({id, T_camera_world, factor});
-  }
-  MapStore store;
-  store.Restore(saved.map);
-  saved.map = store.Commit([&](MapCommit& commit) { CommitCorrections(commit, scaled); });
-}
-
-void ScaleTrajectory(Trajectory& trajectory, double factor) {
-  for (StampedPose& pose : trajectory) pose.T_world_camera.t *= factor;
+  Sim3 scaling;
+  scaling.s = factor;
+  MapWorld known;
+  known.meters = true;
+  MoveMap(saved, part, scaling, known);
 }
 
 }  // namespace alidade

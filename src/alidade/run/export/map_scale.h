@@ -23,8 +23,8 @@ struct KnownDistance {
 double MetersPerUnit(const SavedMap& saved, const MapPart& part, const Trajectory& trajectory,
                      const KnownDistance& known);
 
-// Multiplies all lengths of one part of a map: poses, landmarks, semi-dense depth.
+// Multiplies all lengths of one part of a map: poses, landmarks, semi-dense depth. They are meters
+// then (MapWorld).
 void ScaleMap(SavedMap& saved, const MapPart& part, double factor);
-void ScaleTrajectory(Trajectory& trajectory, double factor);
 
 }  // namespace alidade

@@ -18,8 +18,8 @@ struct OwnRecording {
   std::string folder;  // of the result; empty: the map lies alone
   std::unique_ptr<FrameSource> source;
   std::vector<std::string>
-      image_files;   // by SourceFrame::number; empty: not of files (videos, bags)
-  double scale = 1;  // by which the map was multiplied (ScaleMap()), unlike the folder's files
+      image_files;  // by SourceFrame::number; empty: not of files (videos, bags)
+  Sim3 T_now_then;  // by which the map was moved since it was read, unlike the folder's files
 };
 
 // The folder of the run that wrote the map `path`, or of the result folder `path`; empty: none.

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/map/view.h"
-#include "alidade/run/export/map_scale.h"
-#include "alidade/run/folder/own_files.h"
+#include "alidade/run/world/moved_map.h"
+#include "alidade/run/world/trajectory_file_for.h"
 
 namespace alidade {
 namespace {
@@ -31,31 +30,8 @@ std::vector<PosedFrame> KeyFramesByTime(const SavedMap& saved, const MapPart& pa
 
 }  // namespace
 
-std::string TrajectoryFileFor(const SavedMap& saved, const MapPart& part,
-                              const std::string& folder) {
-  const std::vector<PosedFrame> keyframes = KeyFramesByTime(saved, part);
-  std::string best;
-  size_t most = 0;
-  for (size_t number = 0;; ++number) {
-    const std::string list = folder + "/" + NumberedFile("keyframes", number),
-                      file = folder + "/" + NumberedFile("trajectory", number);
-    if (folder.empty() || !IsFile(list) || !IsFile(file)) return best;
-    const Trajectory listed = ReadTrajectory(list);
-    size_t found = 0;
-    for (const StampedPose& pose : listed) {
-      const auto at = std::lower_bound(keyframes.begin(), keyframes.end(),
-                                       PosedFrame{pose.time - kSameMoment, {}, {}}, Earlier);
-      if (at != keyframes.end() && at->time <= pose.time + kSameMoment) ++found;
-    }
-    if (found > most) {
-      most = found;
-      best = file;
-    }
-  }
-}
-
 PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::string& folder,
-                         const Eigen::Matrix3d& R_camera_rectified, double scale) {
+                         const Eigen::Matrix3d& R_camera_rectified, const Sim3& T_now_then) {
   all_ = KeyFramesByTime(saved, part);
   for (KeyFrameId id : part.keyframes) {
     const KeyFrame& keyframe = *saved.map.Find(id);
@@ -66,11 +42,9 @@ PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::
   std::sort(inverse_depths_.begin(), inverse_depths_.end());
   if (const std::string file = TrajectoryFileFor(saved, part, folder); !file.empty()) {
     const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
-    Trajectory trajectory = ReadTrajectory(file);
-    ScaleTrajectory(trajectory, scale);
-    for (const StampedPose& pose : trajectory) {
+    for (const StampedPose& pose : ReadTrajectory(file)) {
       const Se3 T_world_camera = turn.Inverse() * pose.T_world_camera * turn;
-      trajectory_.push_back({pose.time, T_world_camera.Inverse(), {}});
+      trajectory_.push_back({pose.time, Moved(T_world_camera, T_now_then).Inverse(), {}});
     }
     std::stable_sort(trajectory_.begin(), trajectory_.end(), Earlier);
     all_.insert(all_.end(), trajectory_.begin(), trajectory_.end());

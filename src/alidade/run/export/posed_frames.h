@@ -9,11 +9,6 @@
 
 namespace alidade {
 
-// The file in a result folder with the trajectory of a map: the one beside the list of keyframes
-// that has most of the map's. Empty: none.
-std::string TrajectoryFileFor(const SavedMap& saved, const MapPart& part,
-                              const std::string& folder);
-
 struct PosedFrame {
   double time = 0;      // seconds
   Se3 T_camera_world;   // of the map
@@ -24,9 +19,9 @@ class PosedFrames {
  public:
   // `folder`: of the result, whose trajectory of the map is read; empty, or without one: keyframes
   // only. `R_camera_rectified`: SourceInfo's, which turns the map's world into that of
-  // trajectories. `scale`: by which the trajectory is multiplied.
+  // trajectories. `T_now_then`: by which the map was moved since its trajectory was written.
   PosedFrames(const SavedMap& saved, const MapPart& part, const std::string& folder,
-              const Eigen::Matrix3d& R_camera_rectified, double scale);
+              const Eigen::Matrix3d& R_camera_rectified, const Sim3& T_now_then);
 
   bool has_trajectory() const { return !trajectory_.empty(); }
   size_t keyframes() const { return keyframes_; }

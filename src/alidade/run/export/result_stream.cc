@@ -7,7 +7,9 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/export/posed_frames.h"
-#include "alidade/run/export/written_turn.h"
+#include "alidade/run/world/moved_map.h"
+#include "alidade/run/world/trajectory_file_for.h"
+#include "alidade/run/world/written_turn.h"
 #include "alidade/stream/stream_encoder.h"
 #include "alidade/version.h"
 
@@ -76,7 +78,9 @@ ResultStream StreamOfResult(const SavedMap& saved, const std::string& path) {
   source.program = "alidade " ALIDADE_VERSION;
   source.source = path;
   source.sensor = saved.sensor;
-  source.unit = saved.sensor == NameOf(Sensor::kMono) ? "map units" : "m";
+  const std::vector<MapPart> all = PartsOf(saved.map);
+  source.unit =
+      InMeters(saved, all.empty() ? MapId{} : WorldOf(saved, all.front()).map) ? "m" : "map units";
   source.camera = saved.camera;
   StreamEncoder encoder(source);
   ResultStream result;

@@ -47,7 +47,7 @@ class TrainingWriter {
         settings_(settings),
         folder_(folder),
         info_(recording.source->Info()),
-        frames_(saved, part, recording.folder, info_.R_camera_rectified, recording.scale),
+        frames_(saved, part, recording.folder, info_.R_camera_rectified, recording.T_now_then),
         pinhole_(saved.camera, {info_.camera.width, info_.camera.height},
                  {settings.centered, frames_.poses().MarginFor(saved.camera)}),
         names_(recording),
@@ -204,7 +204,7 @@ TrainingSet WriteTrainingImages(const SavedMap& saved, const MapPart& part, OwnR
 Cloud ColoredCloud(const SavedMap& saved, const MapPart& part, OwnRecording& recording,
                    const ExportProgress& progress) {
   const SourceInfo info = recording.source->Info();
-  FrameMatcher frames(saved, part, recording.folder, info.R_camera_rectified, recording.scale);
+  FrameMatcher frames(saved, part, recording.folder, info.R_camera_rectified, recording.T_now_then);
   LandmarkColors colors(saved, part, {info.camera.width, info.camera.height});
   ForEachFrame(recording, progress, [&](const SourceFrame& frame) {
     const std::optional<PosedFrame> posed = frames.Match(frame);

@@ -10,9 +10,10 @@
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
 #include "alidade/run/export/map_models.h"
-#include "alidade/run/export/map_scale.h"
 #include "alidade/run/export/own_recording.h"
 #include "alidade/run/export/posed_frames.h"
+#include "alidade/run/world/moved_map.h"
+#include "alidade/run/world/trajectory_file_for.h"
 
 namespace alidade {
 namespace {
@@ -92,7 +93,8 @@ std::string FormatTrajectory(Trajectory trajectory, const ExportSettings& settin
 }
 
 std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
-                             const ExportSettings& settings, double scale, const std::string& out) {
+                             const ExportSettings& settings, const Sim3& T_now_written,
+                             const std::string& out) {
   const MapPart part = PartFor(saved, settings);
   const std::string file = TrajectoryFileFor(saved, part, ResultFolderOf(path));
   const bool frames = settings.poses == "frames" ||
@@ -100,7 +102,7 @@ std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
   if (frames && file.empty())
     ThrowUsage("--poses frames needs the result folder of the run, with its trajectory");
   Trajectory trajectory = frames ? ReadTrajectory(file) : TrajectoryOf(saved, part);
-  if (frames) ScaleTrajectory(trajectory, scale);
+  if (frames) trajectory = Moved(std::move(trajectory), T_now_written);
   WriteExportFile(out, FormatTrajectory(trajectory, settings));
   return std::to_string(trajectory.size()) + " poses" + (frames ? "" : " of keyframes");
 }

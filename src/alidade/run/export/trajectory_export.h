@@ -14,8 +14,8 @@ std::string FormatKittiTrajectory(const Trajectory& trajectory);
 std::string FormatEurocTrajectory(const Trajectory& trajectory);
 
 // The trajectory in a world whose z axis is the mean of the camera's upright axis (-y), as an
-// estimate of the vertical; gravity is not measured. Throws Error (input) if these axes have no
-// common direction (their mean is shorter than 0.5).
+// estimate of the vertical where gravity was not measured. Throws Error (input) if these axes have
+// no common direction (their mean is shorter than 0.5).
 Trajectory WithZUp(Trajectory trajectory);
 
 // As --to and --up say.
@@ -23,9 +23,10 @@ std::string FormatTrajectory(Trajectory trajectory, const ExportSettings& settin
 
 // `path`: of a map or a result folder. Writes tum, evo, kitti or euroc and returns a description.
 // `settings.poses`: "frames" of the result's trajectory of that part, "keyframes" of the map, or
-// "default": frames where they are, but keyframes for tum. `scale`: ScaleFor(), by which `saved`
-// was multiplied already. Throws Error.
+// "default": frames where they are, but keyframes for tum. `T_now_written`: from the world of the
+// trajectory files to that of `saved`, which was moved since. Throws Error.
 std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
-                             const ExportSettings& settings, double scale, const std::string& out);
+                             const ExportSettings& settings, const Sim3& T_now_written,
+                             const std::string& out);
 
 }  // namespace alidade

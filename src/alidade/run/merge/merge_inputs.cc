@@ -9,9 +9,9 @@
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
 #include "alidade/io/files/trajectory_file.h"
-#include "alidade/run/export/written_turn.h"
 #include "alidade/run/folder/output_folder.h"
 #include "alidade/run/sources/saved_map.h"
+#include "alidade/run/world/written_turn.h"
 
 namespace alidade {
 namespace {

@@ -25,9 +25,12 @@ constexpr char kOnMapUnits[] =
     "median depth of the first keyframe. For meters, tell a distance that you know: alidade export "
     "with --scale-by.";
 
+const char* UnitOf(bool meters) { return meters ? "m" : "map units"; }
+
 PlaceDrawing PlaceOf(const RunResults& results, size_t number, const std::string& unit) {
   PlaceDrawing place;
   place.unit = unit;
+  place.gravity = results.maps[number].gravity;
   place.path = PathOf(results, number);
   const MapResults& map = results.maps[number];
   for (const StampedPose& pose : map.keyframes) {
@@ -135,8 +138,8 @@ void AddErrors(const RunSetup& setup, const RunLog& log, const RunResults& resul
   if (!log.first_time) return;
   const Trajectory truth = log.truth.empty() ? TruthBeside(setup.source_path) : log.truth;
   if (truth.empty()) return;
-  const bool mono = !IsMetric(setup, results);
   for (size_t i = 0; i < results.maps.size(); ++i) {
+    const bool mono = !IsMetric(setup, results.maps[i]);
     const Trajectory& estimate = results.maps[i].trajectory;
     if (estimate.empty()) continue;
     std::string problem;
@@ -159,12 +162,12 @@ void AddErrors(const RunSetup& setup, const RunLog& log, const RunResults& resul
   report.seconds = *log.last_time - *log.first_time;
 }
 
-std::vector<ReportMap> MapsOf(const RunLog& log, const RunResults& results,
-                              const std::string& unit) {
+std::vector<ReportMap> MapsOf(const RunSetup& setup, const RunLog& log, const RunResults& results) {
   std::vector<ReportMap> maps;
   const double start = log.first_time.value_or(0);
   for (size_t i = 0; i < results.maps.size(); ++i) {
     const MapResults& map = results.maps[i];
+    const std::string unit = UnitOf(IsMetric(setup, map));
     std::string caption = std::to_string(map.trajectory.size()) + " frames";
     if (!map.trajectory.empty()) {
       caption += Format(" from %.2f s", map.trajectory.front().time - start) +
@@ -222,8 +225,8 @@ std::vector<ReportStep> NextSteps(const SlamSettings& settings, const RunSetup& 
 std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
                        const RunResults& results, const std::string& folder,
                        ReportPictures pictures) {
-  const bool metric = IsMetric(setup, results);
-  const std::string unit = metric ? "m" : "map units";
+  const bool metric = IsMetric(setup, results.maps.front());
+  const std::string unit = UnitOf(metric);
   RunReport report;
   report.title = setup.source.name;
   report.failure = FailureOf(log, results);
@@ -231,7 +234,7 @@ std::string ReportHtml(const RunSetup& setup, const CameraFinding& camera, const
   if (!metric) report.on_units = kOnMapUnits;
   report.next = NextSteps(setup.settings.slam, setup, results, folder);
   report.facts = FactsOf(setup, camera, log, results, unit);
-  report.maps = MapsOf(log, results, unit);
+  report.maps = MapsOf(setup, log, results);
   report.cloud = std::move(pictures.shape.scene);
   report.shape = std::move(pictures.shape.pictures);
   if (!report.shape.empty()) {

@@ -48,7 +48,7 @@ ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, cons
   CloudScene scene = {voxel > 0 && voxel <= pixel
                           ? cloud
                           : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
-                      PathOf(results)};
+                      PathOf(results), results.maps.front().gravity};
   constexpr int kCount = static_cast<int>(std::size(kViews));
   std::vector<cv::Mat> drawn(kCount);
   ParallelFor(kCount,
@@ -61,7 +61,7 @@ ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, cons
 }
 
 ShapeViews LandmarkViews(const RunResults& results, Cloud landmarks) {
-  ShapeViews views{{std::move(landmarks), PathOf(results)}, {}};
+  ShapeViews views{{std::move(landmarks), PathOf(results), results.maps.front().gravity}, {}};
   const cv::Mat drawn = DrawCloud(views.scene, kViews[0].first);
   views.pictures = {{std::string("landmarks ") + kViews[0].second, "image/jpeg",
                      EncodeJpeg(drawn, kJpegQuality)}};

@@ -157,8 +157,8 @@ ordered_json MapFiles(const RunResults& results) {
 
 }  // namespace
 
-bool IsMetric(const RunSetup& setup, const RunResults& results) {
-  return setup.settings.slam.sensor != Sensor::kMono || results.inertial.metric;
+bool IsMetric(const RunSetup& setup, const MapResults& map) {
+  return setup.settings.slam.sensor != Sensor::kMono || map.meters;
 }
 
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,
@@ -190,7 +190,8 @@ std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const 
       {"left_out", results.counts.left_out},
       {"gravity", GravityJson(results.inertial)},
       {"scale",
-       {{"known", IsMetric(setup, results)}, {"sigma", SigmaJson(results.inertial.scale_sigma)}}},
+       {{"known", IsMetric(setup, results.maps.front())},
+        {"sigma", SigmaJson(results.inertial.scale_sigma)}}},
       {"imu", ImuJson(results.inertial)},
       {"maps", results.map.Maps().size()},
       {"map_files", MapFiles(results)},

@@ -19,8 +19,8 @@ struct ReportPictures {
   std::vector<ReportKeyframe> keyframes;
 };
 
-// Whether lengths of the largest map are meters.
-bool IsMetric(const RunSetup& setup, const RunResults& results);
+// Whether lengths of a map are meters.
+bool IsMetric(const RunSetup& setup, const MapResults& map);
 
 // Both as the bytes of the file. Fields and units: docs/reference/stats.md.
 std::string StatsJson(const RunSetup& setup, const CameraFinding& camera, const RunLog& log,

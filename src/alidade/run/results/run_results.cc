@@ -24,6 +24,15 @@ std::vector<std::array<double, 2>> LostSpans(const std::vector<FramePose>& frame
   return spans;
 }
 
+// Of that map instead of the newest.
+void TellOf(const MapResults& map, const MapSnapshot& maps, InertialReport& inertial) {
+  const MapWorld* world = maps.WorldOf(map.id);
+  inertial.metric = map.meters;
+  inertial.gravity = map.gravity;
+  inertial.scale_sigma = world ? world->scale_sigma : 0;
+  inertial.gravity_sigma = world ? world->down_sigma : 0;
+}
+
 }  // namespace
 
 Se3 Mounted(const Se3& T_world_camera, const Eigen::Matrix3d& R_camera_rectified) {
@@ -42,8 +51,11 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
   results.tracked = results.counts.let_go.tracked;
   results.lost_spans = LostSpans(results.frames);
   const Eigen::Matrix3d& turn = results.R_camera_rectified = R_camera_rectified;
-  for (MapId id : results.map.Maps()) results.maps.push_back({id, {}, {}, {}, {}});
-  if (results.maps.empty()) results.maps.push_back({});
+  for (MapId id : results.map.Maps()) {
+    results.maps.emplace_back();
+    results.maps.back().id = id;
+  }
+  if (results.maps.empty()) results.maps.emplace_back();
   const auto in = [&](MapId id) -> MapResults& {
     return *std::find_if(results.maps.begin(), results.maps.end(),
                          [&](const MapResults& map) { return map.id == id; });
@@ -72,16 +84,14 @@ RunResults ResultsOf(const Slam& slam, const RunLog& log,
                    [](const MapResults& a, const MapResults& b) {
                      return a.trajectory.size() > b.trajectory.size();
                    });
-  InertialReport& inertial = results.inertial = slam.Inertial();
-  const MapId newest =
-      std::max_element(results.maps.begin(), results.maps.end(),
-                       [](const MapResults& a, const MapResults& b) { return a.id < b.id; })
-          ->id;
-  if (results.maps.front().id != newest) {
-    inertial.metric = false;
-    inertial.gravity.reset();
+  for (MapResults& map : results.maps) {
+    const MapWorld* world = results.map.WorldOf(map.id);
+    if (!world) continue;
+    map.meters = world->meters;
+    if (world->KnowsDown()) map.gravity = turn * world->down;
   }
-  if (inertial.gravity) inertial.gravity = turn * *inertial.gravity;
+  results.inertial = slam.Inertial();
+  TellOf(results.maps.front(), results.map, results.inertial);
   return results;
 }
 

@@ -19,6 +19,8 @@ struct MapResults {
   MapId id;
   Trajectory trajectory, live, keyframes;
   std::vector<KeyFrameId> keyframe_ids;  // one for each of `keyframes`
+  bool meters = false;  // lengths are meters although the sensor alone does not tell (MapWorld)
+  std::optional<Eigen::Vector3d> gravity;  // unit vector in `world`; nullopt: unknown
 };
 
 struct RunResults {
@@ -27,8 +29,7 @@ struct RunResults {
   StageTimes times;
   SlamCounts counts;
   SemiDenseReport semidense;
-  // What is told of the largest map; the gravity is turned into its written world. Without scale
-  // and gravity where another map is the newest.
+  // What is told of the largest map; the gravity is turned into its written world.
   InertialReport inertial;
   int tracked = 0;  // frames, in all maps
 

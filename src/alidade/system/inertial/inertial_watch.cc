@@ -45,6 +45,8 @@ constexpr double kGyroHolds = 1e-3, kAccelHolds = 0.03;                        /
 // Poses of a map have errors in common that their covariance does not contain.
 constexpr double kLeastRotation = 7e-4;    // radians
 constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
+// Relative standard deviation of the lengths of a loaded map in meters, at least: drift.
+constexpr double kLeastScale = 2e-3;
 
 }  // namespace
 
@@ -80,6 +82,7 @@ void InertialWatch::SetImu(const ImuModel& model) {
 void InertialWatch::ForgetMap() {
   fit_.reset();
   reckoner_.Forget();
+  known_scale_ = 0;
   report_.metric = false;
   report_.gravity.reset();
   report_.scale_sigma = report_.gravity_sigma = 0;
@@ -129,7 +132,8 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
   const bool metric = report_.metric;
   map_ = map;
   if (merged) {
-    fit_.reset();  // in the axes of the map that is gone
+    ForgetMap();  // it was in the axes of the map that is gone
+    Recall(snapshot);
     return;
   }
   former_.reset();
@@ -144,6 +148,21 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
   placements_.clear();
   if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
   ForgetMap();
+  Recall(snapshot);
+}
+
+// What is known of the map from before the camera came into it.
+void InertialWatch::Recall(const MapSnapshot& map) {
+  const MapWorld* world = map.WorldOf(map_);
+  if (!world) return;
+  if (world->meters) {
+    known_scale_ = std::max(world->scale_sigma, kLeastScale);
+    report_.metric = true;
+    report_.missing.clear();
+  }
+  report_.scale_sigma = world->scale_sigma;
+  if (world->KnowsDown()) report_.gravity = world->down;
+  report_.gravity_sigma = world->down_sigma;
 }
 
 void InertialWatch::Placed(double time, const Anchor& anchor, const Matrix6d& covariance,
@@ -236,6 +255,7 @@ std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
   question.model = calibration_.model;
   question.priors = calibration_.priors;
   if (sensor_ != Sensor::kMono) question.priors.scale = 0.01;
+  if (sensor_ == Sensor::kMono && known_scale_ > 0) question.priors.scale = known_scale_;
   question.start = fit_;
   question.map = map_;
   question.reference = placements_.back().anchor.keyframe;
@@ -367,6 +387,12 @@ std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
   const double sigma = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
   if (!(sigma < kOfUse * MedianDepth(map, *reference).value_or(1))) return std::nullopt;
   return Reckoned{pose, reference->map};
+}
+
+std::optional<MapWorld> InertialWatch::World() const {
+  if (!given() || !report_.gravity || !map_.valid()) return std::nullopt;
+  return MapWorld{map_, report_.metric, report_.scale_sigma, *report_.gravity,
+                  report_.gravity_sigma};
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {

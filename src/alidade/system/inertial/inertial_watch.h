@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "alidade/inertial/imu_stream.h"
@@ -15,6 +16,7 @@
 #include "alidade/inertial/rotation_match.h"
 #include "alidade/io/frame_source.h"
 #include "alidade/map/anchor.h"
+#include "alidade/map/map_world.h"
 #include "alidade/system/inertial/dead_reckoner.h"
 #include "alidade/system/types.h"
 
@@ -100,6 +102,8 @@ class InertialWatch {
   std::optional<Eigen::Matrix3d> TurnBetween(double from, double to) const;
 
   const InertialReport& report() const { return report_; }
+  // What it tells of the world of the map that the camera is in; nullopt: nothing yet.
+  std::optional<MapWorld> World() const;
 
  private:
   struct Placement {
@@ -119,6 +123,7 @@ class InertialWatch {
   double DistanceIn(const MapSnapshot& map) const;
   void FollowPoses(const MapSnapshot& map);
   void Enter(MapId map, double time, const MapSnapshot& snapshot);
+  void Recall(const MapSnapshot& map);
   static Calibration LearnedFrom(const InertialFit& fit);
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
   std::span<const ImuSample> SamplesFrom(double time) const;
@@ -132,6 +137,7 @@ class InertialWatch {
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
   MapId map_;                       // that placements_ are in
+  double known_scale_ = 0;          // sigma of its scale when the camera entered it; 0: unknown
   DeadReckoner reckoner_;           // in map_, once its lengths are meters
   // Where dead reckoning from the map before map_ leads at the first pose in map_.
   std::optional<DeadReckoner> former_;

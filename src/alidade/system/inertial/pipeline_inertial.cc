@@ -1,4 +1,5 @@
 // What FramePipeline does with the readings of an inertial sensor.
+#include <optional>
 #include <utility>
 
 #include "alidade/system/frame_pipeline.h"
@@ -20,7 +21,19 @@ void FramePipeline::UseInertial() {
     const auto& [younger, older, T_older_younger, anchor] = *changes.join;
     workers_.Join(younger, older, T_older_younger, anchor);
   }
+  KeepWorld();
   inertial_shown_.Set(inertial_.report());
+}
+
+// What is known of the map's world is kept in the map, and saved with it. A map that is only
+// localized in keeps what it knew.
+void FramePipeline::KeepWorld() {
+  const std::optional<MapWorld> world = inertial_.World();
+  if (!world) return;
+  const MapSnapshot map = workers_.map().Snapshot();
+  const MapWorld* kept = map.WorldOf(world->map);
+  if (kept && (*kept == *world || settings_.localize)) return;
+  workers_.map().Commit([&](MapCommit& commit) { commit.SetWorld(*world); });
 }
 
 // A pose for the fit of what the inertial sensor tells, which runs beside the other work.

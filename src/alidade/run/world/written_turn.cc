@@ -1,4 +1,4 @@
-#include "alidade/run/export/written_turn.h"
+#include "alidade/run/world/written_turn.h"
 
 #include "alidade/geometry/alignment.h"
 
