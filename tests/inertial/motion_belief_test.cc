@@ -1,8 +1,9 @@
 // Dead reckoning against a motion in closed form: its errors are as large as its covariance says.
 #include "alidade/inertial/motion_belief.h"
 
-#include <Eigen/Cholesky>
 #include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
 
 #include "support/inertial_problem.h"
 
@@ -48,7 +49,8 @@ TEST(MotionBelief, ErrorsOfDeadReckoningAreAsLargeAsItSays) {
     for (int step = 0; step < 30; ++step) belief = belief.At(belief.time + 0.1, problem.samples);
     add(after_3, belief);
     TimedPose seen = fit.last.At(fit.last.time + 3, problem.samples).Camera(problem.samples);
-    EXPECT_LT((seen.T_world_camera.t - belief.Camera(problem.samples).T_world_camera.t).norm(), 0.02);
+    EXPECT_LT((seen.T_world_camera.t - belief.Camera(problem.samples).T_world_camera.t).norm(),
+              0.02);
     Random random(7 + run, 1);
     seen.T_world_camera = truth.CameraAt(belief.time);
     for (int k = 0; k < 3; ++k) seen.T_world_camera.t[k] += 0.01 * random.Gaussian();

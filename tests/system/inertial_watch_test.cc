@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "support/smooth_motion.h"
 
@@ -25,8 +26,10 @@ KeyFrameId AddMap(MapStore& maps) {
 struct Walk {
   explicit Walk(bool may_scale) : watch(Sensor::kMono, may_scale) {}
 
-  // Moves on for `seconds`; the unit of the map is `meters`, its axes are turned by `R_map_world`.
-  void Go(double seconds, KeyFrameId keyframe, double meters, const Eigen::Matrix3d& R_map_world) {
+  // Moves on for `seconds`, or until a map is joined to the one before; the unit of the map is
+  // `meters`, its axes are turned by `R_map_world`.
+  std::optional<InertialWatch::Join> Go(double seconds, KeyFrameId keyframe, double meters,
+                                        const Eigen::Matrix3d& R_map_world) {
     for (const double end = time + seconds; time < end; time += 0.05) {
       watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
       Se3 T_map_camera = SmoothMotion::At(time, {}).T_world_imu;
@@ -36,12 +39,24 @@ struct Walk {
       Matrix6d covariance = 1e-6 * Matrix6d::Identity();
       watch.Placed(time, AnchorTo(map.state(), keyframe, T_map_camera.Inverse()), covariance, map);
       if (auto question = watch.Ask(map)) watch.Answer(AnswerOf(*question));
-      if (const auto growth = watch.UseAnswer(map).growth) {
+      const InertialWatch::Changes changes = watch.UseAnswer(map);
+      if (changes.join) return changes.join;
+      if (const auto& growth = changes.growth) {
         // As Workers::Scale() does: keyframes and what is relative to them grow.
         scaled /= growth->factor;
         maps.Commit([&](MapCommit& commit) { commit.Edit(keyframe)->scale *= growth->factor; });
       }
     }
+    return std::nullopt;
+  }
+  // The camera sees nothing. Returns the pose by dead reckoning at the end.
+  std::optional<InertialWatch::Reckoned> GoBlind(double seconds) {
+    std::optional<InertialWatch::Reckoned> reckoned;
+    for (const double end = time + seconds; time < end; time += 0.05) {
+      watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
+      reckoned = watch.DeadReckoned(time, maps.Snapshot());
+    }
+    return reckoned;
   }
 
   MapStore maps;
@@ -70,6 +85,7 @@ TEST(InertialWatch, BeginsAnewInTheNextMap) {
   walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
   ASSERT_TRUE(walk.watch.report().metric);
   walk.scaled = 1;
+  walk.time += 40;  // longer than dead reckoning holds
   const KeyFrameId next = AddMap(walk.maps);
   walk.Go(0.2, next, 0.3, kOther);
   EXPECT_FALSE(walk.watch.report().metric);
@@ -79,6 +95,44 @@ TEST(InertialWatch, BeginsAnewInTheNextMap) {
   ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
   EXPECT_NEAR(0.3 * walk.scaled, 1, 0.02);
   EXPECT_LT(AngleToGravity(walk, kOther), 0.01);
+}
+
+// Two maps that show nothing in common, with two seconds between them.
+TEST(InertialWatch, JoinsAMapToTheOneBeforeByTheMotionBetweenThem) {
+  Walk walk(true);
+  const KeyFrameId first = AddMap(walk.maps);
+  walk.Go(6, first, 2.5, kTilted);
+  const double first_unit = 2.5 * walk.scaled;
+  const auto reckoned = walk.GoBlind(2);
+  ASSERT_TRUE(reckoned);
+  const Se3 truth = SmoothMotion::At(reckoned->pose.time, {}).T_world_imu;
+  const Eigen::Vector3d there = kTilted * truth.t / first_unit;
+  const double sigma = std::sqrt(reckoned->pose.covariance.topLeftCorner<3, 3>().trace());
+  EXPECT_LT((reckoned->pose.T_world_camera.t - there).norm(), std::min(0.06, 4 * sigma));
+  EXPECT_LT(sigma, 0.12);
+
+  walk.scaled = 1;
+  const KeyFrameId second = AddMap(walk.maps);
+  const auto join = walk.Go(6, second, 0.3, kOther);
+  ASSERT_TRUE(join);
+  const MapSnapshot map = walk.maps.Snapshot();
+  EXPECT_EQ(join->older, map.MapOf(first));
+  EXPECT_EQ(join->younger, map.MapOf(second));
+  EXPECT_EQ(join->anchor, first);
+  EXPECT_NEAR(join->T_older_younger.s * first_unit / (0.3 * walk.scaled), 1, 0.02);
+  const Eigen::Matrix3d R = kTilted * kOther.transpose();
+  EXPECT_LT(RotationAngle(Se3{join->T_older_younger.R, {}}, Se3{R, {}}), 0.01);
+  EXPECT_LT(join->T_older_younger.t.norm() * first_unit, 0.06);  // both have the same origin
+  EXPECT_TRUE(walk.watch.report().metric);
+  EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, DoesNotJoinMapsAfterHalfAMinute) {
+  Walk walk(true);
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  EXPECT_FALSE(walk.GoBlind(40));
+  walk.scaled = 1;
+  EXPECT_FALSE(walk.Go(6, AddMap(walk.maps), 0.3, kOther));
 }
 
 TEST(InertialWatch, DoesNotCallAMapMetricThatItMustNotScale) {

@@ -50,8 +50,7 @@ ChainSystem::Solution ChainSystem::Solve(double damping) {
   const BorderMatrix by_common = factors.back().solve(links_.back().border);
   solution.last_covariance << factors.back().solve(StateMatrix::Identity()) +
                                   by_common * common_covariance * by_common.transpose(),
-      -by_common * common_covariance, -common_covariance * by_common.transpose(),
-      common_covariance;
+      -by_common * common_covariance, -common_covariance * by_common.transpose(), common_covariance;
 
   // Backward.
   solution.states.resize(count);

@@ -178,7 +178,8 @@ class Fit {
     system.AddCommon(kScale, priors_.scale > 0 ? std::log(common_.scale) : 0,
                      priors_.scale > 0 ? weight(priors_.scale) : 1e-12);
     for (int k = 0; k < 2; ++k) system.AddCommon(kTilt + k, 0, 1e-9);
-    const Eigen::Vector3d turn = LogSo3(given_.T_camera_imu.R.transpose() * common_.model.T_camera_imu.R);
+    const Eigen::Vector3d turn =
+        LogSo3(given_.T_camera_imu.R.transpose() * common_.model.T_camera_imu.R);
     const Eigen::Vector3d arm = common_.model.T_camera_imu.t - given_.T_camera_imu.t;
     for (int k = 0; k < 3; ++k) {
       system.AddCommon(kTurn + k, given_.rotation_known ? turn[k] : 0,
@@ -197,8 +198,7 @@ class Fit {
     const double growth = 1 + step.common(kScale);
     if (!step.common.allFinite() || !(growth > kLeastGrowth)) return false;
     for (size_t k = 0; k < states_.size(); ++k) {
-      const ImuSample reading =
-          ReadingAt(samples_, poses_[k].time + common_.model.time_offset);
+      const ImuSample reading = ReadingAt(samples_, poses_[k].time + common_.model.time_offset);
       Increase(states_[k], step.states[k], step.common, common_, reading);
     }
     common_.Increase(step.common);

@@ -43,7 +43,7 @@ struct InertialFit {
   double translation_sigma = 0;  // m
   double time_offset_sigma = 0;  // s
   double gyro_bias_sigma = 0, accel_bias_sigma = 0;  // of the last state, rad/s, m/s², largest axis
-  MotionBelief first, last;  // of the states at the first and the last pose
+  MotionBelief first, last;                          // of the states at the first and the last pose
   // Square root of the mean squared normalized residual: 1 where noise and covariances are right.
   // The standard deviations above are multiplied by it when it is above 1.
   double noise_factor = 1;

@@ -29,8 +29,7 @@ std::optional<MapBridge> BridgeOf(const MotionBelief& a, const MotionBelief& b) 
   const Eigen::Matrix3d rotation = block(a, 0, 0) + block(b, 0, 0);
 
   const Eigen::Matrix<double, 3, 2> tangents = TangentsOf(a.common.down);
-  const Eigen::Vector2d tilt =
-      tangents.transpose() * a.common.down.cross(R_a_b * b.common.down);
+  const Eigen::Vector2d tilt = tangents.transpose() * a.common.down.cross(R_a_b * b.common.down);
   const Eigen::Matrix<double, 3, 2> tangents_b = TangentsOf(b.common.down);
   const Eigen::Matrix3d turned =
       a.state.T_world_imu.R * rotation * a.state.T_world_imu.R.transpose() +
@@ -43,8 +42,7 @@ std::optional<MapBridge> BridgeOf(const MotionBelief& a, const MotionBelief& b) 
   // The velocity of b in a, wrong also by the error of the rotation between them.
   const Eigen::Vector3d velocity_b = R_a_b * b.state.velocity;
   const Eigen::Matrix3d by_turn = Skew(velocity_b) * a.state.T_world_imu.R;
-  const Eigen::Matrix3d innovation = block(a, kVelocity, kVelocity) +
-                                     in_a(kVelocity, kVelocity) +
+  const Eigen::Matrix3d innovation = block(a, kVelocity, kVelocity) + in_a(kVelocity, kVelocity) +
                                      by_turn * rotation * by_turn.transpose();
   const Eigen::LLT<Eigen::Matrix3d> solver(innovation);
   const Eigen::Vector3d difference = velocity_b - a.state.velocity;
@@ -56,9 +54,9 @@ std::optional<MapBridge> BridgeOf(const MotionBelief& a, const MotionBelief& b) 
   bridge.T_a_b.s = b.common.scale / a.common.scale;
   bridge.T_a_b.R = R_a_b;
   bridge.T_a_b.t = (position - R_a_b * b.state.T_world_imu.t) / a.common.scale;
-  bridge.sigma = LargestSigma(block(a, kPosition, kPosition) -
-                              across * solver.solve(across.transpose()) +
-                              in_a(kPosition, kPosition));
+  bridge.sigma =
+      LargestSigma(block(a, kPosition, kPosition) - across * solver.solve(across.transpose()) +
+                   in_a(kPosition, kPosition));
   bridge.rotation = LargestSigma(rotation);
   return bridge;
 }

@@ -10,9 +10,9 @@
 namespace ALIDADE_API alidade {
 
 struct MapBridge {
-  Sim3 T_a_b;            // points of map b into map a, each in its own units
-  double sigma = 0;      // of the translation, meters, along its worst axis
-  double rotation = 0;   // standard deviation of the rotation, radians, about its worst axis
+  Sim3 T_a_b;           // points of map b into map a, each in its own units
+  double sigma = 0;     // of the translation, meters, along its worst axis
+  double rotation = 0;  // standard deviation of the rotation, radians, about its worst axis
 };
 
 // `in_a`: where dead reckoning from map a leads; `in_b`: the same sensor at the same time, as map b

@@ -37,8 +37,7 @@ MotionBelief MotionBelief::At(double to, std::span<const ImuSample> samples) con
   next.time = to;
   next.state = Predict(state, motion, gravity);
   next.covariance = F * covariance * F.transpose();
-  next.covariance.topLeftCorner<9, 9>() +=
-      into_world * motion.covariance * into_world.transpose();
+  next.covariance.topLeftCorner<9, 9>() += into_world * motion.covariance * into_world.transpose();
   next.covariance.diagonal().segment<3>(9).array() += noise.gyro_walk * noise.gyro_walk * t;
   next.covariance.diagonal().segment<3>(12).array() += noise.accel_walk * noise.accel_walk * t;
   return next;
@@ -59,8 +58,7 @@ TimedPose MotionBelief::Camera(std::span<const ImuSample> samples) const {
 
 bool MotionBelief::See(const TimedPose& pose, std::span<const ImuSample> samples) {
   const ImuSample reading = ReadingAt(samples, time + common.model.time_offset);
-  const PoseMeasurement m =
-      MeasurementOf(state, common, pose.T_world_camera, reading.angular_rate);
+  const PoseMeasurement m = MeasurementOf(state, common, pose.T_world_camera, reading.angular_rate);
   Eigen::Matrix<double, 6, kSize> H;
   H << m.by_state, m.by_common;
   const Eigen::LLT<Matrix6d> innovation(H * covariance * H.transpose() + pose.covariance);
@@ -69,8 +67,7 @@ bool MotionBelief::See(const TimedPose& pose, std::span<const ImuSample> samples
   const Eigen::Matrix<double, kSize, 1> step = -gain_t.transpose() * m.error;
   // Joseph's form keeps the covariance positive.
   const Matrix kept = Matrix::Identity() - gain_t.transpose() * H;
-  covariance = kept * covariance * kept.transpose() +
-               gain_t.transpose() * pose.covariance * gain_t;
+  covariance = kept * covariance * kept.transpose() + gain_t.transpose() * pose.covariance * gain_t;
   const Eigen::Vector3d down = common.down;
   Increase(state, step.head<kState>(), step.tail<kCommon>(), common, reading);
   common.Increase(step.tail<kCommon>());

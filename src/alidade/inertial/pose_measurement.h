@@ -27,8 +27,8 @@ inline constexpr int kScale = 0, kTilt = 1, kTurn = 3, kArm = 6, kOffset = 9;
 
 struct CommonParameters {
   ImuModel model;
-  double scale = 1;                                       // meters per map unit
-  Eigen::Vector3d down = Eigen::Vector3d::UnitZ();        // of gravity, in the world
+  double scale = 1;                                 // meters per map unit
+  Eigen::Vector3d down = Eigen::Vector3d::UnitZ();  // of gravity, in the world
   void Increase(const ChainSystem::CommonVector& step);
 };
 

@@ -60,10 +60,10 @@ std::span<const Setting> LoopSettings::Table() {
                                         "How many of them must confirm it."),
       ExpertSetting<&T::max_turn>("loop.max_turn", kPositive, "rad",
                                   "Largest rotation by which a loop may correct."),
-      ExpertSetting<&T::turn_drift>(
-          "loop.turn_drift", kNotNegative, "",
-          "It may be at most this share of the rotation since the place was seen, plus 0.1 rad. Where "
-          "the focal length is assumed: 0.6."),
+      ExpertSetting<&T::turn_drift>("loop.turn_drift", kNotNegative, "",
+                                    "It may be at most this share of the rotation since the place "
+                                    "was seen, plus 0.1 rad. Where "
+                                    "the focal length is assumed: 0.6."),
       ExpertSetting<&T::max_scale>(
           "loop.max_scale", AtLeast(1), "",
           "One camera: largest ratio of scales between the old and the new place."),

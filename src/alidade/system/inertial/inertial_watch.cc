@@ -127,8 +127,8 @@ void InertialWatch::Cut() {
 // The camera is in another map: one that the last one was merged into, or one that it started after
 // it was lost.
 void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
-  const bool merged = !placements_.empty() &&
-                      snapshot.MapOf(placements_.back().anchor.keyframe) == map;
+  const bool merged =
+      !placements_.empty() && snapshot.MapOf(placements_.back().anchor.keyframe) == map;
   const bool metric = report_.metric;
   map_ = map;
   if (merged) {
@@ -140,9 +140,8 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
   if (metric && reckoner_.known()) {
     if (auto belief = reckoner_.At(time, snapshot, samples_)) {
       former_.emplace();
-      former_->Start(
-          *belief, AnchorTo(snapshot.state(), reckoner_.reference(),
-                            belief->Camera(samples_).T_world_camera.Inverse()));
+      former_->Start(*belief, AnchorTo(snapshot.state(), reckoner_.reference(),
+                                       belief->Camera(samples_).T_world_camera.Inverse()));
     }
   }
   placements_.clear();
@@ -180,7 +179,8 @@ void InertialWatch::Placed(double time, const Anchor& anchor, const Matrix6d& co
 void InertialWatch::FollowPoses(const MapSnapshot& map) {
   if (!reckoner_.known() || placements_.empty()) return;
   const double distance = DistanceIn(map);
-  const double covered = samples_.empty() ? kNever : samples_.back().time - report_.model.time_offset;
+  const double covered =
+      samples_.empty() ? kNever : samples_.back().time - report_.model.time_offset;
   for (const Placement& placement : placements_) {
     if (!reckoner_.known()) return;
     if (placement.time <= reckoner_.time() || placement.time > covered) continue;
@@ -327,9 +327,9 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
     learned_ = LearnedFrom(fit);
     Se3 T_world_camera = fit.last.state.T_world_imu * fit.model.T_camera_imu.Inverse();
     T_world_camera.t /= fit.last.common.scale;
-    reckoner_.Start(fit.last, {answer->reference,
-                               T_world_camera.Inverse() * answer->T_reference_world.Inverse(),
-                               answer->scale});
+    reckoner_.Start(
+        fit.last, {answer->reference,
+                   T_world_camera.Inverse() * answer->T_reference_world.Inverse(), answer->scale});
     FollowPoses(map);
   }
   fit_ = std::move(fit);

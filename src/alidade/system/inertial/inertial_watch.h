@@ -37,7 +37,7 @@ struct InertialQuestion {
   InertialPriors priors;
   std::optional<InertialFit> start;
   MapId map;
-  KeyFrameId reference;  // of the newest pose
+  KeyFrameId reference;   // of the newest pose
   Se3 T_reference_world;  // pose and KeyFrame::scale of that keyframe when it was asked
   double scale = 1;
 };
@@ -136,15 +136,15 @@ class InertialWatch {
   ImuStream stream_;
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
-  MapId map_;                       // that placements_ are in
-  double known_scale_ = 0;          // sigma of its scale when the camera entered it; 0: unknown
-  DeadReckoner reckoner_;           // in map_, once its lengths are meters
+  MapId map_;               // that placements_ are in
+  double known_scale_ = 0;  // sigma of its scale when the camera entered it; 0: unknown
+  DeadReckoner reckoner_;   // in map_, once its lengths are meters
   // Where dead reckoning from the map before map_ leads at the first pose in map_.
   std::optional<DeadReckoner> former_;
-  Calibration calibration_;                // priors of the fits in map_
+  Calibration calibration_;             // priors of the fits in map_
   std::optional<Calibration> learned_;  // in map_, for the next one
-  std::optional<InertialFit> fit_;  // the last one that was solved, in map_
-  double asked_at_ = kNever;        // time of the newest pose of the last question
+  std::optional<InertialFit> fit_;      // the last one that was solved, in map_
+  double asked_at_ = kNever;            // time of the newest pose of the last question
   bool awaiting_ = false;
   int agreements_ = 0;      // answers in which the rotations agree
   int contradictions_ = 0;  // consecutive answers in which rotations disagree

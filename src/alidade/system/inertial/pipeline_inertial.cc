@@ -53,8 +53,8 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
 // Tells where a frame that does not follow a tracked one is by dead reckoning.
 void FramePipeline::Reckon(double time, const MapSnapshot& map) {
   const auto reckoned = inertial_.DeadReckoned(time, map);
-  tracker_.SetReckoned(time, reckoned ? std::optional(reckoned->pose.T_world_camera.Inverse())
-                                      : std::nullopt);
+  tracker_.SetReckoned(
+      time, reckoned ? std::optional(reckoned->pose.T_world_camera.Inverse()) : std::nullopt);
   relocalizer_.SetReckoned(reckoned);
 }
 

@@ -188,9 +188,8 @@ void Workers::Scale(MapId id, double factor) {
 
 void Workers::Join(MapId younger, MapId older, const Sim3& T_older_younger, KeyFrameId anchor) {
   WhileAllRest([&] {
-    map_.Commit([&](MapCommit& commit) {
-      CommitMerge(commit, younger, older, T_older_younger, anchor);
-    });
+    map_.Commit(
+        [&](MapCommit& commit) { CommitMerge(commit, younger, older, T_older_younger, anchor); });
   });
 }
 
