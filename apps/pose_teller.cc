@@ -141,16 +141,16 @@ void PoseTeller::Frame(const SourceFrame& frame, const TrackResult& result) {
     line["pose"] = JsonOf(Mounted(result.T_world_camera, turn));
     line["map"] = map.value;
     line["probability"] = result.quality.probability;
-    if (!result.quality.covariance.isZero(0)) {
-      // Of the error in the camera as mounted.
-      Matrix6d R = Matrix6d::Zero();
-      R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = turn;
-      const Matrix6d covariance = R * result.quality.covariance * R.transpose();
-      line["covariance"] = std::vector<double>(covariance.data(), covariance.data() + 36);
-    }
   } else {
     line["failure"] = FailureName(result.failure);
     if (result.predicted) line["predicted"] = JsonOf(Mounted(*result.predicted, turn));
+  }
+  if (!result.quality.covariance.isZero(0)) {
+    // Of the error in the camera as mounted.
+    Matrix6d R = Matrix6d::Zero();
+    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = turn;
+    const Matrix6d covariance = R * result.quality.covariance * R.transpose();
+    line["covariance"] = std::vector<double>(covariance.data(), covariance.data() + 36);
   }
   Tell(line.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

@@ -48,7 +48,7 @@ class TrackResult:
     keyframe: bool
     """the frame became a keyframe"""
     predicted: Optional[numpy.ndarray]
-    """(4, 4), if recently lost: pose extrapolated from the camera's motion"""
+    """(4, 4), if lost: pose by dead reckoning with an inertial sensor, otherwise shortly extrapolated from the motion"""
     cut: str
     """why the frame does not continue the previous one; empty: it does"""
     expected: int

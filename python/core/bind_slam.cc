@@ -22,7 +22,7 @@ py::object PredictedOf(const TrackedFrame& frame) {
 
 py::object CovarianceOf(const TrackedFrame& frame) {
   const Matrix6d& covariance = frame.result.quality.covariance;
-  if (!IsTracked(frame) || covariance.isZero(0)) return py::none();
+  if (covariance.isZero(0)) return py::none();
   py::array_t<double> array({6, 6});
   for (int row = 0; row < 6; ++row) {
     for (int column = 0; column < 6; ++column)

@@ -313,7 +313,11 @@ TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const 
   TrackResult result;
   result.state = PublicState(session_.state());
   result.failure = failure;
-  if (const auto T_camera_world = tracker_.PredictedPose(time, map)) {
+  if (const auto reckoned = inertial_.DeadReckoned(time, map)) {
+    result.predicted = reckoned->pose.T_world_camera;
+    result.quality.covariance = reckoned->pose.covariance;
+    ++counts_.predicted;
+  } else if (const auto T_camera_world = tracker_.PredictedPose(time, map)) {
     result.predicted = T_camera_world->Inverse();
     ++counts_.predicted;
   }

@@ -66,14 +66,15 @@ struct PoseQuality {
 struct TrackResult {
   TrackState state = TrackState::kInitializing;
   Se3 T_world_camera;  // valid when tracking
-  // Lost for less than tracker.predict_seconds: T_world_camera extrapolated from the last motion at
-  // constant velocity. A guess: it is in no trajectory.
+  // Lost: T_world_camera by dead reckoning, as long as it is known to a tenth of the distance of
+  // what was seen; without an inertial sensor, or while the unit of the map is unknown, extrapolated
+  // at constant velocity for tracker.predict_seconds. A guess: it is in no trajectory.
   std::optional<Se3> predicted;
   int matches = 0;                             // landmarks that agree with the pose
   bool keyframe = false;                       // this frame became a keyframe
   TrackFailure failure = TrackFailure::kNone;  // why there is no pose
   const char* cut = "";  // why the frame does not continue the previous one; "": it does
-  PoseQuality quality;   // valid when tracking
+  PoseQuality quality;   // valid when tracking; `covariance` also of a dead-reckoned `predicted`
   // Parts that failed and stopped (SlamHealth::Stopped()); repeated with every later frame.
   std::string warning;
 
