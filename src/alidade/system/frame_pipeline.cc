@@ -154,9 +154,14 @@ void FramePipeline::LeaveOutFixedParts(int number) {
 }
 
 // Drops maps that one camera made while their scale was unknown, and the poses in them
-// (MapperSettings::min_known_scale). The next map must prove its parallax, as every map.
+// (MapperSettings::min_known_scale). The next map must prove its parallax, as every map. With an
+// inertial sensor they are kept: it will tell their scale.
 void FramePipeline::DropUnknownScale(PresentFrame& now) {
   for (MapId unknown : std::exchange(news_.unknown_scale, {})) {
+    if (inertial_.TellsScale(unknown)) {
+      ForgetUnit(unknown);
+      continue;
+    }
     if (workers_.map().Snapshot().MapOf(tracker_.reference()) == unknown) {
       session_.Apply(SessionEvent::kMapLeft);
       now.map_left = true;

@@ -81,6 +81,7 @@ class FramePipeline {
   void UseInertial();
   void Reckon(double time, const MapSnapshot& map);
   void KeepWorld();
+  void ForgetUnit(MapId map);
   void Observe(double time, const PresentFrame& now);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);

@@ -67,8 +67,8 @@ struct TrackResult {
   TrackState state = TrackState::kInitializing;
   Se3 T_world_camera;  // valid when tracking
   // Lost: T_world_camera by dead reckoning, as long as it is known to a tenth of the distance of
-  // what was seen; without an inertial sensor, or while the unit of the map is unknown, extrapolated
-  // at constant velocity for tracker.predict_seconds. A guess: it is in no trajectory.
+  // what was seen; without an inertial sensor, or while the unit of the map is unknown,
+  // extrapolated at constant velocity for tracker.predict_seconds. A guess: it is in no trajectory.
   std::optional<Se3> predicted;
   int matches = 0;                             // landmarks that agree with the pose
   bool keyframe = false;                       // this frame became a keyframe

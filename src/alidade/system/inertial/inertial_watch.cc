@@ -36,12 +36,14 @@ constexpr double kRotationSigma = 0.03;  // radians
 // A dead-reckoned position is of use up to this standard deviation, as a share of the distance of
 // what is seen: 5 degrees. Maps are joined up to the same.
 constexpr double kOfUse = 0.09;
+constexpr size_t kPast = 60;  // poses, at least 5 s: a map is split where it began 1.5 s before
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
 // What one map tells of the sensor holds in the next, but not better than this: temperature and
 // flexing change it.
 constexpr double kRotationHolds = 3e-3, kArmHolds = 5e-3, kClockHolds = 1e-3;  // rad, m, s
 constexpr double kGyroHolds = 1e-3, kAccelHolds = 0.03;                        // rad/s, m/s²
+constexpr const char* kNoScale = "scale is not observable yet";
 // Poses of a map have errors in common that their covariance does not contain.
 constexpr double kLeastRotation = 7e-4;    // radians
 constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
@@ -82,11 +84,12 @@ void InertialWatch::SetImu(const ImuModel& model) {
 void InertialWatch::ForgetMap() {
   fit_.reset();
   reckoner_.Forget();
+  past_.clear();
   known_scale_ = 0;
   report_.metric = false;
   report_.gravity.reset();
   report_.scale_sigma = report_.gravity_sigma = 0;
-  report_.missing = "scale is not observable yet";
+  report_.missing = kNoScale;
 }
 
 void InertialWatch::Take(std::span<const ImuSample> samples) {
@@ -120,34 +123,56 @@ void InertialWatch::Cut() {
   samples_.clear();
   placements_.clear();
   reckoner_.Forget();
+  past_.clear();
   former_.reset();
   asked_at_ = kNever;
 }
 
-// The camera is in another map: one that the last one was merged into, or one that it started after
-// it was lost.
+// The camera is in another map: one that the last one was merged into, one that it started after it
+// was lost, or one that was split off the last one because vision does not tell its scale.
 void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
-  const bool merged =
-      !placements_.empty() && snapshot.MapOf(placements_.back().anchor.keyframe) == map;
-  const bool metric = report_.metric;
-  map_ = map;
-  if (merged) {
+  const MapId left = std::exchange(map_, map);
+  const auto in_map = [&](const Placement& placement) {
+    return snapshot.MapOf(placement.anchor.keyframe) == map;
+  };
+  if (map < left && !placements_.empty() && in_map(placements_.back())) {
     ForgetMap();  // it was in the axes of the map that is gone
     Recall(snapshot);
     return;
   }
+  std::erase_if(placements_, [&](const Placement& placement) { return !in_map(placement); });
   former_.reset();
-  if (metric && reckoner_.known()) {
-    if (auto belief = reckoner_.At(time, snapshot, samples_)) {
-      former_.emplace();
-      former_->Start(*belief, AnchorTo(snapshot.state(), reckoner_.reference(),
-                                       belief->Camera(samples_).T_world_camera.Inverse()));
-    }
-  }
-  placements_.clear();
+  if (report_.metric)
+    KeepWayFrom(left, placements_.empty() ? time : placements_.front().time, snapshot);
   if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
   ForgetMap();
   Recall(snapshot);
+}
+
+bool InertialWatch::TellsScale(MapId split) const {
+  if (!kInertial || !may_scale_ || !report_.metric) return false;
+  return split == map_ ? former_.has_value() : reckoner_.known();
+}
+
+void InertialWatch::ForgetUnit(MapId split) {
+  if (split != map_) return;
+  known_scale_ = report_.scale_sigma = 0;
+  report_.metric = false;
+  report_.missing = kNoScale;
+}
+
+// Where the motion from the map `left` leads at `time`, by what was believed before.
+void InertialWatch::KeepWayFrom(MapId left, double time, const MapSnapshot& map) {
+  if (reckoner_.known()) past_.push_back(reckoner_);
+  while (!past_.empty() &&
+         (past_.back().time() >= time || map.MapOf(past_.back().reference()) != left))
+    past_.pop_back();
+  if (past_.empty()) return;
+  const auto belief = past_.back().At(time, map, samples_);
+  if (!belief) return;
+  former_.emplace();
+  former_->Start(*belief, AnchorTo(map.state(), past_.back().reference(),
+                                   belief->Camera(samples_).T_world_camera.Inverse()));
 }
 
 // What is known of the map from before the camera came into it.
@@ -185,6 +210,8 @@ void InertialWatch::FollowPoses(const MapSnapshot& map) {
     if (!reckoner_.known()) return;
     if (placement.time <= reckoner_.time() || placement.time > covered) continue;
     if (map.MapOf(placement.anchor.keyframe) != map_) continue;
+    past_.push_back(reckoner_);
+    if (past_.size() > kPast) past_.pop_front();
     reckoner_.See(PoseIn(map, placement, distance), placement.anchor.keyframe, map, samples_);
   }
 }
@@ -196,6 +223,8 @@ void InertialWatch::Reanchor(const MapSnapshot& map) {
   std::erase_if(placements_,
                 [](const Placement& placement) { return !placement.anchor.keyframe.valid(); });
   if (reckoner_.known()) reckoner_.Reanchor(map);
+  for (DeadReckoner& past : past_) past.Reanchor(map);
+  std::erase_if(past_, [](const DeadReckoner& past) { return !past.known(); });
   if (former_) former_->Reanchor(map);
 }
 
@@ -340,6 +369,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
     map_ = changes.join->older;
     fit_.reset();
     reckoner_.Forget();
+    past_.clear();
     former_.reset();
   }
   return changes;

@@ -101,6 +101,11 @@ class InertialWatch {
   // if its rotation to the camera is not known, or the readings do not cover the time.
   std::optional<Eigen::Matrix3d> TurnBetween(double from, double to) const;
 
+  // Whether a map is of use that was split off the map in meters because vision does not tell its
+  // scale: the readings will tell it, and it is joined to that one then.
+  bool TellsScale(MapId split) const;
+  void ForgetUnit(MapId split);  // nothing is known of its lengths
+
   const InertialReport& report() const { return report_; }
   // What it tells of the world of the map that the camera is in; nullopt: nothing yet.
   std::optional<MapWorld> World() const;
@@ -123,6 +128,7 @@ class InertialWatch {
   double DistanceIn(const MapSnapshot& map) const;
   void FollowPoses(const MapSnapshot& map);
   void Enter(MapId map, double time, const MapSnapshot& snapshot);
+  void KeepWayFrom(MapId left, double time, const MapSnapshot& map);
   void Recall(const MapSnapshot& map);
   static Calibration LearnedFrom(const InertialFit& fit);
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
@@ -136,9 +142,10 @@ class InertialWatch {
   ImuStream stream_;
   std::vector<ImuSample> samples_;
   std::deque<Placement> placements_;
-  MapId map_;               // that placements_ are in
-  double known_scale_ = 0;  // sigma of its scale when the camera entered it; 0: unknown
-  DeadReckoner reckoner_;   // in map_, once its lengths are meters
+  MapId map_;                      // that placements_ are in
+  double known_scale_ = 0;         // sigma of its scale when the camera entered it; 0: unknown
+  DeadReckoner reckoner_;          // in map_, once its lengths are meters
+  std::deque<DeadReckoner> past_;  // reckoner_ at the poses of the last seconds
   // Where dead reckoning from the map before map_ leads at the first pose in map_.
   std::optional<DeadReckoner> former_;
   Calibration calibration_;             // priors of the fits in map_

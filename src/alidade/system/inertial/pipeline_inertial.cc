@@ -36,6 +36,12 @@ void FramePipeline::KeepWorld() {
   workers_.map().Commit([&](MapCommit& commit) { commit.SetWorld(*world); });
 }
 
+// A map was split off another one because vision does not tell its scale.
+void FramePipeline::ForgetUnit(MapId map) {
+  workers_.map().Commit([&](MapCommit& commit) { commit.ForgetWorld(map); });
+  inertial_.ForgetUnit(map);
+}
+
 // A pose for the fit of what the inertial sensor tells, which runs beside the other work.
 void FramePipeline::Observe(double time, const PresentFrame& now) {
   if (!inertial_.given()) return;

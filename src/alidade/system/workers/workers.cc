@@ -188,8 +188,16 @@ void Workers::Scale(MapId id, double factor) {
 
 void Workers::Join(MapId younger, MapId older, const Sim3& T_older_younger, KeyFrameId anchor) {
   WhileAllRest([&] {
-    map_.Commit(
-        [&](MapCommit& commit) { CommitMerge(commit, younger, older, T_older_younger, anchor); });
+    const MapSnapshot map = map_.Snapshot();
+    map_.Commit([&](MapCommit& commit) {
+      CommitMerge(commit, younger, older, T_older_younger, anchor);
+      for (LandmarkId id : map.Landmarks()) {
+        const Landmark* landmark = map.Find(id);
+        if (!landmark->scale_known && !landmark->depth_assumed &&
+            map.MapOf(landmark->reference) == younger)
+          commit.Edit(id)->scale_known = true;  // by what T_older_younger is from
+      }
+    });
   });
 }
 
