@@ -50,9 +50,9 @@ double DistanceSeen(const SavedMap& saved, const MapPart& part) {
 }
 
 std::string ClockInWords(double offset, double sigma) {
-  return sigma > 0 ? Line("clock          images are %.1f ± %.1f ms behind (time_offset %.4f s)",
-                          1e3 * offset, 1e3 * sigma, offset)
-                   : Line("clock          time_offset %.4f s, as given", offset);
+  return sigma > 0
+             ? Line("clock          time_offset %.4f s, known to %.1f ms", offset, 1e3 * sigma)
+             : Line("clock          time_offset %.4f s, as given", offset);
 }
 
 }  // namespace

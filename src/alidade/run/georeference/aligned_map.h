@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "alidade/run/calibration/inertial_windows.h"
 #include "alidade/run/georeference/georeference.h"
 #include "alidade/run/sources/saved_map.h"
-#include "alidade/run/world/inertial_windows.h"
 #include "alidade/run/world/position_fit.h"
 
 namespace alidade {

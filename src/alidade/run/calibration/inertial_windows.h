@@ -20,10 +20,12 @@ struct InertialFinding {
   double rotation_sigma = 0;                        // radians; 0: given
   double translation_sigma = 0;                     // meters; 0: given
   double time_offset_sigma = 0;                     // seconds; 0: given
-  ImuBias bias;                                     // of the last window
-  Vector6d bias_sigma = Vector6d::Zero();           // gyroscope, accelerometer; from the scatter
-  double noise_factor = 0;                          // InertialFit::noise_factor, largest
-  int windows = 0, solved = 0;                      // windows tried, and used
+  ImuBias bias;                                     // mean of the windows
+  // Standard deviation of that mean (gyroscope, accelerometer), from the scatter between at least
+  // two windows; zero: unknown.
+  Vector6d bias_sigma = Vector6d::Zero();
+  double noise_factor = 0;      // InertialFit::noise_factor, largest
+  int windows = 0, solved = 0;  // windows tried, and used
 };
 
 struct WindowSettings {

@@ -1,4 +1,4 @@
-#include "alidade/run/world/inertial_windows.h"
+#include "alidade/run/calibration/inertial_windows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,55 +103,74 @@ struct Weighted {
   }
 };
 
-// Of the sensor: rotation, place and clock, as means by inverse variance.
+// Mean of estimates with a prior of zero in each, which counts once: estimates x with standard
+// deviations s have the information 1/s² - 1/prior² of their own.
+struct WithPrior {
+  double prior;  // standard deviation; infinite: none
+  double weight = 0;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+
+  void Add(const Eigen::Vector3d& x, double sigma) {
+    const double w = 1 / std::pow(std::max(sigma, 1e-6), 2);
+    weight += std::max(0.0, w - 1 / (prior * prior));
+    sum += w * x;
+  }
+  double Total() const { return weight + 1 / (prior * prior); }
+  Eigen::Vector3d Mean() const { return sum / Total(); }
+};
+
+// Of the sensor: rotation, place and clock.
 void MergeModels(const std::vector<InertialFit>& fits, const ImuModel& given,
                  InertialFinding& finding) {
+  const InertialPriors priors;
   finding.model = given;
-  double of_offset = 0, of_turn = 0, of_place = 0, offset = 0;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero(), turn = place;
   const Eigen::Matrix3d R = fits.front().model.T_camera_imu.R;
+  WithPrior turn{INFINITY}, place{priors.translation}, offset{priors.time_offset};
+  const auto offset_of = [&](const InertialFit& fit) -> Eigen::Vector3d {
+    return {fit.model.time_offset - given.time_offset, 0, 0};
+  };
   for (const InertialFit& fit : fits) {
-    const double a = 1 / std::pow(std::max(fit.time_offset_sigma, 1e-6), 2),
-                 b = 1 / std::pow(std::max(fit.rotation_sigma, 1e-6), 2),
-                 c = 1 / std::pow(std::max(fit.translation_sigma, 1e-6), 2);
-    of_offset += a;
-    of_turn += b;
-    of_place += c;
-    offset += a * fit.model.time_offset;
-    turn += b * LogSo3(R.transpose() * fit.model.T_camera_imu.R);
-    place += c * fit.model.T_camera_imu.t;
+    turn.Add(LogSo3(R.transpose() * fit.model.T_camera_imu.R), fit.rotation_sigma);
+    place.Add(fit.model.T_camera_imu.t, fit.translation_sigma);
+    offset.Add(offset_of(fit), fit.time_offset_sigma);
   }
-  finding.model.time_offset = offset / of_offset;
-  finding.model.T_camera_imu.R = R * ExpSo3(turn / of_turn);
-  finding.model.T_camera_imu.t = place / of_place;
-  double scatter_offset = 0, scatter_turn = 0, scatter_place = 0;
+  finding.model.T_camera_imu = {R * ExpSo3(turn.Mean()), place.Mean()};
+  finding.model.time_offset = given.time_offset + offset.Mean().x();
+  double of_turn = 0, of_place = 0, of_offset = 0;
   for (const InertialFit& fit : fits) {
-    scatter_offset += std::pow(
-        (fit.model.time_offset - finding.model.time_offset) / std::max(fit.time_offset_sigma, 1e-6),
-        2);
-    scatter_turn +=
-        LogSo3(finding.model.T_camera_imu.R.transpose() * fit.model.T_camera_imu.R).squaredNorm() /
-        3 / std::pow(std::max(fit.rotation_sigma, 1e-6), 2);
-    scatter_place += (fit.model.T_camera_imu.t - finding.model.T_camera_imu.t).squaredNorm() / 3 /
-                     std::pow(std::max(fit.translation_sigma, 1e-6), 2);
+    const auto square = [](double length, double sigma, int size) {
+      return std::pow(length / std::max(sigma, 1e-6), 2) / size;
+    };
+    of_turn += square(RotationAngle(fit.model.T_camera_imu, finding.model.T_camera_imu),
+                      fit.rotation_sigma, 3);
+    of_place += square((fit.model.T_camera_imu.t - finding.model.T_camera_imu.t).norm(),
+                       fit.translation_sigma, 3);
+    of_offset +=
+        square(fit.model.time_offset - finding.model.time_offset, fit.time_offset_sigma, 1);
   }
   const Weighted all{fits};
-  finding.time_offset_sigma = std::sqrt(all.Inflated(scatter_offset) / of_offset);
-  finding.rotation_sigma = std::sqrt(all.Inflated(scatter_turn) / of_turn);
-  finding.translation_sigma = std::sqrt(all.Inflated(scatter_place) / of_place);
+  finding.rotation_sigma = std::sqrt(all.Inflated(of_turn) / turn.Total());
+  finding.translation_sigma = std::sqrt(all.Inflated(of_place) / place.Total());
+  finding.time_offset_sigma = std::sqrt(all.Inflated(of_offset) / offset.Total());
+  if (given.rotation_known) finding.rotation_sigma = 0;
+  if (given.translation_known) finding.translation_sigma = 0;
+  if (given.time_offset_known) finding.time_offset_sigma = 0;
 }
 
 void MergeBiases(const std::vector<InertialFit>& fits, InertialFinding& finding) {
-  finding.bias = fits.back().states.back().bias;
-  if (fits.size() < 2) return;
+  const auto count = static_cast<double>(fits.size());
   Vector6d mean = Vector6d::Zero(), square = mean;
   for (const InertialFit& fit : fits) {
     Vector6d bias;
     bias << fit.states.back().bias.gyro, fit.states.back().bias.accel;
-    mean += bias / static_cast<double>(fits.size());
-    square += bias.cwiseProduct(bias) / static_cast<double>(fits.size());
+    mean += bias / count;
+    square += bias.cwiseProduct(bias) / count;
   }
-  finding.bias_sigma = (square - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt();
+  finding.bias = {mean.head<3>(), mean.tail<3>()};
+  constexpr size_t kFewestWindows = 2;
+  if (fits.size() < kFewestWindows) return;
+  finding.bias_sigma =
+      (square - mean.cwiseProduct(mean)).cwiseMax(0).cwiseSqrt() / std::sqrt(count - 1);
 }
 
 }  // namespace
