@@ -13,6 +13,7 @@
 #include "alidade/io/files/choose_calibration.h"
 #include "alidade/io/files/file.h"
 #include "alidade/run/calibration/find_camera.h"
+#include "alidade/run/calibration/find_imu.h"
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/folder/own_files.h"
 #include "alidade/run/play/loop.h"
@@ -108,9 +109,36 @@ CameraEstimate Together(const std::vector<CameraFound>& found, const RunSettings
   return all;
 }
 
+// The inertial sensor of the first recording that has one; nullopt: none has, or it was not asked
+// for.
+std::optional<InertialFinding> CalibrateImu(const CalibrateOptions& options,
+                                            const RunSettings& settings, const Camera& camera,
+                                            Terminal& terminal) {
+  if (options.run.imu == kNoImu) return std::nullopt;
+  for (const std::string& source : options.sources) {
+    SourceOptions wanted = SourceOptionsFrom(options.run);
+    wanted.sensor = Sensor::kMono;
+    wanted.fov_degrees = FovDegrees(camera);
+    wanted.fov_rough = true;
+    std::unique_ptr<FrameSource> opened = OpenAnySource(source, wanted);
+    if (!opened->Info().imu) continue;
+    InertialFinding found = FindImu(std::move(opened), camera, settings.slam, [&](int frames) {
+      if (terminal.shows_progress() && frames % 10 == 0)
+        terminal.SetProgress(source + ": inertial sensor, frame " + std::to_string(frames));
+      return !Interrupted();
+    });
+    terminal.SetProgress("");
+    if (options.run.quiet) return found;
+    std::printf("%s: inertial sensor\n", source.c_str());
+    for (const std::string& line : ImuInWords(found)) std::printf("  %s\n", line.c_str());
+    return found;
+  }
+  return std::nullopt;
+}
+
 void Write(const Calibration& calibration, const std::string& comment,
-           const CalibrateOptions& options) {
-  const WrittenCalibration written = FormatCalibration(calibration, StyleOf(options), comment);
+           const CalibrateOptions& options, const std::optional<ImuModel>& imu = {}) {
+  const WrittenCalibration written = FormatCalibration(calibration, StyleOf(options), comment, imu);
   AtomicWriteFile(options.out, written.text);
   if (options.run.quiet) return;
   if (!written.told.empty()) std::printf("%s\n", written.told.c_str());
@@ -166,10 +194,14 @@ int CalibrateCommand(CalibrateOptions options) {
   }
   if (found.size() > 1 && !options.run.quiet)
     std::printf("together: %s\n", CameraInWords(all).c_str());
+  const std::optional<InertialFinding> imu = CalibrateImu(options, settings, all.camera, terminal);
+  if (Interrupted()) return kInterruptedStatus;
+  std::optional<ImuModel> model;
+  if (imu && imu->solved > 0) model = ObservableOf(*imu);
   Write(
       CalibrationOf(all.camera),
       HeadOf(options) + "\nfield of view " + CameraInWords(all) + (all.known ? "" : "\nuncertain"),
-      options);
+      options, model);
   return 0;
 }
 
@@ -178,7 +210,7 @@ int CalibrateCommand(CalibrateOptions options) {
 void AddCalibrateCommand(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "calibrate",
-      "Estimate a camera's focal length and distortion from recordings, or convert a calibration");
+      "Estimate a camera and its inertial sensor from recordings, or convert a calibration");
   const auto options = std::make_shared<CalibrateOptions>();
   command
       ->add_option("RECORDING", options->sources,
@@ -204,6 +236,11 @@ void AddCalibrateCommand(CLI::App& app, Action& action) {
                    "Horizontal field of view in degrees with which the estimate starts; default: "
                    "66 along the longer side of the image")
       ->type_name("DEGREES");
+  command
+      ->add_option("--imu", options->run.imu,
+                   "Table of inertial readings, whose sensor is calibrated too; default: those of "
+                   "the recording; off: none")
+      ->type_name("off|FILE");
   command->add_option("--profile", options->run.profile, "As for `alidade run`")
       ->type_name("desktop|phone");
   command

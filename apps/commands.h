@@ -15,6 +15,7 @@ void AddViewCommand(CLI::App& app, Action& action);
 void AddPhoneCommand(CLI::App& app, Action& action);
 void AddCompareCommand(CLI::App& app, Action& action);
 void AddMergeCommand(CLI::App& app, Action& action);
+void AddGeoreferenceCommand(CLI::App& app, Action& action);
 void AddBatchCommand(CLI::App& app, Action& action);
 void AddInfoCommand(CLI::App& app, Action& action);
 void AddCalibrateCommand(CLI::App& app, Action& action);

@@ -17,6 +17,7 @@ void AddCommands(CLI::App& app, alidade::Action& action) {
   alidade::AddPhoneCommand(app, action);
   alidade::AddCompareCommand(app, action);
   alidade::AddMergeCommand(app, action);
+  alidade::AddGeoreferenceCommand(app, action);
   alidade::AddBatchCommand(app, action);
   alidade::AddInfoCommand(app, action);
   alidade::AddCalibrateCommand(app, action);

@@ -113,9 +113,9 @@ std::optional<ImuRecording> ReadEurocImu(const std::string& folder,
 
 ImuModel ImuModelOf(const YamlFile& file, const YAML::Node& imu) {
   if (!imu.IsMap()) file.Fail(imu, "`imu` must contain the names and values of a sensor");
-  static const std::vector<std::string> kKeys = {"T_camera_imu", "rate",      "gyro_noise",
-                                                 "accel_noise",  "gyro_walk", "accel_walk",
-                                                 "time_offset"};
+  static const std::vector<std::string> kKeys = {"T_camera_imu", "R_camera_imu", "rate",
+                                                 "gyro_noise",   "accel_noise",  "gyro_walk",
+                                                 "accel_walk",   "time_offset"};
   for (const auto& entry : imu) {
     const std::string key = entry.first.Scalar();
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
@@ -125,6 +125,16 @@ ImuModel ImuModelOf(const YamlFile& file, const YAML::Node& imu) {
   if (const YAML::Node T = imu["T_camera_imu"]) {
     model.T_camera_imu = file.Transform(T, "T_camera_imu");
     model.rotation_known = model.translation_known = true;
+  }
+  if (const YAML::Node R = imu["R_camera_imu"]) {
+    const std::vector<double> v = file.Numbers(R, "R_camera_imu");
+    if (v.size() != 9) file.Fail(R, "`R_camera_imu` must be 9 numbers, the rows of a rotation");
+    if (model.rotation_known)
+      file.Fail(R, "`R_camera_imu` is for a sensor whose place is unknown: not with T_camera_imu");
+    model.T_camera_imu =
+        file.Transform(R, "R_camera_imu",
+                       {v[0], v[1], v[2], 0, v[3], v[4], v[5], 0, v[6], v[7], v[8], 0, 0, 0, 0, 1});
+    model.rotation_known = true;
   }
   ReadPositive(file, imu, "rate", model.rate);
   ReadPositive(file, imu, "gyro_noise", model.noise.gyro);

@@ -44,7 +44,7 @@ PosedFrames::PosedFrames(const SavedMap& saved, const MapPart& part, const std::
     const Se3 turn{R_camera_rectified, Eigen::Vector3d::Zero()};
     for (const StampedPose& pose : ReadTrajectory(file)) {
       const Se3 T_world_camera = turn.Inverse() * pose.T_world_camera * turn;
-      trajectory_.push_back({pose.time, Moved(T_world_camera, T_now_then).Inverse(), {}});
+      trajectory_.push_back({pose.time, InNewWorld(T_world_camera, T_now_then).Inverse(), {}});
     }
     std::stable_sort(trajectory_.begin(), trajectory_.end(), Earlier);
     all_.insert(all_.end(), trajectory_.begin(), trajectory_.end());

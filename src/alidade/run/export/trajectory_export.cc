@@ -102,7 +102,7 @@ std::string ExportTrajectory(const std::string& path, const SavedMap& saved,
   if (frames && file.empty())
     ThrowUsage("--poses frames needs the result folder of the run, with its trajectory");
   Trajectory trajectory = frames ? ReadTrajectory(file) : TrajectoryOf(saved, part);
-  if (frames) trajectory = Moved(std::move(trajectory), T_now_written);
+  if (frames) trajectory = InNewWorld(std::move(trajectory), T_now_written);
   WriteExportFile(out, FormatTrajectory(trajectory, settings));
   return std::to_string(trajectory.size()) + " poses" + (frames ? "" : " of keyframes");
 }

@@ -20,7 +20,7 @@ struct MapResults {
   Trajectory trajectory, live, keyframes;
   std::vector<KeyFrameId> keyframe_ids;  // one for each of `keyframes`
   bool meters = false;  // lengths are meters although the sensor alone does not tell (MapWorld)
-  std::optional<Eigen::Vector3d> gravity;  // unit vector in `world`; nullopt: unknown
+  std::optional<Eigen::Vector3d> gravity = {};  // unit vector in `world`; nullopt: unknown
 };
 
 struct RunResults {

@@ -12,13 +12,13 @@
 
 namespace alidade {
 
-Se3 Moved(const Se3& T_world_camera, const Sim3& T_new_world) {
+Se3 InNewWorld(const Se3& T_world_camera, const Sim3& T_new_world) {
   return {T_new_world.R * T_world_camera.R, T_new_world * T_world_camera.t};
 }
 
-Trajectory Moved(Trajectory trajectory, const Sim3& T_new_world) {
+Trajectory InNewWorld(Trajectory trajectory, const Sim3& T_new_world) {
   for (StampedPose& pose : trajectory)
-    pose.T_world_camera = Moved(pose.T_world_camera, T_new_world).Normalised();
+    pose.T_world_camera = InNewWorld(pose.T_world_camera, T_new_world).Normalised();
   return trajectory;
 }
 
@@ -35,7 +35,7 @@ void MoveMap(SavedMap& saved, const MapPart& part, const Sim3& T_new_map, const 
   if (part.keyframes.empty()) return;
   std::vector<KeyFrameCorrection> moved;
   for (KeyFrameId id : part.keyframes) {
-    const Se3 T = Moved(saved.map.Find(id)->T_camera_world.Inverse(), T_new_map);
+    const Se3 T = InNewWorld(saved.map.Find(id)->T_camera_world.Inverse(), T_new_map);
     moved.push_back({id, T.Inverse(), T_new_map.s});
   }
   MapWorld world = WorldOf(saved, part);

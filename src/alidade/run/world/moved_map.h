@@ -11,8 +11,8 @@
 namespace alidade {
 
 // The pose of the same camera in the new world.
-Se3 Moved(const Se3& T_world_camera, const Sim3& T_new_world);
-Trajectory Moved(Trajectory trajectory, const Sim3& T_new_world);
+Se3 InNewWorld(const Se3& T_world_camera, const Sim3& T_new_world);
+Trajectory InNewWorld(Trajectory trajectory, const Sim3& T_new_world);
 
 // Moves one part of a map: p_new = T_new_map * p_map. What is known of its world moves with it;
 // `known` replaces the meters, and what else it has.

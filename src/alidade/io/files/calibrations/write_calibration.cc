@@ -106,6 +106,24 @@ std::string OwnText(const Calibration& c) {
   return text;
 }
 
+// The block `imu` of camera.yaml: what is known.
+std::string OwnImu(const ImuModel& imu) {
+  std::string text = "imu:\n";
+  if (imu.rate > 0) text += "  rate: " + Exact(imu.rate) + "\n";
+  if (imu.rotation_known && imu.translation_known) {
+    text += "  T_camera_imu: [" + Joined(Matrix(imu.T_camera_imu)) + "]\n";
+  } else if (imu.rotation_known) {
+    std::vector<double> R;
+    for (int i = 0; i < 9; ++i) R.push_back(imu.T_camera_imu.R(i / 3, i % 3));
+    text += "  R_camera_imu: [" + Joined(R) + "]\n";
+  }
+  if (imu.time_offset_known) text += "  time_offset: " + Exact(imu.time_offset) + "\n";
+  return text + "  gyro_noise: " + Exact(imu.noise.gyro) +
+         "\n  accel_noise: " + Exact(imu.noise.accel) +
+         "\n  gyro_walk: " + Exact(imu.noise.gyro_walk) +
+         "\n  accel_walk: " + Exact(imu.noise.accel_walk) + "\n";
+}
+
 // Kalibr's radtan has four coefficients: k3 is approximated by the others.
 RawCamera WithoutK3(const RawCamera& camera, std::string& told) {
   if (IsFisheye(camera) || camera.distortion[4] == 0) return camera;
@@ -133,17 +151,20 @@ RawCamera WithoutK3(const RawCamera& camera, std::string& told) {
   return fit.camera;
 }
 
+std::string KalibrRows(const std::string& key, const Se3& T) {
+  std::string text = "  " + key + ":\n";
+  const auto values = Matrix(T);
+  for (size_t row = 0; row < 4; ++row)
+    text += "  - [" + Joined(std::span(values).subspan(4 * row, 4)) + "]\n";
+  return text;
+}
+
 std::string KalibrCamera(const RawCamera& given, int number, const Se3* T_this_before,
                          std::string& told) {
   const RawCamera camera = WithoutK3(given, told);
   const std::string name = "cam" + std::to_string(number);
   std::string text = name + ":\n";
-  if (T_this_before) {
-    text += "  T_cn_cnm1:\n";
-    const auto values = Matrix(*T_this_before);
-    for (size_t row = 0; row < 4; ++row)
-      text += "  - [" + Joined(std::span(values).subspan(4 * row, 4)) + "]\n";
-  }
+  if (T_this_before) text += KalibrRows("T_cn_cnm1", *T_this_before);
   text += "  camera_model: pinhole\n  distortion_coeffs: [" +
           Joined(std::span(camera.distortion).first(4)) +
           "]\n  distortion_model: " + (IsFisheye(camera) ? "equi" : "radtan") +
@@ -153,8 +174,16 @@ std::string KalibrCamera(const RawCamera& given, int number, const Se3* T_this_b
   return text;
 }
 
-std::string KalibrText(const Calibration& c, std::string& told) {
+// camchain-imucam.yaml where the sensor's rotation is known: t_imu = t_cam + timeshift_cam_imu.
+std::string KalibrText(const Calibration& c, const std::optional<ImuModel>& imu,
+                       std::string& told) {
   std::string text = KalibrCamera(c.left, 0, nullptr, told);
+  if (imu && imu->rotation_known) {
+    text += KalibrRows("T_cam_imu", imu->T_camera_imu) +
+            "  timeshift_cam_imu: " + Exact(imu->time_offset) + "\n";
+    if (!imu->translation_known)
+      Tell(told, "the place of the inertial sensor is not known: T_cam_imu has zeros");
+  }
   if (const auto right = RightOf(c)) {
     const Se3 T_right_left = RightPose(c).Inverse();
     text += KalibrCamera(*right, 1, &T_right_left, told);
@@ -224,7 +253,8 @@ std::optional<CalibrationStyle> CalibrationStyleNamed(const std::string& name) {
 }
 
 WrittenCalibration FormatCalibration(const Calibration& calibration, CalibrationStyle style,
-                                     const std::string& comment) {
+                                     const std::string& comment,
+                                     const std::optional<ImuModel>& imu) {
   WrittenCalibration written;
   const std::string head = Commented(comment);
   const auto one_of_pair = [&] {
@@ -234,10 +264,10 @@ WrittenCalibration FormatCalibration(const Calibration& calibration, Calibration
   };
   switch (style) {
     case CalibrationStyle::kAlidade:
-      written.text = head + OwnText(calibration);
+      written.text = head + OwnText(calibration) + (imu ? OwnImu(*imu) : "");
       break;
     case CalibrationStyle::kKalibr:
-      written.text = head + KalibrText(calibration, written.told);
+      written.text = head + KalibrText(calibration, imu, written.told);
       break;
     case CalibrationStyle::kOpenCv:
       written.text = kOpenCvStart + head + OpenCvText(calibration);

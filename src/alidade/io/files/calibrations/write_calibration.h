@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "alidade/inertial/imu.h"
 #include "alidade/io/calibration.h"
 
 namespace alidade {
@@ -25,9 +26,11 @@ struct WrittenCalibration {
 
 // `comment`: lines for the beginning, without #. A pair is written where the format has one
 // (Alidade, Kalibr, OpenCV), otherwise its left camera. Throws Error (usage) when the format cannot
-// express the lens.
+// express the lens. `imu`: what is known of an inertial sensor, for Alidade and Kalibr (which needs
+// its rotation); others have no place for it.
 WrittenCalibration FormatCalibration(const Calibration& calibration, CalibrationStyle style,
-                                     const std::string& comment = {});
+                                     const std::string& comment = {},
+                                     const std::optional<ImuModel>& imu = {});
 
 // `text` without the lines that precede the comment: OpenCV's %YAML:1.0 and ---.
 std::string CommentOfCalibration(const std::string& text);
