@@ -73,7 +73,7 @@ void InertialWatch::ForgetMap() {
 }
 
 void InertialWatch::Take(std::span<const ImuSample> samples) {
-  if (!kInertial || samples.empty()) return;
+  if (samples.empty()) return;
   if (!report_.given) SetImu({});
   for (const ImuSample& sample : stream_.Add({samples.begin(), samples.end()})) {
     if (!samples_.empty() && sample.time <= samples_.back().time) samples_.clear();  // set back
@@ -94,7 +94,6 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
 }
 
 void InertialWatch::Cut() {
-  if (!kInertial) return;
   stream_.Restart();
   samples_.clear();
   placements_.clear();
@@ -115,7 +114,6 @@ void InertialWatch::Placed(double time, const Anchor& anchor, MapId map,
 }
 
 void InertialWatch::Reanchor(const MapSnapshot& map) {
-  if (!kInertial) return;
   for (Placement& placement : placements_)
     placement.anchor = Reanchored(map.state(), placement.anchor);
   std::erase_if(placements_,
@@ -204,7 +202,6 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
 }
 
 std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot& map) {
-  if (!kInertial) return std::nullopt;
   std::optional<InertialAnswer> answer;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -242,7 +239,7 @@ std::optional<InertialWatch::Growth> InertialWatch::UseAnswer(const MapSnapshot&
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
-  if (!kInertial || agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
+  if (agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
     return std::nullopt;
   const ImuModel& model = report_.model;
   const bool known = model.rotation_known ||
