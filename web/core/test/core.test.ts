@@ -124,7 +124,7 @@ test('shape: what it costs a keyframe', onKitchen, async () => {
 
 test('readings of an inertial sensor: meters and gravity', { ...options, skip: options.skip || (existsSync(program) ? false : `no ${program}`) }, async () => {
   const folder = mkdtempSync(join(tmpdir(), 'alidade-imu-'));
-  execFileSync(program, ['synth', 'room', folder, '--frames', '270', '--width', '400', '--height', '300', '--seed', '2', '--imu', 'phone', '--quiet']);
+  execFileSync(program, ['synth', 'desk', folder, '--frames', '180', '--width', '400', '--height', '300', '--seed', '2', '--imu', 'phone', '--quiet']);
   const rows = (name: string) => readFileSync(join(folder, name), 'utf8').split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.split(/[ ,]/).map(Number));
   const [readings, truth, recording] = [rows('imu.csv'), rows('groundtruth.txt'), openRecording(folder)];
   const camera = Object.fromEntries(['fx', 'fy', 'cx', 'cy'].map((name) => [name, Number(new RegExp(`${name}: ([\\d.]+)`).exec(readFileSync(join(folder, 'camera.yaml'), 'utf8'))![1])])) as unknown as Calibration;
