@@ -1,7 +1,8 @@
-// The numbers of a frame that JavaScript reads from the module's memory. web/tools/generate.mjs
+// Numbers that JavaScript reads from the module's memory. web/tools/generate.mjs
 // reads this file, so that names and order exist once: each field is one double.
 #pragma once
 
+// Of a frame.
 struct FrameNumbers {
   double number = 0;
   double state = 0;      // TrackState
@@ -24,4 +25,18 @@ struct FrameNumbers {
   double qy = 0;
   double qz = 0;
   double qw = 1;
+};
+
+// Of what the inertial sensor tells (InertialReport).
+struct InertialNumbers {
+  double samples = 0;
+  double metric = 0;       // 1: lengths are meters
+  double scale_sigma = 0;  // relative
+  double falls = 0;        // 1: the direction of gravity is known, below
+  double gx = 0;
+  double gy = 0;
+  double gz = 0;
+  double gravity_sigma = 0;
+  double time_offset = 0;
+  double time_offset_sigma = 0;
 };

@@ -4,6 +4,7 @@
 #include <emscripten.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -12,6 +13,7 @@
 
 #include "alidade/base/log.h"
 #include "alidade/base/parallel.h"
+#include "alidade/map/landmark_covariance.h"
 #include "alidade/phone/phone_slam.h"
 #include "frame_numbers.h"
 
@@ -29,6 +31,8 @@ struct Session {
   FrameNumbers numbers;
   std::string bytes;
   std::vector<float> features;
+  InertialNumbers inertial;
+  std::array<double, 9> covariance{};
 };
 
 std::string last_error;
@@ -182,17 +186,76 @@ EMSCRIPTEN_KEEPALIVE int alidade_detected(Session* session, int number, const fl
       -1);
 }
 
-enum Bytes { kMessages = 0, kTrajectory = 1, kMap = 2, kCloud = 3 };
+// Passes readings of the inertial sensor since the last call, 7 numbers each: time (seconds),
+// angular rate x y z (rad/s), specific force x y z (m/s²). They are used with the next image.
+// Negative on failure.
+EMSCRIPTEN_KEEPALIVE int alidade_moved(Session* session, const double* readings, int count) {
+  return Guarded(
+      [&] {
+        std::vector<alidade::ImuSample> samples;
+        for (const double* r = readings; r != readings + 7 * count; r += 7)
+          samples.push_back({r[0], {r[1], r[2], r[3]}, {r[4], r[5], r[6]}});
+        session->slam->Moved(samples);
+        return 0;
+      },
+      -1);
+}
+
+// Returns null on failure.
+EMSCRIPTEN_KEEPALIVE const InertialNumbers* alidade_inertial(Session* session) {
+  return Guarded(
+      [&]() -> const InertialNumbers* {
+        const alidade::InertialReport report = session->slam->slam().Inertial();
+        const Eigen::Vector3d gravity = report.gravity.value_or(Eigen::Vector3d::Zero());
+        session->inertial = {.samples = static_cast<double>(report.samples),
+                             .metric = report.metric ? 1.0 : 0.0,
+                             .scale_sigma = report.scale_sigma,
+                             .falls = report.gravity ? 1.0 : 0.0,
+                             .gx = gravity.x(),
+                             .gy = gravity.y(),
+                             .gz = gravity.z(),
+                             .gravity_sigma = report.gravity_sigma,
+                             .time_offset = report.model.time_offset,
+                             .time_offset_sigma = report.time_offset_sigma};
+        return &session->inertial;
+      },
+      nullptr);
+}
+
+// Nine numbers; null: not known (LandmarkCovariance()), or a failure.
+EMSCRIPTEN_KEEPALIVE const double* alidade_covariance(Session* session, int landmark) {
+  return Guarded(
+      [&]() -> const double* {
+        const alidade::Slam& slam = session->slam->slam();
+        const auto covariance = alidade::LandmarkCovariance(
+            slam.Snapshot(), alidade::LandmarkId{static_cast<uint32_t>(landmark)}, slam.camera());
+        if (!covariance) return nullptr;
+        std::copy(covariance->data(), covariance->data() + 9, session->covariance.begin());
+        return session->covariance.data();
+      },
+      nullptr);
+}
+
+enum Bytes {
+  kMessages = 0,
+  kTrajectory = 1,
+  kMap = 2,
+  kCloud = 3,
+  kInertialMissing = 4,
+  kInertialLeftOut = 5
+};
 
 // Sets `*at` to the requested bytes and returns their number; negative on failure.
 EMSCRIPTEN_KEEPALIVE int alidade_bytes(Session* session, int what, const char** at) {
   return Guarded(
       [&] {
         PhoneSlam& slam = *session->slam;
-        session->bytes = what == kMessages     ? Joined(slam.TakeMessages())
-                         : what == kTrajectory ? slam.Trajectory()
-                         : what == kMap        ? slam.slam().SaveMap()
-                                               : slam.Cloud();
+        session->bytes = what == kMessages          ? Joined(slam.TakeMessages())
+                         : what == kTrajectory      ? slam.Trajectory()
+                         : what == kMap             ? slam.slam().SaveMap()
+                         : what == kInertialMissing ? slam.slam().Inertial().missing
+                         : what == kInertialLeftOut ? slam.slam().Inertial().left_out
+                                                    : slam.Cloud();
         *at = session->bytes.data();
         return static_cast<int>(session->bytes.size());
       },

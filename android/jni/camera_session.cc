@@ -15,7 +15,8 @@ namespace {
 // Phones have two to four fast cores; a parallel loop on slow cores as well would wait for the
 // slowest.
 constexpr int kMostThreads = 4;
-constexpr int kMostSide = 4096;  // pixels
+constexpr int kMostSide = 4096;          // pixels
+constexpr size_t kMostReadings = 10000;  // kept while no image comes
 
 std::unique_ptr<PhoneSlam> MakeSlam(int width, int height, const LensNumbers& lens,
                                     const PhoneSettings& settings) {
@@ -88,6 +89,19 @@ void CameraSession::Offer(const uint8_t* plane, size_t bytes, int row_stride, do
   changed_.notify_all();
 }
 
+void CameraSession::Moved(std::span<const double> readings) {
+  constexpr size_t kNumbers = 7;
+  if (readings.size() % kNumbers != 0)
+    ThrowUsage("inertial readings have 7 numbers each: " + std::to_string(readings.size()) +
+               " are not a multiple");
+  const std::lock_guard lock(mutex_);
+  if (moved_.size() > kMostReadings) moved_.clear();
+  for (size_t i = 0; i < readings.size(); i += kNumbers) {
+    const double* r = readings.data() + i;
+    moved_.push_back({r[0], {r[1], r[2], r[3]}, {r[4], r[5], r[6]}});
+  }
+}
+
 void CameraSession::CameraGone() {
   const std::lock_guard lock(mutex_);
   gone_ = true;
@@ -134,22 +148,28 @@ void CameraSession::OpenDetectorFile() {
 
 void CameraSession::WorkOn(double time, bool cut) {
   bool wanted = false;
+  std::vector<ImuSample> moved;
   {
     const std::lock_guard lock(mutex_);
     wanted = std::exchange(wanted_, false);
+    moved = std::exchange(moved_, {});
   }
   try {
     PhoneFrame frame;
+    InertialReport inertial;
     std::vector<std::string> messages;
     {
       const std::lock_guard lock(slam_mutex_);
       if (cut) slam_->slam().Reset();
+      slam_->Moved(moved);
       frame = slam_->Track(time, working_.data(), 1);
+      inertial = slam_->slam().Inertial();
       if (wanted) messages = slam_->TakeMessages();
     }
     const std::lock_guard lock(mutex_);
     ++numbers_.frames;
     numbers_.frame = std::move(frame);
+    numbers_.inertial = std::move(inertial);
     if (!numbers_.frame.result.warning.empty()) words_ = numbers_.frame.result.warning;
     working_.swap(shown_);
     fresh_ = true;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -30,6 +31,7 @@ using LensNumbers = std::vector<double>;
 // Status after the last processed frame.
 struct SessionNumbers {
   PhoneFrame frame;
+  InertialReport inertial;
   int frames = 0;   // processed images
   int skipped = 0;  // waiting images that were replaced by a newer one
   int failed = 0;   // images that were rejected or failed; Words() returns the reason
@@ -51,6 +53,10 @@ class CameraSession {
   // still waiting. Throws Error (input) when the plane is too small for the session's image size,
   // and StateError between CameraGone() and CameraBack().
   void Offer(const uint8_t* plane, size_t bytes, int row_stride, double time);
+  // Sensor's thread. Readings of the inertial sensor since the last call (PhoneSlam::Moved()) on
+  // the clock of the images, 7 numbers each: seconds, rad/s x y z, m/s² x y z. Throws Error (usage)
+  // for another count.
+  void Moved(std::span<const double> readings);
   // Call when the camera is lost: used by another app, activity paused, or device failed.
   void CameraGone();
   // The camera is available again: the next image starts a new recording in the same map.
@@ -99,6 +105,7 @@ class CameraSession {
   double waiting_time_ = 0;
   bool waits_ = false, in_work_ = false, end_ = false;
   bool gone_ = false, cut_ = false;
+  std::vector<ImuSample> moved_;       // readings that no image has been processed with yet
   bool wanted_ = false;                // drawing is active, so messages are collected
   bool fresh_ = false;                 // shown_ has not been drawn yet
   std::vector<std::string> messages_;  // to be applied to scene_

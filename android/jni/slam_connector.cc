@@ -26,7 +26,7 @@ LensNumbers LensOf(JNIEnv* env, jdoubleArray lens) {
 }
 
 // In the order of SlamConnector.Numbers.
-std::array<double, 14> ListOf(const SessionNumbers& now) {
+std::array<double, 17> ListOf(const SessionNumbers& now) {
   const PhoneFrame& frame = now.frame;
   return {static_cast<double>(frame.result.state),
           frame.result.predicted ? 1.0 : 0.0,
@@ -41,7 +41,10 @@ std::array<double, 14> ListOf(const SessionNumbers& now) {
           static_cast<double>(frame.camera_changes),
           static_cast<double>(now.frames),
           static_cast<double>(now.skipped),
-          static_cast<double>(now.failed)};
+          static_cast<double>(now.failed),
+          static_cast<double>(now.inertial.samples),
+          now.inertial.metric ? 1.0 : 0.0,
+          now.inertial.scale_sigma};
 }
 
 }  // namespace
@@ -85,6 +88,15 @@ ALIDADE_NATIVE(void, nativeOffer)
     SessionOf(handle).Offer(static_cast<const uint8_t*>(pixels),
                             static_cast<size_t>(env->GetDirectBufferCapacity(plane)), row_stride,
                             seconds);
+  });
+}
+
+ALIDADE_NATIVE(void, nativeMoved)(JNIEnv* env, jclass, jlong handle, jdoubleArray readings) {
+  Guarded(env, [&] {
+    if (readings == nullptr) alidade::ThrowUsage("inertial readings are missing");
+    std::vector<double> numbers(static_cast<size_t>(env->GetArrayLength(readings)));
+    env->GetDoubleArrayRegion(readings, 0, static_cast<jsize>(numbers.size()), numbers.data());
+    SessionOf(handle).Moved(numbers);
   });
 }
 

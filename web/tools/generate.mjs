@@ -84,9 +84,9 @@ export function parseFailures(header, source) {
   return { names, reasons: words(source, 'ReasonText') };
 }
 
-// Field names of struct FrameNumbers, in order: 'fov_sigma' → 'fovSigma'.
-export function parseNumbers(header) {
-  const [, body] = /struct FrameNumbers \{([^}]*)\}/.exec(header);
+// Field names of a struct of doubles, in order: 'fov_sigma' → 'fovSigma'.
+export function parseNumbers(header, struct = 'FrameNumbers') {
+  const [, body] = new RegExp(`struct ${struct} \\{([^}]*)\\}`).exec(header);
   return [...body.replace(/\/\/.*$/gm, '').matchAll(/\bdouble (\w+)/g)].map(([, name]) => name.replace(/_(\w)/g, (_, letter) => letter.toUpperCase()));
 }
 
@@ -135,7 +135,8 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const failures = failuresText();
   for (const folder of [scene, core]) writeFileSync(`${folder}failures.ts`, failures);
   writeFileSync(`${core}frame_numbers.ts`, '// Made from wasm/frame_numbers.h by tools/generate.mjs.\n' +
-    `export const FRAME_NUMBERS = ${JSON.stringify(parseNumbers(source('wasm/frame_numbers.h')), null, 1)} as const;\n`);
+    `export const FRAME_NUMBERS = ${JSON.stringify(parseNumbers(source('wasm/frame_numbers.h')), null, 1)} as const;\n` +
+    `export const INERTIAL_NUMBERS = ${JSON.stringify(parseNumbers(source('wasm/frame_numbers.h'), 'InertialNumbers'), null, 1)} as const;\n`);
   replace(out, scene);
   replace(fileURLToPath(new URL('../core/src/generated/', import.meta.url)), core);
   rmSync(made, { recursive: true, force: true });

@@ -4,9 +4,9 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
-#include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "alidade/features/color.h"
 #include "alidade/io/cloud.h"
 #include "alidade/io/trajectory.h"
 #include "alidade/version.h"
@@ -83,11 +83,12 @@ PhoneFrame PhoneSlam::Track(double time, const uint8_t* pixels, int channels) {
                       const_cast<uint8_t*>(pixels));
   FrameInput input;
   input.time = time;
+  input.imu = std::exchange(moved_, {});
   if (channels == 1) {
     input.image = image;
   } else {
-    cv::cvtColor(image, input.image, cv::COLOR_RGBA2GRAY);
-    if (settings_.slam.WantsColor()) cv::cvtColor(image, input.color, cv::COLOR_RGBA2BGR);
+    input.image = GrayOf(image, true);
+    if (settings_.slam.WantsColor()) input.color = BgrOf(image, true);
   }
   PhoneFrame frame;
   frame.result = slam_->Track(input);
@@ -115,6 +116,10 @@ void PhoneSlam::TellLens(PhoneFrame& frame) const {
   // d fov / d log f = -sin fov
   frame.fov_sigma = focal_sigma * std::sin(frame.fov * kDegree) / kDegree;
   frame.camera_changes = slam_->camera_changes();
+}
+
+void PhoneSlam::Moved(std::span<const ImuSample> readings) {
+  moved_.insert(moved_.end(), readings.begin(), readings.end());
 }
 
 void PhoneSlam::Detected(int number, std::vector<Detection> detections) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,11 @@ class PhoneSlam {
   // Processes one image: 1 (gray) or 4 (red green blue alpha) bytes per pixel, rows without
   // padding. `time` in seconds. Throws Error as Slam::Track() does.
   PhoneFrame Track(double time, const uint8_t* pixels, int channels);
+  // Readings of the device's inertial sensor since the last call, in its own axes (W3C
+  // DeviceMotion: x right, y up, z out of the screen; any that are fixed to the camera will do), in
+  // order of time on the clock of the images or one with a constant offset below a second. They are
+  // used with the next image and may be ahead of it or behind.
+  void Moved(std::span<const ImuSample> readings);
   void Finish();
   // Passes the detections in an earlier image (PhoneFrame::number), in its pixels. They may be many
   // images late. Throws Error (input) for a class that is not in PhoneSettings::detector_classes.
@@ -82,6 +88,7 @@ class PhoneSlam {
   bool known_;
   LatestTimes latest_;  // values after the previous frame
   int frames_ = 0;
+  std::vector<ImuSample> moved_;  // readings since the last image
   std::unique_ptr<Slam> slam_;
   std::shared_ptr<LateDetector> detector_;  // null: no external detector
   StreamSource source_;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/features/color.h"
+
 namespace alidade {
 namespace {
 
@@ -97,7 +99,7 @@ GradientImage GradientImageMaker::Make(const Picture& picture) const {
 Picture GradientImage::Straight() const {
   Picture picture;
   cv::extractChannel(values, picture.gray, 0);
-  cv::cvtColor(picture.gray, picture.color, cv::COLOR_GRAY2BGR);
+  picture.color = BgrOf(picture.gray);
   for (size_t i = 0; i < edges.size(); ++i)
     picture.color.at<cv::Vec3b>(edges[i].y, edges[i].x) = {colors[i][2], colors[i][1],
                                                            colors[i][0]};

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "alidade/base/error.h"
+#include "alidade/features/color.h"
 
 namespace alidade {
 
@@ -57,8 +58,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
     if (prepared.color.depth() != CV_8U ||
         (prepared.color.channels() != 3 && prepared.color.channels() != 4))
       ThrowInput("color images must have three or four channels of 8 bits");
-    if (prepared.color.channels() == 4)
-      cv::cvtColor(prepared.color, prepared.color, cv::COLOR_BGRA2BGR);
+    if (prepared.color.channels() == 4) prepared.color = BgrOf(prepared.color);
     if (used.width != given.width)
       cv::resize(prepared.color, prepared.color, {used.width, used.height}, 0, 0, cv::INTER_AREA);
   }
@@ -67,8 +67,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
     if (image->depth() != CV_8U) ThrowInput("images must have 8 bits per channel");
     if (const int n = image->channels(); n != 1 && n != 3 && n != 4)
       ThrowInput("images must have one, three or four channels, not " + std::to_string(n));
-    if (image->channels() == 3) cv::cvtColor(*image, *image, cv::COLOR_BGR2GRAY);
-    if (image->channels() == 4) cv::cvtColor(*image, *image, cv::COLOR_BGRA2GRAY);
+    if (image->channels() > 1) *image = GrayOf(*image);
     if (used.width != given.width)
       cv::resize(*image, *image, {used.width, used.height}, 0, 0, cv::INTER_AREA);
   }

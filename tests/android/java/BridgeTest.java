@@ -31,6 +31,8 @@ public final class BridgeTest {
     check.test("sessions that cannot be are refused", bridge::refusesSessions);
     check.test("calls out of turn are refused", bridge::refusesCallsOutOfTurn);
     check.test("the map outlives a camera that was gone", bridge::outlivesTheCamera);
+    check.test("readings of two sensors become those of one clock", BridgeTest::putsOnOneClock);
+    check.test("inertial readings are counted, and others refused", bridge::takesReadings);
     check.test("a detector that cannot be opened is told, and done without", bridge::tellsOfDetector);
     if (arguments.length > 2) {
       check.test("a detector works beside", () -> bridge.worksWithDetector(arguments[2]));
@@ -39,6 +41,38 @@ public final class BridgeTest {
     boolean judged = bridge.cycles >= LEAST_CYCLES_TO_JUDGE;
     check.test(judged ? "sessions come and go without growth" : "sessions come and go", bridge::doesNotGrow);
     System.exit(check.status());
+  }
+
+  // Accelerations grow by 1 m/s² in 10 ms; the gyroscope is read 4 ms after each.
+  private static void putsOnOneClock() {
+    java.util.List<double[]> readings = new java.util.ArrayList<>();
+    OneClock clock = new OneClock(readings::add);
+    for (int i = 0; i < 5; ++i) {
+      clock.accelerated(i * 0.01, i, 2 * i, -i);
+      clock.turned(i * 0.01 + 0.004, i, 0, 0);
+    }
+    Check.that(readings.size() == 4, readings.size() + " readings"); // the last one waits
+    double[] third = readings.get(2);
+    Check.that(Math.abs(third[0] - 0.024) < 1e-9 && third[1] == 2, "time " + third[0]);
+    Check.that(Math.abs(third[4] - 2.4) < 1e-6 && Math.abs(third[5] - 4.8) < 1e-6
+        && Math.abs(third[6] + 2.4) < 1e-6, "acceleration " + third[4] + " " + third[5]);
+    clock.accelerated(1, 0, 0, 0); // a gap: the reading that waits is dropped
+    Check.that(readings.size() == 4, readings.size() + " readings after the gap");
+  }
+
+  private void takesReadings() throws Exception {
+    try (SlamConnector slam = open()) {
+      for (int i = 0; i < 3; ++i) {
+        slam.moved(new double[] {frames.time(i) - 0.01, 0, 0, 0, 0, 9.8, 0.1 * i, frames.time(i), 0, 0, 0, 0, 9.8, 0});
+        offer(slam, i);
+        slam.waitUntilIdle();
+      }
+      SlamConnector.Numbers now = slam.numbers();
+      Check.that(now.readings == 6, now.readings + " readings");
+      Check.that(!now.metric && now.scaleSigma == 0, "meters after three images");
+      Check.refuses(IllegalArgumentException.class, "7 numbers", () -> slam.moved(new double[6]));
+      Check.refuses(IllegalArgumentException.class, "missing", () -> slam.moved(null));
+    }
   }
 
   private SlamConnector open() {

@@ -10,7 +10,7 @@
 
 import { FAILURES, REASONS } from './generated/failures.js';
 import type { Failure } from './generated/failures.js';
-import { FRAME_NUMBERS } from './generated/frame_numbers.js';
+import { FRAME_NUMBERS, INERTIAL_NUMBERS } from './generated/frame_numbers.js';
 
 export { FAILURES, REASONS };
 export type { Failure };
@@ -33,6 +33,9 @@ interface Core {
   _alidade_track(session: number, channels: number, time: number): number;
   _alidade_features(session: number, at: number): number;
   _alidade_detected(session: number, number: number, found: number, count: number): number;
+  _alidade_moved(session: number, readings: number, count: number): number;
+  _alidade_inertial(session: number): number;
+  _alidade_covariance(session: number, landmark: number): number;
   _alidade_bytes(session: number, what: number, at: number): number;
   _alidade_finish(session: number): number;
 }
@@ -89,6 +92,19 @@ export interface Frame {
 
 export interface Feature { x: number; y: number; matched: boolean } // pixels of the processed image
 
+/** What images and inertial readings together tell so far, as of the last image. */
+export interface Inertial {
+  samples: number; // readings so far
+  metric: boolean; // lengths are meters: poses, map and landmarks
+  scaleSigma: number; // relative standard deviation of those lengths; 0: unknown
+  gravity: [number, number, number] | null; // direction in which things fall, unit vector in the world; null: unknown
+  gravitySigma: number; // standard deviation of its direction, radians
+  timeOffset: number; // an image of time t was taken at t + timeOffset on the clock of the readings, seconds
+  timeOffsetSigma: number; // seconds; 0: unknown
+  missing: string; // what the readings do not tell yet, as a sentence; '': nothing, or there are no readings
+  leftOut: string; // why the readings are not used, as a sentence; '': they are
+}
+
 export interface Detection {
   class: number; // index into the class names
   score: number; // 0…1
@@ -98,10 +114,13 @@ export interface Detection {
 
 const STATES: State[] = ['initializing', 'tracking', 'lost'];
 const DETECTION = 6; // numbers per detection
-const enum Bytes { Messages = 0, Trajectory = 1, Map = 2, Cloud = 3 }
+const READING = 7; // numbers per reading
+const enum Bytes { Messages = 0, Trajectory = 1, Map = 2, Cloud = 3, InertialMissing = 4, InertialLeftOut = 5 }
 
-function frameNumbers(numbers: Float64Array): Record<(typeof FRAME_NUMBERS)[number], number> {
-  return Object.fromEntries(FRAME_NUMBERS.map((name, i) => [name, numbers[i]!])) as Record<(typeof FRAME_NUMBERS)[number], number>;
+// The numbers at an address of the module's memory.
+function numbersAt<Name extends string>(core: Core, names: readonly Name[], at: number): Record<Name, number> {
+  const numbers = new Float64Array(core.HEAPU8.buffer, at, names.length);
+  return Object.fromEntries(names.map((name, i) => [name, numbers[i]!])) as Record<Name, number>;
 }
 
 export type Picture = ImageData | Uint8Array | Uint8ClampedArray;
@@ -171,27 +190,31 @@ export class Slam {
 
   /**
    * Processes one image: ImageData, or bytes with 4 (red green blue alpha) or 1 (gray) per pixel. `time` in seconds.
-   * Throws AlidadeError.
+   * `imu`: readings of an inertial sensor since the last image, in order of time, 7 numbers each: time (seconds, on the
+   * clock of the images or one with a constant offset below a second), angular rate x y z (rad/s) and specific force
+   * x y z (m/s²; at rest it points up and is 9.81 long) in axes that are fixed to the camera. They may be ahead of the
+   * image. How the sensor is mounted is found on the way. See inertial(). Throws AlidadeError.
    */
-  track(time: number, picture: Picture): Frame;
+  track(time: number, picture: Picture, imu?: Float64Array): Frame;
   /** @deprecated The order of version 0.1, accepted in this version only. */
   track(picture: Picture, time: number): Frame;
-  track(first: number | Picture, second: number | Picture): Frame {
-    if (typeof first === 'number') return this.#track(first, second as Picture);
+  track(first: number | Picture, second: number | Picture, imu?: Float64Array): Frame {
+    if (typeof first === 'number') return this.#track(first, second as Picture, imu);
     if (!Slam.#warned) console.warn('alidade: track(picture, time) is now track(time, picture)');
     Slam.#warned = true;
     return this.#track(second as number, first);
   }
-  #track(time: number, picture: Picture): Frame {
+  #track(time: number, picture: Picture, imu?: Float64Array): Frame {
     const core = this.#live();
     const bytes = 'data' in picture ? picture.data : picture;
     const channels = bytes.length / (this.width * this.height);
     if (channels !== 1 && channels !== 4)
       throw new AlidadeError(`an image of ${bytes.length} bytes is not one of ${this.width}x${this.height} pixels`);
+    if (imu && imu.length > 0) this.#moved(core, imu);
     core.HEAPU8.set(bytes, core._alidade_pixels(this.#session));
     const at = core._alidade_track(this.#session, channels, time);
     if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
-    const n = frameNumbers(new Float64Array(core.HEAPU8.buffer, at, FRAME_NUMBERS.length));
+    const n = numbersAt(core, FRAME_NUMBERS, at);
     const pose: Pose = { position: [n.tx, n.ty, n.tz], orientation: [n.qx, n.qy, n.qz, n.qw] };
     const failure = FAILURES[n.failure - 1] ?? null; // 0: none
     return {
@@ -218,6 +241,30 @@ export class Slam {
     const told = core._alidade_detected(this.#session, number, at, Math.floor(numbers.length / DETECTION));
     core._free(at);
     if (told !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
+  }
+
+  /** What the readings passed to track() tell: meters, gravity, the clock of the sensor. */
+  inertial(): Inertial {
+    const core = this.#live();
+    const at = core._alidade_inertial(this.#session);
+    if (at === 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
+    const n = numbersAt(core, INERTIAL_NUMBERS, at);
+    const text = (what: Bytes) => new TextDecoder().decode(this.#bytes(what));
+    return {
+      samples: n.samples, metric: n.metric === 1, scaleSigma: n.scaleSigma, gravity: n.falls ? [n.gx, n.gy, n.gz] : null,
+      gravitySigma: n.gravitySigma, timeOffset: n.timeOffset, timeOffsetSigma: n.timeOffsetSigma,
+      missing: text(Bytes.InertialMissing), leftOut: text(Bytes.InertialLeftOut),
+    };
+  }
+
+  /**
+   * Covariance of the position of a landmark in the world (its id is in the messages), 3×3, map units² (meters² if
+   * inertial().metric). It is of the landmark alone: of the difference of two, add both, and the scale's. Null: unknown.
+   */
+  landmarkCovariance(id: number): number[] | null {
+    const core = this.#live();
+    const at = core._alidade_covariance(this.#session, id);
+    return at === 0 ? null : [...new Float64Array(core.HEAPU8.buffer, at, 9)];
   }
 
   /** The features of the last image. */
@@ -263,6 +310,14 @@ export class Slam {
     this.#session = 0;
   }
 
+  #moved(core: Core, imu: Float64Array): void {
+    if (imu.length % READING !== 0) throw new AlidadeError(`inertial readings have ${READING} numbers each: ${imu.length} are not a multiple`);
+    const at = core._malloc(imu.byteLength);
+    new Float64Array(core.HEAPU8.buffer, at, imu.length).set(imu);
+    const told = core._alidade_moved(this.#session, at, imu.length / READING);
+    core._free(at);
+    if (told !== 0) throw new AlidadeError(core.UTF8ToString(core._alidade_error()));
+  }
   #live(): Core {
     if (this.#session === 0) throw new AlidadeError('this Slam was deleted');
     return this.#core;

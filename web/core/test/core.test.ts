@@ -8,8 +8,9 @@ import { pathToFileURL } from 'node:url';
 import { test } from 'node:test';
 import { grayOf, openRecording } from '../../shared/test/y4m.ts';
 import { decode } from '../../scene/src/decode.ts';
+import { inverse, rotate } from '../../scene/src/pose.ts';
 import { REASONS } from '../src/index.ts';
-import type { Slam as SlamType, SlamOptions } from '../src/index.ts';
+import type { Calibration, Pose, Slam as SlamType, SlamOptions } from '../src/index.ts';
 
 declare const WEB: string;
 const dist = join(WEB, 'core/dist');
@@ -119,6 +120,42 @@ test('shape: what it costs a keyframe', onKitchen, async () => {
   const [without, withShape] = [await cost(false), await cost(true)];
   console.log(`semi-dense depth: ${((withShape.milliseconds - without.milliseconds) / withShape.keyframes).toFixed(1)} ms of CPU a keyframe (${withShape.keyframes} of ${frames} frames, ${without.milliseconds.toFixed(0)} ms without, ${withShape.milliseconds.toFixed(0)} with)`);
   assert.equal(withShape.keyframes, without.keyframes); // the map is the same
+});
+
+test('readings of an inertial sensor: meters and gravity', { ...options, skip: options.skip || (existsSync(program) ? false : `no ${program}`) }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'alidade-imu-'));
+  execFileSync(program, ['synth', 'desk', folder, '--frames', '180', '--width', '400', '--height', '300', '--seed', '2', '--imu', 'phone', '--quiet']);
+  const rows = (name: string) => readFileSync(join(folder, name), 'utf8').split('\n').filter((line) => line && !line.startsWith('#')).map((line) => line.split(/[ ,]/).map(Number));
+  const [readings, truth, recording] = [rows('imu.csv'), rows('groundtruth.txt'), openRecording(folder)];
+  const camera = Object.fromEntries(['fx', 'fy', 'cx', 'cy'].map((name) => [name, Number(new RegExp(`${name}: ([\\d.]+)`).exec(readFileSync(join(folder, 'camera.yaml'), 'utf8'))![1])])) as unknown as Calibration;
+  const slam = await create({ width: 400, height: 300, camera });
+  assert.deepEqual([slam.inertial().samples, slam.inertial().metric, slam.inertial().gravity], [0, false, null]);
+  assert.throws(() => slam.track(0, new Uint8Array(400 * 300), new Float64Array(8)), /7 numbers/);
+  const placed: { p: Pose; i: number }[] = [];
+  let next = 0;
+  for (let i = 0; i < recording.times.length; ++i) {
+    const imu: number[] = [];
+    while (next < readings.length && readings[next]![0]! < recording.times[i]! + 1 / 60) imu.push(...readings[next++]!);
+    const { pose } = slam.track(recording.times[i]!, grayOf(recording, i), Float64Array.from(imu));
+    if (slam.inertial().metric && pose) placed.push({ p: pose, i });
+  }
+  const told = slam.inertial();
+  assert.ok(told.metric && told.missing === '' && told.leftOut === '', `${told.missing} ${told.leftOut}`);
+  assert.ok(told.scaleSigma > 0 && told.scaleSigma < 0.05 && placed.length > 20);
+  // Between the poses since, the way straight from the first to the last.
+  const [first, last] = [placed[0]!, placed.at(-1)!];
+  const long = (a: readonly number[], b: readonly number[]) => Math.hypot(a[0]! - b[0]!, a[1]! - b[1]!, a[2]! - b[2]!);
+  const ratio = long(first.p.position, last.p.position) / long(truth[first.i]!.slice(1, 4), truth[last.i]!.slice(1, 4));
+  // Gravity in the last camera's frame; things fall along -z in the rendered world.
+  const [q, T] = [last.p.orientation, truth[last.i]!.slice(4, 8)];
+  const here = rotate(inverse([...q, 0, 0, 0]), ...told.gravity!);
+  const there = rotate(inverse([...T, 0, 0, 0]), 0, 0, -1);
+  const tilt = Math.acos(here[0] * there[0] + here[1] * there[1] + here[2] * there[2]);
+  console.log(`lengths x ${ratio.toFixed(3)} ± ${told.scaleSigma.toFixed(3)}, gravity ${((tilt * 180) / Math.PI).toFixed(2)}° off, clock ${(1000 * told.timeOffset).toFixed(1)} ms`);
+  assert.ok(Math.abs(ratio - 1) < 3 * told.scaleSigma, `${ratio}`);
+  assert.ok(tilt < 0.02 && told.gravitySigma < 0.035, `${tilt}`); // 1 degree
+  slam.delete();
+  rmSync(folder, { recursive: true });
 });
 
 test('what cannot be is refused in words, and nothing is lost', options, async () => {

@@ -2,7 +2,8 @@
 import { holdFocus, openCamera } from './camera.ts';
 
 export interface CameraEvents {
-  image(time: number): void; // a new image is displayed; seconds
+  // A new image is displayed; seconds of its own clock, and when it was taken by that of the page (performance.now()).
+  image(time: number, at: number): void;
   problem(text: string): void; // the camera could not be reopened; '': it was
 }
 
@@ -71,13 +72,13 @@ export class CameraSource {
     this.stream = null;
   }
 
-  private readonly take: VideoFrameRequestCallback = (now, { mediaTime }) => {
+  private readonly take: VideoFrameRequestCallback = (now, { mediaTime, captureTime, presentationTime }) => {
     if (!this.stream) return;
     this.video.requestVideoFrameCallback(this.take);
     const time = mediaTime > 0 ? mediaTime : now / 1000;
     if (time <= this.last) return;
     this.last = time;
-    this.events.image(time);
+    this.events.image(time, (captureTime ?? presentationTime ?? now) / 1000);
   };
 
   private watch(): void {

@@ -7,9 +7,11 @@ import type { DetectorHost } from './detector.ts';
 import { LocalEngine } from './engine.ts';
 import type { Engine } from './engine.ts';
 import type { Point } from './lens.ts';
+import { Motion } from './motion.ts';
 import type { Dispatch, PageState } from './page_state.ts';
 import { cameraYaml, Recorder } from './recorder.ts';
 import { RemoteEngine } from './remote.ts';
+import { Ruler } from './ruler.ts';
 import { download, showOffers } from './save.ts';
 import { engineHooks } from './session.ts';
 import { coreSettings, detectorClasses } from './settings.ts';
@@ -23,6 +25,7 @@ export class Control {
   engine: Engine | null = null;
   private camera: CameraSource | null = null;
   private file: Video | null = null;
+  private motion: Motion | null = null;
   private recorder: Recorder | null = null;
   private readonly wake = new Wake();
 
@@ -30,19 +33,23 @@ export class Control {
   constructor(private readonly state: PageState, private readonly dispatch: Dispatch, private readonly video: HTMLVideoElement,
     private readonly detector: DetectorHost, private readonly asked: Promise<void>) {}
 
+  // Call it within the event of a tap, because of Motion.open().
   async startCamera(): Promise<void> {
+    const motion = Motion.open();
     await this.asked;
     this.dispatch({ kind: 'opening', opening: true });
     try {
       this.camera = await CameraSource.open(this.video, {
-        image: (time) => this.take(time),
+        image: (time, at) => this.take(time, at),
         problem: (text) => this.notice(text, 'camera'),
       });
       this.dispatch({ kind: 'phase', phase: 'running' });
+      this.motion = await motion;
       await this.begin(this.video.videoWidth, this.video.videoHeight);
       await this.wake.hold();
       this.camera.start(this.state.choices.focus);
     } catch (error) {
+      void motion.then((opened) => opened.close());
       this.closeCamera();
       this.dispatch({ kind: 'phase', phase: 'idle' });
       this.notice(error instanceof CameraProblem ? error.message : `It could not start: ${(error as Error).message}.`, 'start');
@@ -68,7 +75,7 @@ export class Control {
           next.bitmap.close();
           return;
         }
-        this.engine!.push(next.bitmap, next.time, 0);
+        this.engine!.push(next.bitmap, next.time, 0, new Float64Array(), this.state.ruler?.landmarks ?? []);
         this.dispatch({ kind: 'progress', progress: { seconds: next.time, duration: opened.duration } });
       }
       while (this.engine && !this.engine.free) await pause(5);
@@ -102,9 +109,18 @@ export class Control {
 
   tap(at: Point | null): void {
     if (!at || this.state.shown?.frame.state !== 'tracking') return;
+    if (this.state.measuring) return this.measure(at);
     const placed = Cube.place(this.state.map, at);
     if (placed) this.dispatch({ kind: 'cube', cube: placed });
     this.notice(placed ? '' : 'There are no map points there yet: look at it a little longer.', 'cube');
+  }
+
+  toggleRuler(): void { this.dispatch({ kind: 'measuring', measuring: !this.state.measuring }); }
+
+  private measure(at: Point): void {
+    const ruler = Ruler.place(this.state.map, at, this.state.ruler);
+    if (ruler) this.dispatch({ kind: 'ruler', ruler });
+    this.notice(ruler ? '' : 'There is no map point near: tap a corner or an edge, or look at it a little longer.', 'cube');
   }
 
   toggleRecording(): void {
@@ -128,7 +144,8 @@ export class Control {
       { name: 'map.alidade', what: 'Map: alidade view, alidade run --load', bytes: of('map', 'application/octet-stream') },
       { name: 'trajectory.txt', what: 'Trajectory of the camera (TUM format)', bytes: of('trajectory', 'text/plain') },
       { name: 'landmarks.ply', what: 'Map points (PLY): MeshLab, CloudCompare', bytes: of('cloud', 'application/octet-stream') },
-    ], 'Lengths are in map units, because one camera does not measure meters. Record saves the images.');
+    ], this.state.shown?.inertial?.metric ? 'Lengths are meters. Record saves the images.'
+      : 'Lengths are in map units, because one camera does not measure meters. Record saves the images.');
   }
 
   // The page is visible again.
@@ -151,14 +168,17 @@ export class Control {
   }
 
   // An image of the camera.
-  private take(time: number): void {
+  private take(time: number, at: number): void {
     if (this.state.phase !== 'running' || !this.camera) return;
+    const { motion } = this;
+    motion?.image(time, at);
+    if (motion && motion.state !== this.state.motion) this.dispatch({ kind: 'motion', motion: motion.state });
     if (this.recorder) {
       this.recorder.add(this.video, time);
       this.dispatch({ kind: 'recording', images: this.recorder.pictures });
       if (this.recorder.full) void this.stopRecording('The recording is as large as a page can hold: it has been ended.');
     }
-    if (this.engine?.free) this.engine.push(this.camera.image(), time, this.camera.turned());
+    if (this.engine?.free) this.engine.push(this.camera.image(), time, this.camera.turned(), motion?.take() ?? new Float64Array(), this.state.ruler?.landmarks ?? []);
   }
 
   private async stopRecording(why: string): Promise<void> {
@@ -182,6 +202,8 @@ export class Control {
   private closeCamera(): void {
     this.camera?.close();
     this.camera = null;
+    this.motion?.close();
+    this.motion = null;
     this.wake.release();
   }
 

@@ -1,10 +1,11 @@
 // A virtual cube on a tapped surface. It is anchored to the keyframe it was placed from, so that it moves with map
 // corrections.
 import type { Camera, Culled, Message, Pose, State } from '@alidade/scene';
-import { USES } from '../../scene/src/messages.ts';
 import { compose, inverse, rotate, transform } from '../../scene/src/pose.ts'; // directly, because the package's scene requires a browser
 import { project, unproject } from './lens.ts';
 import type { Point, Ray } from './lens.ts';
+import { visible } from './visible.ts';
+import type { Seen } from './visible.ts';
 
 type Vector = readonly [number, number, number];
 
@@ -16,7 +17,6 @@ const ENOUGH = 8; // number of points
 // Share of the image width: if no point is this near, the points must surround the tap, to prevent extrapolation.
 const NEAR = 0.03;
 const WIDEST = 150; // degrees: largest gap in direction between points that surround the tap
-const SAME = 3; // pixels from a landmark to its feature
 const FLAT = 0.02; // share of the depth: distance of inliers to the plane
 const TRIES = 200; // RANSAC iterations with three points each
 const STEEPEST = 0.2; // cosine between surface normal and viewing ray; surfaces at grazing angles are rejected
@@ -28,8 +28,6 @@ const plus = (a: Vector, b: Vector, s = 1): Vector => [a[0] + s * b[0], a[1] + s
 const cross = (a: Vector, b: Vector): Vector => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 const scaled = (a: Vector, s: number): Vector => [s * a[0], s * a[1], s * a[2]];
 const unit = (a: Vector): Vector => scaled(a, 1 / Math.hypot(...a));
-
-interface Seen { p: Vector; pixel: Point }
 
 export class Cube {
   private constructor(
@@ -43,7 +41,7 @@ export class Cube {
     const camera = state.hello?.camera;
     const T_world_camera = state.cameraPose();
     if (!camera || !T_world_camera) return null;
-    const surface = surfaceAt(pointsBefore(state, camera, T_world_camera), camera, tap);
+    const surface = surfaceAt(visible(state, camera, T_world_camera), camera, tap);
     if (!surface) return null;
     const keyframe = nearestKeyframe(state, T_world_camera);
     if (keyframe === null) return null;
@@ -77,14 +75,16 @@ export class Cube {
     return keyframe ? transform(keyframe.T_world_camera, keyframe.scale, ...this.at) : null;
   }
 
-  // Faces to draw, back to front: corners in pixels of the stream's camera, and brightness (0…1).
-  faces(state: State, T_world_camera: Pose): { corners: Point[]; light: number }[] {
+  // Faces to draw, back to front: corners in pixels of the stream's camera, and brightness (0…1). `edge`: its length in
+  // map units; null: as placed, a share of the depth.
+  faces(state: State, T_world_camera: Pose, edge: number | null = null): { corners: Point[]; light: number }[] {
     const keyframe = state.keyframes.get(this.keyframe);
     const camera = state.hello?.camera;
     if (!keyframe || !camera) return [];
     const T_camera_keyframe = compose(inverse(T_world_camera), 1, keyframe.T_world_camera);
+    const growth = edge === null ? 1 : edge / (keyframe.scale * Math.hypot(...this.axes[0]));
     const corner = (x: number, y: number, z: number): Vector => {
-      const [a, b, c] = this.axes;
+      const [a, b, c] = this.axes.map((axis) => scaled(axis, growth)) as [Vector, Vector, Vector];
       return transform(T_camera_keyframe, keyframe.scale, ...plus(plus(plus(this.at, a, x), b, y), c, z));
     };
     const sides: readonly [light: number, ...corners: Vector[]][] = [
@@ -108,38 +108,6 @@ export class Cube {
     const turn = (v: Vector): Vector => scaled(rotate(T_follows_culled, ...v), scale);
     this.axes = [turn(this.axes[0]), turn(this.axes[1]), turn(this.axes[2])];
   }
-}
-
-// Visible landmarks in the camera's frame: those with a feature of the latest frame at their projection. Others may be
-// occluded.
-function pointsBefore(state: State, camera: Camera, T_world_camera: Pose): Seen[] {
-  const T_camera_world = inverse(T_world_camera);
-  const map = state.activeMap;
-  const seen: Seen[] = [];
-  const features = matchedFeatures(state, camera);
-  const from = new Map<number, { T: Pose; scale: number }>();
-  for (const { id, map: of, T_world_camera: T, scale } of state.keyframes.values()) if (of === map) from.set(id, { T: compose(T_camera_world, 1, T), scale });
-  for (let i = 0; i < state.landmarks.size; ++i) {
-    const { keyframe, p } = state.landmarks.at(i);
-    const pose = from.get(keyframe);
-    if (!pose) continue;
-    const there = transform(pose.T, pose.scale, ...p);
-    const pixel = project(camera, there);
-    if (pixel && features.some(([x, y]) => Math.abs(x - pixel[0]) < SAME && Math.abs(y - pixel[1]) < SAME)) seen.push({ p: there, pixel });
-  }
-  return seen;
-}
-
-function matchedFeatures(state: State, camera: Camera): Point[] {
-  const packed = state.frame?.features;
-  const points: Point[] = [];
-  if (!packed) return points;
-  const view = new DataView(packed.buffer, packed.byteOffset, packed.byteLength);
-  for (let at = 0; at + 6 <= packed.length; at += 6) {
-    if (USES[packed[at + 4]!] !== 'matched' && USES[packed[at + 4]!] !== 'fresh') continue;
-    points.push([(view.getUint16(at, true) * camera.width) / 65536 - 0.5, (view.getUint16(at + 2, true) * camera.height) / 65536 - 0.5]);
-  }
-  return points;
 }
 
 interface Surface { at: Vector; normal: Vector }

@@ -12,7 +12,8 @@ export interface Hooks {
 export interface Engine {
   readonly free: boolean; // ready for an image
   begin(start: Omit<Start, 'kind' | 'base' | 'threads'>): Promise<void>;
-  push(bitmap: ImageBitmap, time: number, turn: number): void;
+  // `imu`: readings of the inertial sensor since the last image; `ends`: landmarks whose covariance is wanted.
+  push(bitmap: ImageBitmap, time: number, turn: number, imu: Float64Array, ends: readonly number[]): void;
   ask(what: Saved): Promise<Uint8Array<ArrayBuffer>>; // rejects if unavailable
   close(): void;
 }
@@ -50,9 +51,9 @@ export class LocalEngine implements Engine {
   // Connects the Worker of a detector; may be called at any time after begin().
   connect(port: MessagePort): void { this.send({ kind: 'detector', port }, [port]); }
 
-  push(bitmap: ImageBitmap, time: number, turn: number): void {
+  push(bitmap: ImageBitmap, time: number, turn: number, imu: Float64Array, ends: readonly number[]): void {
     ++this.working;
-    this.send({ kind: 'picture', number: this.number++, time, bitmap, turn }, [bitmap]);
+    this.send({ kind: 'picture', number: this.number++, time, bitmap, turn, imu, ends }, [bitmap, imu.buffer as ArrayBuffer]);
   }
 
   ask(what: Saved): Promise<Uint8Array<ArrayBuffer>> {

@@ -7,6 +7,7 @@ import { PageState } from './page_state.ts';
 import type { Info, PageMessage } from './page_state.ts';
 import { PageView } from './page_view.ts';
 import type { Done } from './protocol.ts';
+import { pixelsOf } from './ruler.ts';
 import { bind, load } from './settings.ts';
 
 declare const BUNDLED: readonly { name: string; version: string; licence: string }[];
@@ -53,6 +54,7 @@ document.addEventListener('drop', (event) => {
 });
 byId('picture').addEventListener('pointerup', (event) => control.tap(view.at(event)));
 byId('remove').addEventListener('click', () => dispatch({ kind: 'cube', cube: null }));
+byId('measure').addEventListener('click', () => control.toggleRuler());
 byId('record').addEventListener('click', () => control.toggleRecording());
 byId('save-open').addEventListener('click', () => control.save());
 byId('settings-open').addEventListener('click', () => (byId('settings') as HTMLDialogElement).showModal());
@@ -73,6 +75,9 @@ Object.assign(window, {
     get state() { return state.map; },
     get engine() { return control.engine; },
     get cube() { return state.cube; },
+    get measured() { return state.measured; },
+    // Pixels of the ruler's ends in the latest image.
+    get ends() { return state.ruler ? pixelsOf(state.map, state.ruler.positions(state.map) ?? []) : []; },
     get shown() { return state.shown; },
     get scene() { return view.map.scene; },
     get counters() { return state.counters; },

@@ -2,7 +2,9 @@
 import type { Message } from '../../scene/src/messages.ts';
 import { State } from '../../scene/src/state.ts'; // directly, because the package's scene requires a browser
 import type { Cube } from './cube.ts';
+import type { MotionState } from './motion.ts';
 import type { Done } from './protocol.ts';
+import type { Length, Ruler } from './ruler.ts';
 import type { Choices } from './settings.ts';
 
 export type Phase = 'idle' | 'running' | 'ended';
@@ -23,6 +25,9 @@ export type PageMessage =
   | { kind: 'done'; done: Done; messages: readonly Message[] }
   | { kind: 'stream'; messages: readonly Message[] }
   | { kind: 'cube'; cube: Cube | null }
+  | { kind: 'measuring'; measuring: boolean } // taps are the ruler's
+  | { kind: 'ruler'; ruler: Ruler }
+  | { kind: 'motion'; motion: MotionState }
   | { kind: 'recording'; images: number | null }
   | { kind: 'progress'; progress: Progress | null }
   | { kind: 'notice'; about: string; text: string }; // '' removes the notice of this topic
@@ -38,6 +43,9 @@ export class PageState {
   map = new State();
   shown: Done | null = null; // the last processed image
   cube: Cube | null = null;
+  measuring = false; // taps are the ruler's
+  ruler: Ruler | null = null;
+  motion: MotionState = 'none'; // of the device's inertial sensor
   recording: number | null = null; // images recorded so far; null: not recording
   progress: Progress | null = null;
   readonly counters = { processed: 0, milliseconds: [] as number[] };
@@ -49,6 +57,12 @@ export class PageState {
   // Whether the next session's images are sent to the computer that serves the page.
   get remote(): boolean {
     return Boolean(this.info?.connected && (this.choices.connected || this.info.core === false));
+  }
+
+  // Between the ruler's ends; null: it does not have two, or lengths are not known.
+  get measured(): Length | null {
+    const inertial = this.shown?.inertial;
+    return inertial?.metric ? this.ruler?.measure(this.map, inertial.scaleSigma) ?? null : null;
   }
 
   // Whether there is a map.
@@ -83,6 +97,7 @@ export class PageState {
         break;
       case 'done':
         this.take(message.messages);
+        this.ruler?.update(this.map, message.done.spreads);
         this.count(message.done.frame.milliseconds);
         this.shown?.bitmap?.close();
         this.shown = message.done;
@@ -93,6 +108,18 @@ export class PageState {
       case 'cube':
         this.cube = message.cube;
         ++this.revision;
+        break;
+      case 'measuring':
+        this.measuring = message.measuring;
+        this.ruler = null;
+        ++this.revision;
+        break;
+      case 'ruler':
+        this.ruler = message.ruler;
+        ++this.revision;
+        break;
+      case 'motion':
+        this.motion = message.motion;
         break;
       case 'recording':
         this.recording = message.images;
@@ -110,9 +137,11 @@ export class PageState {
   private take(messages: readonly Message[]): void {
     for (const message of messages) {
       this.cube?.follow(message);
+      this.ruler?.follow(message);
       this.map.apply(message);
     }
     if (this.cube && !this.cube.position(this.map)) this.cube = null;
+    if (this.ruler && !this.ruler.positions(this.map)) this.ruler = null;
     ++this.revision;
   }
 
@@ -125,6 +154,7 @@ export class PageState {
   private emptyMap(): void {
     this.map = new State();
     this.cube = null;
+    this.ruler = null;
     ++this.revision;
   }
 
@@ -133,6 +163,8 @@ export class PageState {
     this.shown?.bitmap?.close();
     this.shown = null;
     this.progress = null;
+    this.measuring = false;
+    this.motion = 'none';
     this.counters.processed = 0;
     this.counters.milliseconds = [];
     this.notices.clear();

@@ -1,6 +1,7 @@
 // Draws the page's state: texts and numbers, the image, the map. Keeps nothing but what was drawn last.
 import type { State } from '@alidade/scene';
 import { byId, write } from '../../shared/src/dom.ts';
+import { pathText } from './lengths.ts';
 import type { Point } from './lens.ts';
 import { MapView } from './map_view.ts';
 import type { PageState } from './page_state.ts';
@@ -27,9 +28,10 @@ export class PageView {
     this.numbers();
     if (state.revision === this.drawn) return;
     this.drawn = state.revision;
-    if (state.shown?.bitmap) this.picture.show(state.shown.bitmap, state.shown.turn, state.map.frame, state.cube, state.map, state.choices.features);
+    if (state.shown?.bitmap) this.picture.show(state);
     if (this.drawnMap !== state.map) this.map.forget();
     this.drawnMap = state.map;
+    this.map.gravity(state.shown?.inertial?.gravity ?? null);
     this.map.changed();
   }
 
@@ -47,7 +49,9 @@ export class PageView {
     const { word, advice } = statusOf(state);
     write(byId('state-word'), word);
     write(byId('advice'), advice);
-    write(byId('lens'), state.shown ? lensText(state.shown.frame, state.choices.fov !== null) : '');
+    byId('measure').hidden = phase !== 'running' || !state.savable;
+    byId('measure').setAttribute('aria-pressed', String(state.measuring));
+    write(byId('lens'), state.shown ? [pathText(state), lensText(state.shown.frame, state.choices.fov !== null)].filter(Boolean).join(' · ') : '');
     write(byId('record'), recording === null ? 'Record' : `Recording ${recording}`);
     byId('record').setAttribute('aria-pressed', String(recording !== null));
     byId('progress').hidden = progress === null || phase !== 'running';

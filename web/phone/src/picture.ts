@@ -1,9 +1,12 @@
-// The processed camera image with its features and the cube.
+// The processed camera image with its features, the cube and the ruler.
 import { marks } from '@alidade/scene';
-import type { Frame as StreamFrame, State } from '@alidade/scene';
+import type { State } from '@alidade/scene';
 import { byId } from '../../shared/src/dom.ts';
 import type { Cube } from './cube.ts';
+import { CUBE_EDGE, lengthText } from './lengths.ts';
 import type { Point } from './lens.ts';
+import type { PageState } from './page_state.ts';
+import { pixelsOf } from './ruler.ts';
 
 const MARKS: ReadonlySet<string> = new Set(['matched', 'fresh', 'free', 'moving']);
 
@@ -12,10 +15,14 @@ export class PictureView {
   private readonly draw = this.canvas.getContext('2d')!;
   private turn = 0;
 
-  // `turn`: clockwise quarter turns of the screen since the start. Pixel coordinates refer to the image as oriented at
-  // the start.
-  show(bitmap: ImageBitmap, turn: number, frame: StreamFrame | null, cube: Cube | null, state: State, marked: boolean): void {
+  // The image shown last. Pixel coordinates refer to the image as oriented at the start; it has been turned by
+  // shown.turn clockwise quarter turns since.
+  show(page: PageState): void {
     const { canvas, draw } = this;
+    const { shown, map: state, choices } = page;
+    const { bitmap, turn } = shown!;
+    if (!bitmap) return;
+    const { frame } = state;
     this.turn = turn;
     if (canvas.width !== bitmap.width || canvas.height !== bitmap.height) {
       canvas.width = bitmap.width;
@@ -30,12 +37,13 @@ export class PictureView {
     const style = getComputedStyle(document.documentElement);
     const onto = { draw, w, h, ratio: Math.max(w, h) / 480, colour: (name: string) => style.getPropertyValue(name) };
     const camera = state.hello?.camera;
-    if (marked && frame) {
+    if (choices.features && frame) {
       marks.outlines(onto, frame);
       marks.features(onto, frame, MARKS);
       if (camera) marks.boxes(onto, frame, camera.width, camera.height);
     }
-    if (cube) this.drawCube(cube, state, w, h);
+    if (page.cube) this.drawCube(page.cube, state, w, h, shown!.inertial?.metric ? CUBE_EDGE : null);
+    if (page.ruler) this.drawRuler(page, w, h);
   }
 
   // Pixel of the stream's camera at the tap; null: outside the image.
@@ -60,14 +68,14 @@ export class PictureView {
     return this.turn % 2 ? [height, width] : [width, height];
   }
 
-  private drawCube(cube: Cube, state: State, w: number, h: number): void {
+  private drawCube(cube: Cube, state: State, w: number, h: number, edge: number | null): void {
     const camera = state.hello?.camera;
     const T_world_camera = state.cameraPose();
     if (!camera || !T_world_camera) return;
     const { draw } = this;
     draw.lineWidth = w / 400;
     draw.lineJoin = 'round';
-    for (const { corners, light } of cube.faces(state, T_world_camera)) {
+    for (const { corners, light } of cube.faces(state, T_world_camera, edge)) {
       draw.beginPath();
       corners.forEach(([x, y], i) => draw[i === 0 ? 'moveTo' : 'lineTo'](((x + 0.5) * w) / camera.width, ((y + 0.5) * h) / camera.height));
       draw.closePath();
@@ -76,5 +84,46 @@ export class PictureView {
       draw.strokeStyle = '#3a2405';
       draw.stroke();
     }
+  }
+
+  // Upright on the screen, whatever the turn of the image is.
+  private drawRuler(page: PageState, w: number, h: number): void {
+    const { draw } = this;
+    const { map, ruler, measured } = page;
+    const camera = map.hello?.camera;
+    if (!camera) return;
+    const points = pixelsOf(map, ruler!.positions(map) ?? []).map(([x, y]): Point => [((x + 0.5) * w) / camera.width, ((y + 0.5) * h) / camera.height]);
+    const unit = Math.max(w, h) / 320;
+    draw.lineCap = 'round';
+    for (const [colour, width] of [['rgb(0 0 0 / .7)', 4 * unit], ['#ffd400', 2 * unit]] as const) {
+      draw.strokeStyle = colour;
+      draw.lineWidth = width;
+      draw.beginPath();
+      const [a, b] = points;
+      if (a && b) {
+        draw.moveTo(...a);
+        draw.lineTo(...b);
+      }
+      for (const [x, y] of points) {
+        draw.moveTo(x + 5 * unit, y);
+        draw.arc(x, y, 5 * unit, 0, 2 * Math.PI);
+      }
+      draw.stroke();
+    }
+    const [a, b] = points;
+    if (!a || !b || !measured) return;
+    draw.save();
+    draw.translate((a[0] + b[0]) / 2, (a[1] + b[1]) / 2);
+    draw.rotate((this.turn * Math.PI) / 2);
+    draw.font = `600 ${14 * unit}px system-ui, sans-serif`;
+    const words = lengthText(measured);
+    const half = draw.measureText(words).width / 2 + 5 * unit;
+    draw.fillStyle = 'rgb(0 0 0 / .75)';
+    draw.fillRect(-half, -30 * unit, 2 * half, 20 * unit);
+    draw.fillStyle = '#fff';
+    draw.textAlign = 'center';
+    draw.textBaseline = 'middle';
+    draw.fillText(words, 0, -20 * unit);
+    draw.restore();
   }
 }

@@ -1,5 +1,6 @@
 // Messages between the page and its Workers.
-import type { Frame } from '../../core/src/index.ts';
+import type { Frame, Inertial } from '../../core/src/index.ts';
+import type { Spread } from './ruler.ts';
 
 export interface Start {
   kind: 'start';
@@ -12,16 +13,21 @@ export interface Start {
 }
 // `port`: to the detector's Worker. It gets the newest image when it is free; its results may be late.
 export interface Detector { kind: 'detector'; port: MessagePort }
-// `turn`: clockwise quarter turns of the screen since the start, undone before processing.
-export interface Picture { kind: 'picture'; number: number; time: number; bitmap: ImageBitmap; turn: number }
+// `turn`: clockwise quarter turns of the screen since the start, undone before processing. `imu`: readings of the inertial
+// sensor since the last image (Slam.track()). `ends`: landmarks whose covariance is wanted.
+export interface Picture { kind: 'picture'; number: number; time: number; bitmap: ImageBitmap; turn: number; imu: Float64Array; ends: readonly number[] }
 export const SAVED = ['map', 'trajectory', 'cloud', 'finish'] as const;
 export type Saved = (typeof SAVED)[number];
 export interface Ask { kind: 'ask'; what: Saved }
 export type ToWorker = Start | Detector | Picture | Ask;
 
 export interface Ready { kind: 'ready' }
-// `bitmap`: the image, returned; `light`: its mean gray level, 0…255; `messages`: the viewer's stream.
-export interface Done { kind: 'done'; number: number; time: number; frame: Frame; light: number; messages: Uint8Array[]; bitmap: ImageBitmap | null; turn: number }
+// `bitmap`: the image, returned; `light`: its mean gray level, 0…255; `messages`: the viewer's stream. `inertial`: null if
+// the core got no readings. `spreads`: covariances of the landmarks in `ends`.
+export interface Done {
+  kind: 'done'; number: number; time: number; frame: Frame; light: number; messages: Uint8Array[]; bitmap: ImageBitmap | null; turn: number;
+  inertial: Inertial | null; spreads: Readonly<Record<number, Spread>>;
+}
 export interface Answer { kind: 'answer'; what: Saved; bytes: Uint8Array<ArrayBuffer>; messages: Uint8Array[] }
 export interface Failed { kind: 'failed'; error: string; what?: Saved }
 export type FromWorker = Ready | Done | Answer | Failed;

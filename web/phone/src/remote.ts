@@ -160,7 +160,7 @@ export class RemoteEngine implements Engine {
     const messages = this.pending;
     this.pending = [];
     this.hooks.done({
-      kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn,
+      kind: 'done', number: told.frame!, time: sent.time, light: NaN, messages, bitmap: sent.bitmap, turn: sent.turn, inertial: null, spreads: {},
       frame: {
         number: told.frame!, state: stateFrom(told.state), ...failureFrom(told), pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },

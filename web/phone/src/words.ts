@@ -1,6 +1,7 @@
 // Short texts for phone users: the core's state, and what to do.
 import type { Failure, Frame } from '../../core/src/index.ts';
 import { sentence, STATE_WORDS } from '../../shared/src/words.ts';
+import { CUBE_EDGE, rulerText } from './lengths.ts';
 import type { PageState } from './page_state.ts';
 
 const DARK = 35; // mean gray level, 0…255
@@ -41,7 +42,8 @@ export function whereText({ remote, info }: PageState, host: string): string {
   return `The images stay on this device: nothing is uploaded.${choice}`;
 }
 
-export function statusOf({ phase, why, session, shown, cube, savable }: PageState): { word: string; advice: string } {
+export function statusOf(state: PageState): { word: string; advice: string } {
+  const { phase, why, session, shown, cube, savable } = state;
   if (phase === 'ended') {
     const results = !savable ? 'There is no map to save.' : session?.remote ? 'The computer that serves this page has the map.' : 'The results can be saved.';
     return { word: 'Ended', advice: why ? '' : results };
@@ -49,7 +51,8 @@ export function statusOf({ phase, why, session, shown, cube, savable }: PageStat
   if (shown) {
     const { frame, light } = shown;
     const tap = frame.state === 'tracking' && !cube && frame.counts.keyframes > 3;
-    return { word: STATE_WORDS[frame.state], advice: advice(frame, light) || (tap ? 'Tap a surface to put a cube on it.' : '') };
+    const size = shown.inertial?.metric ? ` of ${100 * CUBE_EDGE} cm` : '';
+    return { word: STATE_WORDS[frame.state], advice: advice(frame, light) || rulerText(state) || (tap ? `Tap a surface to put a cube${size} on it.` : '') };
   }
   if (session) return { word: 'Loading', advice: session.remote ? 'Connecting to the computer that makes the map …' : 'The core (4 MB, the first time) …' };
   return { word: 'Ready', advice: '' };

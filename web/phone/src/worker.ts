@@ -16,7 +16,7 @@ async function start({ base, threads, width, height, fov, settings, classes }: S
   scope.postMessage({ kind: 'ready' }, []);
 }
 
-function track({ number, time, bitmap, turn }: Picture): void {
+function track({ number, time, bitmap, turn, imu, ends }: Picture): void {
   if (!slam || !context) return;
   const { width, height } = slam;
   context.setTransform(1, 0, 0, 1, 0, 0);
@@ -29,9 +29,12 @@ function track({ number, time, bitmap, turn }: Picture): void {
     context.drawImage(bitmap, -w / 2, -h / 2, w, h);
   }
   const image = context.getImageData(0, 0, width, height);
-  const frame = slam.track(time, image);
+  const frame = slam.track(time, image, imu);
+  const told = slam.inertial();
+  const inertial = told.samples > 0 ? told : null;
+  const spreads = Object.fromEntries(ends.map((id) => [id, slam!.landmarkCovariance(id)]));
   const messages = slam.messages();
-  scope.postMessage({ kind: 'done', number, time, frame, light: meanGreen(image.data), messages, bitmap, turn }, [bitmap, ...messages.map(({ buffer }) => buffer)]);
+  scope.postMessage({ kind: 'done', number, time, frame, light: meanGreen(image.data), messages, bitmap, turn, inertial, spreads }, [bitmap, ...messages.map(({ buffer }) => buffer)]);
   if (!detector || !detectorFree) return;
   detectorFree = false;
   detector.postMessage({ number: frame.number, width, height, pixels: image.data.buffer } satisfies Look, [image.data.buffer]);

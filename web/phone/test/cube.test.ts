@@ -79,6 +79,9 @@ for (const [scene, seed] of [['room', 1], ['desk', 2]] as const) {
           const drawn = project(camera, transform(inverse(pose), 1, ...cube.position(state)!))!;
           assert.ok(Math.hypot(drawn[0] - x, drawn[1] - y) < 0.5);
           assert.ok(cube.faces(state, pose).length === 6);
+          // Twice the edge in map units is twice the size in the image, but for the perspective of its depth.
+          const across = (edge: number) => Math.hypot(...[0, 1].map((k) => cube.faces(state, pose, edge)[0]!.corners[0]![k]! - cube.faces(state, pose, edge)[0]!.corners[2]![k]!));
+          assert.ok(Math.abs(across(2e-3) / across(1e-3) - 2) < 0.05);
         }
       }
     }

@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Sample } from '../../scene/test/sample.ts';
-import type { Frame } from '../../core/src/index.ts';
+import type { Frame, Inertial } from '../../core/src/index.ts';
+import { lengthText, pathText, rulerText } from '../src/lengths.ts';
 import { PageState } from '../src/page_state.ts';
 import type { Done } from '../src/protocol.ts';
 import { DEFAULTS } from '../src/settings.ts';
@@ -13,7 +14,7 @@ const FRAME: Frame = {
   milliseconds: 8, fov: 62, fovSigma: 0, cameraChanges: 0,
 };
 const done = (frame: Partial<Frame> = {}, bitmap: { close(): void } | null = null): Done =>
-  ({ kind: 'done', number: 0, time: 0, light: 100, messages: [], turn: 0, bitmap: bitmap as ImageBitmap | null, frame: { ...FRAME, ...frame } });
+  ({ kind: 'done', number: 0, time: 0, light: 100, messages: [], turn: 0, bitmap: bitmap as ImageBitmap | null, inertial: null, spreads: {}, frame: { ...FRAME, ...frame } });
 const messages = () => [...new Sample({ frames: 30, landmarks: 200, depthPoints: 0, pictures: false }).messages()];
 const running = () => {
   const state = new PageState({ ...DEFAULTS });
@@ -83,6 +84,31 @@ test('the page says what it does at each moment', () => {
   assert.ok(state.savable);
   state.apply({ kind: 'done', done: done({ state: 'lost' }), messages: [] }); // was under way
   assert.equal(statusOf(state).word, 'Ended');
+});
+
+test('the ruler says what is missing, what to tap, and the distance as exactly as it is known', () => {
+  const inertial: Inertial = { samples: 9, metric: false, scaleSigma: 0, gravity: null, gravitySigma: 0, timeOffset: 0, timeOffsetSigma: 0, missing: 'scale is not observable yet', leftOut: '' };
+  const state = running();
+  state.apply({ kind: 'motion', motion: 'on' });
+  state.apply({ kind: 'done', done: { ...done(), inertial }, messages: messages() });
+  assert.equal(rulerText(state), '');
+  state.apply({ kind: 'measuring', measuring: true });
+  assert.match(statusOf(state).advice, /^Lengths are not known yet: move the phone sideways/);
+  state.apply({ kind: 'done', done: { ...done(), inertial: { ...inertial, leftOut: 'the readings are of another device' } }, messages: [] });
+  assert.equal(rulerText(state), 'The readings are of another device.');
+  for (const [motion, text] of [['refused', /refused.*no unit/], ['none', /no motion sensor/]] as const) {
+    state.apply({ kind: 'motion', motion });
+    assert.match(rulerText(state), text);
+  }
+  state.apply({ kind: 'done', done: { ...done(), inertial: { ...inertial, metric: true, scaleSigma: 0.02 } }, messages: [] });
+  assert.equal(rulerText(state), 'Tap two points to measure between them.');
+  assert.match(pathText(state), /^Path \d+\.\d m ± 2 %$/);
+  state.apply({ kind: 'measuring', measuring: false });
+  assert.equal(statusOf(state).advice, 'Tap a surface to put a cube of 10 cm on it.');
+  assert.equal(lengthText({ length: 0.8312, sigma: 0.0042 }), '83.1 ± 0.4 cm');
+  assert.equal(lengthText({ length: 0.8312, sigma: 0.0242 }), '83 ± 2 cm');
+  assert.equal(lengthText({ length: 4.5678, sigma: 0.12 }), '4.57 ± 0.12 m');
+  assert.equal(lengthText({ length: 0.8312, sigma: Infinity }), 'about 83 cm');
 });
 
 test('without a map there is nothing to save', () => {

@@ -21,6 +21,7 @@ import type { ViewMode } from './view.ts';
 ColorManagement.enabled = false; // colors are those of the page, without conversion
 
 const LEANING = 0.1; // radians
+const HUNG_LEANING = 0.01; // radians; up by gravity is more certain
 
 export const LAYERS = ['path', 'keyframes', 'landmarks', 'cloud', 'covisibility', 'loops', 'truth', 'camera', 'others'] as const;
 export type LayerName = (typeof LAYERS)[number];
@@ -55,6 +56,9 @@ export class Scene {
   private frameRequest = 0;
   private before = 0;
   private errors: ((i: number) => number) | null = null;
+  // Direction in which things fall, in the world of the active map; null: unknown, then up is estimated from the poses.
+  gravity: readonly [number, number, number] | null = null;
+  private hung = false; // up is by gravity
   drew: () => void = () => {}; // called after each image
 
   constructor(private readonly canvas: HTMLCanvasElement) {
@@ -172,6 +176,7 @@ export class Scene {
   forget(): void {
     this.placed = false;
     this.levelled = 0;
+    this.hung = false;
     this.view.touched = false;
     this.state = null;
     this.active = NONE;
@@ -290,15 +295,17 @@ export class Scene {
     layer.end();
   }
 
-  // Re-estimates the up direction whenever the number of keyframes has doubled, and applies it if it changed and the
-  // user has not moved the view.
+  // Re-estimates the up direction whenever the number of keyframes has doubled and when gravity has become known, and
+  // applies it if it changed and the user has not moved the view.
   private level(state: State): void {
     const count = state.keyframes.size;
-    if (count === 0 || (this.levelled > 0 && (count < 2 * this.levelled || this.view.touched))) return;
+    const news = this.gravity !== null && !this.hung;
+    if (count === 0 || (this.levelled > 0 && ((count < 2 * this.levelled && !news) || this.view.touched))) return;
     const poses = [...state.keyframes.values()].filter((k) => k.map === this.active).map((k) => k.T_world_camera);
-    const { right, forward, up } = upright(poses);
+    this.hung = this.gravity !== null;
+    const { right, forward, up } = upright(poses, this.gravity && [-this.gravity[0], -this.gravity[1], -this.gravity[2]]);
     const { elements: old } = this.world.matrix;
-    const same = old[1] * up[0] + old[5] * up[1] + old[9] * up[2] > Math.cos(LEANING);
+    const same = old[1] * up[0] + old[5] * up[1] + old[9] * up[2] > Math.cos(this.hung ? HUNG_LEANING : LEANING);
     if (this.levelled > 0 && same) {
       this.levelled = count;
       return;

@@ -12,7 +12,8 @@ const unit = (a: Vector): Vector => times(a, 1 / Math.hypot(...a));
 
 export interface Upright { right: Vector; forward: Vector; up: Vector } // orthonormal, in the world
 
-export function upright(poses: Iterable<Pose>): Upright {
+// `known`: up, if it is known.
+export function upright(poses: Iterable<Pose>, known: Vector | null = null): Upright {
   let own: Vector = [0, 0, 0];
   const M = [0, 0, 0, 0, 0, 0, 0, 0, 0];
   let count = 0;
@@ -33,6 +34,7 @@ export function upright(poses: Iterable<Pose>): Upright {
     for (let i = 0; i < 200; ++i) up = unit([0, 3, 6].map((r) => A[r] * up[0] + A[r + 1] * up[1] + A[r + 2] * up[2]) as unknown as Vector);
     if (dot(up, own) < 0) up = times(up, -1);
   }
+  if (known) up = unit(known);
   const lean = dot(up, forward);
   forward = [forward[0] - lean * up[0], forward[1] - lean * up[1], forward[2] - lean * up[2]];
   if (Math.hypot(...forward) < 1e-3) forward = cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 0, 1]);

@@ -60,6 +60,7 @@ test('up is what hand-held cameras think it is, however much they look down', ()
     return compose([0, Math.sin(turn / 2), 0, Math.cos(turn / 2), 0, 0, 0], 1, [-Math.sin(down / 2), 0, 0, Math.cos(down / 2), 0, 0, 0]);
   });
   near(upright(poses).up, [0, -1, 0], 1e-6);
+  near(upright(poses, [0, 0, -2]).up, [0, 0, -1], 1e-12); // known
   const { right, forward, up } = upright([]);
   near(right, [1, 0, 0]);
   near(forward, [0, 0, 1]);

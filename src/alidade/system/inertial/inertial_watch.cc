@@ -93,7 +93,7 @@ void InertialWatch::ForgetMap() {
 }
 
 void InertialWatch::Take(std::span<const ImuSample> samples) {
-  if (!kInertial || samples.empty()) return;
+  if (samples.empty()) return;
   if (!report_.given) SetImu({});
   for (const ImuSample& sample : stream_.Add({samples.begin(), samples.end()})) {
     if (!samples_.empty() && sample.time <= samples_.back().time) samples_.clear();  // set back
@@ -118,7 +118,6 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
 }
 
 void InertialWatch::Cut() {
-  if (!kInertial) return;
   stream_.Restart();
   samples_.clear();
   placements_.clear();
@@ -150,7 +149,7 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
 }
 
 bool InertialWatch::TellsScale(MapId split) const {
-  if (!kInertial || !may_scale_ || !report_.metric) return false;
+  if (!may_scale_ || !report_.metric) return false;
   return split == map_ ? former_.has_value() : reckoner_.known();
 }
 
@@ -217,7 +216,6 @@ void InertialWatch::FollowPoses(const MapSnapshot& map) {
 }
 
 void InertialWatch::Reanchor(const MapSnapshot& map) {
-  if (!kInertial) return;
   for (Placement& placement : placements_)
     placement.anchor = Reanchored(map.state(), placement.anchor);
   std::erase_if(placements_,
@@ -319,7 +317,6 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
 }
 
 InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
-  if (!kInertial) return {};
   std::optional<InertialAnswer> answer;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -407,7 +404,7 @@ std::optional<InertialWatch::Join> InertialWatch::JoinBy(const InertialFit& fit,
 
 std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
                                                                    const MapSnapshot& map) const {
-  if (!kInertial || !reckoner_.known() || !report_.metric || samples_.empty()) return std::nullopt;
+  if (!reckoner_.known() || !report_.metric || samples_.empty()) return std::nullopt;
   if (time + report_.model.time_offset > samples_.back().time + 0.05 || time < reckoner_.time())
     return std::nullopt;
   const auto belief = reckoner_.At(time, map, samples_);
@@ -426,7 +423,7 @@ std::optional<MapWorld> InertialWatch::World() const {
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
-  if (!kInertial || agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
+  if (agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
     return std::nullopt;
   const ImuModel& model = report_.model;
   const bool known = model.rotation_known ||

@@ -22,13 +22,6 @@
 
 namespace alidade {
 
-// Whether readings are used. The module for browsers, which is limited in size, does not use them.
-#ifdef __EMSCRIPTEN__
-inline constexpr bool kInertial = false;
-#else
-inline constexpr bool kInertial = true;
-#endif
-
 // Poses and readings of one stretch of time, to be fitted in any thread.
 struct InertialQuestion {
   std::vector<TimedPose> poses;
@@ -59,7 +52,7 @@ class InertialWatch {
   InertialWatch(Sensor sensor, bool may_scale) : sensor_(sensor), may_scale_(may_scale) {}
 
   void SetImu(const ImuModel& model);
-  bool given() const { return kInertial && report_.given; }
+  bool given() const { return report_.given; }
   // Readings since the last call, cleaned by an ImuStream.
   void Take(std::span<const ImuSample> samples);
   // The frame of `time` (seconds, on the clock of the images) has a pose.

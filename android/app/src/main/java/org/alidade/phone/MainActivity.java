@@ -32,6 +32,7 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
   private TextView numbers, words;
   private Settings settings;
   private CameraFeed feed; // only in the foreground
+  private MotionFeed motion; // the same
   private SlamConnector connector;
   private String madeWith = ""; // settings and image size of the session
   private String trouble = ""; // camera error
@@ -112,6 +113,9 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
       }
       connector.cameraBack();
       turn();
+      SlamConnector session = connector;
+      motion = new MotionFeed(this, feed.characteristics(), reading -> moved(session, reading));
+      motion.start();
       feed.start();
     } catch (CameraAccessException | IllegalArgumentException e) {
       trouble = e.getMessage();
@@ -119,7 +123,17 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
     }
   }
 
+  private static void moved(SlamConnector session, double[] reading) {
+    try {
+      session.moved(reading);
+    } catch (IllegalStateException e) {
+      // the session was closed meanwhile
+    }
+  }
+
   private void stopCamera() {
+    if (motion != null) motion.stop();
+    motion = null;
     if (feed != null) feed.stop();
     feed = null;
     if (connector != null) connector.cameraGone();
@@ -190,7 +204,10 @@ public final class MainActivity extends Activity implements CameraFeed.Listener 
             numbers.setText(
                 getString(
                     R.string.numbers,
-                    now.keyframes, now.landmarks, now.matches, now.milliseconds, now.fov));
+                    now.keyframes, now.landmarks, now.matches, now.milliseconds, now.fov,
+                    now.metric
+                        ? getString(R.string.meters, 100 * now.scaleSigma)
+                        : getString(R.string.no_meters)));
             words.setText(firstOf(trouble, connector.words(), renderer.problem(), advice(now)));
           } else {
             words.setText(trouble);

@@ -18,7 +18,7 @@ public final class SlamConnector implements AutoCloseable {
 
   /** Status after the last processed image. */
   public static final class Numbers {
-    static final int COUNT = 14;
+    static final int COUNT = 17;
     public final int state; // INITIALIZING, TRACKING, LOST
     public final boolean predicted; // lost recently; the pose is extrapolated from the motion
     public final int keyframes, landmarks, matches, features, maps;
@@ -29,6 +29,9 @@ public final class SlamConnector implements AutoCloseable {
     public final int frames; // processed images
     public final int skipped; // images replaced by a newer one before they were processed
     public final int failed; // images rejected by the core; words() returns the reason
+    public final int readings; // of the inertial sensor
+    public final boolean metric; // lengths are meters because of them
+    public final double scaleSigma; // relative standard deviation of lengths; 0: unknown
 
     Numbers(double[] list) {
       state = (int) list[0];
@@ -45,6 +48,9 @@ public final class SlamConnector implements AutoCloseable {
       frames = (int) list[11];
       skipped = (int) list[12];
       failed = (int) list[13];
+      readings = (int) list[14];
+      metric = list[15] != 0;
+      scaleSigma = list[16];
     }
   }
 
@@ -103,6 +109,16 @@ public final class SlamConnector implements AutoCloseable {
    */
   public void offer(double seconds, ByteBuffer plane, int rowStride) {
     run(session -> nativeOffer(session, seconds, plane, rowStride));
+  }
+
+  /**
+   * Passes readings of the inertial sensor since the last call, in order of time.
+   *
+   * @param readings 7 numbers each: seconds on the clock of the images, rad/s about x y z, m/s²
+   * along x y z (at rest it points up), in axes that are fixed to the camera
+   */
+  public void moved(double[] readings) {
+    run(session -> nativeMoved(session, readings));
   }
 
   public void cameraGone() {
@@ -182,6 +198,8 @@ public final class SlamConnector implements AutoCloseable {
 
   private static native void nativeOffer(
       long handle, double seconds, ByteBuffer plane, int rowStride);
+
+  private static native void nativeMoved(long handle, double[] readings);
 
   private static native void nativeCameraGone(long handle);
 
