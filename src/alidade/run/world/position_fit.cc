@@ -11,13 +11,13 @@
 #include "alidade/base/print.h"
 #include "alidade/base/random.h"
 #include "alidade/geometry/alignment.h"
+#include "alidade/run/world/position_pairs.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kLongestStep = 0.5;  // seconds between poses that are interpolated
-constexpr size_t kFewest = 6;         // positions
-constexpr double kTrimmed = 0.6;      // share of the positions that a hypothesis must explain
+constexpr size_t kFewest = 6;     // positions
+constexpr double kTrimmed = 0.6;  // share of the positions that a hypothesis must explain
 constexpr int kHypotheses = 40;
 constexpr size_t kMostTried = 60;      // positions in the search for the offset
 constexpr double kNearOffset = 5;      // seconds: clocks that overlap are off by no more
@@ -30,62 +30,14 @@ constexpr double kLeastError = 0.005;  // meters: a smaller error is not believe
 constexpr double kMostScale = 0.05, kMostRotation = 0.05;  // relative, radians
 constexpr double kLeastUsed = 0.5;                         // of the matched positions
 
-struct Pair {
-  Eigen::Vector3d map, measured;
-  Eigen::Vector3d velocity;  // of the map's, per second
-  Eigen::Matrix3d R;         // of the camera
-  double time = 0;           // of the trajectory
-};
-
 std::string Text(const char* format, double a, double b = 0) {
   char text[160];
   PrintTo(text, sizeof(text), format, a, b);
   return text;
 }
 
-class PathAt {
- public:
-  explicit PathAt(const Trajectory& trajectory) : trajectory_(trajectory) {}
-
-  std::optional<Pair> At(double time) const {
-    const auto after =
-        std::lower_bound(trajectory_.begin(), trajectory_.end(), time,
-                         [](const StampedPose& pose, double wanted) { return pose.time < wanted; });
-    if (after == trajectory_.end()) return std::nullopt;
-    const auto before = after == trajectory_.begin() ? after : std::prev(after);
-    const auto next = before == after ? std::next(after) : after;
-    if (next == trajectory_.end()) return std::nullopt;
-    const double gap = next->time - before->time, share = (time - before->time) / gap;
-    if (!(gap > 0) || gap > kLongestStep || share < 0) return std::nullopt;
-    const Eigen::Vector3d way = next->T_world_camera.t - before->T_world_camera.t;
-    Pair pair;
-    pair.map = before->T_world_camera.t + share * way;
-    pair.velocity = way / gap;
-    pair.R = Eigen::Quaterniond(before->T_world_camera.R)
-                 .slerp(share, Eigen::Quaterniond(next->T_world_camera.R))
-                 .toRotationMatrix();
-    pair.time = time;
-    return pair;
-  }
-
- private:
-  const Trajectory& trajectory_;
-};
-
-using Pairs = std::vector<Pair>;
-
-Pairs PairsAt(const PathAt& path, const std::vector<TimedPosition>& positions, double offset) {
-  Pairs pairs;
-  for (const TimedPosition& position : positions) {
-    std::optional<Pair> pair = path.At(position.time - offset);
-    if (!pair) continue;
-    pair->measured = position.p;
-    pairs.push_back(*pair);
-  }
-  return pairs;
-}
-
-Eigen::Vector3d ResidualOf(const Sim3& T, const Pair& pair, const Eigen::Vector3d& antenna) {
+Eigen::Vector3d ResidualOf(const Sim3& T, const PositionPair& pair,
+                           const Eigen::Vector3d& antenna) {
   return T * pair.map + T.R * (pair.R * antenna) - pair.measured;
 }
 
@@ -127,13 +79,13 @@ class PositionFitter {
   }
 
   // The similarity of some pairs; `upright`: known to be upright in both worlds.
-  std::optional<Sim3> Align(const Pairs& pairs, bool upright) const {
+  std::optional<Sim3> Align(const PositionPairs& pairs, bool upright) const {
     std::vector<Eigen::Vector3d> from, to;
     Eigen::Matrix3d level = Eigen::Matrix3d::Identity();
     if (upright)
       level = Eigen::Quaterniond::FromTwoVectors(*settings_.down, -Eigen::Vector3d::UnitZ())
                   .toRotationMatrix();
-    for (const Pair& pair : pairs) {
+    for (const PositionPair& pair : pairs) {
       from.push_back(level * pair.map);
       to.push_back(pair.measured);
     }
@@ -168,7 +120,7 @@ class PositionFitter {
   }
 
   // Least trimmed squares.
-  std::optional<Hypothesis> Trimmed(const Pairs& pairs, bool upright) const {
+  std::optional<Hypothesis> Trimmed(const PositionPairs& pairs, bool upright) const {
     const int minimal = upright ? 2 : 3;
     const auto kept = std::max<size_t>(
         static_cast<size_t>(minimal),
@@ -178,7 +130,7 @@ class PositionFitter {
     std::optional<Hypothesis> best;
     std::vector<std::pair<double, size_t>> errors(pairs.size());
     for (int h = 0; h < kHypotheses; ++h) {
-      Pairs chosen;
+      PositionPairs chosen;
       for (const int i : random.Sample(minimal, static_cast<int>(pairs.size())))
         chosen.push_back(pairs[static_cast<size_t>(i)]);
       double cost = 0;
@@ -253,10 +205,10 @@ class PositionFitter {
 
   // Of the best hypothesis; infinite: there is none.
   double CostAt(const std::vector<TimedPosition>& some, double offset) const {
-    Pairs pairs = PairsAt(path_, some, offset);
+    PositionPairs pairs = PairsAt(path_, some, offset);
     if (pairs.size() < kFewest) return INFINITY;
     while (pairs.size() > kMostTried) {
-      Pairs half;
+      PositionPairs half;
       for (size_t i = 0; i < pairs.size(); i += 2) half.push_back(pairs[i]);
       pairs = std::move(half);
     }
@@ -280,7 +232,7 @@ class PositionFitter {
       Eigen::Vector3d before = Eigen::Vector3d::Zero();  // zero: an outlier
       fit.used.assign(pairs_.size(), false);
       for (size_t i = 0; i < pairs_.size(); ++i) {
-        const Pair& pair = pairs_[i];
+        const PositionPair& pair = pairs_[i];
         const Eigen::Vector3d r = ResidualOf(T, pair, settings_.antenna);
         if (r.norm() > kGate * sigma) {
           before.setZero();
@@ -333,7 +285,7 @@ class PositionFitter {
                                        .eigenvalues()
                                        .maxCoeff());
     fit.by_gravity = gravity;
-    for (const Pair& pair : pairs_) {
+    for (const PositionPair& pair : pairs_) {
       fit.times.push_back(pair.time);
       fit.positions.push_back(pair.measured);
       fit.residuals.push_back(ResidualOf(T, pair, settings_.antenna).norm());
@@ -365,7 +317,8 @@ class PositionFitter {
   // Of one coordinate, from the best positions.
   double SigmaOf(const Sim3& T) const {
     std::vector<double> errors;
-    for (const Pair& pair : pairs_) errors.push_back(ResidualOf(T, pair, settings_.antenna).norm());
+    for (const PositionPair& pair : pairs_)
+      errors.push_back(ResidualOf(T, pair, settings_.antenna).norm());
     const auto at =
         errors.begin() + static_cast<long>(kTrimmed * static_cast<double>(errors.size() - 1));
     std::nth_element(errors.begin(), at, errors.end());
@@ -395,7 +348,7 @@ class PositionFitter {
   const std::vector<TimedPosition>& positions_;
   const PositionFitSettings& settings_;
   double offset_ = 0;
-  Pairs pairs_;
+  PositionPairs pairs_;
 };
 
 }  // namespace
