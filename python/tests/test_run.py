@@ -70,7 +70,7 @@ def test_a_run_goes_to_mcap_as_it_happens_and_afterwards(tmp_path, program):
     assert said.startswith("40 frames, ") and "semi-dense points" in said
     program("export", result.folder, tmp_path / "program.mcap", "--to", "mcap")
     assert read(tmp_path, "result.mcap") == read(tmp_path, "program.mcap")
-    assert result.export(tmp_path / "points.ply") == f"{len(result.map.points.ids)} points"
+    assert result.export(tmp_path / "points.ply") == f"{len(result.map.points.ids)} points, in meters"
 
     recorded = alidade.run(DESK, sensor="rgbd", semidense=True, record=True)
     recorded.export(tmp_path / "stream.mcap")

@@ -22,29 +22,58 @@ SynthSettings Room(int frames) {
   return settings;
 }
 
+// Frames whose image is black.
+struct Dark {
+  int from = 0, to = 0;
+};
+
 struct Ran {
   std::vector<FramePose> trajectory;
+  std::vector<TrackResult> live;
   InertialReport report;
   std::string map;  // as saved
 };
 
 // `spoil` changes the readings; null: they are not given at all.
 template <typename Spoil>
-Ran Travel(const SynthRecording& recording, Spoil&& spoil, bool give) {
+Ran Travel(const SynthRecording& recording, Spoil&& spoil, bool give, const Dark& dark = {}) {
   SlamSettings settings;
   settings.ApplyProfile("phone");
   Slam slam(recording.camera(), settings);
+  Ran run;
   double last = -1;
   for (int i = 0; i < recording.frames(); ++i) {
     const RenderedFrame rendered = recording.Render(i);
     FrameInput frame;
     frame.time = rendered.time;
-    frame.image = rendered.image;
+    frame.image = i >= dark.from && i < dark.to ? cv::Mat::zeros(rendered.image.size(), CV_8U)
+                                                : rendered.image;
     if (give) frame.imu = spoil(recording.imu()->Between(last, rendered.time));
     last = rendered.time;
-    slam.Track(frame);
+    run.live.push_back(slam.Track(frame));
   }
-  return {slam.Finish(), slam.Inertial(), slam.SaveMap()};
+  run.trajectory = slam.Finish();
+  run.report = slam.Inertial();
+  run.map = slam.SaveMap();
+  return run;
+}
+
+// In the dark the pose is known by dead reckoning, and found by landmarks soon after.
+void ExpectReckoned(const SynthRecording& recording, const Ran& run, const Dark& dark) {
+  const Se3 last = run.live[dark.from - 1].T_world_camera;
+  for (int i = dark.from; i < dark.to; ++i) {
+    const TrackResult& result = run.live[i];
+    EXPECT_EQ(result.state, TrackState::kLost) << i;
+    ASSERT_TRUE(result.predicted) << i;
+    const Eigen::Vector3d moved = (last.Inverse() * *result.predicted).t;
+    const Eigen::Vector3d truth =
+        (recording.Pose(dark.from - 1).Inverse() * recording.Pose(i)).t;
+    const double sigma = std::sqrt(result.quality.covariance.topLeftCorner<3, 3>().trace());
+    EXPECT_LT((moved - truth).norm(), 0.02 + 3 * sigma) << i;
+    EXPECT_GT(sigma, 0) << i;
+    EXPECT_LT(sigma, 0.3) << i;
+  }
+  EXPECT_EQ(run.live[dark.to + 5].state, TrackState::kTracking);
 }
 
 using Samples = std::vector<ImuSample>;
@@ -68,8 +97,10 @@ void ExpectKnownAfterLoading(const SynthRecording& recording, const Ran& run) {
 }
 
 TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
-  const SynthRecording recording(Room(300));
-  const Ran run = Travel(recording, kAsTheyAre, true);
+  const SynthRecording recording(Room(310));
+  const Dark dark{260, 296};
+  const Ran run = Travel(recording, kAsTheyAre, true, dark);
+  ExpectReckoned(recording, run, dark);
   ASSERT_TRUE(run.report.metric) << run.report.missing;
   EXPECT_GT(run.report.samples, 1900);
   EXPECT_TRUE(run.report.left_out.empty()) << run.report.left_out;

@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <vector>
 
-namespace alidade {
+#include "alidade/base/api.h"
+
+namespace ALIDADE_API alidade {
 
 class ChainSystem {
  public:

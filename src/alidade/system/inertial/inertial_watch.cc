@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "alidade/inertial/map_bridge.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
@@ -33,22 +32,12 @@ constexpr int kContradictions = 3;
 constexpr int kAgreements = 2;
 // The rotation of the sensor is known well enough to predict frames.
 constexpr double kRotationSigma = 0.03;  // radians
-// A dead-reckoned position is of use up to this standard deviation, as a share of the distance of
-// what is seen: 5 degrees. Maps are joined up to the same.
-constexpr double kOfUse = 0.09;
 constexpr size_t kPast = 60;  // poses, at least 5 s: a map is split where it began 1.5 s before
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
-// What one map tells of the sensor holds in the next, but not better than this: temperature and
-// flexing change it.
-constexpr double kRotationHolds = 3e-3, kArmHolds = 5e-3, kClockHolds = 1e-3;  // rad, m, s
-constexpr double kGyroHolds = 1e-3, kAccelHolds = 0.03;                        // rad/s, m/s²
-constexpr const char* kNoScale = "scale is not observable yet";
 // Poses of a map have errors in common that their covariance does not contain.
 constexpr double kLeastRotation = 7e-4;    // radians
 constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
-// Relative standard deviation of the lengths of a loaded map in meters, at least: drift.
-constexpr double kLeastScale = 2e-3;
 
 }  // namespace
 
@@ -81,17 +70,6 @@ void InertialWatch::SetImu(const ImuModel& model) {
   ForgetMap();
 }
 
-void InertialWatch::ForgetMap() {
-  fit_.reset();
-  reckoner_.Forget();
-  past_.clear();
-  known_scale_ = 0;
-  report_.metric = false;
-  report_.gravity.reset();
-  report_.scale_sigma = report_.gravity_sigma = 0;
-  report_.missing = kNoScale;
-}
-
 void InertialWatch::Take(std::span<const ImuSample> samples) {
   if (samples.empty()) return;
   if (!report_.given) SetImu({});
@@ -106,6 +84,7 @@ void InertialWatch::Take(std::span<const ImuSample> samples) {
   if (!placements_.empty() && samples_.back().time - placements_.back().time > kLongestGap) {
     placements_.clear();
     reckoner_.Forget();
+    past_.clear();
   }
   const double oldest =
       (placements_.empty() ? samples_.back().time - 5 : placements_.front().time) - 2 * kMargin;
@@ -125,67 +104,6 @@ void InertialWatch::Cut() {
   past_.clear();
   former_.reset();
   asked_at_ = kNever;
-}
-
-// The camera is in another map: one that the last one was merged into, one that it started after it
-// was lost, or one that was split off the last one because vision does not tell its scale.
-void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
-  const MapId left = std::exchange(map_, map);
-  const auto in_map = [&](const Placement& placement) {
-    return snapshot.MapOf(placement.anchor.keyframe) == map;
-  };
-  if (map < left && !placements_.empty() && in_map(placements_.back())) {
-    ForgetMap();  // it was in the axes of the map that is gone
-    Recall(snapshot);
-    return;
-  }
-  std::erase_if(placements_, [&](const Placement& placement) { return !in_map(placement); });
-  former_.reset();
-  if (report_.metric)
-    KeepWayFrom(left, placements_.empty() ? time : placements_.front().time, snapshot);
-  if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
-  ForgetMap();
-  Recall(snapshot);
-}
-
-bool InertialWatch::TellsScale(MapId split) const {
-  if (!may_scale_ || !report_.metric) return false;
-  return split == map_ ? former_.has_value() : reckoner_.known();
-}
-
-void InertialWatch::ForgetUnit(MapId split) {
-  if (split != map_) return;
-  known_scale_ = report_.scale_sigma = 0;
-  report_.metric = false;
-  report_.missing = kNoScale;
-}
-
-// Where the motion from the map `left` leads at `time`, by what was believed before.
-void InertialWatch::KeepWayFrom(MapId left, double time, const MapSnapshot& map) {
-  if (reckoner_.known()) past_.push_back(reckoner_);
-  while (!past_.empty() &&
-         (past_.back().time() >= time || map.MapOf(past_.back().reference()) != left))
-    past_.pop_back();
-  if (past_.empty()) return;
-  const auto belief = past_.back().At(time, map, samples_);
-  if (!belief) return;
-  former_.emplace();
-  former_->Start(*belief, AnchorTo(map.state(), past_.back().reference(),
-                                   belief->Camera(samples_).T_world_camera.Inverse()));
-}
-
-// What is known of the map from before the camera came into it.
-void InertialWatch::Recall(const MapSnapshot& map) {
-  const MapWorld* world = map.WorldOf(map_);
-  if (!world) return;
-  if (world->meters) {
-    known_scale_ = std::max(world->scale_sigma, kLeastScale);
-    report_.metric = true;
-    report_.missing.clear();
-  }
-  report_.scale_sigma = world->scale_sigma;
-  if (world->KnowsDown()) report_.gravity = world->down;
-  report_.gravity_sigma = world->down_sigma;
 }
 
 void InertialWatch::Placed(double time, const Anchor& anchor, const Matrix6d& covariance,
@@ -370,56 +288,6 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
     former_.reset();
   }
   return changes;
-}
-
-InertialWatch::Calibration InertialWatch::LearnedFrom(const InertialFit& fit) {
-  Calibration learned;
-  learned.model = fit.model;
-  learned.model.rotation_known = learned.model.translation_known = true;
-  learned.model.time_offset_known = true;
-  InertialPriors& priors = learned.priors;
-  priors.rotation_known = std::hypot(kRotationHolds, fit.rotation_sigma);
-  priors.translation_known = std::hypot(kArmHolds, fit.translation_sigma);
-  priors.time_offset_known = std::hypot(kClockHolds, fit.time_offset_sigma);
-  priors.bias = fit.states.back().bias;
-  priors.gyro_bias = std::hypot(kGyroHolds, fit.gyro_bias_sigma);
-  priors.accel_bias = std::hypot(kAccelHolds, fit.accel_bias_sigma);
-  return learned;
-}
-
-// The map before this one, if dead reckoning leads well enough from there to here.
-std::optional<InertialWatch::Join> InertialWatch::JoinBy(const InertialFit& fit,
-                                                         const MapSnapshot& map) {
-  if (!former_ || !may_scale_ || !former_->known()) return std::nullopt;
-  const auto there = former_->At(former_->time(), map, samples_);
-  if (!there || there->time != fit.first.time) return std::nullopt;
-  const std::optional<MapBridge> bridge = BridgeOf(*there, fit.first);
-  const MapId older = map.MapOf(former_->reference());
-  if (!(older < map_)) return std::nullopt;
-  const double distance = fit.scale * DistanceIn(map);
-  if (!bridge || bridge->sigma > kOfUse * distance || bridge->rotation > kOfUse)
-    return std::nullopt;
-  return Join{map_, older, bridge->T_a_b, former_->reference()};
-}
-
-std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
-                                                                   const MapSnapshot& map) const {
-  if (!reckoner_.known() || !report_.metric || samples_.empty()) return std::nullopt;
-  if (time + report_.model.time_offset > samples_.back().time + 0.05 || time < reckoner_.time())
-    return std::nullopt;
-  const auto belief = reckoner_.At(time, map, samples_);
-  const KeyFrame* reference = map.Find(reckoner_.reference());
-  if (!belief || !reference) return std::nullopt;
-  const TimedPose pose = belief->Camera(samples_);
-  const double sigma = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());
-  if (!(sigma < kOfUse * MedianDepth(map, *reference).value_or(1))) return std::nullopt;
-  return Reckoned{pose, reference->map};
-}
-
-std::optional<MapWorld> InertialWatch::World() const {
-  if (!given() || !report_.gravity || !map_.valid()) return std::nullopt;
-  return MapWorld{map_, report_.metric, report_.scale_sigma, *report_.gravity,
-                  report_.gravity_sigma};
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
