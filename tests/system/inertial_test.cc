@@ -66,8 +66,7 @@ void ExpectReckoned(const SynthRecording& recording, const Ran& run, const Dark&
     EXPECT_EQ(result.state, TrackState::kLost) << i;
     ASSERT_TRUE(result.predicted) << i;
     const Eigen::Vector3d moved = (last.Inverse() * *result.predicted).t;
-    const Eigen::Vector3d truth =
-        (recording.Pose(dark.from - 1).Inverse() * recording.Pose(i)).t;
+    const Eigen::Vector3d truth = (recording.Pose(dark.from - 1).Inverse() * recording.Pose(i)).t;
     const double sigma = std::sqrt(result.quality.covariance.topLeftCorner<3, 3>().trace());
     EXPECT_LT((moved - truth).norm(), 0.02 + 3 * sigma) << i;
     EXPECT_GT(sigma, 0) << i;
