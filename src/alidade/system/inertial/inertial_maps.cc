@@ -48,17 +48,21 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
     return;
   }
   std::erase_if(placements_, [&](const Placement& placement) { return !in_map(placement); });
-  former_.reset();
-  if (report_.metric)
-    KeepWayFrom(left, placements_.empty() ? time : placements_.front().time, snapshot);
+  const double first = placements_.empty() ? time : placements_.front().time;
+  if (report_.metric) {
+    former_.reset();
+    KeepWayFrom(left, first, snapshot);
+  } else if (former_) {  // the map before was not joined yet
+    CarryFormer(first, snapshot);
+  }
   if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
   ForgetMap();
   Recall(snapshot);
 }
 
 bool InertialWatch::TellsScale(MapId split) const {
-  if (!may_scale_ || !report_.metric) return false;
-  return split == map_ ? former_.has_value() : reckoner_.known();
+  if (!may_scale_) return false;
+  return split == map_ || !report_.metric ? former_.has_value() : reckoner_.known();
 }
 
 void InertialWatch::ForgetUnit(MapId split) {
@@ -80,6 +84,16 @@ void InertialWatch::KeepWayFrom(MapId left, double time, const MapSnapshot& map)
   former_.emplace();
   former_->Start(*belief, AnchorTo(map.state(), past_.back().reference(),
                                    belief->Camera(samples_).T_world_camera.Inverse()));
+}
+
+void InertialWatch::CarryFormer(double time, const MapSnapshot& map) {
+  const KeyFrameId reference = former_->reference();
+  const auto belief = former_->At(time, map, samples_);
+  former_.reset();
+  if (!belief || !map.Find(reference)) return;
+  former_.emplace();
+  former_->Start(
+      *belief, AnchorTo(map.state(), reference, belief->Camera(samples_).T_world_camera.Inverse()));
 }
 
 // What is known of the map from before the camera came into it.

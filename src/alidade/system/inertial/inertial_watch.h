@@ -122,6 +122,7 @@ class InertialWatch {
   void FollowPoses(const MapSnapshot& map);
   void Enter(MapId map, double time, const MapSnapshot& snapshot);
   void KeepWayFrom(MapId left, double time, const MapSnapshot& map);
+  void CarryFormer(double time, const MapSnapshot& map);
   void Recall(const MapSnapshot& map);
   static Calibration LearnedFrom(const InertialFit& fit);
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
