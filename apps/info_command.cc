@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "alidade/base/degrees.h"
 #include "alidade/run/export/map_models.h"
 #include "alidade/run/sources/saved_map.h"
 #include "alidade/run/world/moved_map.h"
@@ -103,7 +104,6 @@ json InfoOf(const SavedMap& saved, const std::string& path) {
 }
 
 void PrintWorld(const json& part) {
-  constexpr double kDegrees = 57.29577951308232;
   if (!part["scale_sigma"].is_null()) {
     std::printf("  lengths       meters, known to %.1f %%\n",
                 100 * part["scale_sigma"].get<double>());

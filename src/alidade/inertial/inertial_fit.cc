@@ -260,6 +260,13 @@ void InertialPriors::Check() const {
   }
 }
 
+Matrix6d CommonErrors(double distance) {
+  constexpr double kPosition = 1.5e-3, kRotation = 7e-4;
+  Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(kPosition * distance), Eigen::Vector3d::Constant(kRotation);
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
 InertialFit FitInertial(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                         const ImuModel& model, const InertialPriors& priors,
                         const InertialFit* start) {

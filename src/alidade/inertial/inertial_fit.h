@@ -49,6 +49,17 @@ struct InertialFit {
   double noise_factor = 1;
 };
 
+// A fit is used when it explains the poses (above this noise factor the model is wrong) and tells
+// the scale to 5 % and gravity to 2 degrees.
+inline constexpr double kMostNoiseFactor = 6;
+inline constexpr double kMostScaleSigma = 0.05;     // relative
+inline constexpr double kMostGravitySigma = 0.035;  // radians
+
+// Covariance of the errors that poses of a map have in common, which the covariance of one pose
+// against the map does not contain: 1.5 per mille of `distance`, that of what is seen (map units),
+// and 0.7 mrad.
+Matrix6d CommonErrors(double distance);
+
 // `poses` and `samples` in order of time; poses at least two. Not more than some hundred poses, a
 // few per second, over less than a minute: one scale holds for all of them. `start`: a former
 // result for about the same poses, or null. Throws Error (usage) if a prior cannot be.

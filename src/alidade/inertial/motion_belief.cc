@@ -43,11 +43,16 @@ MotionBelief MotionBelief::At(double to, std::span<const ImuSample> samples) con
   return next;
 }
 
+Se3 MotionBelief::T_world_camera() const {
+  Se3 T = state.T_world_imu * common.model.T_camera_imu.Inverse();
+  T.t /= common.scale;
+  return T;
+}
+
 TimedPose MotionBelief::Camera(std::span<const ImuSample> samples) const {
   TimedPose pose;
   pose.time = time;
-  pose.T_world_camera = state.T_world_imu * common.model.T_camera_imu.Inverse();
-  pose.T_world_camera.t /= common.scale;
+  pose.T_world_camera = T_world_camera();
   const Eigen::Vector3d rate = ReadingAt(samples, time + common.model.time_offset).angular_rate;
   const PoseMeasurement m = MeasurementOf(state, common, pose.T_world_camera, rate);
   Eigen::Matrix<double, 6, kSize> H;

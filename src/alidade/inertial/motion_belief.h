@@ -24,7 +24,8 @@ struct MotionBelief {
 
   // The same belief about the time `to` (≥ time), by readings that cover it.
   MotionBelief At(double to, std::span<const ImuSample> samples) const;
-  // Pose of the camera, in map units.
+  Se3 T_world_camera() const;  // map units
+  // The same with its covariance.
   TimedPose Camera(std::span<const ImuSample> samples) const;
   // Takes the measured pose of the camera at this time into account. False: it cannot be (the
   // covariance is singular), nothing is changed.

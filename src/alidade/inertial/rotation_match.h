@@ -19,6 +19,11 @@ struct RotationMatch {
   // turned about one axis only, and the rotation about it is unknown.
   double second_axis = 0;
   bool ok = false;
+
+  // The camera turned enough (0.1 rad/s) to compare rotations.
+  bool Tells() const { return ok && turning >= 0.1; }
+  // The gyroscope explains less than half of how the camera turned.
+  bool Contradicts() const { return Tells() && residual >= 0.5 * turning; }
 };
 
 // Angular rates w_camera = R_camera_imu (w_imu - bias) between successive poses, by least squares:

@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "alidade/base/degrees.h"
 #include "alidade/base/error.h"
 #include "alidade/base/median.h"
 #include "alidade/base/print.h"
@@ -18,7 +19,6 @@
 namespace alidade {
 namespace {
 
-constexpr double kToDegrees = 57.29577951308232;
 // A quantity is observable if its standard deviation is below this share of what was assumed.
 constexpr double kOfPrior = 0.5;
 constexpr double kMostTurn = 0.03;    // radians
@@ -122,12 +122,12 @@ std::vector<std::string> ImuInWords(const InertialFinding& finding) {
   std::vector<std::string> lines;
   if (finding.solved == 0) return {"inertial sensor: unknown: " + finding.why_not};
   const Eigen::AngleAxisd turn(known.T_camera_imu.R);
-  const Eigen::Vector3d degrees = kToDegrees * turn.angle() * turn.axis();
+  const Eigen::Vector3d degrees = kDegrees * turn.angle() * turn.axis();
   lines.push_back(
       known.rotation_known
           ? FoundLine("rotation     %.2f %.2f %.2f ± %.2f degrees (rotation vector of "
                       "T_camera_imu)",
-                      degrees.x(), degrees.y(), degrees.z(), kToDegrees * finding.rotation_sigma)
+                      degrees.x(), degrees.y(), degrees.z(), kDegrees * finding.rotation_sigma)
           : std::string("rotation     not observable: turn the camera about several axes"));
   lines.push_back(known.time_offset_known
                       ? FoundLine("time offset  %.1f ± %.1f ms", 1e3 * known.time_offset,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "alidade/base/degrees.h"
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
 #include "alidade/inertial/rotation_match.h"
@@ -16,12 +17,6 @@ constexpr double kSpacing = 0.09;    // seconds between poses that are fitted
 constexpr double kGap = 0.5;         // seconds: a window ends
 constexpr double kMargin = 0.3;      // seconds of readings beside the poses
 constexpr size_t kFewestPoses = 16;  // of a window
-// Errors that poses of a map have in common, as in system/inertial.
-constexpr double kPoseRotation = 7e-4;                            // radians
-constexpr double kPosePosition = 1.5e-3;                          // of the distance of what is seen
-constexpr double kMostNoiseFactor = 6;                            // above, the model is wrong
-constexpr double kMostScaleSigma = 0.05, kMostDownSigma = 0.035;  // relative, radians
-constexpr double kTurningRate = 0.1;                              // rad/s
 
 std::string Figures(const char* format, double a, double b) {
   char text[160];
@@ -31,9 +26,7 @@ std::string Figures(const char* format, double a, double b) {
 
 std::vector<std::vector<TimedPose>> WindowsOf(const Trajectory& trajectory,
                                               const WindowSettings& settings) {
-  Vector6d errors;
-  errors << Eigen::Vector3d::Constant(std::pow(kPosePosition * settings.distance, 2)),
-      Eigen::Vector3d::Constant(kPoseRotation * kPoseRotation);
+  const Matrix6d errors = CommonErrors(settings.distance);
   // Windows of equal length, each not longer than asked for.
   std::vector<std::vector<TimedPose>> stretches, windows;
   double last = -1e300;
@@ -45,7 +38,7 @@ std::vector<std::vector<TimedPose>> WindowsOf(const Trajectory& trajectory,
     TimedPose timed;
     timed.time = pose.time;
     timed.T_world_camera = pose.T_world_camera;
-    timed.covariance = errors.asDiagonal();
+    timed.covariance = errors;
     stretches.back().push_back(timed);
   }
   for (const std::vector<TimedPose>& stretch : stretches) {
@@ -211,12 +204,10 @@ InertialFinding FindInertial(const Trajectory& trajectory, const std::vector<Imu
     });
     if (covered.size() < kFewestPoses) continue;
     const RotationMatch match = MatchRotations(covered, some, model);
-    if (match.ok && match.turning > kTurningRate) {
-      ++turning;
-      if (match.residual > 0.5 * match.turning) {
-        ++contradicting;
-        continue;
-      }
+    turning += match.Tells();
+    if (match.Contradicts()) {
+      ++contradicting;
+      continue;
     }
     const InertialFit* start = all.fits.empty() ? nullptr : &all.fits.back();
     InertialFit fit = FitInertial(covered, some, model, priors, start);
@@ -247,10 +238,10 @@ InertialFinding FindInertial(const Trajectory& trajectory, const std::vector<Imu
                       Figures("%.0f %% only (at most %.0f %%)", 100 * finding.scale_sigma,
                               100 * kMostScaleSigma) +
                       "; the camera moved too evenly. Start, stop and turn while recording";
-  } else if (!(finding.down_sigma < kMostDownSigma)) {
+  } else if (!(finding.down_sigma < kMostGravitySigma)) {
     finding.why_not = "gravity is not observable: its direction is known to " +
-                      Figures("%.1f degrees only (at most %.1f)", 57.29578 * finding.down_sigma,
-                              57.29578 * kMostDownSigma);
+                      Figures("%.1f degrees only (at most %.1f)", kDegrees * finding.down_sigma,
+                              kDegrees * kMostGravitySigma);
   }
   return finding;
 }

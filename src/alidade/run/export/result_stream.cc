@@ -16,26 +16,7 @@
 namespace alidade {
 namespace {
 
-constexpr double kSameStamp = 1e-6;  // seconds
-
-using KnownPose = std::pair<StampedPose, KeyFrameId>;
-
 bool EarlierKnown(const KnownPose& a, const KnownPose& b) { return a.first.time < b.first.time; }
-
-// Keyframes of the map that have a pose in the trajectory, by time.
-std::vector<KnownPose> KeyFramesIn(const Trajectory& trajectory, const SavedMap& saved,
-                                   const MapPart& part) {
-  std::vector<KnownPose> known;
-  for (KeyFrameId id : part.keyframes) {
-    const double time = saved.map.Find(id)->frame->time;
-    const auto at =
-        std::lower_bound(trajectory.begin(), trajectory.end(), time - kSameStamp,
-                         [](const StampedPose& pose, double wanted) { return pose.time < wanted; });
-    if (at != trajectory.end() && at->time <= time + kSameStamp) known.push_back({*at, id});
-  }
-  std::sort(known.begin(), known.end(), EarlierKnown);
-  return known;
-}
 
 KeyFrameId NearestKeyFrame(double time, const std::vector<KnownPose>& known) {
   StampedPose wanted;

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "alidade/base/degrees.h"
 #include "alidade/base/median.h"
 #include "alidade/base/print.h"
 #include "alidade/io/files/trajectory_file.h"
@@ -17,7 +18,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kDegrees = 57.29577951308232;
 constexpr double kLeaning = 0.09;  // radians: two verticals contradict each other
 
 template <typename... Values>

@@ -58,21 +58,12 @@ void MoveMap(SavedMap& saved, const MapPart& part, const Sim3& T_new_map, const 
 
 Eigen::Matrix3d WrittenTurnIn(const SavedMap& saved, const MapPart& part,
                               const std::string& folder) {
-  constexpr double kSameTime = 1e-6;  // seconds
   const std::string file = TrajectoryFileFor(saved, part, folder);
   if (file.empty()) return Eigen::Matrix3d::Identity();
   Trajectory trajectory = ReadTrajectory(file);
   std::stable_sort(trajectory.begin(), trajectory.end(),
                    [](const StampedPose& a, const StampedPose& b) { return a.time < b.time; });
-  std::vector<std::pair<StampedPose, KeyFrameId>> known;
-  for (KeyFrameId id : part.keyframes) {
-    const double time = saved.map.Find(id)->frame->time;
-    const auto at =
-        std::lower_bound(trajectory.begin(), trajectory.end(), time - kSameTime,
-                         [](const StampedPose& pose, double wanted) { return pose.time < wanted; });
-    if (at != trajectory.end() && at->time <= time + kSameTime) known.push_back({*at, id});
-  }
-  return WrittenTurn(saved.map, known);
+  return WrittenTurn(saved.map, KeyFramesIn(trajectory, saved, part));
 }
 
 Eigen::Matrix3d Upright(const Eigen::Vector3d& down, bool y_down) {

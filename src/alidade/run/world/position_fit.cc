@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "alidade/base/degrees.h"
 #include "alidade/base/error.h"
 #include "alidade/base/print.h"
 #include "alidade/base/random.h"
@@ -327,7 +328,6 @@ class PositionFitter {
   }
 
   static std::string WhyNot(const PositionFit& fit) {
-    constexpr double kDegrees = 57.29577951308232;
     if (!(fit.scale_sigma < kMostScale)) {
       return "the scale is not observable: the positions tell it to " +
              Text("%.0f %% (at most %.0f %%)", 100 * fit.scale_sigma, 100 * kMostScale) +

@@ -1,5 +1,7 @@
 #include "alidade/run/world/written_turn.h"
 
+#include <algorithm>
+
 #include "alidade/geometry/alignment.h"
 
 namespace alidade {
@@ -11,8 +13,23 @@ constexpr double kTold = 1e-2;
 
 }  // namespace
 
-Eigen::Matrix3d WrittenTurn(const MapSnapshot& map,
-                            const std::vector<std::pair<StampedPose, KeyFrameId>>& known) {
+std::vector<KnownPose> KeyFramesIn(const Trajectory& trajectory, const SavedMap& saved,
+                                   const MapPart& part) {
+  constexpr double kSameStamp = 1e-6;  // seconds
+  std::vector<KnownPose> known;
+  for (KeyFrameId id : part.keyframes) {
+    const double time = saved.map.Find(id)->frame->time;
+    const auto at =
+        std::lower_bound(trajectory.begin(), trajectory.end(), time - kSameStamp,
+                         [](const StampedPose& pose, double wanted) { return pose.time < wanted; });
+    if (at != trajectory.end() && at->time <= time + kSameStamp) known.push_back({*at, id});
+  }
+  std::sort(known.begin(), known.end(),
+            [](const KnownPose& a, const KnownPose& b) { return a.first.time < b.first.time; });
+  return known;
+}
+
+Eigen::Matrix3d WrittenTurn(const MapSnapshot& map, const std::vector<KnownPose>& known) {
   std::vector<Eigen::Vector3d> written{Eigen::Vector3d::Zero()}, mapped{Eigen::Vector3d::Zero()};
   bool same = true;
   for (const auto& [pose, id] : known) {

@@ -1,17 +1,6 @@
 #include "alidade/system/inertial/dead_reckoner.h"
 
 namespace alidade {
-namespace {
-
-// In map units.
-Se3 CameraOf(const MotionBelief& belief) {
-  Se3 T = belief.state.T_world_imu * belief.common.model.T_camera_imu.Inverse();
-  T.t /= belief.common.scale;
-  return T;
-}
-
-}  // namespace
-
 void DeadReckoner::Start(const MotionBelief& belief, const Anchor& anchor) {
   belief_ = belief;
   anchor_ = anchor;
@@ -22,7 +11,7 @@ std::optional<MotionBelief> DeadReckoner::Present(const MapSnapshot& map) const 
   const Anchor anchor = Reanchored(map.state(), anchor_);
   if (!anchor.keyframe.valid()) return std::nullopt;
   MotionBelief belief = *belief_;
-  Se3 before = CameraOf(belief);
+  Se3 before = belief.T_world_camera();
   belief.common.scale /= map.ScaleOf(anchor.keyframe) / anchor.scale;
   Se3 now = PoseOf(map.state(), anchor).Inverse();
   before.t *= belief_->common.scale;
@@ -35,7 +24,7 @@ void DeadReckoner::See(const TimedPose& pose, KeyFrameId reference, const MapSna
                        std::span<const ImuSample> samples) {
   std::optional<MotionBelief> belief = At(pose.time, map, samples);
   if (!belief || !belief->See(pose, samples)) return Forget();
-  Start(*belief, AnchorTo(map.state(), reference, CameraOf(*belief).Inverse()));
+  Start(*belief, AnchorTo(map.state(), reference, belief->T_world_camera().Inverse()));
 }
 
 std::optional<MotionBelief> DeadReckoner::At(double time, const MapSnapshot& map,
@@ -43,6 +32,16 @@ std::optional<MotionBelief> DeadReckoner::At(double time, const MapSnapshot& map
   const std::optional<MotionBelief> belief = Present(map);
   if (!belief) return std::nullopt;
   return belief->At(time, samples);
+}
+
+std::optional<DeadReckoner> DeadReckoner::CarriedTo(double time, const MapSnapshot& map,
+                                                    std::span<const ImuSample> samples) const {
+  const std::optional<MotionBelief> belief = At(time, map, samples);
+  if (!belief) return std::nullopt;
+  const KeyFrameId reference = Reanchored(map.state(), anchor_).keyframe;
+  DeadReckoner carried;
+  carried.Start(*belief, AnchorTo(map.state(), reference, belief->T_world_camera().Inverse()));
+  return carried;
 }
 
 void DeadReckoner::Reanchor(const MapSnapshot& map) {

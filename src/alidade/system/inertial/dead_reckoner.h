@@ -19,11 +19,14 @@ class DeadReckoner {
   // Takes a pose later than the last one into account.
   void See(const TimedPose& pose, KeyFrameId reference, const MapSnapshot& map,
            std::span<const ImuSample> samples);
-  double time() const { return belief_->time; }  // of the last pose
+  double time() const { return belief_->time; }
   // The belief at `time`, in the world of the map as it is now. nullopt: nothing is known, or the
   // map it was in is gone.
   std::optional<MotionBelief> At(double time, const MapSnapshot& map,
                                  std::span<const ImuSample> samples) const;
+  // The same, started at `time`.
+  std::optional<DeadReckoner> CarriedTo(double time, const MapSnapshot& map,
+                                        std::span<const ImuSample> samples) const;
   KeyFrameId reference() const { return anchor_.keyframe; }
   void Reanchor(const MapSnapshot& map);
 

@@ -27,6 +27,7 @@ constexpr double kLeastScale = 2e-3;
 void InertialWatch::ForgetMap() {
   fit_.reset();
   reckoner_.Forget();
+  ahead_.Forget();
   past_.clear();
   known_scale_ = 0;
   report_.metric = false;
@@ -53,7 +54,7 @@ void InertialWatch::Enter(MapId map, double time, const MapSnapshot& snapshot) {
     former_.reset();
     KeepWayFrom(left, first, snapshot);
   } else if (former_) {  // the map before was not joined yet
-    CarryFormer(first, snapshot);
+    former_ = former_->CarriedTo(first, snapshot, samples_);
   }
   if (learned_) calibration_ = *std::exchange(learned_, std::nullopt);
   ForgetMap();
@@ -78,22 +79,7 @@ void InertialWatch::KeepWayFrom(MapId left, double time, const MapSnapshot& map)
   while (!past_.empty() &&
          (past_.back().time() >= time || map.MapOf(past_.back().reference()) != left))
     past_.pop_back();
-  if (past_.empty()) return;
-  const auto belief = past_.back().At(time, map, samples_);
-  if (!belief) return;
-  former_.emplace();
-  former_->Start(*belief, AnchorTo(map.state(), past_.back().reference(),
-                                   belief->Camera(samples_).T_world_camera.Inverse()));
-}
-
-void InertialWatch::CarryFormer(double time, const MapSnapshot& map) {
-  const KeyFrameId reference = former_->reference();
-  const auto belief = former_->At(time, map, samples_);
-  former_.reset();
-  if (!belief || !map.Find(reference)) return;
-  former_.emplace();
-  former_->Start(
-      *belief, AnchorTo(map.state(), reference, belief->Camera(samples_).T_world_camera.Inverse()));
+  if (!past_.empty()) former_ = past_.back().CarriedTo(time, map, samples_);
 }
 
 // What is known of the map from before the camera came into it.
@@ -141,12 +127,17 @@ std::optional<InertialWatch::Join> InertialWatch::JoinBy(const InertialFit& fit,
 }
 
 std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
-                                                                   const MapSnapshot& map) const {
+                                                                   const MapSnapshot& map) {
   if (!reckoner_.known() || !report_.metric || samples_.empty()) return std::nullopt;
   if (time + report_.model.time_offset > samples_.back().time + 0.05 || time < reckoner_.time())
     return std::nullopt;
-  const auto belief = reckoner_.At(time, map, samples_);
-  const KeyFrame* reference = map.Find(reckoner_.reference());
+  // From where the last call led to.
+  const DeadReckoner& from = ahead_.known() && ahead_.time() <= time ? ahead_ : reckoner_;
+  const auto there = from.CarriedTo(time, map, samples_);
+  if (!there) return std::nullopt;
+  ahead_ = *there;
+  const auto belief = ahead_.At(time, map, samples_);
+  const KeyFrame* reference = map.Find(ahead_.reference());
   if (!belief || !reference) return std::nullopt;
   const TimedPose pose = belief->Camera(samples_);
   const double sigma = std::sqrt(pose.covariance.diagonal().head<3>().maxCoeff());

@@ -15,17 +15,10 @@ constexpr size_t kFewest = 8;          // poses
 constexpr double kFirstSeconds = 1.5;  // span of the poses of the first fit
 constexpr double kAskEvery = 0.5;      // seconds
 constexpr double kMargin = 0.3;        // seconds of readings kept beside the poses
-// A map is in meters when its scale is known to 5 %: refined from then on.
-constexpr double kScaleSigma = 0.05;
 // In standard deviations of the scale: a map is scaled again when it is off by more than the first,
 // and one that must not be scaled is in meters when it is off by less than the second.
 constexpr double kRescale = 0.3, kMetric = 3;
-constexpr double kGravitySigma = 0.035;  // radians: 2 degrees
-// Noise several times what is assumed: the model is wrong.
-constexpr double kMostNoise = 6;
-// Rotations contradict each other when the camera turns and the gyroscope explains less than half
-// of it, in this many fits in a row.
-constexpr double kTurning = 0.1;  // rad/s
+// Readings are left out when rotations contradict each other in this many fits in a row.
 constexpr int kContradictions = 3;
 // Readings are used once rotations have agreed in this many fits: until then nothing tells that
 // they are of this camera.
@@ -35,9 +28,6 @@ constexpr double kRotationSigma = 0.03;  // radians
 constexpr size_t kPast = 60;  // poses, at least 5 s: a map is split where it began 1.5 s before
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
-// Poses of a map have errors in common that their covariance does not contain.
-constexpr double kLeastRotation = 7e-4;    // radians
-constexpr double kLeastPosition = 1.5e-3;  // relative to the distance of what is seen
 
 }  // namespace
 
@@ -130,6 +120,7 @@ void InertialWatch::FollowPoses(const MapSnapshot& map) {
     past_.push_back(reckoner_);
     if (past_.size() > kPast) past_.pop_front();
     reckoner_.See(PoseIn(map, placement, distance), placement.anchor.keyframe, map, samples_);
+    ahead_ = reckoner_;
   }
 }
 
@@ -142,6 +133,7 @@ void InertialWatch::Reanchor(const MapSnapshot& map) {
   for (DeadReckoner& past : past_) past.Reanchor(map);
   std::erase_if(past_, [](const DeadReckoner& past) { return !past.known(); });
   if (former_) former_->Reanchor(map);
+  if (ahead_.known()) ahead_.Reanchor(map);
 }
 
 double InertialWatch::DistanceIn(const MapSnapshot& map) const {
@@ -158,8 +150,7 @@ TimedPose InertialWatch::PoseIn(const MapSnapshot& map, const Placement& placeme
   const double growth = map.ScaleOf(placement.anchor.keyframe) / placement.anchor.scale;
   pose.covariance.topRows<3>() *= growth;
   pose.covariance.leftCols<3>() *= growth;
-  pose.covariance.diagonal().head<3>().array() += std::pow(kLeastPosition * distance, 2);
-  pose.covariance.diagonal().tail<3>().array() += kLeastRotation * kLeastRotation;
+  pose.covariance += CommonErrors(distance);
   return pose;
 }
 
@@ -217,17 +208,16 @@ void InertialWatch::Answer(InertialAnswer answer) {
 }
 
 bool InertialWatch::Accepts(const InertialFit& fit) const {
-  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoise &&
-         fit.scale_sigma < kScaleSigma && fit.gravity_sigma < kGravitySigma;
+  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoiseFactor &&
+         fit.scale_sigma < kMostScaleSigma && fit.gravity_sigma < kMostGravitySigma;
 }
 
 // Readings of another device, or images that were stabilized, do not turn as the camera does.
 void InertialWatch::Judge(const InertialAnswer& answer) {
   const RotationMatch& match = answer.rotation;
-  if (!match.ok || match.turning < kTurning) return;
-  const bool agree = match.residual < 0.5 * match.turning;
-  contradictions_ = agree ? 0 : contradictions_ + 1;
-  if (agree) ++agreements_;
+  if (!match.Tells()) return;
+  contradictions_ = match.Contradicts() ? contradictions_ + 1 : 0;
+  if (!match.Contradicts()) ++agreements_;
   if (contradictions_ < kContradictions) return;
   report_.left_out =
       "the inertial readings contradict the images: the gyroscope does not turn as the camera does "
@@ -254,10 +244,12 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   report_.time_offset_sigma = fit.time_offset_sigma;
   Changes changes;
   const bool accepted = Accepts(fit);
-  if (accepted) changes.join = JoinBy(fit, map);
   // The map may have been scaled since the question.
-  fit.scale /= map.ScaleOf(answer->reference) / answer->scale;
+  const double grown = map.ScaleOf(answer->reference) / answer->scale;
+  fit.scale /= grown;
+  fit.first.common.scale /= grown;
   if (accepted) {
+    changes.join = JoinBy(fit, map);
     const double off = std::abs(std::log(fit.scale)) / fit.scale_sigma;
     if (sensor_ == Sensor::kMono && may_scale_ && off > kRescale) {
       changes.growth = Growth{map_, fit.scale};
@@ -269,11 +261,12 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
     report_.gravity_sigma = fit.gravity_sigma;
     report_.scale_sigma = fit.scale_sigma;
     learned_ = LearnedFrom(fit);
-    Se3 T_world_camera = fit.last.state.T_world_imu * fit.model.T_camera_imu.Inverse();
-    T_world_camera.t /= fit.last.common.scale;
     reckoner_.Start(
-        fit.last, {answer->reference,
-                   T_world_camera.Inverse() * answer->T_reference_world.Inverse(), answer->scale});
+        fit.last,
+        {answer->reference,
+         fit.last.T_world_camera().Inverse() * answer->T_reference_world.Inverse(), answer->scale});
+    ahead_ = reckoner_;
+    while (!past_.empty() && past_.back().time() >= reckoner_.time()) past_.pop_back();
     FollowPoses(map);
   }
   fit_ = std::move(fit);

@@ -88,7 +88,7 @@ class InertialWatch {
     TimedPose pose;
     MapId map;
   };
-  std::optional<Reckoned> DeadReckoned(double time, const MapSnapshot& map) const;
+  std::optional<Reckoned> DeadReckoned(double time, const MapSnapshot& map);
 
   // Rotation of the camera between two times of images by the gyroscope alone: R_to_from. nullopt
   // if its rotation to the camera is not known, or the readings do not cover the time.
@@ -122,7 +122,6 @@ class InertialWatch {
   void FollowPoses(const MapSnapshot& map);
   void Enter(MapId map, double time, const MapSnapshot& snapshot);
   void KeepWayFrom(MapId left, double time, const MapSnapshot& map);
-  void CarryFormer(double time, const MapSnapshot& map);
   void Recall(const MapSnapshot& map);
   static Calibration LearnedFrom(const InertialFit& fit);
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
@@ -139,6 +138,7 @@ class InertialWatch {
   MapId map_;                      // that placements_ are in
   double known_scale_ = 0;         // sigma of its scale when the camera entered it; 0: unknown
   DeadReckoner reckoner_;          // in map_, once its lengths are meters
+  DeadReckoner ahead_;             // reckoner_ carried to the last time that was asked for
   std::deque<DeadReckoner> past_;  // reckoner_ at the poses of the last seconds
   // Where dead reckoning from the map before map_ leads at the first pose in map_.
   std::optional<DeadReckoner> former_;

@@ -38,12 +38,13 @@ bool Relocalizer::CanBeThere(const TrackEstimate& found, const MapSnapshot& map)
   const double share =
       found.placed.inliers / std::max<double>(1, static_cast<double>(found.sightings.size()));
   if (share >= settings.plain_share) return true;
-  if (reckoned_ && found.placed.frame->time == reckoned_->pose.time &&
-      map.MapOf(found.reference) == reckoned_->map)
-    return AgreesWithReckoned(found.placed.T_camera_world);
+  const MapId in = map.MapOf(found.reference);
+  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(in);
+  const double gone = settings_.localize ? 0 : WayBetween(map, keyframes.back(), found.reference);
+  if (reckoned_ && found.placed.frame->time == reckoned_->pose.time && in == reckoned_->map)
+    return AgreesWithReckoned(found.placed, settings.drift * gone);
   // The trajectory is relative to the current map: useless if that was corrected since `map`.
   if (workers_.map().Snapshot().corrections() != map.corrections()) return false;
-  const MapId in = map.MapOf(found.reference);
   std::vector<TimedPlace> trajectory;
   MapId last;
   const std::vector<MapId> dropped = workers_.dropped();
@@ -55,20 +56,22 @@ bool Relocalizer::CanBeThere(const TrackEstimate& found, const MapSnapshot& map)
     if (last == in) trajectory.push_back({frame.time, frame.T_world_camera.t});
   }
   if (last.valid() && last != in) return share >= settings.elsewhere_share;
-  const std::vector<KeyFrameId> keyframes = map.KeyFramesOf(in);
-  const double gone = settings_.localize ? 0 : WayBetween(map, keyframes.back(), found.reference);
   const TimedPlace here{found.placed.frame->time, found.placed.T_camera_world.Inverse().t};
   const double depth = MedianDepth(map, *map.Find(found.reference)).value_or(0);
   return share >= settings.plain_share * DoubtOf(trajectory, here, depth, gone, settings);
 }
 
-// Whether the pose is within the errors of dead reckoning: chi² of the position, 99.9 %, with twice
-// its standard deviation.
-bool Relocalizer::AgreesWithReckoned(const Se3& T_camera_world) const {
-  constexpr double kChiSquared3 = 16.3, kWider = 4;
+// Whether the position is within its own error, that of dead reckoning and the drift of the map:
+// chi², 99.9 %.
+bool Relocalizer::AgreesWithReckoned(const PlacedFrame& placed, double drift) const {
+  constexpr double kChiSquared3 = 16.3;
   const TimedPose& pose = reckoned_->pose;
-  const Eigen::Vector3d gap = (pose.T_world_camera.Inverse() * T_camera_world.Inverse()).t;
-  const Eigen::Matrix3d covariance = kWider * pose.covariance.topLeftCorner<3, 3>();
+  const Se3 T_reckoned_found = pose.T_world_camera.Inverse() * placed.T_camera_world.Inverse();
+  const Eigen::Matrix3d& R = T_reckoned_found.R;
+  Eigen::Matrix3d covariance = pose.covariance.topLeftCorner<3, 3>() +
+                               R * placed.covariance.topLeftCorner<3, 3>() * R.transpose();
+  covariance.diagonal().array() += drift * drift;
+  const Eigen::Vector3d& gap = T_reckoned_found.t;
   return gap.dot(covariance.llt().solve(gap)) < kChiSquared3;
 }
 

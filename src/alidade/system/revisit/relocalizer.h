@@ -34,7 +34,7 @@ class Relocalizer {
 
  private:
   bool CanBeThere(const TrackEstimate& found, const MapSnapshot& map) const;
-  bool AgreesWithReckoned(const Se3& T_camera_world) const;
+  bool AgreesWithReckoned(const PlacedFrame& placed, double drift) const;
   std::vector<KeyFrameId> PlacesLike(const Frame& frame, const MapSnapshot& map, bool lost) const;
 
   std::optional<InertialWatch::Reckoned> reckoned_;
