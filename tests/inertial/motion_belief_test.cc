@@ -66,6 +66,23 @@ TEST(MotionBelief, ErrorsOfDeadReckoningAreAsLargeAsItSays) {
   EXPECT_LT(corrected.Mean(), 1.5);
 }
 
+TEST(MotionBelief, StaysARotationWhenItsWorldIsCorrectedAgainAndAgain) {
+  const InertialTruth truth;
+  const InertialProblem problem(truth, 4, 1, 2);
+  MotionBelief belief = FitInertial(problem.poses, problem.samples, {}).last;
+  for (int k = 0; k < 200; ++k) {
+    // As a keyframe that did not move: its pose by the belief, and by the map.
+    const Se3 T = belief.state.T_world_imu;
+    belief.Move(T * T.Inverse());
+  }
+  const Eigen::Matrix3d& R = belief.state.T_world_imu.R;
+  EXPECT_LT((R * R.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-12);
+  EXPECT_LT((belief.state.T_world_imu.t -
+             FitInertial(problem.poses, problem.samples, {}).last.state.T_world_imu.t)
+                .norm(),
+            1e-9);
+}
+
 TEST(MotionBelief, IsTheSameInAnotherWorld) {
   const InertialTruth truth;
   const InertialProblem problem(truth, 4, 1, 2);

@@ -83,11 +83,13 @@ bool MotionBelief::See(const TimedPose& pose, std::span<const ImuSample> samples
   return true;
 }
 
-void MotionBelief::Move(const Se3& T) {
+void MotionBelief::Move(const Se3& other) {
+  // Orthonormal again: where T undoes a move, an error of the rotation comes back three times.
+  const Se3 T = other.Normalised();
   const Eigen::Vector3d down = common.down;
-  state.T_world_imu = T * state.T_world_imu;
+  state.T_world_imu = (T * state.T_world_imu).Normalised();
   state.velocity = T.R * state.velocity;
-  common.down = T.R * common.down;
+  common.down = (T.R * common.down).normalized();
   Matrix other_axes = Matrix::Identity();
   other_axes.block<3, 3>(3, 3) = other_axes.block<3, 3>(6, 6) = T.R;
   other_axes.block<2, 2>(kState + kTilt, kState + kTilt) =

@@ -1,6 +1,7 @@
 #include "alidade/system/inertial/dead_reckoner.h"
 
 namespace alidade {
+
 void DeadReckoner::Start(const MotionBelief& belief, const Anchor& anchor) {
   belief_ = belief;
   anchor_ = anchor;
