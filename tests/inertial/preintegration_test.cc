@@ -55,6 +55,28 @@ TEST(Preintegration, TwoHalvesMakeTheWhole) {
   EXPECT_LT(RotationAngle(end.T_world_imu, whole.T_world_imu), 1e-5);
 }
 
+TEST(Preintegration, OneThenTheNextIsBoth) {
+  const auto samples = Readings(1, 200, kBias);
+  const ImuNoise noise{0.01, 0.1, 1e-4, 1e-3};
+  const Preintegration whole = Preintegrate(samples, 0, 1, kBias, noise);
+  // 0.5 is the time of a sample, so that both are made of the same steps.
+  const Preintegration first = Preintegrate(samples, 0, 0.5, kBias, noise);
+  const auto expect_whole = [&](const Preintegration& second, double tolerance) {
+    const Preintegration both = first.Then(second);
+    EXPECT_NEAR(both.seconds, 1, 1e-12);
+    EXPECT_LT((both.dR - whole.dR).norm(), tolerance);
+    EXPECT_LT((both.dv - whole.dv).norm(), tolerance);
+    EXPECT_LT((both.dp - whole.dp).norm(), tolerance);
+    EXPECT_LT((both.covariance - whole.covariance).norm(), tolerance * whole.covariance.norm());
+    EXPECT_LT((both.by_bias - whole.by_bias).norm(), tolerance * whole.by_bias.norm());
+  };
+  expect_whole(Preintegrate(samples, 0.5, 1, kBias, noise), 1e-9);
+  ImuBias other = kBias;
+  other.gyro.x() += 1e-4;
+  other.accel.y() += 1e-3;
+  expect_whole(Preintegrate(samples, 0.5, 1, other, noise), 1e-4);
+}
+
 TEST(Preintegration, BiasDerivativesAgreeWithIntegratingAnew) {
   const auto samples = Readings(1, 200, kBias);
   const Preintegration motion = Preintegrate(samples, 0, 1, kBias, {});

@@ -31,7 +31,9 @@ struct Ran {
   std::vector<FramePose> trajectory;
   std::vector<TrackResult> live;
   InertialReport report;
-  std::string map;  // as saved
+  std::string map;      // as saved
+  int keyframes = 0;    // at the end
+  int with_motion = 0;  // of them, with the motion since the one before
 };
 
 // `spoil` changes the readings; null: they are not given at all.
@@ -55,6 +57,10 @@ Ran Travel(const SynthRecording& recording, Spoil&& spoil, bool give, const Dark
   run.trajectory = slam.Finish();
   run.report = slam.Inertial();
   run.map = slam.SaveMap();
+  slam.Snapshot().keyframes().ForEach([&](const KeyFrame& keyframe) {
+    ++run.keyframes;
+    run.with_motion += keyframe.motion != nullptr;
+  });
   return run;
 }
 
@@ -103,6 +109,9 @@ TEST(Inertial, MakesAMapOfOneCameraMetricAndUpright) {
   ASSERT_TRUE(run.report.metric) << run.report.missing;
   EXPECT_GT(run.report.samples, 1900);
   EXPECT_TRUE(run.report.left_out.empty()) << run.report.left_out;
+  // The bundle adjustment has the readings, but for the first keyframe and those in the dark.
+  EXPECT_GT(run.with_motion, run.keyframes / 2);
+  EXPECT_LT(run.with_motion, run.keyframes);
 
   // Lengths: distances between the poses and between the true ones.
   double path = 0, truth = 0;
@@ -147,6 +156,7 @@ TEST(Inertial, ReadingsOfAnotherMotionAreLeftOutAndChangeNothing) {
       },
       true);
   EXPECT_FALSE(other.report.metric);
+  EXPECT_EQ(other.with_motion, 0);
   EXPECT_NE(other.report.left_out.find("contradict"), std::string::npos);
   ASSERT_EQ(other.trajectory.size(), without.trajectory.size());
   for (size_t i = 0; i < without.trajectory.size(); ++i) {

@@ -97,6 +97,28 @@ Preintegration Preintegration::WithBias(const ImuBias& other) const {
   return changed;
 }
 
+Preintegration Preintegration::Then(const Preintegration& after) const {
+  const Preintegration next = after.WithBias(bias);
+  // The new error by that of each part.
+  Matrix9d by_this = Matrix9d::Identity(), by_next = Matrix9d::Zero();
+  by_this.block<3, 3>(0, 0) = next.dR.transpose();
+  by_this.block<3, 3>(3, 0) = -dR * Skew(next.dv);
+  by_this.block<3, 3>(6, 0) = -dR * Skew(next.dp);
+  by_this.block<3, 3>(6, 3) = next.seconds * Eigen::Matrix3d::Identity();
+  by_next.block<3, 3>(0, 0).setIdentity();
+  by_next.block<3, 3>(3, 3) = by_next.block<3, 3>(6, 6) = dR;
+  Preintegration both;
+  both.seconds = seconds + next.seconds;
+  both.bias = bias;
+  both.dR = dR * next.dR;
+  both.dv = dv + dR * next.dv;
+  both.dp = dp + dv * next.seconds + dR * next.dp;
+  both.covariance =
+      by_this * covariance * by_this.transpose() + by_next * next.covariance * by_next.transpose();
+  both.by_bias = by_this * by_bias + by_next * next.by_bias;
+  return both;
+}
+
 ImuSample ReadingAt(std::span<const ImuSample> samples, double time) {
   const auto next =
       std::lower_bound(samples.begin(), samples.end(), time,

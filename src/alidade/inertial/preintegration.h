@@ -42,6 +42,8 @@ struct Preintegration {
   // that time; bias not subtracted yet. Second order in `seconds`.
   void Append(double seconds, const Eigen::Vector3d& angular_rate,
               const Eigen::Vector3d& specific_force, const ImuNoise& noise);
+  // This motion and then `next`; the bias is that of this one.
+  Preintegration Then(const Preintegration& next) const;
   // The same readings with another bias, by the first derivatives (eq. 44).
   Preintegration WithBias(const ImuBias& other) const;
 };

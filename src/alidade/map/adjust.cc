@@ -8,14 +8,14 @@
 
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
+#include "alidade/map/adjust_motion.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
 namespace {
 
-// Measured noise of a single camera divided by the assumed one; the median of chi² with 2 degrees
-// of freedom is 2 ln 2. Clamped to [least, 1]: a larger value means that the state is not near the
-// optimum.
+// Measured noise divided by the assumed one; the median of chi² with 2 degrees of freedom is 2
+// ln 2. Clamped to [least, 1]: a larger value means that the state is not near the optimum.
 double NoiseShare(const BundleProblem& problem, int cameras, double least) {
   const double median_of_chi2 = 2 * std::numbers::ln2;
   std::vector<double> chi2;
@@ -80,6 +80,7 @@ Matrix6d CovarianceOf(BundleProblem problem, const BundleSettings& settings, int
                       int newest, int anchor) {
   std::erase_if(problem.observations,
                 [&](const BundleObservation& o) { return o.camera >= cameras; });
+  problem.motion = {};
   problem.T_camera_world.resize(cameras);
   problem.fixed.assign(cameras, 0);
   problem.fixed[anchor] = 1;
@@ -144,6 +145,10 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     bundle.huber_mono *= share;
     bundle.redescending = bundle.redescending || share < 1;
   }
+  constexpr double kLeastShare = 0.2;
+  problem.motion =
+      MotionBetween(map, cameras, !one_camera,
+                    NoiseShare(problem, static_cast<int>(cameras.size()), kLeastShare));
   result.report = AdjustBundle(problem, bundle, stop);
   const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
   if (kCovariances && index && !(stop && *stop)) {

@@ -9,6 +9,7 @@
 #include "alidade/features/frame.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/map/depth_map.h"
+#include "alidade/map/keyframe_motion.h"
 
 namespace ALIDADE_API alidade {
 
@@ -38,6 +39,8 @@ struct KeyFrame {
   // local bundle adjustment: T_world_camera * Exp(xi) is the true pose, xi = (translation;
   // rotation) ~ N(0, covariance). Zero: unknown. Not saved with a map.
   Matrix6d covariance = Matrix6d::Zero();
+  // Since the keyframe before, by an inertial sensor; null: unknown. Not saved with a map.
+  std::shared_ptr<const KeyFrameMotion> motion;
   std::vector<KeyFrameId> loops;          // keyframes connected by loop closures, sorted
   std::vector<LandmarkId> landmarks;      // one per keypoint; invalid: none
   std::vector<Neighbour> covisible;       // by descending number of shared landmarks, then by id

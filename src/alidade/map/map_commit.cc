@@ -146,6 +146,7 @@ void MapCommit::Remove(KeyFrameId id) {
   for (KeyFrameId other_id : keyframe->loops) {
     if (KeyFrame* other = Edit(other_id)) std::erase(other->loops, id);
   }
+  JoinMotions(*keyframe);
   const KeyFrame* parent = Find(keyframe->parent);
   auto left = std::make_shared<CulledKeyFrame>();
   left->id = id;
@@ -156,6 +157,25 @@ void MapCommit::Remove(KeyFrameId id) {
   left->version = state_.version;
   state_.culled.Set(id.value, std::move(left), state_.version);
   state_.keyframes.Erase(id.value, state_.version);
+}
+
+// The motion since `gone` becomes that since the keyframe before it.
+void MapCommit::JoinMotions(const KeyFrame& gone) {
+  KeyFrameId next;
+  state_.keyframes.ForEachFromLast([&](const KeyFrame& other) {
+    if (other.motion && other.motion->since == gone.id) next = other.id;
+    return other.id > gone.id && !next.valid();
+  });
+  if (!next.valid()) return;
+  KeyFrame* keyframe = Edit(next);
+  if (!gone.motion) {
+    keyframe->motion.reset();
+    return;
+  }
+  auto joined = std::make_shared<KeyFrameMotion>(*keyframe->motion);
+  joined->since = gone.motion->since;
+  joined->motion = gone.motion->motion.Then(keyframe->motion->motion);
+  keyframe->motion = std::move(joined);
 }
 
 void MapCommit::Remove(MapId id) {

@@ -146,6 +146,7 @@ class MapCommit {
  private:
   friend class MapStore;
   MapCommit(const MapState& base, const ReleasedIds& released);
+  void JoinMotions(const KeyFrame& gone);
   template <typename Object>
   Object* EditIn(IdTable<Object>& table, uint32_t id);
 

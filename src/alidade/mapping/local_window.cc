@@ -31,6 +31,20 @@ void Widen(const MapSnapshot& map, const MapperSettings& settings,
   }
 }
 
+// Adds the keyframes from which inertial readings lead to those of `free`, so that the chain of
+// motions does not break.
+void HoldBefore(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
+                std::vector<KeyFrameId>& fixed) {
+  for (KeyFrameId id : free) {
+    const KeyFrame& keyframe = *map.Find(id);
+    if (!keyframe.motion) continue;
+    const KeyFrame* since = map.Find(keyframe.motion->since);
+    if (!since || since->map != keyframe.map) continue;
+    if (std::binary_search(free.begin(), free.end(), since->id)) continue;
+    if (std::find(fixed.begin(), fixed.end(), since->id) == fixed.end()) fixed.push_back(since->id);
+  }
+}
+
 }  // namespace
 
 Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& camera,
@@ -81,6 +95,7 @@ Adjustment AdjustWindow(const MapSnapshot& map, KeyFrameId id, const Camera& cam
     fixed.push_back(free.front());
     free.erase(free.begin());
   }
+  HoldBefore(map, free, fixed);
   std::sort(fixed.begin(), fixed.end());
   AdjustSettings adjust{settings.noise, settings.bundle, settings.min_noise_ratio,
                         settings.assumed_depth_error, settings.assumed_depth_degrees};

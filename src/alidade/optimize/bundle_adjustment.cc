@@ -22,6 +22,7 @@ BundleState StartOf(const BundleProblem& problem, const BundleLayout& layout) {
   for (const Se3& T : problem.T_camera_world) state.cameras.push_back({T.R, T.Inverse().t});
   state.points.reserve(layout.points.size());
   for (const BundlePoint& p : layout.points) state.points.push_back(problem.points[p.index]);
+  state.motion = problem.motion.states;
   return state;
 }
 
@@ -34,6 +35,10 @@ void Apply(const BundleLayout& layout, const BundleState& from, const BundleStep
     camera.centre -= step.cameras[i].head<3>();
   }
   for (size_t j = 0; j < to.points.size(); ++j) to.points[j] += step.points[j];
+  for (size_t k = 0; k < to.motion.size(); ++k) {
+    to.motion[k].velocity += step.states[k].head<3>();
+    to.motion[k].accel_bias += step.states[k].tail<3>();
+  }
 }
 
 void Store(const BundleLayout& layout, const BundleState& state, BundleProblem& problem) {
@@ -46,6 +51,10 @@ void Store(const BundleLayout& layout, const BundleState& state, BundleProblem& 
   }
   for (size_t j = 0; j < layout.points.size(); ++j) {
     problem.points[layout.points[j].index] = state.points[j];
+  }
+  for (size_t k = 0; k < state.motion.size(); ++k) {
+    problem.motion.states[k].velocity = state.motion[k].velocity;
+    problem.motion.states[k].accel_bias = state.motion[k].accel_bias;
   }
 }
 
@@ -133,13 +142,18 @@ std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
     has_right = has_right || sighting.weight_r > 0;
     measured += sighting.weight_r > 0 ? 3 : 2;
   }
-  const double spare = measured - 6.0 * static_cast<double>(cameras) -
-                       3.0 * static_cast<double>(layout.points.size());
+  const BundleMotion& motion = problem.motion;
+  for (const BundleMotionState& of_imu : motion.states)
+    measured += of_imu.accel_bias_sigma > 0 ? 3 : 0;
+  measured += 12.0 * static_cast<double>(motion.links.size());
+  const double spare =
+      measured - 6.0 * layout.rows() - 3.0 * static_cast<double>(layout.points.size());
   if (!(spare > 0)) return {};
 
   Eigen::VectorXd scale;
   const auto is_fixed = [](uint8_t fixed) { return fixed != 0; };
-  if (!has_right && std::count_if(problem.fixed.begin(), problem.fixed.end(), is_fixed) == 1) {
+  if (!has_right && motion.links.empty() &&
+      std::count_if(problem.fixed.begin(), problem.fixed.end(), is_fixed) == 1) {
     const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(), is_fixed);
     const Eigen::Vector3d& origin = state.cameras[fixed - problem.fixed.begin()].centre;
     scale = Eigen::VectorXd::Zero(6 * cameras);

@@ -10,6 +10,7 @@
 #include "alidade/base/api.h"
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/optimize/bundle_motion.h"
 
 namespace ALIDADE_API alidade {
 
@@ -28,6 +29,7 @@ struct BundleProblem {
   std::vector<uint8_t> fixed;                   // one per camera; nonzero: held constant
   std::vector<Eigen::Vector3d> points;          // in the world frame; initial values and result
   std::vector<BundleObservation> observations;  // sorted by point
+  BundleMotion motion;                          // of an inertial sensor; may be empty
 };
 
 struct BundleSettings {

@@ -41,6 +41,15 @@ inline Vector6d DampingOf(const CameraBlock& block, double lambda) {
   return damping;
 }
 
+// Damping of a state of the inertial sensor; velocities are of one kind, biases of another.
+inline Vector6d DampingOf(const StateBlock& block, double lambda) {
+  const Vector6d d = block.H.diagonal();
+  const double v = d.head<3>().maxCoeff(), b = d.tail<3>().maxCoeff();
+  Vector6d damping;
+  for (int i = 0; i < 6; ++i) damping[i] = DampingOfEntry(lambda, d[i], i < 3 ? v : b);
+  return damping;
+}
+
 // Factor of one point: H + diag(damping) = L L'. Stores 1 / l00, 1 / l11, 1 / l22 instead of the
 // pivots. Not finite if the sum is not positive definite.
 struct PointFactor {

@@ -118,6 +118,7 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
     layout.couplings += free_end - begin;
   }
   layout.chunks = Cut(layout);
+  layout.motion = LayOutMotion(problem.motion, slot, static_cast<int>(layout.free_cameras.size()));
   return layout;
 }
 

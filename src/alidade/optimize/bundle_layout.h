@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "alidade/optimize/bundle_adjustment.h"
+#include "alidade/optimize/bundle_motion_terms.h"
 #include "alidade/optimize/reprojection.h"
 
 namespace alidade {
@@ -34,7 +35,10 @@ struct BundleLayout {
   // Bounds of runs of points with about equal work; a function of the problem only.
   std::vector<int> chunks;
   int couplings = 0;  // number of sightings by free cameras
+  MotionLayout motion;
 
+  // Block rows of the reduced system.
+  int rows() const { return static_cast<int>(free_cameras.size() + motion.start.size()); }
   int chunk_count() const { return static_cast<int>(chunks.size()) - 1; }
 };
 

@@ -183,6 +183,18 @@ Vector6d CameraBlock::Gradient() const {
   return g;
 }
 
+void CameraBlock::Add(const Matrix6d& H, const Vector6d& g) {
+  const auto add = [&](int i, double value) { sums[i / 2][i % 2] += value; };
+  for (int row = 0, tt = kTt, rr = kRr; row < 3; ++row) {
+    for (int column = row; column < 3; ++column) {
+      add(tt++, H(row, column));
+      add(rr++, H(3 + row, 3 + column));
+    }
+    for (int column = 0; column < 3; ++column) add(kRt + 3 * row + column, H(3 + row, column));
+  }
+  for (int i = 0; i < 6; ++i) add(kG + i, g[i]);
+}
+
 void Linearise(const BundleLayout& layout, const BundleState* before, BundleState& state,
                Linearisation& result) {
   result.couplings.resize(layout.couplings);
@@ -211,6 +223,7 @@ void Linearise(const BundleLayout& layout, const BundleState* before, BundleStat
       }
     }
   }
+  AddMotion(layout.motion, state, result);
   result.valid &= std::isfinite(result.cost);
 }
 

@@ -21,8 +21,9 @@ struct BundleCamera {
 };
 
 struct BundleState {
-  std::vector<BundleCamera> cameras;    // one per camera of the problem
-  std::vector<Eigen::Vector3d> points;  // in the layout's order
+  std::vector<BundleCamera> cameras;        // one per camera of the problem
+  std::vector<Eigen::Vector3d> points;      // in the layout's order
+  std::vector<BundleMotionState> motion{};  // of the inertial sensor
 };
 
 // Symmetric 3x3: xx, xy, xz, yy, yz, zz.
@@ -51,12 +52,20 @@ struct CameraBlock {
   double operator[](int i) const { return sums[i / 2][i % 2]; }
   Matrix6d Hessian() const;
   Vector6d Gradient() const;
+  void Add(const Matrix6d& H, const Vector6d& g);
+};
+
+struct StateBlock {  // of a state of the inertial sensor: own block and gradient
+  Matrix6d H = Matrix6d::Zero();
+  Vector6d g = Vector6d::Zero();
 };
 
 struct Linearisation {
   std::vector<Coupling> couplings;  // point by point, in the layout's order
   std::vector<PointBlock> points;
   std::vector<CameraBlock> cameras;  // by slot
+  std::vector<StateBlock> states;    // of the inertial sensor
+  std::vector<Matrix6d> motion;      // MotionLayout::blocks
   double cost = 0;                   // ½ sum of weighted losses
   bool valid = true;                 // false: a point is behind a camera that observes it
 };

@@ -14,19 +14,26 @@ namespace {
 // Measured ratio of time per multiplication: sparse to dense factorization.
 constexpr double kSparseCost = 1.5;
 
+void AddBlock(const Matrix6d& value, SquareBlock<6>& block) {
+  for (int j = 0; j < 6; ++j) {
+    for (int n = 0; n < 3; ++n) block.column[j][n] += Double2{value(2 * n, j), value(2 * n + 1, j)};
+  }
+}
+
 }  // namespace
 
 SchurSolver::SchurSolver(const BundleLayout& layout, ReducedFactor kind)
     : layout_(layout),
       sparse_(kind != ReducedFactor::kDense),
       cameras_(static_cast<int>(layout.free_cameras.size())),
+      rows_(layout.rows()),
       reduced_(layout.chunk_count()),
       eliminated_(layout.points.size()) {
   FindBlocks();
   if (!sparse_) return;
   // If most cameras share points, the sparse factorization loses more by small blocks than it
   // saves.
-  const double size = 6.0 * cameras_, all_blocks = 0.5 * cameras_ * (cameras_ + 1.0);
+  const double size = 6.0 * rows_, all_blocks = 0.5 * rows_ * (rows_ + 1.0);
   const bool may_pay = column_.size() < 0.5 * all_blocks;
   if (kind == ReducedFactor::kSparse || may_pay) Analyse();
   if (kind == ReducedFactor::kFastest &&
@@ -37,21 +44,24 @@ SchurSolver::SchurSolver(const BundleLayout& layout, ReducedFactor kind)
 }
 
 void SchurSolver::FindBlocks() {
-  row_begin_.assign(cameras_ + 1, 0);
+  row_begin_.assign(rows_ + 1, 0);
   if (!sparse_) {
-    for (int row = 0; row < cameras_; ++row) row_begin_[row + 1] = row_begin_[row] + row + 1;
+    for (int row = 0; row < rows_; ++row) row_begin_[row + 1] = row_begin_[row] + row + 1;
     return;
   }
-  std::vector<uint8_t> together(static_cast<size_t>(cameras_) * cameras_, 0);
+  std::vector<uint8_t> together(static_cast<size_t>(rows_) * rows_, 0);
   for (const BundlePoint& point : layout_.points) {
     for (int a = point.begin; a < point.free_end; ++a) {
-      uint8_t* row = together.data() + static_cast<size_t>(layout_.sightings[a].slot) * cameras_;
+      uint8_t* row = together.data() + static_cast<size_t>(layout_.sightings[a].slot) * rows_;
       for (int b = point.begin; b <= a; ++b) row[layout_.sightings[b].slot] = 1;
     }
   }
+  for (const BlockPlace& place : layout_.motion.blocks)
+    together[static_cast<size_t>(place.row) * rows_ + place.column] = 1;
+  for (int row = cameras_; row < rows_; ++row) together[static_cast<size_t>(row) * (rows_ + 1)] = 1;
   column_.clear();
-  for (int i = 0; i < cameras_; ++i) {
-    const uint8_t* row = together.data() + static_cast<size_t>(i) * cameras_;
+  for (int i = 0; i < rows_; ++i) {
+    const uint8_t* row = together.data() + static_cast<size_t>(i) * rows_;
     for (int j = 0; j <= i; ++j) {
       if (row[j]) column_.push_back(j);
     }
@@ -72,8 +82,8 @@ inline int SchurSolver::FindBlock(int row, int column, int hint) const {
 
 void SchurSolver::Eliminate(const Linearisation& system, double lambda, int chunk,
                             Reduced& reduced) {
-  reduced.blocks.assign(row_begin_[cameras_], SquareBlock<6>{});
-  reduced.right.assign(cameras_, Vector6d::Zero());
+  reduced.blocks.assign(row_begin_[rows_], SquareBlock<6>{});
+  reduced.right.assign(rows_, Vector6d::Zero());
   std::vector<CouplingFactor> factors;
   for (int j = layout_.chunks[chunk]; j < layout_.chunks[chunk + 1]; ++j) {
     const BundlePoint& point = layout_.points[j];
@@ -106,25 +116,37 @@ void SchurSolver::AddCameras(const Linearisation& system, double lambda) {
   for (size_t chunk = 1; chunk < reduced_.size(); ++chunk) {
     const Reduced& part = reduced_[chunk];
     for (size_t i = 0; i < sum.blocks.size(); ++i) sum.blocks[i].Add(part.blocks[i]);
-    for (int i = 0; i < cameras_; ++i) sum.right[i] += part.right[i];
+    for (int i = 0; i < rows_; ++i) sum.right[i] += part.right[i];
   }
   for (int i = 0; i < cameras_; ++i) {
     const CameraBlock& c = system.cameras[i];
-    Matrix6d H = c.Hessian();
-    H.diagonal() += DampingOf(c, lambda);
-    // The last block of a row is on the diagonal.
-    SquareBlock<6>& S = sum.blocks[row_begin_[i + 1] - 1];
-    for (int j = 0; j < 6; ++j) {
-      for (int n = 0; n < 3; ++n) S.column[j][n] += Double2{H(2 * n, j), H(2 * n + 1, j)};
-    }
-    sum.right[i] -= c.Gradient();
+    AddDiagonal(i, c.Hessian(), DampingOf(c, lambda), c.Gradient());
+  }
+}
+
+void SchurSolver::AddDiagonal(int row, Matrix6d H, const Vector6d& damping, const Vector6d& g) {
+  H.diagonal() += damping;
+  // The last block of a row is on the diagonal.
+  AddBlock(H, reduced_[0].blocks[row_begin_[row + 1] - 1]);
+  reduced_[0].right[row] -= g;
+}
+
+void SchurSolver::AddMotion(const Linearisation& system, double lambda) {
+  const std::vector<BlockPlace>& places = layout_.motion.blocks;
+  for (size_t i = 0; i < places.size(); ++i) {
+    const auto [row, column] = places[i];
+    AddBlock(system.motion[i], reduced_[0].blocks[FindBlock(row, column, row_begin_[row])]);
+  }
+  for (size_t k = 0; k < system.states.size(); ++k) {
+    const StateBlock& state = system.states[k];
+    AddDiagonal(cameras_ + static_cast<int>(k), state.H, DampingOf(state, lambda), state.g);
   }
 }
 
 void SchurSolver::FillDense() {
   const Reduced& reduced = reduced_[0];
-  dense_.resize(6 * cameras_, 6 * cameras_);
-  for (int row = 0, at = 0; row < cameras_; ++row) {
+  dense_.resize(6 * rows_, 6 * rows_);
+  for (int row = 0, at = 0; row < rows_; ++row) {
     for (int column = 0; column <= row; ++column, ++at) {
       for (int j = 0; j < 6; ++j) {
         for (int i = 0; i < 6; ++i) dense_(6 * row + i, 6 * column + j) = reduced.blocks[at](i, j);
@@ -143,19 +165,19 @@ bool SchurSolver::SolveDense(Eigen::VectorXd& x) {
 
 void SchurSolver::Analyse() {
   std::vector<BlockPlace> below;
-  for (int row = 0; row < cameras_; ++row) {
+  for (int row = 0; row < rows_; ++row) {
     for (int at = row_begin_[row]; at + 1 < row_begin_[row + 1]; ++at) {
       below.push_back({row, column_[at]});
     }
   }
-  factor_.Analyse(cameras_, below);
+  factor_.Analyse(rows_, below);
 }
 
 bool SchurSolver::SolveSparse(Eigen::VectorXd& x) {
   const Reduced& reduced = reduced_[0];
   factor_.Clear();
   size_t below = 0;
-  for (int row = 0; row < cameras_; ++row) {
+  for (int row = 0; row < rows_; ++row) {
     const int diagonal = row_begin_[row + 1] - 1;
     for (int at = row_begin_[row]; at < diagonal; ++at) {
       factor_.SetBelow(below++, reduced.blocks[at]);
@@ -194,6 +216,11 @@ double SchurSolver::Predicted(const Linearisation& system, double lambda,
     const CameraBlock& c = system.cameras[i];
     twice += d.cwiseAbs2().dot(DampingOf(c, lambda)) - d.dot(c.Gradient());
   }
+  for (size_t k = 0; k < step.states.size(); ++k) {
+    const Vector6d& d = step.states[k];
+    const StateBlock& state = system.states[k];
+    twice += d.cwiseAbs2().dot(DampingOf(state, lambda)) - d.dot(state.g);
+  }
   for (size_t j = 0; j < step.points.size(); ++j) {
     const Eigen::Vector3d& d = step.points[j];
     const PointBlock& block = system.points[j];
@@ -208,6 +235,7 @@ void SchurSolver::Reduce(const Linearisation& system, double lambda) {
   ParallelFor(layout_.chunk_count(),
               [&](int chunk) { Eliminate(system, lambda, chunk, reduced_[chunk]); });
   AddCameras(system, lambda);
+  AddMotion(system, lambda);
 }
 
 bool SchurSolver::Covariance(const Linearisation& system, int slot, const Eigen::VectorXd& held,
@@ -225,7 +253,7 @@ bool SchurSolver::Covariance(const Linearisation& system, int slot, const Eigen:
   }
   Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factor(dense_);
   if (factor.info() != Eigen::Success) return false;
-  Eigen::VectorXd column(6 * cameras_);
+  Eigen::VectorXd column(6 * rows_);
   for (int j = 0; j < 6; ++j) {
     column.setZero();
     column[6 * slot + j] = 1;
@@ -237,15 +265,17 @@ bool SchurSolver::Covariance(const Linearisation& system, int slot, const Eigen:
 
 void SchurSolver::Solve(const Linearisation& system, double lambda, BundleStep& step) {
   Reduce(system, lambda);
-  Eigen::VectorXd x(6 * cameras_);
-  for (int i = 0; i < cameras_; ++i) x.segment<6>(6 * i) = reduced_[0].right[i];
-  step.valid = cameras_ == 0 || (sparse_ ? SolveSparse(x) : SolveDense(x));
+  Eigen::VectorXd x(6 * rows_);
+  for (int i = 0; i < rows_; ++i) x.segment<6>(6 * i) = reduced_[0].right[i];
+  step.valid = rows_ == 0 || (sparse_ ? SolveSparse(x) : SolveDense(x));
   if (!step.valid || !x.allFinite()) {
     step.valid = false;
     return;
   }
   step.cameras.resize(cameras_);
   for (int i = 0; i < cameras_; ++i) step.cameras[i] = x.segment<6>(6 * i);
+  step.states.resize(rows_ - cameras_);
+  for (int i = cameras_; i < rows_; ++i) step.states[i - cameras_] = x.segment<6>(6 * i);
   Substitute(system, step);
   step.predicted = Predicted(system, lambda, step);
   step.valid = std::isfinite(step.predicted);

@@ -12,6 +12,7 @@ namespace alidade {
 
 struct BundleStep {
   std::vector<Vector6d> cameras;        // (ρ, θ) by slot
+  std::vector<Vector6d> states;         // (velocity, bias) of the inertial sensor
   std::vector<Eigen::Vector3d> points;  // in the layout's order
   double predicted = 0;                 // decrease of the cost in the quadratic model
   bool valid = false;                   // false: the system could not be factored
@@ -27,7 +28,7 @@ class SchurSolver {
   bool sparse() const { return sparse_; }
   void Solve(const Linearisation& system, double lambda, BundleStep& step);
   // Covariance of the step of one free camera: its block of the inverse of the reduced system.
-  // `held`: a direction of all free cameras' steps that is held, because no observation determines
+  // `held`: a direction of the step of all rows that is held, because no observation determines
   // it; may be empty. Only for ReducedFactor::kDense. Returns false if the system is singular.
   bool Covariance(const Linearisation& system, int slot, const Eigen::VectorXd& held,
                   Matrix6d& covariance);
@@ -43,6 +44,8 @@ class SchurSolver {
   int FindBlock(int row, int column, int hint) const;
   void Eliminate(const Linearisation& system, double lambda, int chunk, Reduced& reduced);
   void AddCameras(const Linearisation& system, double lambda);
+  void AddDiagonal(int row, Matrix6d H, const Vector6d& damping, const Vector6d& g);
+  void AddMotion(const Linearisation& system, double lambda);
   void Reduce(const Linearisation& system, double lambda);  // into reduced_[0]
   void FillDense();
   bool SolveDense(Eigen::VectorXd& x);
@@ -53,9 +56,10 @@ class SchurSolver {
   const BundleLayout& layout_;
   bool sparse_;
   int cameras_;
-  std::vector<int> row_begin_;           // first block of each block row
-  std::vector<int> column_;              // column of each block
-  std::vector<Reduced> reduced_;         // one per chunk; the first holds the sum
+  int rows_;                      // of blocks: free cameras, then states of the inertial sensor
+  std::vector<int> row_begin_;    // first block of each block row
+  std::vector<int> column_;       // column of each block
+  std::vector<Reduced> reduced_;  // one per chunk; the first holds the sum
   std::vector<PointFactor> eliminated_;  // factor of each point's damped H
   Eigen::MatrixXd dense_;
   BlockCholesky<6> factor_;

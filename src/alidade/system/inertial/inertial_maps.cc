@@ -145,6 +145,11 @@ std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
   return Reckoned{pose, reference->map};
 }
 
+KeyFrameMotions::Motions InertialWatch::MissingMotions(const MapSnapshot& map) {
+  if (!fit_ || !report_.metric || !report_.gravity || !report_.left_out.empty()) return {};
+  return motions_.Missing(map, map_, *fit_, samples_);
+}
+
 std::optional<MapWorld> InertialWatch::World() const {
   if (!given() || !report_.gravity || !map_.valid()) return std::nullopt;
   return MapWorld{map_, report_.metric, report_.scale_sigma, *report_.gravity,

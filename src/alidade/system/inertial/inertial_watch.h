@@ -18,6 +18,7 @@
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_world.h"
 #include "alidade/system/inertial/dead_reckoner.h"
+#include "alidade/system/inertial/keyframe_motions.h"
 #include "alidade/system/types.h"
 
 namespace alidade {
@@ -94,6 +95,9 @@ class InertialWatch {
   // if its rotation to the camera is not known, or the readings do not cover the time.
   std::optional<Eigen::Matrix3d> TurnBetween(double from, double to) const;
 
+  // Motions of keyframes that have none yet.
+  KeyFrameMotions::Motions MissingMotions(const MapSnapshot& map);
+
   // Whether a map is of use that was split off the map in meters because vision does not tell its
   // scale: the readings will tell it, and it is joined to that one then.
   bool TellsScale(MapId split) const;
@@ -146,6 +150,7 @@ class InertialWatch {
   std::optional<Calibration> learned_;  // in map_, for the next one
   std::optional<InertialFit> fit_;      // the last one that was solved, in map_
   double asked_at_ = kNever;            // time of the newest pose of the last question
+  KeyFrameMotions motions_;
   bool awaiting_ = false;
   int agreements_ = 0;      // answers in which the rotations agree
   int contradictions_ = 0;  // consecutive answers in which rotations disagree

@@ -50,6 +50,15 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
     inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
                      now.placed.covariance, map);
   }
+  const KeyFrameMotions::Motions motions = inertial_.MissingMotions(map);
+  if (!motions.empty() && !settings_.localize) {
+    workers_.map().Commit([&](MapCommit& commit) {
+      for (const auto& [id, motion] : motions) {
+        KeyFrame* keyframe = commit.Edit(id);
+        if (keyframe && commit.Find(motion->since)) keyframe->motion = motion;
+      }
+    });
+  }
   if (auto question = inertial_.Ask(map)) {
     workers_.AddErrand(
         [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });

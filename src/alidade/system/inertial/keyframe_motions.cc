@@ -1,0 +1,64 @@
+#include "alidade/system/inertial/keyframe_motions.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace alidade {
+namespace {
+
+// Of the noise that is assumed, which is on the safe side.
+constexpr double kLeastNoise = 0.3;
+constexpr double kLongestMotion = 3;     // seconds: after that it tells little
+constexpr double kLongestSilence = 0.1;  // seconds between readings
+
+bool Covered(std::span<const ImuSample> samples, double from, double to) {
+  if (samples.empty() || from < samples.front().time || to > samples.back().time) return false;
+  const auto before = [](const ImuSample& sample, double time) { return sample.time < time; };
+  auto at = std::lower_bound(samples.begin(), samples.end(), from, before);
+  for (double last = from; at != samples.end(); last = at->time, ++at) {
+    if (at->time - last > kLongestSilence) return false;
+    if (at->time >= to) return true;
+  }
+  return true;
+}
+
+}  // namespace
+
+KeyFrameMotions::Motions KeyFrameMotions::Missing(const MapSnapshot& map, MapId in,
+                                                  const InertialFit& fit,
+                                                  std::span<const ImuSample> samples) {
+  Motions motions;
+  if (map_ != in) {
+    map_ = in;
+    next_ = KeyFrameId{0};
+  }
+  const KeyFrame* before = nullptr;
+  for (uint32_t i = next_.value; i-- > 0 && !before;) {
+    const KeyFrame* keyframe = map.Find(KeyFrameId{i});
+    if (keyframe && keyframe->map == in) before = keyframe;
+  }
+  const double offset = fit.model.time_offset;
+  for (; next_.value < map.next_keyframe(); ++next_.value) {
+    const KeyFrame* keyframe = map.Find(next_);
+    if (!keyframe || keyframe->map != in) continue;
+    const double to = keyframe->frame->time + offset;
+    if (!samples.empty() && to > samples.back().time) break;  // later
+    const KeyFrame* since = std::exchange(before, keyframe);
+    if (!since || keyframe->motion) continue;
+    const double from = since->frame->time + offset;
+    if (!(to > from) || to - from > kLongestMotion || !Covered(samples, from, to)) continue;
+    auto motion = std::make_shared<KeyFrameMotion>();
+    motion->since = since->id;
+    const ImuNoise noise = InUse(fit.model.noise);
+    motion->motion = Preintegrate(samples, from, to, fit.states.back().bias, noise);
+    motion->T_camera_imu = fit.model.T_camera_imu;
+    motion->gyro_bias_sigma = fit.gyro_bias_sigma;
+    motion->accel_bias_sigma = fit.accel_bias_sigma;
+    motion->accel_walk = noise.accel_walk;
+    motion->noise_factor = std::max(kLeastNoise, fit.noise_factor);
+    motions.push_back({keyframe->id, std::move(motion)});
+  }
+  return motions;
+}
+
+}  // namespace alidade
