@@ -81,6 +81,7 @@ class FramePipeline {
   void UseInertial();
   void Reckon(double time, const MapSnapshot& map);
   void KeepWorld();
+  void KeepMotions(const MapSnapshot& map);
   void ForgetUnit(MapId map);
   void Observe(double time, const PresentFrame& now);
   void LeaveOutFixedParts(int number);
@@ -108,6 +109,7 @@ class FramePipeline {
   Published<Camera> camera_shown_;  // camera_, for other threads
   bool dense_;                      // semi-dense mapping is on
   InertialWatch inertial_;          // outlives the workers, in which its fits run
+  bool has_motions_ = false;        // keyframes have KeyFrame::motion
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;

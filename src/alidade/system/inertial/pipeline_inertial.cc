@@ -36,6 +36,26 @@ void FramePipeline::KeepWorld() {
   workers_.map().Commit([&](MapCommit& commit) { commit.SetWorld(*world); });
 }
 
+// Keyframes get the motion since the one before; if the readings turn out to be of no use, those
+// that have it lose it.
+void FramePipeline::KeepMotions(const MapSnapshot& map) {
+  const bool left_out = !inertial_.report().left_out.empty();
+  const KeyFrameMotions::Motions motions = inertial_.MissingMotions(map);
+  if (settings_.localize || (motions.empty() && !(left_out && has_motions_))) return;
+  has_motions_ = !left_out;
+  workers_.map().Commit([&](MapCommit& commit) {
+    for (const auto& [id, motion] : motions) {
+      KeyFrame* keyframe = commit.Edit(id);
+      if (keyframe && commit.Find(motion->since)) keyframe->motion = motion;
+    }
+    if (!left_out) return;
+    for (KeyFrameId id : map.KeyFrames()) {
+      const KeyFrame* keyframe = commit.Find(id);
+      if (keyframe && keyframe->motion) commit.Edit(id)->motion.reset();
+    }
+  });
+}
+
 // A map was split off another one because vision does not tell its scale.
 void FramePipeline::ForgetUnit(MapId map) {
   workers_.map().Commit([&](MapCommit& commit) { commit.ForgetWorld(map); });
@@ -50,15 +70,7 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
     inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),
                      now.placed.covariance, map);
   }
-  const KeyFrameMotions::Motions motions = inertial_.MissingMotions(map);
-  if (!motions.empty() && !settings_.localize) {
-    workers_.map().Commit([&](MapCommit& commit) {
-      for (const auto& [id, motion] : motions) {
-        KeyFrame* keyframe = commit.Edit(id);
-        if (keyframe && commit.Find(motion->since)) keyframe->motion = motion;
-      }
-    });
-  }
+  KeepMotions(map);
   if (auto question = inertial_.Ask(map)) {
     workers_.AddErrand(
         [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
