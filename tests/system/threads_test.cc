@@ -8,6 +8,7 @@
 #include <thread>
 #include <vector>
 
+#include "alidade/base/timing.h"
 #include "alidade/map/map_file.h"
 #include "alidade/slam.h"
 #include "support/check_map.h"
@@ -18,17 +19,15 @@ namespace alidade::threads_test {
 namespace {
 
 // One part of the room, then another without overlap, from which the camera returns to the first:
-// two maps that are merged. 10 frames per second.
+// two maps that are merged. The time between the parts is what the way between them takes: a camera
+// that was elsewhere a moment ago could not be there (ReachSettings).
 std::vector<RenderedFrame> TwoParts() {
   std::vector<RenderedFrame> frames;
   const auto add = [&](int first, int last, int step) {
-    for (int i = first; i <= last; i += step) {
-      frames.push_back(SmallRoom().Frame(i));
-      frames.back().time = 0.1 * static_cast<double>(frames.size());
-    }
+    for (int i = first; i <= last; i += step) frames.push_back(SmallRoom().Frame(i));
   };
-  add(0, 48, 3);
-  add(330, 640, 6);
+  add(0, 36, 3);
+  add(360, 594, 6);
   return frames;
 }
 
@@ -38,7 +37,7 @@ SlamSettings Everything() {
   settings.image_width = 0;
   settings.sensor = Sensor::kRgbd;
   settings.threaded = true;
-  settings.new_map_frames = 8;
+  settings.new_map_frames = 4;
   settings.semidense.enabled = true;
   settings.dynamics.mode = DynamicsMode::kFull;
   return settings;
@@ -66,6 +65,7 @@ class Asker {
   void Run() {
     int seen = 0;  // frames
     while (!done_) {
+      const Stopwatch round;
       const int before = slam_.frames();
       EXPECT_GE(before, seen);
       const std::vector<FramePose> all = slam_.Trajectory(), late = slam_.Trajectory(before / 2);
@@ -95,7 +95,9 @@ class Asker {
       }
       seen = before;
       ++rounds_;
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));  // leaves time for the tracker
+      // Leaves time for the tracker, also where a round is slow.
+      std::this_thread::sleep_for(
+          std::chrono::duration<double, std::milli>(2 + 3 * round.Milliseconds()));
     }
   }
 
@@ -125,7 +127,7 @@ TEST(Threads, AnyMayAskEverythingWhileAnotherTracks) {
   }
   EXPECT_GE(tracked, 30);
   EXPECT_GT(slam.SemiDense().keyframes, 0);
-  EXPECT_GE(slam.Counts().merges + slam.Counts().loops, 1);
+  EXPECT_GE(slam.Counts().merges, 1);
   ExpectConsistent(slam.Snapshot());
 }
 
