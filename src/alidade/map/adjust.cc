@@ -147,7 +147,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   }
   constexpr double kLeastShare = 0.2;
   problem.motion =
-      MotionBetween(map, cameras, !one_camera,
+      MotionBetween(map, cameras, !one_camera, one_camera && fixed.size() > 1,
                     NoiseShare(problem, static_cast<int>(cameras.size()), kLeastShare));
   result.report = AdjustBundle(problem, bundle, stop);
   const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;

@@ -8,12 +8,26 @@
 namespace alidade {
 namespace {
 
-Matrix9d CovarianceOf(const KeyFrameMotion& motion, double noise_share) {
-  const Eigen::Matrix<double, 9, 3> by_gyro = motion.motion.by_bias.leftCols<3>();
-  const double factor = motion.noise_factor / noise_share;
-  return factor * factor *
-         (motion.motion.covariance +
-          motion.gyro_bias_sigma * motion.gyro_bias_sigma * by_gyro * by_gyro.transpose());
+// With what is not known of the gyroscope's bias, of gravity, and of the scale of the keyframes
+// that are held.
+Matrix9d CovarianceOf(const KeyFrameMotion& keyframe, const MapWorld& world, double scale_sigma,
+                      double noise_share) {
+  const Preintegration& motion = keyframe.motion;
+  const Eigen::Matrix<double, 9, 3> by_gyro = motion.by_bias.leftCols<3>();
+  const double t = motion.seconds, gravity = kGravity * world.down_sigma;
+  Vector9d unknown = Vector9d::Zero();
+  unknown.segment<3>(3).setConstant(gravity * t);
+  unknown.tail<3>().setConstant(gravity * t * t / 2);
+  const double accelerated = (motion.dv / t).norm();
+  unknown.segment<3>(3).array() += scale_sigma * accelerated * t;
+  unknown.tail<3>().array() += scale_sigma * accelerated * t * t / 2;
+  const double factor = 1 / (noise_share * noise_share);
+  Matrix9d covariance =
+      factor *
+      (keyframe.noise_factor * keyframe.noise_factor * motion.covariance +
+       keyframe.gyro_bias_sigma * keyframe.gyro_bias_sigma * by_gyro * by_gyro.transpose());
+  covariance.diagonal() += factor * unknown.cwiseAbs2();
+  return covariance;
 }
 
 Eigen::Vector3d SensorOf(const MapSnapshot& map, KeyFrameId id, const Se3& T_camera_imu) {
@@ -23,7 +37,7 @@ Eigen::Vector3d SensorOf(const MapSnapshot& map, KeyFrameId id, const Se3& T_cam
 }  // namespace
 
 BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>& keyframes,
-                           bool has_meters, double noise_share) {
+                           bool has_meters, bool scale_held, double noise_share) {
   BundleMotion result;
   if (keyframes.empty()) return result;
   const MapWorld* world = map.WorldOf(map.MapOf(keyframes.front()));
@@ -49,7 +63,8 @@ BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>
     link.to = state_of(id, *motion);
     result.states[link.to].accel_bias_sigma = 0;  // told by the walk of the one before
     link.motion = motion->motion;
-    link.covariance = CovarianceOf(*motion, noise_share);
+    link.covariance =
+        CovarianceOf(*motion, *world, scale_held ? world->scale_sigma : 0, noise_share);
     link.accel_walk = motion->accel_walk * std::sqrt(seconds) / noise_share;
     result.links.push_back(link);
     result.T_camera_imu = motion->T_camera_imu;

@@ -26,6 +26,7 @@ constexpr double kLeastScale = 2e-3;
 
 void InertialWatch::ForgetMap() {
   fit_.reset();
+  accepted_.reset();
   reckoner_.Forget();
   ahead_.Forget();
   past_.clear();
@@ -146,8 +147,8 @@ std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
 }
 
 KeyFrameMotions::Motions InertialWatch::MissingMotions(const MapSnapshot& map) {
-  if (!fit_ || !report_.metric || !report_.gravity || !report_.left_out.empty()) return {};
-  return motions_.Missing(map, map_, *fit_, samples_);
+  if (!accepted_ || !report_.metric || !report_.left_out.empty()) return {};
+  return motions_.Missing(map, map_, *accepted_, samples_);
 }
 
 std::optional<MapWorld> InertialWatch::World() const {

@@ -261,6 +261,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
     report_.gravity_sigma = fit.gravity_sigma;
     report_.scale_sigma = fit.scale_sigma;
     learned_ = LearnedFrom(fit);
+    accepted_ = fit;
     reckoner_.Start(
         fit.last,
         {answer->reference,

@@ -146,10 +146,11 @@ class InertialWatch {
   std::deque<DeadReckoner> past_;  // reckoner_ at the poses of the last seconds
   // Where dead reckoning from the map before map_ leads at the first pose in map_.
   std::optional<DeadReckoner> former_;
-  Calibration calibration_;             // priors of the fits in map_
-  std::optional<Calibration> learned_;  // in map_, for the next one
-  std::optional<InertialFit> fit_;      // the last one that was solved, in map_
-  double asked_at_ = kNever;            // time of the newest pose of the last question
+  Calibration calibration_;              // priors of the fits in map_
+  std::optional<Calibration> learned_;   // in map_, for the next one
+  std::optional<InertialFit> fit_;       // the last one that was solved, in map_
+  double asked_at_ = kNever;             // time of the newest pose of the last question
+  std::optional<InertialFit> accepted_;  // the last one that was accepted, in map_
   KeyFrameMotions motions_;
   bool awaiting_ = false;
   int agreements_ = 0;      // answers in which the rotations agree

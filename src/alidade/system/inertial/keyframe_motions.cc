@@ -6,8 +6,9 @@
 namespace alidade {
 namespace {
 
-// Of the noise that is assumed, which is on the safe side.
-constexpr double kLeastNoise = 0.3;
+// Noise of the readings, as a share of what is assumed, which is on the safe side: what is above in
+// a fit is the error of the poses.
+constexpr double kLeastNoise = 0.3, kMostNoise = 1;
 constexpr double kLongestMotion = 3;     // seconds: after that it tells little
 constexpr double kLongestSilence = 0.1;  // seconds between readings
 
@@ -55,7 +56,7 @@ KeyFrameMotions::Motions KeyFrameMotions::Missing(const MapSnapshot& map, MapId 
     motion->gyro_bias_sigma = fit.gyro_bias_sigma;
     motion->accel_bias_sigma = fit.accel_bias_sigma;
     motion->accel_walk = noise.accel_walk;
-    motion->noise_factor = std::max(kLeastNoise, fit.noise_factor);
+    motion->noise_factor = std::clamp(fit.noise_factor, kLeastNoise, kMostNoise);
     motions.push_back({keyframe->id, std::move(motion)});
   }
   return motions;
