@@ -87,6 +87,39 @@ Matrix6d CovarianceOf(BundleProblem problem, const BundleSettings& settings, int
   return CameraCovariance(problem, settings, newest).value_or(Matrix6d::Zero());
 }
 
+double LengthOfMotions(const BundleProblem& problem) {
+  double length = 0;
+  for (const BundleMotionLink& link : problem.motion.links) {
+    const auto centre = [&](int state) {
+      return problem.T_camera_world[problem.motion.states[state].camera].Inverse().t;
+    };
+    length += (centre(link.to) - centre(link.from)).norm();
+  }
+  return length;
+}
+
+// All lengths grow by `factor` about the center of camera `held`.
+void Grow(BundleProblem& problem, int held, double factor) {
+  const Eigen::Vector3d origin = problem.T_camera_world[held].Inverse().t;
+  for (Se3& T : problem.T_camera_world) {
+    const Eigen::Vector3d centre = origin + factor * (T.Inverse().t - origin);
+    T.t = -(T.R * centre);
+  }
+  for (Eigen::Vector3d& p : problem.points) p = origin + factor * (p - origin);
+}
+
+// Adjusts, and keeps the length of the path where one camera's motions are measured and a single
+// keyframe is held: the scale as a whole is that of the fit over the trajectory, which knows of the
+// errors that poses have in common (decision 0036-tight-coupling). Here they would shrink it.
+BundleReport Adjust(BundleProblem& problem, const BundleSettings& settings, bool keep_length,
+                    int held, const std::atomic<bool>* stop) {
+  const double before = LengthOfMotions(problem);
+  const BundleReport report = AdjustBundle(problem, settings, stop);
+  const double after = LengthOfMotions(problem);
+  if (keep_length && before > 0 && after > 0) Grow(problem, held, before / after);
+  return report;
+}
+
 }  // namespace
 
 Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>& free,
@@ -149,7 +182,8 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   problem.motion =
       MotionBetween(map, cameras, !one_camera, one_camera && fixed.size() > 1,
                     NoiseShare(problem, static_cast<int>(cameras.size()), kLeastShare));
-  result.report = AdjustBundle(problem, bundle, stop);
+  result.report =
+      Adjust(problem, bundle, one_camera && fixed.size() == 1, static_cast<int>(free.size()), stop);
   const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
   if (kCovariances && index && !(stop && *stop)) {
     const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
