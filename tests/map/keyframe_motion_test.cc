@@ -68,24 +68,25 @@ TEST_F(KeyFrameMotions, EndsWhereTheOneBeforeIsUnknown) {
 TEST_F(KeyFrameMotions, AreMeasurementsBetweenKeyFramesThatAreAdjusted) {
   const MapSnapshot map = store_.Snapshot();
   const auto& k = made_.keyframes;
-  const BundleMotion all = MotionBetween(map, k, true, false, 1);
+  const BundleMotion all = MotionBetween(map, k, true, false);
   EXPECT_EQ(all.links.size(), k.size() - 1);
   EXPECT_EQ(all.states.size(), k.size());
   EXPECT_NEAR(all.gravity.y(), 9.81, 1e-12);
   // A chain of two and one of three; each has one prior of its bias.
-  const BundleMotion some = MotionBetween(map, {k[0], k[1], k[3], k[4]}, true, false, 1);
+  const BundleMotion some = MotionBetween(map, {k[0], k[1], k[3], k[4]}, true, false);
   ASSERT_EQ(some.links.size(), 2u);
   EXPECT_EQ(some.states.size(), 4u);
   int priors = 0;
   for (const BundleMotionState& state : some.states) priors += state.accel_bias_sigma > 0;
   EXPECT_EQ(priors, 2);
   // The weights follow the measured noise of the pixels.
-  const BundleMotion half = MotionBetween(map, k, true, false, 0.5);
+  BundleMotion half = MotionBetween(map, k, true, false);
+  WeighBy(0.5, half);
   EXPECT_LT((half.links[0].covariance - 4 * all.links[0].covariance).norm(),
             1e-12 * all.links[0].covariance.norm());
   EXPECT_EQ(half.states[0].accel_bias_sigma, 2 * all.states[0].accel_bias_sigma);
   // What is not known of a scale that is held makes motions less precise, but not rotations.
-  const BundleMotion held = MotionBetween(map, k, true, true, 1);
+  const BundleMotion held = MotionBetween(map, k, true, true);
   const Matrix9d more = held.links[0].covariance - all.links[0].covariance;
   EXPECT_EQ((more.topLeftCorner<3, 3>().norm()), 0);
   EXPECT_GT(more.diagonal().tail<6>().minCoeff(), 0);
@@ -95,10 +96,10 @@ TEST_F(KeyFrameMotions, AreOfNoUseWithoutMetersOrGravity) {
   MapSnapshot map = store_.Commit([&](MapCommit& commit) {
     commit.SetWorld({MapId{0}, false, 0.01, {0, 1, 0}, 0.002});
   });
-  EXPECT_TRUE(MotionBetween(map, made_.keyframes, false, false, 1).links.empty());
-  EXPECT_FALSE(MotionBetween(map, made_.keyframes, true, false, 1).links.empty());
+  EXPECT_TRUE(MotionBetween(map, made_.keyframes, false, false).links.empty());
+  EXPECT_FALSE(MotionBetween(map, made_.keyframes, true, false).links.empty());
   map = store_.Commit([&](MapCommit& commit) { commit.ForgetWorld(MapId{0}); });
-  EXPECT_TRUE(MotionBetween(map, made_.keyframes, true, false, 1).links.empty());
+  EXPECT_TRUE(MotionBetween(map, made_.keyframes, true, false).links.empty());
 }
 
 }  // namespace

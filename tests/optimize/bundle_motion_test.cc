@@ -3,7 +3,7 @@
 
 #include "alidade/base/error.h"
 #include "bundle_errors.h"
-#include "ceres_motion.h"
+#include "ceres_bundle.h"
 #include "motion_problem.h"
 
 namespace alidade::bundle_motion_test {
@@ -58,7 +58,7 @@ void ExpectSameOptimum(const MotionProblemOptions& options, const BundleSettings
   const BundleProblem problem = MakeMotionProblem(options);
   BundleProblem ours = problem, theirs = problem;
   const BundleReport report = AdjustBundle(ours, settings);
-  const ceres::Solver::Summary summary = AdjustMotionWithCeres(theirs, settings);
+  const ceres::Solver::Summary summary = AdjustWithCeres(theirs, settings);
   EXPECT_NEAR(report.initial_cost, summary.initial_cost, 1e-9 * summary.initial_cost);
   EXPECT_NEAR(report.final_cost, summary.final_cost, 1e-6 * summary.final_cost)
       << summary.BriefReport() << " ours " << report.iterations;

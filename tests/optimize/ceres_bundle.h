@@ -6,6 +6,7 @@
 
 #include "alidade/optimize/bundle_adjustment.h"
 #include "ceres_loss.h"
+#include "ceres_motion.h"
 #include "ceres_reprojection.h"
 
 namespace alidade {
@@ -41,6 +42,7 @@ inline ceres::Solver::Summary AdjustWithCeres(BundleProblem& problem,
     ordering->AddElementToGroup(point, 0);
     ordering->AddElementToGroup(pose, 1);
   }
+  AddCeresMotion(problem.motion, poses, ceres_problem, *ordering);
   ceres::Solver::Options options;
   options.linear_solver_type = with.solver;
   options.linear_solver_ordering.reset(ordering);

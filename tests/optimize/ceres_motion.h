@@ -1,13 +1,11 @@
-// Reference implementation of bundle adjustment with an inertial sensor: Ceres, with numeric
-// derivatives of the inertial residuals.
+// The inertial residuals of bundle adjustment for Ceres, with numeric derivatives.
 #pragma once
 
 #include <ceres/ceres.h>
 
-#include <memory>
 #include <vector>
 
-#include "ceres_loss.h"
+#include "alidade/optimize/bundle_motion.h"
 #include "ceres_reprojection.h"
 
 namespace alidade {
@@ -47,56 +45,28 @@ struct CeresBiasPrior {
   }
 };
 
-// Improves `problem` in place. All observations are of one camera each, finite and in front.
-inline ceres::Solver::Summary AdjustMotionWithCeres(BundleProblem& problem,
-                                                    const BundleSettings& settings) {
-  std::vector<Vector6d> poses;
-  for (const Se3& T : problem.T_camera_world) poses.push_back(ToCeresPose(T));
-  ceres::Problem::Options ownership;
-  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  const auto mono = CeresLoss(settings.huber_mono, settings.redescending);
-  const auto stereo = CeresLoss(settings.huber_stereo, settings.redescending);
-  ceres::Problem ceres_problem(ownership);
-  for (const BundleObservation& o : problem.observations) {
-    ceres_problem.AddResidualBlock(MakeCeresReprojection(problem.camera, o),
-                                   std::isfinite(o.pixel.z()) ? stereo.get() : mono.get(),
-                                   poses[o.camera].data(), problem.points[o.point].data());
-  }
-  BundleMotion& motion = problem.motion;
+// `poses`: one per camera. `ordering`: states are eliminated with the poses, in group 1.
+inline void AddCeresMotion(BundleMotion& motion, std::vector<Vector6d>& poses,
+                           ceres::Problem& problem, ceres::ParameterBlockOrdering& ordering) {
   for (const BundleMotionLink& link : motion.links) {
     const Matrix9d information = link.covariance.inverse();
     auto* cost =
         new ceres::NumericDiffCostFunction<CeresMotion, ceres::RIDDERS, 12, 6, 3, 3, 6, 3, 3>(
             new CeresMotion{&motion, &link, Matrix9d(information.llt().matrixU())});
     BundleMotionState &i = motion.states[link.from], &j = motion.states[link.to];
-    ceres_problem.AddResidualBlock(cost, nullptr, poses[i.camera].data(), i.velocity.data(),
-                                   i.accel_bias.data(), poses[j.camera].data(), j.velocity.data(),
-                                   j.accel_bias.data());
+    problem.AddResidualBlock(cost, nullptr, poses[i.camera].data(), i.velocity.data(),
+                             i.accel_bias.data(), poses[j.camera].data(), j.velocity.data(),
+                             j.accel_bias.data());
   }
   for (BundleMotionState& state : motion.states) {
+    ordering.AddElementToGroup(poses[state.camera].data(), 1);
+    ordering.AddElementToGroup(state.velocity.data(), 1);
+    ordering.AddElementToGroup(state.accel_bias.data(), 1);
     if (!(state.accel_bias_sigma > 0)) continue;
-    ceres_problem.AddResidualBlock(
-        new ceres::AutoDiffCostFunction<CeresBiasPrior, 3, 3>(
-            new CeresBiasPrior{state.accel_bias, state.accel_bias_sigma}),
-        nullptr, state.accel_bias.data());
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<CeresBiasPrior, 3, 3>(
+                                 new CeresBiasPrior{state.accel_bias, state.accel_bias_sigma}),
+                             nullptr, state.accel_bias.data());
   }
-  for (size_t i = 0; i < poses.size(); ++i) {
-    if (problem.fixed[i]) ceres_problem.SetParameterBlockConstant(poses[i].data());
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_SCHUR;
-  options.num_threads = 1;
-  options.max_num_iterations = 200;
-  options.function_tolerance = 1e-14;
-  options.gradient_tolerance = 1e-12;
-  options.parameter_tolerance = 1e-14;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &ceres_problem, &summary);
-  for (size_t i = 0; i < poses.size(); ++i) {
-    if (!problem.fixed[i]) problem.T_camera_world[i] = FromCeresPose(poses[i]);
-  }
-  return summary;
 }
 
 }  // namespace alidade

@@ -97,25 +97,25 @@ Preintegration Preintegration::WithBias(const ImuBias& other) const {
   return changed;
 }
 
-Preintegration Preintegration::Then(const Preintegration& after) const {
-  const Preintegration next = after.WithBias(bias);
+Preintegration Preintegration::Then(const Preintegration& next) const {
+  const Preintegration later = next.WithBias(bias);
   // The new error by that of each part.
   Matrix9d by_this = Matrix9d::Identity(), by_next = Matrix9d::Zero();
-  by_this.block<3, 3>(0, 0) = next.dR.transpose();
-  by_this.block<3, 3>(3, 0) = -dR * Skew(next.dv);
-  by_this.block<3, 3>(6, 0) = -dR * Skew(next.dp);
-  by_this.block<3, 3>(6, 3) = next.seconds * Eigen::Matrix3d::Identity();
+  by_this.block<3, 3>(0, 0) = later.dR.transpose();
+  by_this.block<3, 3>(3, 0) = -dR * Skew(later.dv);
+  by_this.block<3, 3>(6, 0) = -dR * Skew(later.dp);
+  by_this.block<3, 3>(6, 3) = later.seconds * Eigen::Matrix3d::Identity();
   by_next.block<3, 3>(0, 0).setIdentity();
   by_next.block<3, 3>(3, 3) = by_next.block<3, 3>(6, 6) = dR;
   Preintegration both;
-  both.seconds = seconds + next.seconds;
+  both.seconds = seconds + later.seconds;
   both.bias = bias;
-  both.dR = dR * next.dR;
-  both.dv = dv + dR * next.dv;
-  both.dp = dp + dv * next.seconds + dR * next.dp;
-  both.covariance =
-      by_this * covariance * by_this.transpose() + by_next * next.covariance * by_next.transpose();
-  both.by_bias = by_this * by_bias + by_next * next.by_bias;
+  both.dR = dR * later.dR;
+  both.dv = dv + dR * later.dv;
+  both.dp = dp + dv * later.seconds + dR * later.dp;
+  both.covariance = by_this * covariance * by_this.transpose() +
+                    by_next * later.covariance * by_next.transpose();
+  both.by_bias = by_this * by_bias + by_next * later.by_bias;
   return both;
 }
 

@@ -15,8 +15,8 @@ namespace alidade {
 namespace {
 
 // Measured noise divided by the assumed one; the median of chi² with 2 degrees of freedom is 2
-// ln 2. Clamped to [least, 1]: a larger value means that the state is not near the optimum.
-double NoiseShare(const BundleProblem& problem, int cameras, double least) {
+// ln 2. A value above 1 means that the state is not near the optimum.
+double NoiseShare(const BundleProblem& problem, int cameras) {
   const double median_of_chi2 = 2 * std::numbers::ln2;
   std::vector<double> chi2;
   chi2.reserve(problem.observations.size());
@@ -26,7 +26,7 @@ double NoiseShare(const BundleProblem& problem, int cameras, double least) {
         ChiSquared(problem.camera, problem.T_camera_world[o.camera], problem.points[o.point], o));
   }
   if (chi2.empty()) return 1;
-  return std::clamp(std::sqrt(UpperMedian(chi2) / median_of_chi2), least, 1.0);
+  return std::sqrt(UpperMedian(chi2) / median_of_chi2);
 }
 
 double Gate(const BundleObservation& o) { return std::isnan(o.pixel.z()) ? 5.991 : 7.815; }
@@ -110,7 +110,7 @@ void Grow(BundleProblem& problem, int held, double factor) {
 
 // Adjusts, and keeps the length of the path where one camera's motions are measured and a single
 // keyframe is held: the scale as a whole is that of the fit over the trajectory, which knows of the
-// errors that poses have in common (decision 0036-tight-coupling). Here they would shrink it.
+// errors that poses have in common (decision 0036-tight-coupling). Here they may shrink it.
 BundleReport Adjust(BundleProblem& problem, const BundleSettings& settings, bool keep_length,
                     int held, const std::atomic<bool>* stop) {
   const double before = LengthOfMotions(problem);
@@ -172,16 +172,16 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
 
   Adjustment result;
   BundleSettings bundle = settings.bundle;
-  if (one_camera) {
-    const double share =
-        NoiseShare(problem, static_cast<int>(cameras.size()), settings.min_noise_ratio);
-    bundle.huber_mono *= share;
-    bundle.redescending = bundle.redescending || share < 1;
+  problem.motion = MotionBetween(map, cameras, !one_camera, one_camera && fixed.size() > 1);
+  if (one_camera || !problem.motion.links.empty()) {
+    const double measured = NoiseShare(problem, static_cast<int>(cameras.size()));
+    WeighBy(measured, problem.motion);
+    if (one_camera) {
+      const double share = std::clamp(measured, settings.min_noise_ratio, 1.0);
+      bundle.huber_mono *= share;
+      bundle.redescending = bundle.redescending || share < 1;
+    }
   }
-  constexpr double kLeastShare = 0.2;
-  problem.motion =
-      MotionBetween(map, cameras, !one_camera, one_camera && fixed.size() > 1,
-                    NoiseShare(problem, static_cast<int>(cameras.size()), kLeastShare));
   result.report =
       Adjust(problem, bundle, one_camera && fixed.size() == 1, static_cast<int>(free.size()), stop);
   const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;

@@ -1,5 +1,6 @@
 #include "alidade/map/adjust_motion.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "alidade/base/id_map.h"
@@ -9,24 +10,19 @@ namespace alidade {
 namespace {
 
 // With what is not known of the gyroscope's bias, of gravity, and of the scale of the keyframes
-// that are held.
-Matrix9d CovarianceOf(const KeyFrameMotion& keyframe, const MapWorld& world, double scale_sigma,
-                      double noise_share) {
+// that are held: an unknown acceleration.
+Matrix9d CovarianceOf(const KeyFrameMotion& keyframe, double down_sigma, double scale_sigma) {
   const Preintegration& motion = keyframe.motion;
   const Eigen::Matrix<double, 9, 3> by_gyro = motion.by_bias.leftCols<3>();
-  const double t = motion.seconds, gravity = kGravity * world.down_sigma;
-  Vector9d unknown = Vector9d::Zero();
-  unknown.segment<3>(3).setConstant(gravity * t);
-  unknown.tail<3>().setConstant(gravity * t * t / 2);
-  const double accelerated = (motion.dv / t).norm();
-  unknown.segment<3>(3).array() += scale_sigma * accelerated * t;
-  unknown.tail<3>().array() += scale_sigma * accelerated * t * t / 2;
-  const double factor = 1 / (noise_share * noise_share);
+  const double t = motion.seconds;
+  const double unknown = kGravity * down_sigma + scale_sigma * motion.dv.norm() / t;  // m/s²
+  Vector9d sigma = Vector9d::Zero();
+  sigma.segment<3>(3).setConstant(unknown * t);
+  sigma.tail<3>().setConstant(unknown * t * t / 2);
   Matrix9d covariance =
-      factor *
-      (keyframe.noise_factor * keyframe.noise_factor * motion.covariance +
-       keyframe.gyro_bias_sigma * keyframe.gyro_bias_sigma * by_gyro * by_gyro.transpose());
-  covariance.diagonal() += factor * unknown.cwiseAbs2();
+      keyframe.noise_factor * keyframe.noise_factor * motion.covariance +
+      keyframe.gyro_bias_sigma * keyframe.gyro_bias_sigma * by_gyro * by_gyro.transpose();
+  covariance.diagonal() += sigma.cwiseAbs2();
   return covariance;
 }
 
@@ -37,7 +33,7 @@ Eigen::Vector3d SensorOf(const MapSnapshot& map, KeyFrameId id, const Se3& T_cam
 }  // namespace
 
 BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>& keyframes,
-                           bool has_meters, bool scale_held, double noise_share) {
+                           bool has_meters, bool scale_held) {
   BundleMotion result;
   if (keyframes.empty()) return result;
   const MapWorld* world = map.WorldOf(map.MapOf(keyframes.front()));
@@ -50,7 +46,7 @@ BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>
     BundleMotionState state;
     state.camera = *cameras.Find(id);
     state.accel_bias = motion.motion.bias.accel;
-    state.accel_bias_sigma = motion.accel_bias_sigma / noise_share;
+    state.accel_bias_sigma = motion.accel_bias_sigma;
     result.states.push_back(state);
     return states[id] = static_cast<int>(result.states.size()) - 1;
   };
@@ -63,9 +59,8 @@ BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>
     link.to = state_of(id, *motion);
     result.states[link.to].accel_bias_sigma = 0;  // told by the walk of the one before
     link.motion = motion->motion;
-    link.covariance =
-        CovarianceOf(*motion, *world, scale_held ? world->scale_sigma : 0, noise_share);
-    link.accel_walk = motion->accel_walk * std::sqrt(seconds) / noise_share;
+    link.covariance = CovarianceOf(*motion, world->down_sigma, scale_held ? world->scale_sigma : 0);
+    link.accel_walk = motion->accel_walk * std::sqrt(seconds);
     result.links.push_back(link);
     result.T_camera_imu = motion->T_camera_imu;
     const Eigen::Vector3d way = SensorOf(map, id, motion->T_camera_imu) -
@@ -73,6 +68,16 @@ BundleMotion MotionBetween(const MapSnapshot& map, const std::vector<KeyFrameId>
     result.states[link.from].velocity = result.states[link.to].velocity = way / seconds;
   }
   return result;
+}
+
+void WeighBy(double noise_share, BundleMotion& motion) {
+  constexpr double kLeast = 0.2;
+  const double factor = 1 / std::clamp(noise_share, kLeast, 1.0);
+  for (BundleMotionState& state : motion.states) state.accel_bias_sigma *= factor;
+  for (BundleMotionLink& link : motion.links) {
+    link.covariance *= factor * factor;
+    link.accel_walk *= factor;
+  }
 }
 
 }  // namespace alidade

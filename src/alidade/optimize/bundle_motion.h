@@ -12,7 +12,7 @@
 
 namespace ALIDADE_API alidade {
 
-// What is unknown of the sensor at the time of one camera, beside its pose.
+// What is unknown of the sensor at the time of one camera, beside its pose. It has a link.
 struct BundleMotionState {
   int camera = -1;  // index
   // Of the sensor, in the world, m/s. Initial value and result.
