@@ -113,8 +113,8 @@ Preintegration Preintegration::Then(const Preintegration& next) const {
   both.dR = dR * later.dR;
   both.dv = dv + dR * later.dv;
   both.dp = dp + dv * later.seconds + dR * later.dp;
-  both.covariance = by_this * covariance * by_this.transpose() +
-                    by_next * later.covariance * by_next.transpose();
+  both.covariance =
+      by_this * covariance * by_this.transpose() + by_next * later.covariance * by_next.transpose();
   both.by_bias = by_this * by_bias + by_next * later.by_bias;
   return both;
 }
