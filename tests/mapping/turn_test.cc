@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -102,8 +104,10 @@ TEST(AdjustWindow, LetsNoDepthWanderThatNothingTells) {
 
 // A camera that looks outwards from a ring, rotated by 12° per view; only the landmarks of the
 // views in `knowing` have a known scale. Returns which keyframes are split off after mapping the
-// last one.
-std::vector<bool> SplitOff(double radius, int cameras, const std::set<int>& knowing) {
+// last one. `meters`: an inertial sensor has measured the motions between the views, in a map whose
+// lengths are meters or not.
+std::vector<bool> SplitOff(double radius, int cameras, const std::set<int>& knowing,
+                           std::optional<bool> meters = {}) {
   const SyntheticWorld world =
       MakeSyntheticWorld({.points = 2500, .cameras = cameras, .ring = radius, .lap = 30});
   MapStore store;
@@ -117,6 +121,16 @@ std::vector<bool> SplitOff(double radius, int cameras, const std::set<int>& know
         return !knowing.contains(static_cast<int>(at - made.keyframes.begin()));
       });
       if (unknown) commit.Edit(id)->scale_known = false;
+    }
+    if (!meters) return;
+    commit.SetWorld({MapId{0}, *meters, 0.01, {0, 1, 0}, 0.002});
+    for (size_t i = 1; i < made.keyframes.size(); ++i) {
+      auto motion = std::make_shared<KeyFrameMotion>();
+      motion->since = made.keyframes[i - 1];
+      motion->motion.seconds = 1.0 / 30;
+      motion->motion.covariance = 1e6 * Matrix9d::Identity();  // it does not move the poses
+      motion->accel_bias_sigma = motion->accel_walk = 1;
+      commit.Edit(made.keyframes[i])->motion = std::move(motion);
     }
   });
   MapperSettings settings;
@@ -141,6 +155,12 @@ TEST(Mapper, GivesUpNothingThatIsKnown) {
   const std::vector<bool> split = SplitOff(0.4, 20, {0, 1, 2, 3, 8, 9, 10, 11, 12, 13, 14});
   EXPECT_TRUE(split.back());
   for (size_t i = 0; i < 13; ++i) EXPECT_FALSE(split[i]) << i;
+}
+
+TEST(Mapper, KeepsWhatAnInertialSensorMeasures) {
+  const std::vector<bool> split = SplitOff(0.4, 14, {0, 1, 2, 3}, true);
+  EXPECT_EQ(std::count(split.begin(), split.end(), true), 0);
+  EXPECT_TRUE(SplitOff(0.4, 14, {0, 1, 2, 3}, false).back());  // not in meters
 }
 
 TEST(Mapper, KeepsWhatWasMappedOnTheSpotWithoutAScale) {

@@ -47,6 +47,11 @@ int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe) {
   return count;
 }
 
+bool HasMeasuredMotion(const MapSnapshot& map, const KeyFrame& keyframe) {
+  const MapWorld* world = map.WorldOf(keyframe.map);
+  return keyframe.motion && world && world->meters && world->KnowsDown();
+}
+
 MapId LargestMap(const MapSnapshot& map) {
   MapId largest;
   size_t most = 0;

@@ -34,4 +34,8 @@ std::optional<double> MedianDepth(const MapSnapshot& map, const KeyFrame& keyfra
 // Number of the keyframe's landmarks with known scale (Landmark::scale_known).
 int CountOfKnownScale(const MapSnapshot& map, const KeyFrame& keyframe);
 
+// True if an inertial sensor measures the keyframe's motion in meters: the adjustment then holds
+// the scale where landmarks do not.
+bool HasMeasuredMotion(const MapSnapshot& map, const KeyFrame& keyframe);
+
 }  // namespace alidade

@@ -317,7 +317,8 @@ MapId Mapper::SplitWhereScaleIsUnknown(KeyFrameId id) {
   const KeyFrame* newest = map.Find(id);
   if (has_depth_ || !newest) return {};
   const auto knows = [&](const KeyFrame& keyframe) {
-    return CountOfKnownScale(map, keyframe) >= settings_.min_known_scale;
+    return HasMeasuredMotion(map, keyframe) ||
+           CountOfKnownScale(map, keyframe) >= settings_.min_known_scale;
   };
   // Consecutive keyframes without known scale, newest first, because a split moves all keyframes
   // from one on. The interval restarts when its oldest keyframe is culled, which happens while the
