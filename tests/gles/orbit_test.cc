@@ -102,6 +102,10 @@ TEST(Orbit, FitsTheMapAndStandsUpright) {
     EXPECT_NEAR((orbit.axes * orbit.axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 0,
                 1e-9);
     EXPECT_NEAR(orbit.axes.determinant(), 1, 1e-9);
+    teller.scene.worlds = {{MapId{0}, true, 0.01, Eigen::Vector3d(0.6, 0.8, 0), 0.01}};
+    Orbit by_gravity;
+    by_gravity.Fit(teller.scene, rotation);
+    EXPECT_NEAR(by_gravity.axes.row(2).dot(Eigen::Vector3d(-0.6, -0.8, 0)), 1, 1e-9);
     int seen = 0;
     for (const auto& [id, landmark] : teller.scene.landmarks)
       seen += See(orbit, teller.scene.PointOf(landmark)).x() >= 0;

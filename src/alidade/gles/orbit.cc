@@ -35,6 +35,8 @@ void Orbit::Fit(const StreamScene& scene, int rotation) {
     up += keyframe.T_world_camera.R * up_in_camera;
   }
   if (up.norm() < 1e-6) up = up_in_camera;
+  const MapWorld* world = FindWorld(scene.worlds, active);
+  if (world && world->KnowsDown()) up = -world->down;
   up.normalize();
   forward -= forward.dot(up) * up;
   if (forward.norm() < 1e-3) {

@@ -16,8 +16,8 @@ struct Orbit {
   // camera: the world's y axis points down.
   Eigen::Matrix3d axes = (Eigen::Matrix3d() << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
 
-  // Fits the scene's active map into the view. Up is the mean up direction of the keyframes' images
-  // after a clockwise rotation by `rotation` degrees.
+  // Fits the scene's active map into the view. Up is against gravity, or if that is unknown the
+  // mean up direction of the keyframes' images after a clockwise rotation by `rotation` degrees.
   void Fit(const StreamScene& scene, int rotation = 0);
 
   // A drag by `right` and `down` pixels on a view `height` pixels high rotates or translates the

@@ -47,6 +47,15 @@ fb::Offset<stream::DepthCloud> EncodeDepth(fb::FlatBufferBuilder& builder, uint3
   return stream::CreateDepthCloud(builder, id, cloud.least, cloud.most, points);
 }
 
+std::vector<stream::World> WorldsOf(const MapSnapshot& map) {
+  std::vector<stream::World> worlds;
+  for (const MapWorld& w : map.state().worlds) {
+    worlds.push_back(
+        {w.map.value, w.meters, w.scale_sigma, w.down.x(), w.down.y(), w.down.z(), w.down_sigma});
+  }
+  return worlds;
+}
+
 std::string EncodeEvent(stream::EventKind kind, int number, double time, const std::string& text,
                         uint32_t a = KeyFrameId::kNone, uint32_t b = KeyFrameId::kNone) {
   fb::FlatBufferBuilder builder;
@@ -191,9 +200,10 @@ std::string StreamEncoder::EncodeNews(const MapNews& news) const {
     depths.push_back(EncodeDepth(builder, id.value, told_.keyframes().at(id.value).depth.get(),
                                  settings_.depth_points));
   }
-  const auto change =
-      stream::CreateMapChangeDirect(builder, told_.snapshot().version(), false, &keyframes, &moves,
-                                    &landmarks, &removed, &culled, &depths);
+  const std::vector<stream::World> worlds = WorldsOf(told_.snapshot());
+  const auto change = stream::CreateMapChangeDirect(
+      builder, told_.snapshot().version(), false, &keyframes, &moves, &landmarks, &removed, &culled,
+      &depths, nullptr, news.worlds, news.worlds ? &worlds : nullptr);
   return Finish(builder, change, stream::Body::MapChange);
 }
 
@@ -375,9 +385,10 @@ std::vector<std::string> StreamEncoder::Whole() const {
     path.push_back({entry.number, static_cast<stream::State>(entry.state), entry.reference.value,
                     entry.time, PackPose(entry.T_reference_camera)});
   }
+  const std::vector<stream::World> worlds = WorldsOf(told_.snapshot());
   const auto change =
       stream::CreateMapChangeDirect(builder, told_.snapshot().version(), true, &keyframes, nullptr,
-                                    &landmarks, nullptr, nullptr, &depths, &path);
+                                    &landmarks, nullptr, nullptr, &depths, &path, true, &worlds);
   messages.push_back(Finish(builder, change, stream::Body::MapChange));
   messages.insert(messages.end(), events_.begin(), events_.end());
   return messages;

@@ -67,9 +67,24 @@ void TakeCull(const stream::Culled& cull, StreamScene& scene) {
   scene.keyframes.erase({cull.id()});
 }
 
+MapWorld WorldFrom(const stream::World& told) {
+  MapWorld world{{told.map()},
+                 told.meters(),
+                 told.scale_sigma(),
+                 {told.down_x(), told.down_y(), told.down_z()},
+                 told.down_sigma()};
+  const bool unit = std::abs(world.down.norm() - 1) < 1e-6;
+  if (world.KnowsDown() && !unit) Refuse("the direction of gravity");
+  if (!(world.scale_sigma >= 0) || !(world.down_sigma >= 0) || !std::isfinite(world.scale_sigma) ||
+      !std::isfinite(world.down_sigma))
+    Refuse("a standard deviation of a map's world");
+  return world;
+}
+
 void TakeChange(const stream::MapChange& change, StreamScene& scene) {
   if (change.whole()) {
     scene.keyframes.clear();
+    scene.worlds.clear();
     scene.landmarks.clear();
     scene.path.clear();
     scene.events.clear();
@@ -115,6 +130,10 @@ void TakeChange(const stream::MapChange& change, StreamScene& scene) {
       found->second.depth.assign(reinterpret_cast<const char*>(cloud.points()->data()),
                                  cloud.points()->size());
     }
+  }
+  if (change.tells_worlds()) scene.worlds.clear();
+  if (change.tells_worlds() && change.worlds()) {
+    for (const stream::World* told : *change.worlds()) scene.worlds.push_back(WorldFrom(*told));
   }
   if (change.path()) {
     for (const stream::PathFrame* told : *change.path()) {
@@ -244,6 +263,11 @@ MapId StreamScene::ActiveMap() const {
     if (reference != keyframes.end()) return reference->second.map;
   }
   return keyframes.empty() ? MapId{} : keyframes.rbegin()->second.map;
+}
+
+std::string StreamScene::UnitOf(MapId map) const {
+  const MapWorld* world = FindWorld(worlds, map);
+  return world && world->meters ? "m" : unit;
 }
 
 std::optional<Se3> StreamScene::CameraPose() const {

@@ -13,6 +13,7 @@
 #include "alidade/geometry/camera.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/io/cloud.h"
+#include "alidade/map/map_world.h"
 #include "alidade/tracking/track_failure.h"
 
 namespace alidade {
@@ -90,13 +91,14 @@ class StreamScene {
   int width = 0, height = 0;  // of the camera
   Camera camera;              // size, focal lengths, principal point, distortion and baseline
   Eigen::Matrix3d R_camera_rectified = Eigen::Matrix3d::Identity();  // see SourceInfo
-  std::string source, unit;
-  uint64_t version = 0;  // of the map
+  std::string source, unit;  // unit: "m" or "map units"; see UnitOf()
+  uint64_t version = 0;      // of the map
   // Number of the last applied map change, unique in the process across all scenes. Drawing code
   // compares it to detect whether the map changed.
   uint64_t told = 0;
   std::map<KeyFrameId, SceneKeyFrame> keyframes;
   std::map<LandmarkId, SceneLandmark> landmarks;
+  std::vector<MapWorld> worlds;  // sorted by map
   std::vector<SceneFrame> path;
   std::vector<SceneEvent> events;
   int frames = 0;                                                // number of frame messages
@@ -111,6 +113,7 @@ class StreamScene {
 
   // Map of the last frame with a pose, else of the newest keyframe; invalid: no map.
   MapId ActiveMap() const;
+  std::string UnitOf(MapId map) const;  // of the map's lengths: "m" or "map units"
   // T_world_camera of the last frame in the current map, or its predicted pose; nullopt: unknown.
   std::optional<Se3> CameraPose() const;
   Eigen::Vector3d PointOf(const SceneLandmark& landmark) const;  // in the world

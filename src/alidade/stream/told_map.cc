@@ -144,6 +144,7 @@ MapNews ToldMap::Update(const MapSnapshot& map) {
   }
   SortUnique(news.given_up);
   for (KeyFrameId id : gone) keyframes_.erase(id.value);
+  news.worlds = map.state().worlds != snapshot_.state().worlds;
   snapshot_ = map;
   return news;
 }

@@ -49,8 +49,9 @@ struct MapNews {
   std::vector<std::pair<KeyFrameId, KeyFrameId>> loops;  // new ones, older keyframe first
   std::vector<std::pair<MapId, MapId>> merged;           // a map, and the map it became part of
   std::vector<MapId> begun, given_up;
+  bool worlds = false;  // what is known of the worlds of maps has changed
   bool empty() const {
-    return keyframes.empty() && moved.empty() && depths.empty() && landmarks.empty() &&
+    return !worlds && keyframes.empty() && moved.empty() && depths.empty() && landmarks.empty() &&
            removed_landmarks.empty() && culled.empty();
   }
 };

@@ -39,9 +39,6 @@ export class MapView {
     }, Math.max(0, this.due - performance.now()));
   }
 
-  // Direction in which things fall, in the world; null: unknown.
-  gravity(direction: readonly [number, number, number] | null): void { if (this.scene) this.scene.gravity = direction; }
-
   forget(): void { this.scene?.forget(); }
 }
 

@@ -31,7 +31,6 @@ export class PageView {
     if (state.shown?.bitmap) this.picture.show(state);
     if (this.drawnMap !== state.map) this.map.forget();
     this.drawnMap = state.map;
-    this.map.gravity(state.shown?.inertial?.gravity ?? null);
     this.map.changed();
   }
 

@@ -30,7 +30,7 @@ export function alignTruth(state: State, map: number): Alignment | null {
     pairs.push({ at, map: transform(keyframe.T_world_camera, keyframe.scale, t[4], t[5], t[6]), truth: hello.truth[next].T_world_camera.slice(4) });
   }
   if (pairs.length < FEWEST) return null;
-  const fit = similarity(pairs.map((pair) => pair.truth), pairs.map((pair) => pair.map), hello.unit !== 'm');
+  const fit = similarity(pairs.map((pair) => pair.truth), pairs.map((pair) => pair.map), state.unit !== 'm');
   if (!fit) return null;
   const errors = new Float64Array(path.length).fill(NaN);
   let sum = 0;

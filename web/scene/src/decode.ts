@@ -3,7 +3,7 @@ import * as flatbuffers from 'flatbuffers';
 import * as fb from '../generated/stream_generated.ts';
 import { failureWithReason, FAILURES, REASONS } from './failures.ts';
 import { EVENT_KINDS, STATES } from './messages.ts';
-import type { Camera, DepthCloud, Event, Failure, Frame, Hello, KeyFrame, MapChange, Message, Pose } from './messages.ts';
+import type { Camera, DepthCloud, Event, Failure, Frame, Hello, KeyFrame, MapChange, Message, Pose, World } from './messages.ts';
 import { DecodeError, verify } from './verify.ts';
 
 export { DecodeError } from './verify.ts';
@@ -146,6 +146,21 @@ function cloud(d: fb.DepthCloud): DepthCloud {
   return { keyframe: d.keyframe(), least, most, points };
 }
 
+function sigma(value: number, what: string): number {
+  if (!(value >= 0 && value < Infinity)) throw new DecodeError(`the standard deviation of ${what}: ${value}`);
+  return value;
+}
+
+function world(w: fb.World): World {
+  const down = [w.downX(), w.downY(), w.downZ()] as const;
+  const known = down.some((value) => value !== 0);
+  if (known && !(Math.abs(Math.hypot(...down) - 1) < 1e-6)) throw new DecodeError('a direction of gravity that is not a unit vector');
+  return {
+    map: w.map(), meters: w.meters(), scaleSigma: sigma(w.scaleSigma(), 'a scale'), down: known ? down : null,
+    downSigma: sigma(w.downSigma(), 'gravity'),
+  };
+}
+
 function mapChange(body: fb.MapChange): MapChange {
   return {
     kind: 'map', version: body.version(), whole: body.whole(),
@@ -163,6 +178,7 @@ function mapChange(body: fb.MapChange): MapChange {
       number: p.number(), time: p.time(), state: entry(STATES, p.state(), 'state'), reference: p.reference(),
       T_reference_camera: pose(p.tReferenceCamera()!),
     })),
+    worlds: body.tellsWorlds() ? list(body.worldsLength(), (i) => body.worlds(i), world) : null,
   };
 }
 

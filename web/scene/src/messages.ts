@@ -78,6 +78,15 @@ export interface DepthCloud {
 }
 export interface PathFrame { number: number; time: number; state: TrackingState; reference: number; T_reference_camera: Pose }
 
+// What an inertial sensor or a survey tells of a map.
+export interface World {
+  map: number;
+  meters: boolean; // lengths are meters, whatever the unit of Hello
+  scaleSigma: number; // relative standard deviation of lengths; 0: unknown
+  down: readonly [number, number, number] | null; // direction in which things fall, in the world; null: unknown
+  downSigma: number; // its standard deviation, radians; 0: unknown
+}
+
 export interface MapChange {
   kind: 'map';
   version: bigint;
@@ -89,6 +98,7 @@ export interface MapChange {
   culled: Culled[];
   depth: DepthCloud[];
   path: PathFrame[];
+  worlds: World[] | null; // of all maps of which something is known; null: as before
 }
 
 export interface Event {

@@ -56,8 +56,6 @@ export class Scene {
   private frameRequest = 0;
   private before = 0;
   private errors: ((i: number) => number) | null = null;
-  // Direction in which things fall, in the world of the active map; null: unknown, then up is estimated from the poses.
-  gravity: readonly [number, number, number] | null = null;
   private hung = false; // up is by gravity
   drew: () => void = () => {}; // called after each image
 
@@ -299,11 +297,12 @@ export class Scene {
   // applies it if it changed and the user has not moved the view.
   private level(state: State): void {
     const count = state.keyframes.size;
-    const news = this.gravity !== null && !this.hung;
+    const down = state.worlds.get(this.active)?.down ?? null;
+    const news = down !== null && !this.hung;
     if (count === 0 || (this.levelled > 0 && ((count < 2 * this.levelled && !news) || this.view.touched))) return;
     const poses = [...state.keyframes.values()].filter((k) => k.map === this.active).map((k) => k.T_world_camera);
-    this.hung = this.gravity !== null;
-    const { right, forward, up } = upright(poses, this.gravity && [-this.gravity[0], -this.gravity[1], -this.gravity[2]]);
+    this.hung = down !== null;
+    const { right, forward, up } = upright(poses, down && [-down[0], -down[1], -down[2]]);
     const { elements: old } = this.world.matrix;
     const same = old[1] * up[0] + old[5] * up[1] + old[9] * up[2] > Math.cos(this.hung ? HUNG_LEANING : LEANING);
     if (this.levelled > 0 && same) {

@@ -1,6 +1,6 @@
 // State of a viewer: the sum of all messages. Only apply() changes it; clone() is cheap (see pages.ts).
 import { Landmarks } from './landmarks.ts';
-import type { Culled, DepthCloud, Frame, Hello, KeyFrame, MapChange, Message, Playback, Pose, TrackingState } from './messages.ts';
+import type { Culled, DepthCloud, Frame, Hello, KeyFrame, MapChange, Message, Playback, Pose, TrackingState, World } from './messages.ts';
 import { NONE } from './messages.ts';
 import { Path } from './path.ts';
 import { compose, IDENTITY, transform } from './pose.ts';
@@ -14,6 +14,7 @@ export class State {
   // Objects in these two maps are replaced, never modified.
   keyframes = new Map<number, KeyFrame>();
   clouds = new Map<number, DepthCloud>();
+  worlds = new Map<number, World>(); // by map; replaced, never modified
   landmarks = new Landmarks();
   path = new Path();
   incomplete = false; // a message referred to an unknown keyframe; only a whole state resolves this
@@ -80,6 +81,11 @@ export class State {
     return newest?.map ?? NONE;
   }
 
+  // Of lengths in the active map: "m" or "map units"; '' before the first message.
+  get unit(): string {
+    return this.worlds.get(this.activeMap)?.meters ? 'm' : this.hello?.unit ?? '';
+  }
+
   // World position of a landmark; undefined: unknown id.
   landmarkInWorld(id: number): [number, number, number] | undefined {
     const landmark = this.landmarks.get(id);
@@ -92,10 +98,12 @@ export class State {
     if (change.whole) {
       this.keyframes = new Map();
       this.clouds = new Map();
+      this.worlds = new Map();
       this.landmarks = new Landmarks();
       this.path = new Path();
       this.incomplete = false;
     }
+    if (change.worlds) this.worlds = new Map(change.worlds.map((world) => [world.map, world]));
     for (const keyframe of change.keyframes) this.keyframes.set(keyframe.id, keyframe);
     for (const { id, scale, T_world_camera } of change.moves) {
       const keyframe = this.keyframes.get(id);

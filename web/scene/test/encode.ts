@@ -138,6 +138,10 @@ function mapChange(b: Builder, m: MapChange): Offset {
   }));
   const path = structs(b, m.path, fb.MapChange.startPathVector, ({ number, state, reference, time, T_reference_camera: T }) =>
     fb.PathFrame.createPathFrame(b, number, STATES.indexOf(state), reference, time, T[0], T[1], T[2], T[3], T[4], T[5], T[6]));
+  const worlds = structs(b, m.worlds ?? [], fb.MapChange.startWorldsVector, ({ map, meters, scaleSigma, down, downSigma }) => {
+    const [x, y, z] = down ?? [0, 0, 0];
+    return fb.World.createWorld(b, map, meters, scaleSigma, x, y, z, downSigma);
+  });
   fb.MapChange.startMapChange(b);
   fb.MapChange.addVersion(b, m.version);
   fb.MapChange.addWhole(b, m.whole);
@@ -148,5 +152,7 @@ function mapChange(b: Builder, m: MapChange): Offset {
   fb.MapChange.addCulled(b, culled);
   fb.MapChange.addDepth(b, depth);
   fb.MapChange.addPath(b, path);
+  fb.MapChange.addTellsWorlds(b, m.worlds !== null);
+  if (m.worlds) fb.MapChange.addWorlds(b, worlds);
   return fb.MapChange.endMapChange(b);
 }

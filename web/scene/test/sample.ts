@@ -1,7 +1,7 @@
 // A synthetic stream: a camera moves twice around a room; its map drifts until a loop closes; keyframes and landmarks
 // are culled; it is lost for a while in front of a white sheet. World: x right, y down, z forward of the first
 // keyframe.
-import type { Culled, DepthCloud, Frame, KeyFrame, MapChange, Message, PathFrame, Pose } from '../src/messages.ts';
+import type { Culled, DepthCloud, Frame, KeyFrame, MapChange, Message, PathFrame, Pose, World } from '../src/messages.ts';
 import { REASONS } from '../src/failures.ts';
 import { NONE } from '../src/messages.ts';
 import { compose, inverse, rotate, transform } from '../src/pose.ts';
@@ -53,6 +53,7 @@ export class Sample {
   readonly clouds = new Map<number, DepthCloud>();
   readonly path: PathFrame[] = [];
   readonly events: Message[] = []; // so far
+  worlds: World[] = []; // known from the closed loop on
   told: Frame | null = null; // the last one
   private readonly room: [number, number, number][] = [];
   private readonly inMap = new Map<number, number>(); // room point → landmark
@@ -87,7 +88,7 @@ export class Sample {
     return {
       kind: 'map', version: this.version, whole: true, keyframes: [...this.keyframes.values()], moves: [],
       landmarks: packLandmarks([...this.points.values()]), removedLandmarks: new Uint32Array(0), culled: [],
-      depth: [...this.clouds.values()], path: [...this.path],
+      depth: [...this.clouds.values()], path: [...this.path], worlds: this.worlds,
     };
   }
 
@@ -111,6 +112,7 @@ export class Sample {
     if (share >= 0.34 && share < 0.34 + 1 / this.frames) event('found', 'recognised by keyframe 3', 3);
     if (keyframe && !this.closed && share > 0.52) {
       this.closeLoop(change);
+      change.worlds = this.worlds = [{ map: 0, meters: true, scaleSigma: 0.01, down: null, downSigma: 0 }];
       event('loop', 'keyframes 0 and ' + this.last, 0, this.last);
     }
     if (i === this.frames - 1) event('finished', '');
@@ -152,7 +154,7 @@ export class Sample {
   private emptyChange(): MapChange {
     return {
       kind: 'map', version: ++this.version, whole: false, keyframes: [], moves: [], landmarks: new DataView(new ArrayBuffer(0)),
-      removedLandmarks: new Uint32Array(0), culled: [], depth: [], path: [],
+      removedLandmarks: new Uint32Array(0), culled: [], depth: [], path: [], worlds: null,
     };
   }
 

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
-import { decode } from '../src/decode.ts';
+import { decode, DecodeError } from '../src/decode.ts';
 import { History } from '../src/history.ts';
 import type { Message } from '../src/messages.ts';
 import { NONE } from '../src/messages.ts';
@@ -93,6 +93,28 @@ test('a map that is gone takes its landmarks with it, not the frames that were s
   assert.equal(state.path.length, 90);
   assert.equal(state.path.at(50).reference, NONE);
   assert.equal(state.path.at(50).state, 'tracking');
+});
+
+test('a map change tells that lengths are meters and where down is, until another one does', () => {
+  const sample = new Sample({ ...SMALL, frames: 30 });
+  const state = new State();
+  follow(sample, state);
+  const empty = { ...sample.whole(), whole: false, keyframes: [], landmarks: new DataView(new ArrayBuffer(0)), depth: [], path: [], worlds: null };
+  state.hello = { ...state.hello!, unit: 'map units' };
+  state.apply(decode(encode({ ...empty, worlds: [] })));
+  assert.equal(state.unit, 'map units');
+  const known = { map: 0, meters: true, scaleSigma: 0.02, down: [0, 0.6, 0.8] as const, downSigma: 0.01 };
+  state.apply(decode(encode({ ...empty, worlds: [{ ...known, map: 3 }] })));
+  assert.equal(state.unit, 'map units'); // another map
+  state.apply(decode(encode({ ...empty, worlds: [known] })));
+  state.apply(decode(encode(empty)));
+  assert.equal(state.unit, 'm');
+  assert.deepEqual([...state.worlds.values()], [known]);
+  state.apply(decode(encode({ ...empty, worlds: [] })));
+  assert.equal(state.unit, 'map units');
+  for (const wrong of [{ ...known, down: [0, 1, 1] as const }, { ...known, scaleSigma: NaN }, { ...known, downSigma: -1 }]) {
+    assert.throws(() => decode(encode({ ...empty, worlds: [wrong] })), DecodeError);
+  }
 });
 
 test('going back gives the state that was, from kept states and from whole ones', () => {

@@ -35,7 +35,7 @@ const plot = new Plot();
 const timeline = new Timeline(() => player, seek);
 const panel = new Panel(() => player, seek);
 const scene = makeScene();
-const ruler = scene && new Ruler(scene, () => player.shown.hello?.unit ?? '', (text) => notice(text, 'measure'));
+const ruler = scene && new Ruler(scene, () => player.shown.unit, (text) => notice(text, 'measure'));
 let still: StillMap | null = null;
 
 function makeScene(): Scene | null {

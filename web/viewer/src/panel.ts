@@ -39,7 +39,7 @@ export class Panel {
     write(byId('source'), hello?.source ?? '');
     const sensors: Record<string, string> = { mono: 'one camera', stereo: 'stereo pair', rgbd: 'RGB-D camera' };
     const maps = frame && frame.maps > 1 ? `${frame.maps} maps` : '';
-    write(byId('about-run'), hello ? [sensors[hello.sensor] ?? hello.sensor, `lengths in ${hello.unit === 'm' ? 'meters' : hello.unit}`, maps]
+    write(byId('about-run'), hello ? [sensors[hello.sensor] ?? hello.sensor, `lengths in ${state.unit === 'm' ? 'meters' : state.unit}`, maps]
       .filter(Boolean).join(' · ') : '');
     if (hello) write(byId('about-program'), hello.program);
     this.listEvents();
@@ -53,7 +53,7 @@ export class Panel {
   // Error of the path relative to the ground truth, if known.
   error(alignment: Alignment | null, state: State): void {
     const metres = (value: number) => (value < 1 ? `${(100 * value).toFixed(1)} cm` : `${value.toFixed(2)} m`);
-    const scaled = state.hello?.unit !== 'm' ? ', scale fitted' : '';
+    const scaled = state.unit !== 'm' ? ', scale fitted' : '';
     write(byId('error'), alignment ? `From the truth: ${metres(alignment.rmse)} RMSE, at most ${metres(alignment.worst)}${scaled}` : '');
   }
 

@@ -31,7 +31,7 @@ function large(): Message {
   const path = keyframes.map(({ id, time, number }) => (
     { number, time, state: 'tracking' as const, reference: id, T_reference_camera: [0, 0, 0, 1, 0, 0, 0] }));
   return {
-    kind: 'map', version: 1n, whole: true, keyframes, moves: [], landmarks, removedLandmarks: new Uint32Array(0), culled: [], depth, path,
+    kind: 'map', version: 1n, whole: true, keyframes, moves: [], landmarks, removedLandmarks: new Uint32Array(0), culled: [], depth, path, worlds: null,
   };
 }
 

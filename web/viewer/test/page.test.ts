@@ -175,7 +175,7 @@ test('all maps are drawn, others than the one the camera is in faintly', options
     [0.1 * (i % 20) - 1, 0.1 * Math.floor(i / 20) - 1, 1.5].forEach((value, k) => landmarks.setFloat32(20 * i + 8 + 4 * k, value, true));
   }
   server.send(encode({
-    kind: 'map', version: 10n ** 6n, whole: false, keyframes: [keyframe], moves: [], landmarks, removedLandmarks: new Uint32Array(0), culled: [], depth: [], path: [],
+    kind: 'map', version: 10n ** 6n, whole: false, keyframes: [keyframe], moves: [], landmarks, removedLandmarks: new Uint32Array(0), culled: [], depth: [], path: [], worlds: null,
   }));
   await page.waitForFunction(() => window.alidade.state.keyframes.has(5000));
   const two = await sceneOnly(page);
