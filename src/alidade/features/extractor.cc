@@ -7,6 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/parallel.h"
+#include "alidade/base/part_times.h"
 #include "alidade/base/settings_table.h"
 #include "alidade/features/pyramid.h"
 #include "alidade/features/smooth.h"
@@ -135,17 +136,25 @@ void Extractor::PrepareBuffers(const std::vector<cv::Size>& sizes) {
   smooth_ = std::move(smooth_levels);
 }
 
+// `fine`: the level smoothed a little from row `top` on. Of the band the same, and the level
+// smoothed more, are kept.
+void Extractor::Smooth(const cv::Mat& level, const Band& band, int top, cv::Mat& fine) {
+  const PartTimer timer(FramePart::kSmooth);
+  SmoothBinomial(level, top, fine);
+  fine.rowRange(band.first_row - top, band.end_row - top)
+      .copyTo(fine_[band.level].rowRange(band.first_row, band.end_row));
+  SmoothBox(fine, band.first_row - top, smooth_[band.level].rowRange(band.first_row, band.end_row));
+}
+
 std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& band) {
   // The neighboring bands' rows that this band needs are smoothed again, which is cheaper than
   // synchronizing.
   const int top = std::max(0, band.first_row - kAround);
   const int bottom = std::min(level.rows, band.end_row + kAround);
   cv::Mat fine(bottom - top, level.cols, CV_8UC1);
-  SmoothBinomial(level, top, fine);
-  fine.rowRange(band.first_row - top, band.end_row - top)
-      .copyTo(fine_[band.level].rowRange(band.first_row, band.end_row));
-  SmoothBox(fine, band.first_row - top, smooth_[band.level].rowRange(band.first_row, band.end_row));
+  Smooth(level, band, top, fine);
 
+  const PartTimer timer(FramePart::kCorners);
   const int first = std::max(band.first_row, settings_.border);
   const int end = std::min(band.end_row, level.rows - settings_.border);
   std::vector<Corner> corners =
@@ -163,6 +172,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
                std::to_string(image.rows) + ", the camera " + std::to_string(camera.width) + "x" +
                std::to_string(camera.height));
   }
+  const PartTimer whole_timer(FramePart::kBuffers);
   Frame frame;
   frame.time = time;
   frame.number = number;
@@ -200,6 +210,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
   for (int l = 0; l < kPyramidLevels; ++l) available[l] = static_cast<int>(corners[l].size());
   const std::array<int, kPyramidLevels> budget = LevelBudgets(available, settings_.features);
   ParallelFor(kPyramidLevels, [&](int l) {
+    const PartTimer timer(FramePart::kSpread);
     const size_t useful = corners[l].size();
     corners[l] = SpreadCorners(corners[l], sizes[l], budget[l], settings_.evenness);
     if (avoided[l].empty()) return;
@@ -223,6 +234,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
   frame.descriptors.resize(count);
   const bool distorted = camera.HasDistortion();
   ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
+    const PartTimer timer(FramePart::kDescribe);
     int l = 0;
     for (int i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
       while (i >= first[l + 1]) ++l;
@@ -244,6 +256,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
       k.y = static_cast<float>(ideal.y());
     }
   });
+  const PartTimer grid_timer(FramePart::kGrid);
   frame.grid = KeypointGrid(frame.keypoints, camera.width, camera.height);
   return frame;
 }

@@ -52,6 +52,7 @@ class Extractor {
  private:
   void PrepareBuffers(const std::vector<cv::Size>& sizes);
   // Smooths the band's rows into both buffers and returns its corners.
+  void Smooth(const cv::Mat& level, const Band& band, int top, cv::Mat& fine);
   std::vector<Corner> LookThrough(const cv::Mat& level, const Band& band);
 
   ExtractorSettings settings_;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/base/part_times.h"
+
 namespace alidade {
 namespace {
 
@@ -34,6 +36,7 @@ struct Places {
 }  // namespace
 
 cv::Mat Glance(const cv::Mat& image) {
+  const PartTimer timer(FramePart::kGlance);
   constexpr int kWidth = 240;
   cv::Mat small, smooth;
   const int width = std::min(kWidth, image.cols);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "alidade/base/part_times.h"
 #include "alidade/features/frame.h"
 
 namespace alidade {
@@ -19,6 +20,7 @@ std::vector<cv::Size> PyramidSizes(cv::Size image) {
 }
 
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image) {
+  const PartTimer timer(FramePart::kPyramid);
   const std::vector<cv::Size> sizes = PyramidSizes(image.size());
   std::vector<cv::Mat> pyramid(kPyramidLevels);
   pyramid[0] = image;

@@ -4,6 +4,7 @@
 #include <new>
 #include <utility>
 
+#include "alidade/base/part_times.h"
 #include "alidade/features/glance.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
@@ -82,8 +83,7 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   PresentFrame now;
   now.index = log_.size() - 1;
   UseNews(now);
-  inertial_.Take(prepared.imu);
-  UseInertial();
+  UseInertial(prepared.imu);
   ExtractFeatures(prepared, time, now);
   TrackResult result = Localize(now);
   Observe(time, now);
@@ -93,7 +93,6 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   movers_.End(*now.placed.frame, result);
   more_left_out_ = left_out_.See(prepared.image, now.frame) || more_left_out_;
   Publish(now);
-  log_.End();
   if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitializing)
     LocalizeEarlierFrames(1, now.frame->number);
   if (log_.size() % kReanchorFrames == 0) Reanchor();
@@ -118,6 +117,7 @@ TrackResult FramePipeline::Localize(PresentFrame& now) {
 
 // What the workers found since the last frame: another camera, maps without a known scale.
 void FramePipeline::UseNews(PresentFrame& now) {
+  const PartTimer timer(FramePart::kNews);
   TakeNews();
   // An unconfirmed map is too small to be changed to another camera.
   if (news_.camera && session_.state() != SessionState::kConfirming) UseCamera();
@@ -256,6 +256,7 @@ TrackEstimate FramePipeline::FindPlace(PresentFrame& now, const MapSnapshot& map
 // Whether the pose of a frame that follows a tracked one is believed. kNone: it is.
 TrackFailure FramePipeline::JudgeTracked(const TrackEstimate& estimate, const PresentFrame& now,
                                          const MapSnapshot& map) {
+  const PartTimer timer(FramePart::kNews);
   const auto refuse = [&](TrackFailure failure) {
     session_.Apply(SessionEvent::kMapRefused);
     return failure;
@@ -288,6 +289,7 @@ bool FramePipeline::FollowsMovingObject(bool young) {
 
 TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
                                  const MapSnapshot& map) {
+  const PartTimer timer(FramePart::kPlace);
   TrackResult result;
   result.state = TrackState::kTracking;
   // Keyframes the mapper has not processed yet, at most. With depth, tracking relies on the newest
@@ -331,6 +333,7 @@ TrackResult FramePipeline::WithoutPose(TrackFailure failure, double time, const 
 
 // What later steps may need of the frame; its images are released otherwise.
 void FramePipeline::KeepForLater(PresentFrame& now, const TrackResult& result) {
+  const PartTimer timer(FramePart::kPublish);
   const bool seeking = session_.state() == SessionState::kSeeking;
   if (CollectsForRebuild() || KeepsForFixedParts()) kept_.Add(*now.frame, now.index, seeking);
   if (!seeking) now.frame->glance.release();
@@ -341,6 +344,7 @@ void FramePipeline::KeepForLater(PresentFrame& now, const TrackResult& result) {
 }
 
 void FramePipeline::Publish(const PresentFrame& now) {
+  const PartTimer timer(FramePart::kPublish);
   last_frame_.Set(std::make_shared<const LastFrame>(LastFrame{now.placed.frame,
                                                               now.placed.matches,
                                                               movers_.BeliefOfCells(),
@@ -348,12 +352,14 @@ void FramePipeline::Publish(const PresentFrame& now) {
                                                               now.keyframe,
                                                               movers_.detections(),
                                                               movers_.detections_age()}));
+  log_.End();
 }
 
 // One camera: frames from before the map could localize them. If memory runs out, they are tried
 // again later.
 void FramePipeline::LocalizeEarlierFrames(int count, int number) {
   if (session_.state() == SessionState::kConfirming) return;
+  const PartTimer timer(FramePart::kEarlier);
   try {
     early_.Place(count, number, tracker_, workers_.map().Snapshot(), log_);
   } catch (const std::bad_alloc&) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "alidade/system/camera_update.h"
@@ -78,7 +79,7 @@ class FramePipeline {
   void TakeNews();
   void FinishWork(bool limited);
   void UseCamera();
-  void UseInertial();
+  void UseInertial(std::span<const ImuSample> readings);
   void Reckon(double time, const MapSnapshot& map);
   void KeepWorld();
   void KeepMotions(const MapSnapshot& map);

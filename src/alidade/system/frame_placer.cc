@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "alidade/base/part_times.h"
 #include "alidade/system/movers.h"
 
 namespace alidade {
@@ -22,6 +23,7 @@ void FramePlacer::Place(PresentFrame& now, const PlacedFrame& placed, KeyFrameId
 
 void FramePlacer::InsertKeyFrame(PresentFrame& now, PlacedFrame& placed, const Anchor& anchor,
                                  const Camera& camera) {
+  const PartTimer timer(FramePart::kKeyFrame);
   const std::shared_ptr<const Picture> picture = placed.frame->picture;
   LeaveOutMovers(placed, camera);
   const KeyFrameId id = workers_.mapper().Insert(placed.frame, anchor, placed.matches);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "alidade/base/log.h"
+#include "alidade/base/part_times.h"
 #include "alidade/features/subset.h"
 
 namespace alidade {
@@ -52,6 +53,7 @@ void LeftOut::Update() {
 }
 
 bool LeftOut::See(const cv::Mat& image, const std::shared_ptr<const Frame>& frame) {
+  const PartTimer timer(FramePart::kLeftOut);
   if (!look_) return false;
   const cv::Mat known = fixed_.mask();
   const bool found = fixed_.See(image, frame);
@@ -70,6 +72,7 @@ bool LeftOut::See(const cv::Mat& image, const std::shared_ptr<const Frame>& fram
 cv::Mat LeftOut::With(const cv::Mat& movers) const { return Union(all_, movers); }
 
 void LeftOut::RemoveFrom(Frame& frame, const Camera& camera) const {
+  const PartTimer timer(FramePart::kLeftOut);
   if (all_.empty()) return;
   std::vector<int> kept;
   for (int k = 0; k < static_cast<int>(frame.keypoints.size()); ++k) {

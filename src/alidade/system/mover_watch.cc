@@ -6,6 +6,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/base/part_times.h"
 #include "alidade/base/timing.h"
 
 namespace alidade {
@@ -45,6 +46,7 @@ bool MoverWatch::Watches(bool young) {
 }
 
 void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool young) {
+  const PartTimer timer(FramePart::kMovers);
   present_ms_ = 0;
   if (!placed) watched_ = 0;
   looks_ = filter_ && (used_ || (placed && Watches(young)));
@@ -87,6 +89,7 @@ bool MoverWatch::MuchMoves(bool young) {
 }
 
 bool MoverWatch::FollowsMover(bool young) {
+  const PartTimer timer(FramePart::kMovers);
   if (!looks_ || (counts_ && !young)) return false;
   const Stopwatch watch;
   const bool rival = filter_->RivalShare() > settings_.votes.rival_share;
@@ -104,6 +107,7 @@ bool MoverWatch::FollowsMover(bool young) {
 }
 
 void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
+  const PartTimer timer(FramePart::kMovers);
   if (!looks_) return;
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
@@ -120,6 +124,7 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
 }
 
 LandmarkNews MoverWatch::NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kMovers);
   LandmarkNews news;
   int on_movers = 0;
   for (const SightingCount& s : estimate.sightings) {
@@ -145,6 +150,7 @@ void MoverWatch::Forget() {
 }
 
 void MoverWatch::End(const Frame& frame, const TrackResult& result) {
+  const PartTimer timer(FramePart::kMovers);
   if (!looks_) return;
   looks_ = false;
   const Stopwatch watch;

@@ -7,6 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/base/log.h"
+#include "alidade/base/part_times.h"
 #include "alidade/base/print.h"
 #include "alidade/system/movers.h"
 #include "alidade/system/prepare.h"
@@ -48,6 +49,7 @@ TrackResult Slam::Impl::Track(const FrameInput& input) {
   FrameInput prepared;
   const char* cut = "";
   try {
+    const PartTimer timer(FramePart::kPrepare);
     prepared = Prepare(input, given_, pipeline_.camera().Get(), settings_);
     cut = CheckTime(input.time);
   } catch (const Error&) {  // refused: the frame does not count

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "alidade/base/median.h"
+#include "alidade/base/part_times.h"
 
 namespace alidade {
 
@@ -44,6 +45,7 @@ std::vector<KeyFrameId> LookingTheSameWay(const MapSnapshot& map, MapId within,
 
 LocalMap LocalMapGatherer::Gather(const MapSnapshot& map, std::span<const LandmarkId> matches,
                                   const Se3& T_camera_world, int max_keyframes) {
+  const PartTimer timer(FramePart::kLocalMap);
   landmarks_taken_.Clear();
   keyframes_taken_.Clear();
   votes_.Clear();

@@ -4,6 +4,7 @@
 
 #include "alidade/base/id_map.h"
 #include "alidade/base/parallel.h"
+#include "alidade/base/part_times.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/map/view.h"
 
@@ -46,6 +47,7 @@ void LookFor(Candidate& candidate, const PlacedFrame& placed, const Camera& came
 
 LocalMatches MatchLocalMap(const PlacedFrame& placed, const LocalMap& local, const Camera& camera,
                            const TrackerSettings& settings) {
+  const PartTimer timer(FramePart::kLocalSearch);
   LocalMatches found{placed.matches, {}};
   IdSet<LandmarkId> known;
   for (LandmarkId id : placed.matches) {

@@ -5,6 +5,7 @@
 
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
+#include "alidade/base/part_times.h"
 #include "alidade/features/rolling_shutter.h"
 #include "alidade/features/undistort.h"
 #include "alidade/tracking/local_search.h"
@@ -33,9 +34,13 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
                                         const cv::Mat& depth, double time, int number,
                                         const cv::Mat& avoid) {
   auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number, avoid));
-  if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
-  if (!right.empty())
-    MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+  const PartTimer timer(FramePart::kBuffers);
+  {
+    const PartTimer depth_timer(FramePart::kDepth);
+    if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
+    if (!right.empty())
+      MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+  }
   frame->pyramid.clear();  // needed only for extraction and stereo matching
   frame->image.release();
   return frame;
@@ -168,6 +173,7 @@ double Tracker::Spread(const PlacedFrame& placed) const {
 
 void Tracker::CountExpected(const LocalMatches& found, const MapSnapshot& map,
                             TrackEstimate& estimate) const {
+  const PartTimer timer(FramePart::kEvidence);
   const PlacedFrame& placed = estimate.placed;
   // The largest error of a match, σ: the search radius, or the gate of a bad frame.
   constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
@@ -199,6 +205,7 @@ void Tracker::CountExpected(const LocalMatches& found, const MapSnapshot& map,
 }
 
 double Tracker::Optimise(PlacedFrame& placed, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kPose);
   std::vector<PoseMatch> matches;
   std::vector<int> keypoints;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
@@ -277,8 +284,10 @@ TrackEstimate Tracker::Compare(PlacedFrame guess, const MapSnapshot& map) {
       gatherer_.Gather(map, guess.matches, guess.T_camera_world, settings_.local_keyframes);
   LocalMatches found = MatchLocalMap(guess, local, camera_, settings_);
   guess.matches = found.matches;
-  if (has_depth_)
+  if (has_depth_) {
+    const PartTimer timer(FramePart::kPassing);
     guess.passing = passing_.Find(guess, settings_.local_radius_depth, settings_.max_distance);
+  }
   const double share = Optimise(guess, map);
 
   estimate.reference = local.reference;
@@ -289,6 +298,7 @@ TrackEstimate Tracker::Compare(PlacedFrame guess, const MapSnapshot& map) {
 }
 
 void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& map) {
+  const PartTimer timer(FramePart::kEvidence);
   PlacedFrame& placed = estimate.placed;
   placed.log_odds = prior + estimate.evidence;
   const double expected = static_cast<double>(estimate.sightings.size());

@@ -2,6 +2,7 @@
 // descriptor matches with the reference keyframe.
 #include <cmath>
 
+#include "alidade/base/part_times.h"
 #include "alidade/features/guided_search.h"
 #include "alidade/features/matching.h"
 #include "alidade/geometry/pnp.h"
@@ -17,6 +18,7 @@ constexpr double kChiSquared3 = 7.815;
 }  // namespace
 
 PlacedFrame Tracker::Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map) {
+  const PartTimer timer(FramePart::kLastFrame);
   const bool late = IsLate(*frame);
   PlacedFrame guess = PredictByMotion(std::move(frame), map);
   return late || (has_depth_ && unproven_ > 0) ? BetterByLooks(std::move(guess), map) : guess;

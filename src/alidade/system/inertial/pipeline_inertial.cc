@@ -2,6 +2,7 @@
 #include <optional>
 #include <utility>
 
+#include "alidade/base/part_times.h"
 #include "alidade/system/frame_pipeline.h"
 
 namespace alidade {
@@ -13,7 +14,9 @@ void FramePipeline::SetImu(const ImuModel& imu) {
 
 // One camera: the lengths of the map become meters, as soon as it is confirmed, and a map that the
 // camera started after it had been lost is joined to the one before.
-void FramePipeline::UseInertial() {
+void FramePipeline::UseInertial(std::span<const ImuSample> readings) {
+  const PartTimer timer(FramePart::kInertial);
+  inertial_.Take(readings);
   if (!inertial_.given() || session_.state() == SessionState::kConfirming) return;
   const InertialWatch::Changes changes = inertial_.UseAnswer(workers_.map().Snapshot());
   if (changes.growth) workers_.Scale(changes.growth->map, changes.growth->factor);
@@ -65,6 +68,7 @@ void FramePipeline::ForgetUnit(MapId map) {
 // A pose for the fit of what the inertial sensor tells, which runs beside the other work.
 void FramePipeline::Observe(double time, const PresentFrame& now) {
   if (!inertial_.given()) return;
+  const PartTimer timer(FramePart::kInertial);
   const MapSnapshot map = workers_.map().Snapshot();
   if (session_.state() == SessionState::kTracking && tracker_.IsLast(*now.frame)) {
     inertial_.Placed(time, AnchorTo(map.state(), tracker_.reference(), now.placed.T_camera_world),

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "alidade/base/parallel.h"
+#include "alidade/base/part_times.h"
 
 namespace alidade {
 
@@ -40,6 +41,7 @@ void Stage::Fail(const std::exception_ptr& what) noexcept {
 }
 
 void Stage::Process(Task& task) noexcept {
+  const PartTimer timer(FramePart::kMapping);
   try {
     if (task.errand) return task.errand();
     const Stopwatch watch;
