@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "alidade/features/fast_row.h"
 #include "support/texture.h"
 
 namespace alidade::fast_test {
@@ -83,6 +84,40 @@ TEST(FastCorners, AreTheSameInBandsAndInPartsOfLargerImages) {
   }
   EXPECT_EQ(bands, whole);
   EXPECT_GT(whole.size(), 50u);
+}
+
+// The same scores for any number of pixels at once, at any threshold and length of the row.
+TEST(FastRow, IsTheSameHoweverManyPixelsAtOnce) {
+  const cv::Mat image = MakeTexture(131, 90, 3);
+  int circle[16];
+  for (int k = 0; k < 16; ++k) {
+    constexpr int kX[] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
+    constexpr int kY[] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
+    circle[k] = kY[k] * static_cast<int>(image.step[0]) + kX[k];
+  }
+  int found = 0;
+  for (int end : {19, 34, 35, 36, 64, 100, 128}) {
+    const FastRow fastest = FastRowFor(end);
+    ASSERT_TRUE(fastest);
+    for (int threshold : {0, 7, 40, 254, 255}) {
+      for (int y = 3; y < image.rows - 3; ++y) {
+        const auto look = [&](FastRow row, std::vector<uint8_t>& score) {
+          std::vector<int> columns(image.cols);
+          score.assign(image.cols, 0);
+          columns.resize(row(image.ptr<uint8_t>(y), 3, end, circle, static_cast<uint8_t>(threshold),
+                             score.data(), columns.data()));
+          return columns;
+        };
+        std::vector<uint8_t> some, others;
+        const std::vector<int> columns = look(FastRow16, some);
+        EXPECT_EQ(look(fastest, others), columns) << end << ", " << threshold << ", " << y;
+        EXPECT_EQ(others, some);
+        found += static_cast<int>(columns.size());
+      }
+    }
+  }
+  EXPECT_GT(found, 5000);
+  EXPECT_FALSE(FastRowFor(18));
 }
 
 TEST(FastCorners, AreNotLookedForWhereThereIsNoRoom) {

@@ -5,6 +5,10 @@
 #include <cmath>
 #include <cstdint>
 #include <opencv2/core/hal/intrin.hpp>
+#include <utility>
+#include <vector>
+
+#include "alidade/features/fast_row.h"
 
 namespace alidade {
 namespace {
@@ -47,7 +51,7 @@ Vector BestRun(const std::array<Vector, kCircle>& d) {
 
 // Scores plus one of 16 pixels, 0 where the score is at most `threshold`. Returns false if all are
 // 0.
-bool ScoreBlock(const uint8_t* p, const Offsets& circle, const cv::v_uint8x16& threshold,
+bool ScoreBlock(const uint8_t* p, const int* circle, const cv::v_uint8x16& threshold,
                 cv::v_uint8x16& scores) {
   using cv::v_max;
   using cv::v_min;
@@ -80,31 +84,42 @@ bool ScoreBlock(const uint8_t* p, const Offsets& circle, const cv::v_uint8x16& t
 // Scores of one image row, and the columns with nonzero scores.
 struct ScoreRow {
   std::vector<uint8_t> score;  // score plus one; 0 = no corner
-  std::vector<int> columns;
+  std::vector<int> columns;    // the first `count` are used
+  int count = 0;
 };
 
-void ScoreRowOf(const cv::Mat& image, int y, int first, int end, const Offsets& circle,
-                const cv::v_uint8x16& threshold, ScoreRow& row) {
-  std::fill(row.score.begin(), row.score.end(), uint8_t{0});
-  row.columns.clear();
-  const uint8_t* pixels = image.ptr<uint8_t>(y);
+}  // namespace
+
+int FastRow16(const uint8_t* pixels, int first, int end, const int* circle, uint8_t threshold,
+              uint8_t* score, int* columns) {
+  const cv::v_uint8x16 over = cv::v_setall_u8(threshold);
+  int count = 0;
   for (int x = first; x < end; x += kLanes) {
     // The last block moves back to stay inside the row; the column test below masks pixels
     // processed twice.
     const int x0 = std::min(x, end - kLanes);
     cv::v_uint8x16 scores;
-    if (!ScoreBlock(pixels + x0, circle, threshold, scores)) continue;
-    for (int mask = cv::v_signmask(scores > cv::v_setzero_u8()), lane = 0; mask != 0;
-         ++lane, mask >>= 1) {
-      if ((mask & 1) && x0 + lane >= x) row.columns.push_back(x0 + lane);
-    }
+    if (!ScoreBlock(pixels + x0, circle, over, scores)) continue;
     std::array<uint8_t, kLanes> values;
     cv::v_store(values.data(), scores);
-    for (int lane = std::max(0, x - x0); lane < kLanes; ++lane) row.score[x0 + lane] = values[lane];
+    for (int mask = cv::v_signmask(scores > cv::v_setzero_u8()), lane = 0; mask != 0;
+         ++lane, mask >>= 1) {
+      if (!(mask & 1) || x0 + lane < x) continue;
+      score[x0 + lane] = values[lane];
+      columns[count++] = x0 + lane;
+    }
   }
+  return count;
 }
 
-}  // namespace
+FastRow FastRowFor(int end) {
+  constexpr int kReach = 3;  // of the circle
+#ifdef ALIDADE_FAST_ROW_32
+  static const bool has_avx2 = __builtin_cpu_supports("avx2");
+  if (has_avx2 && end >= 2 * kLanes + kReach) return FastRow32;
+#endif
+  return end >= kLanes + kReach ? FastRow16 : nullptr;
+}
 
 std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border, int first_row,
                                 int end_row) {
@@ -112,18 +127,28 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
   // Suppression needs scores of one more column on each side.
   const int first = border - 1, end = image.cols - border + 1;
   // On narrow images a block may extend past the border, but not past the image.
-  if (first_row >= end_row || end - first <= 2 || end - kLanes < 3) return corners;
+  const FastRow score_row = FastRowFor(end);
+  if (first_row >= end_row || end - first <= 2 || !score_row) return corners;
   const Offsets circle = CircleOffsets(image);
-  const cv::v_uint8x16 over = cv::v_setall_u8(static_cast<uint8_t>(threshold));
+  const auto over = static_cast<uint8_t>(threshold);
   std::array<ScoreRow, 3> rows;  // above, this, below
-  for (ScoreRow& row : rows) row.score.assign(image.cols, 0);
-  ScoreRowOf(image, first_row - 1, first, end, circle, over, rows[0]);
-  ScoreRowOf(image, first_row, first, end, circle, over, rows[1]);
+  for (ScoreRow& row : rows) {
+    row.score.assign(image.cols, 0);
+    row.columns.resize(image.cols);
+  }
+  const auto look = [&](int y, ScoreRow& row) {
+    for (int i = 0; i < row.count; ++i) row.score[row.columns[i]] = 0;
+    row.count = score_row(image.ptr<uint8_t>(y), first, end, circle.data(), over, row.score.data(),
+                          row.columns.data());
+  };
+  look(first_row - 1, rows[0]);
+  look(first_row, rows[1]);
   for (int y = first_row; y < end_row; ++y) {
-    ScoreRowOf(image, y + 1, first, end, circle, over, rows[2]);
+    look(y + 1, rows[2]);
     const uint8_t *above = rows[0].score.data(), *here = rows[1].score.data(),
                   *below = rows[2].score.data();
-    for (int x : rows[1].columns) {
+    for (int i = 0; i < rows[1].count; ++i) {
+      const int x = rows[1].columns[i];
       if (x == first || x == end - 1) continue;
       const int s = here[x];
       const bool top = s > above[x - 1] && s > above[x] && s > above[x + 1] && s > here[x - 1] &&
