@@ -31,7 +31,8 @@ struct Walk {
   std::optional<InertialWatch::Join> Go(double seconds, KeyFrameId keyframe, double meters,
                                         const Eigen::Matrix3d& R_map_world) {
     for (const double end = time + seconds; time < end; time += 0.05) {
-      watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
+      if (!(time > silent_from && time < silent_to))
+        watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
       Se3 T_map_camera = SmoothMotion::At(time, {}).T_world_imu;
       T_map_camera.R = R_map_world * T_map_camera.R;
       T_map_camera.t = R_map_world * T_map_camera.t / (meters * scaled);
@@ -63,6 +64,7 @@ struct Walk {
   InertialWatch watch;
   double time = 0;
   double scaled = 1;  // meters of a map unit, relative to those before any growth
+  double silent_from = 0, silent_to = 0;  // times without readings
 };
 
 double AngleToGravity(const Walk& walk, const Eigen::Matrix3d& R_map_world) {
@@ -78,6 +80,26 @@ TEST(InertialWatch, ScalesAMapToMeters) {
   ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
   EXPECT_NEAR(2.5 * walk.scaled, 1, 0.02);
   EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, ReadingsThatCeaseForAWhileAreUsedAfterwards) {
+  Walk walk(true);
+  walk.silent_from = 2.5;
+  walk.silent_to = 5.5;
+  walk.Go(10, AddMap(walk.maps), 2.5, kTilted);
+  EXPECT_TRUE(walk.watch.report().left_out.empty()) << walk.watch.report().left_out;
+  ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
+  EXPECT_NEAR(2.5 * walk.scaled, 1, 0.02);
+  EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, DoesNotReckonAcrossASilenceOfTheSensor) {
+  Walk walk(true);
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  ASSERT_TRUE(walk.watch.report().metric);
+  ASSERT_TRUE(walk.GoBlind(0.2));
+  walk.time += 2;
+  EXPECT_FALSE(walk.GoBlind(0.2));
 }
 
 TEST(InertialWatch, BeginsAnewInTheNextMap) {

@@ -295,6 +295,7 @@ std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to
   if (!known || from < samples_.front().time || to > samples_.back().time + 0.01 || to < from)
     return std::nullopt;
   const auto samples = SamplesFrom(from - 0.1);
+  if (!TellMotion(samples, from, to)) return std::nullopt;
   const Eigen::Matrix3d turn = TurnOf(samples, from, to, report_.bias.gyro);
   const Eigen::Matrix3d& R = model.T_camera_imu.R;
   return R * turn.transpose() * R.transpose();
