@@ -40,6 +40,7 @@ struct Walk {
       std::vector<ImuSample> readings = SmoothMotion::Readings(time, time + 0.0499, 200, {});
       if (dead)
         for (ImuSample& reading : readings) reading = {reading.time};
+      for (ImuSample& reading : readings) reading.time += clock;
       if (!(time > silent_from && time < silent_to)) watch.Take(readings);
       Se3 T_map_camera = SmoothMotion::At(time, {}).T_world_imu;
       T_map_camera.R = R_map_world * T_map_camera.R;
@@ -74,6 +75,7 @@ struct Walk {
   double scaled = 1;  // meters of a map unit, relative to those before any growth
   double silent_from = 0, silent_to = 0;  // times without readings
   bool dead = false;                      // readings are 0
+  double clock = 0;                       // added to the stamps of readings, seconds
 };
 
 double AngleToGravity(const Walk& walk, const Eigen::Matrix3d& R_map_world) {
@@ -111,17 +113,22 @@ TEST(InertialWatch, DoesNotReckonAcrossASilenceOfTheSensor) {
   EXPECT_FALSE(walk.GoBlind(0.2));
 }
 
+// Whether a keyframe of `time` gets the motion since one 0.4 s before it.
+bool HasMotionAt(Walk& walk, double time, KeyFrameId first) {
+  KeyFrameId newest;
+  for (const double at : {time - 0.4, time}) {
+    const Se3 T_map_camera{kTilted * SmoothMotion::At(at, {}).T_world_imu.R, {}};
+    newest = AddKeyFrame(walk.maps, at, first, T_map_camera.Inverse());
+  }
+  const auto motions = walk.watch.MissingMotions(walk.maps.Snapshot());
+  return !motions.empty() && motions.back().first == newest;
+}
+
 TEST(InertialWatch, ReadingsThatGoWrongAreNotUsedUntilTheyAgreeAgain) {
   Walk walk(true);
   const KeyFrameId first = AddMap(walk.maps);
   const auto has_motion_after = [&](double before) {
-    KeyFrameId newest;
-    for (const double time : {walk.time - before - 0.4, walk.time - before}) {
-      const Se3 T_map_camera{kTilted * SmoothMotion::At(time, {}).T_world_imu.R, {}};
-      newest = AddKeyFrame(walk.maps, time, first, T_map_camera.Inverse());
-    }
-    const auto motions = walk.watch.MissingMotions(walk.maps.Snapshot());
-    return !motions.empty() && motions.back().first == newest;
+    return HasMotionAt(walk, walk.time - before, first);
   };
   const auto turn_is_known = [&] {
     return walk.watch.TurnBetween(walk.time - 0.1, walk.time - 0.06).has_value();
@@ -150,6 +157,21 @@ TEST(InertialWatch, ReadingsThatGoWrongAreNotUsedUntilTheyAgreeAgain) {
   EXPECT_TRUE(has_motion_after(0.6));
   EXPECT_TRUE(turn_is_known());
   EXPECT_TRUE(is_reckoned());
+}
+
+TEST(InertialWatch, ReadingsWhoseClockJumpsAreNotUsed) {
+  for (const double jump : {-5.0, -0.5, 1.0}) {
+    Walk walk(true);
+    const KeyFrameId first = AddMap(walk.maps);
+    walk.Go(6, first, 2.5, kTilted);
+    ASSERT_TRUE(walk.watch.report().metric);
+    walk.clock = jump;
+    walk.Go(6.5, first, 2.5, kTilted);
+    EXPECT_FALSE(HasMotionAt(walk, 7.2, first)) << jump;
+    EXPECT_FALSE(HasMotionAt(walk, 12, first)) << jump;
+    EXPECT_FALSE(walk.watch.TurnBetween(walk.time - 0.1, walk.time - 0.06)) << jump;
+    EXPECT_FALSE(walk.watch.DeadReckoned(walk.time - 0.02, walk.maps.Snapshot())) << jump;
+  }
 }
 
 TEST(InertialWatch, BeginsAnewInTheNextMap) {
