@@ -59,6 +59,21 @@ TEST(InertialFit, StandardDeviationsAreThoseOfManyRuns) {
   EXPECT_NEAR(offset, 1, 0.7);
 }
 
+TEST(InertialFit, HoldsWhereTheSensorWasSilent) {
+  const InertialTruth truth;
+  InertialProblem problem(truth, 10, 2);
+  std::erase_if(problem.samples, [](const ImuSample& s) { return s.time > 3 && s.time < 6; });
+  const RotationMatch match = MatchRotations(problem.poses, problem.samples, {});
+  EXPECT_FALSE(match.Contradicts());
+  EXPECT_LT(match.residual, 0.1 * match.turning);
+  const InertialFit fit = FitInertial(problem.poses, problem.samples, {});
+  ASSERT_TRUE(fit.solved);
+  EXPECT_LT(fit.noise_factor, 1.3);
+  EXPECT_LT(fit.scale_sigma, 0.02);
+  EXPECT_NEAR(fit.scale / truth.scale, 1, 4 * fit.scale_sigma);
+  EXPECT_LT((fit.states.back().bias.gyro - truth.bias.gyro).norm(), 0.003);
+}
+
 TEST(InertialFit, TellsThatAnEvenMotionHasNoScale) {
   const InertialTruth truth;
   InertialProblem problem(truth, 6, 3);

@@ -123,6 +123,23 @@ TEST(Preintegration, CovarianceAgreesWithMonteCarlo) {
       EXPECT_NEAR(correlation(sampled, a, b), correlation(truth.covariance, a, b), 0.1);
 }
 
+TEST(Preintegration, CovarianceCoversASilenceOfTheSensor) {
+  auto samples = Readings(8, 200, {});
+  std::erase_if(samples, [](const ImuSample& s) { return s.time > 2 && s.time < 5; });
+  const auto expect_covered = [&](double from, double to) {
+    const Preintegration motion = Preintegrate(samples, from, to, {}, {});
+    const MotionResidual residual =
+        ResidualOf(Motion::At(from, {}), Motion::At(to, {}), motion, kGravity);
+    for (int k = 0; k < 9; ++k)
+      EXPECT_LT(std::abs(residual.error[k]), 3 * std::sqrt(motion.covariance(k, k))) << k;
+  };
+  expect_covered(1.7, 2.4);
+  expect_covered(3, 3.1);  // no reading in between
+  expect_covered(1.9, 5.2);
+  const double before = Preintegrate(samples, 1, 1.9, {}, {}).covariance.norm();
+  EXPECT_LT(Preintegrate(samples, 5.1, 6, {}, {}).covariance.norm(), 2 * before);
+}
+
 TEST(MotionResidual, DerivativesAgreeWithDifferences) {
   const auto samples = Readings(1, 200, kBias);
   const Preintegration motion = Preintegrate(samples, 0, 0.8, {{0.01, 0, 0}, {0, 0.1, 0}}, {});

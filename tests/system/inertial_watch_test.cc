@@ -12,26 +12,36 @@
 namespace alidade::inertial_watch_test {
 namespace {
 
-// One keyframe at the origin, to which all poses of a map are relative.
-KeyFrameId AddMap(MapStore& maps) {
+KeyFrameId AddKeyFrame(MapStore& maps, double time, KeyFrameId parent, const Se3& T_camera_world) {
   KeyFrameId id;
   maps.Commit([&](MapCommit& commit) {
     KeyFrame keyframe;
-    keyframe.frame = std::make_shared<Frame>();
+    auto frame = std::make_shared<Frame>();
+    frame->time = time;
+    keyframe.frame = std::move(frame);
+    keyframe.parent = parent;
+    keyframe.T_camera_world = T_camera_world;
     id = commit.Add(std::move(keyframe));
   });
   return id;
 }
 
+// One keyframe at the origin, to which all poses of a map are relative.
+KeyFrameId AddMap(MapStore& maps) { return AddKeyFrame(maps, 0, {}, {}); }
+
 struct Walk {
-  explicit Walk(bool may_scale) : watch(Sensor::kMono, may_scale) {}
+  explicit Walk(bool may_scale, Sensor sensor = Sensor::kMono) : watch(sensor, may_scale) {}
 
   // Moves on for `seconds`, or until a map is joined to the one before; the unit of the map is
   // `meters`, its axes are turned by `R_map_world`.
   std::optional<InertialWatch::Join> Go(double seconds, KeyFrameId keyframe, double meters,
                                         const Eigen::Matrix3d& R_map_world) {
     for (const double end = time + seconds; time < end; time += 0.05) {
-      watch.Take(SmoothMotion::Readings(time, time + 0.0499, 200, {}));
+      std::vector<ImuSample> readings = SmoothMotion::Readings(time, time + 0.0499, 200, {});
+      if (dead)
+        for (ImuSample& reading : readings) reading = {reading.time};
+      for (ImuSample& reading : readings) reading.time += clock;
+      if (!(time > silent_from && time < silent_to)) watch.Take(readings);
       Se3 T_map_camera = SmoothMotion::At(time, {}).T_world_imu;
       T_map_camera.R = R_map_world * T_map_camera.R;
       T_map_camera.t = R_map_world * T_map_camera.t / (meters * scaled);
@@ -63,6 +73,9 @@ struct Walk {
   InertialWatch watch;
   double time = 0;
   double scaled = 1;  // meters of a map unit, relative to those before any growth
+  double silent_from = 0, silent_to = 0;  // times without readings
+  bool dead = false;                      // readings are 0
+  double clock = 0;                       // added to the stamps of readings, seconds
 };
 
 double AngleToGravity(const Walk& walk, const Eigen::Matrix3d& R_map_world) {
@@ -78,6 +91,87 @@ TEST(InertialWatch, ScalesAMapToMeters) {
   ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
   EXPECT_NEAR(2.5 * walk.scaled, 1, 0.02);
   EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, ReadingsThatCeaseForAWhileAreUsedAfterwards) {
+  Walk walk(true);
+  walk.silent_from = 2.5;
+  walk.silent_to = 5.5;
+  walk.Go(10, AddMap(walk.maps), 2.5, kTilted);
+  EXPECT_TRUE(walk.watch.report().left_out.empty()) << walk.watch.report().left_out;
+  ASSERT_TRUE(walk.watch.report().metric) << walk.watch.report().missing;
+  EXPECT_NEAR(2.5 * walk.scaled, 1, 0.02);
+  EXPECT_LT(AngleToGravity(walk, kTilted), 0.01);
+}
+
+TEST(InertialWatch, DoesNotReckonAcrossASilenceOfTheSensor) {
+  Walk walk(true);
+  walk.Go(6, AddMap(walk.maps), 2.5, kTilted);
+  ASSERT_TRUE(walk.watch.report().metric);
+  ASSERT_TRUE(walk.GoBlind(0.2));
+  walk.time += 2;
+  EXPECT_FALSE(walk.GoBlind(0.2));
+}
+
+// Whether a keyframe of `time` gets the motion since one 0.4 s before it.
+bool HasMotionAt(Walk& walk, double time, KeyFrameId first) {
+  KeyFrameId newest;
+  for (const double at : {time - 0.4, time}) {
+    const Se3 T_map_camera{kTilted * SmoothMotion::At(at, {}).T_world_imu.R, {}};
+    newest = AddKeyFrame(walk.maps, at, first, T_map_camera.Inverse());
+  }
+  const auto motions = walk.watch.MissingMotions(walk.maps.Snapshot());
+  return !motions.empty() && motions.back().first == newest;
+}
+
+TEST(InertialWatch, ReadingsThatGoWrongAreNotUsedUntilTheyAgreeAgain) {
+  Walk walk(true);
+  const KeyFrameId first = AddMap(walk.maps);
+  const auto has_motion_after = [&](double before) {
+    return HasMotionAt(walk, walk.time - before, first);
+  };
+  const auto turn_is_known = [&] {
+    return walk.watch.TurnBetween(walk.time - 0.1, walk.time - 0.06).has_value();
+  };
+  const auto is_reckoned = [&] {
+    return walk.watch.DeadReckoned(walk.time - 0.02, walk.maps.Snapshot()).has_value();
+  };
+  walk.Go(6, first, 2.5, kTilted);
+  ASSERT_TRUE(walk.watch.report().metric);
+  EXPECT_TRUE(has_motion_after(0.6));
+  EXPECT_TRUE(turn_is_known());
+  EXPECT_TRUE(is_reckoned());
+  EXPECT_GT(walk.watch.MotionsHoldUntil(), 1e9);
+  walk.dead = true;
+  const double wrong_from = walk.time;
+  walk.Go(0.2, first, 2.5, kTilted);
+  EXPECT_FALSE(has_motion_after(0.1));
+  walk.Go(1, first, 2.5, kTilted);
+  walk.dead = false;
+  EXPECT_FALSE(has_motion_after(0.4));
+  EXPECT_NEAR(walk.watch.MotionsHoldUntil(), wrong_from, 0.6);
+  EXPECT_FALSE(turn_is_known());
+  EXPECT_FALSE(is_reckoned());
+  walk.Go(27, first, 2.5, kTilted);
+  EXPECT_TRUE(walk.watch.report().left_out.empty()) << walk.watch.report().left_out;
+  EXPECT_TRUE(has_motion_after(0.6));
+  EXPECT_TRUE(turn_is_known());
+  EXPECT_TRUE(is_reckoned());
+}
+
+TEST(InertialWatch, ReadingsWhoseClockJumpsAreNotUsed) {
+  for (const double jump : {-5.0, -0.5, 1.0}) {
+    Walk walk(true);
+    const KeyFrameId first = AddMap(walk.maps);
+    walk.Go(6, first, 2.5, kTilted);
+    ASSERT_TRUE(walk.watch.report().metric);
+    walk.clock = jump;
+    walk.Go(6.5, first, 2.5, kTilted);
+    EXPECT_FALSE(HasMotionAt(walk, 7.2, first)) << jump;
+    EXPECT_FALSE(HasMotionAt(walk, 12, first)) << jump;
+    EXPECT_FALSE(walk.watch.TurnBetween(walk.time - 0.1, walk.time - 0.06)) << jump;
+    EXPECT_FALSE(walk.watch.DeadReckoned(walk.time - 0.02, walk.maps.Snapshot())) << jump;
+  }
 }
 
 TEST(InertialWatch, BeginsAnewInTheNextMap) {
@@ -143,6 +237,15 @@ TEST(InertialWatch, DoesNotCallAMapMetricThatItMustNotScale) {
   Walk meters(false);
   meters.Go(6, AddMap(meters.maps), 1, kTilted);
   EXPECT_TRUE(meters.watch.report().metric);
+}
+
+TEST(InertialWatch, TellsThatAStereoPairHasOtherLengths) {
+  Walk walk(true, Sensor::kStereo);
+  walk.Go(6, AddMap(walk.maps), 1.05, kTilted);
+  EXPECT_FALSE(walk.watch.report().metric);
+  EXPECT_NE(walk.watch.report().missing.find("% longer than by the stereo pair"), std::string::npos)
+      << walk.watch.report().missing;
+  EXPECT_EQ(walk.scaled, 1);
 }
 
 TEST(InertialWatch, GoesOnWhenTheClockIsSetBack) {

@@ -9,6 +9,10 @@ namespace {
 // A step longer than this is cut into equal parts, so that a gap in the readings is integrated as
 // accurately as the rest.
 constexpr double kLongestStep = 0.01;  // seconds
+// A hand moves at up to 2.5 Hz: readings further apart than half a period do not tell its motion.
+constexpr double kLongestSilence = 0.2;  // seconds
+// Standard deviations of what it does meanwhile, per axis. The force turns with the sensor.
+constexpr double kUnseenRate = 1, kUnseenForce = 5;  // rad/s, m/s²
 
 ImuSample Between(const ImuSample& a, const ImuSample& b, double time) {
   const double span = b.time - a.time;
@@ -17,18 +21,31 @@ ImuSample Between(const ImuSample& a, const ImuSample& b, double time) {
           a.specific_force + share * (b.specific_force - a.specific_force)};
 }
 
-// Calls `step` with the readings at the ends of each interval between `from` and `to`.
+// Calls `step` with the readings at the ends of each interval between `from` and `to`, and with the
+// time without a reading that the interval is part of, in seconds.
 template <typename Step>
 void ForEachStep(std::span<const ImuSample> samples, double from, double to, Step&& step) {
   if (samples.empty()) return;
   auto sample = std::upper_bound(samples.begin(), samples.end(), from,
                                  [](double at, const ImuSample& s) { return at < s.time; });
+  const auto silence = [&] {
+    const double begin = sample == samples.begin() ? from : std::prev(sample)->time;
+    return (sample == samples.end() ? to : sample->time) - begin;
+  };
   ImuSample last = ReadingAt(samples, from);
   for (; sample != samples.end() && sample->time < to; ++sample) {
-    step(last, *sample);
+    step(last, *sample, silence());
     last = *sample;
   }
-  step(last, ReadingAt(samples, to));
+  step(last, ReadingAt(samples, to), silence());
+}
+
+// White noise that gives the same variance of the change over a silence as a constant error of
+// standard deviation s: density² silence = (s silence)².
+ImuNoise Unseen(ImuNoise noise, double silence) {
+  noise.gyro = std::hypot(noise.gyro, kUnseenRate * std::sqrt(silence));
+  noise.accel = std::hypot(noise.accel, kUnseenForce * std::sqrt(silence));
+  return noise;
 }
 
 }  // namespace
@@ -133,12 +150,13 @@ Preintegration Preintegrate(std::span<const ImuSample> samples, double from, dou
                             const ImuBias& bias, const ImuNoise& noise) {
   Preintegration motion;
   motion.bias = bias;
-  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next) {
+  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next, double silence) {
     const double span = next.time - last.time;
+    const ImuNoise present = silence > kLongestSilence ? Unseen(noise, silence) : noise;
     const int steps = std::max(1, static_cast<int>(std::ceil(span / kLongestStep)));
     for (int k = 0; k < steps; ++k) {
       const ImuSample middle = Between(last, next, last.time + span * (k + 0.5) / steps);
-      motion.Append(span / steps, middle.angular_rate, middle.specific_force, noise);
+      motion.Append(span / steps, middle.angular_rate, middle.specific_force, present);
     }
   });
   return motion;
@@ -147,11 +165,19 @@ Preintegration Preintegrate(std::span<const ImuSample> samples, double from, dou
 Eigen::Matrix3d TurnOf(std::span<const ImuSample> samples, double from, double to,
                        const Eigen::Vector3d& gyro_bias) {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();
-  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next) {
+  ForEachStep(samples, from, to, [&](const ImuSample& last, const ImuSample& next, double) {
     const Eigen::Vector3d rate = (last.angular_rate + next.angular_rate) / 2 - gyro_bias;
     R = R * ExpSo3((next.time - last.time) * rate);
   });
   return R;
+}
+
+bool TellMotion(std::span<const ImuSample> samples, double from, double to) {
+  bool tell = !samples.empty();
+  ForEachStep(samples, from, to, [&](const ImuSample&, const ImuSample&, double silence) {
+    tell = tell && silence <= kLongestSilence;
+  });
+  return tell;
 }
 
 InertialState Predict(const InertialState& state, const Preintegration& motion,

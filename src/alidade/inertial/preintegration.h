@@ -49,7 +49,8 @@ struct Preintegration {
 };
 
 // Of `samples` (in order of time) from time `from` to time `to`, seconds. Readings between samples
-// are interpolated linearly; before the first and after the last one they are that one's.
+// are interpolated linearly; before the first and after the last one they are that one's. Where
+// there is none for more than 0.2 s, the covariance is that of a sensor that is moved by hand.
 Preintegration Preintegrate(std::span<const ImuSample> samples, double from, double to,
                             const ImuBias& bias, const ImuNoise& noise);
 
@@ -57,6 +58,9 @@ Preintegration Preintegrate(std::span<const ImuSample> samples, double from, dou
 // without its derivatives.
 Eigen::Matrix3d TurnOf(std::span<const ImuSample> samples, double from, double to,
                        const Eigen::Vector3d& gyro_bias = Eigen::Vector3d::Zero());
+
+// Whether no two successive readings between `from` and `to` are more than 0.2 s apart.
+bool TellMotion(std::span<const ImuSample> samples, double from, double to);
 
 // The reading at `time`, as above. `samples` is not empty.
 ImuSample ReadingAt(std::span<const ImuSample> samples, double time);

@@ -17,6 +17,7 @@ std::vector<RatePair> RatesAt(std::span<const TimedPose> poses, std::span<const 
   for (size_t k = 1; k < poses.size(); ++k) {
     const double from = poses[k - 1].time + offset, to = poses[k].time + offset;
     if (from < samples.front().time || to > samples.back().time || to <= from) continue;
+    if (!TellMotion(samples, from, to)) continue;
     const Eigen::Matrix3d turn =
         poses[k - 1].T_world_camera.R.transpose() * poses[k].T_world_camera.R;
     pairs.push_back({LogSo3(turn) / (to - from), LogSo3(TurnOf(samples, from, to)) / (to - from)});

@@ -107,10 +107,11 @@ class FramePipeline {
 
   const SlamSettings& settings_;
   Camera camera_;
-  Published<Camera> camera_shown_;  // camera_, for other threads
-  bool dense_;                      // semi-dense mapping is on
-  InertialWatch inertial_;          // outlives the workers, in which its fits run
-  bool has_motions_ = false;        // keyframes have KeyFrame::motion
+  Published<Camera> camera_shown_;    // camera_, for other threads
+  bool dense_;                        // semi-dense mapping is on
+  InertialWatch inertial_;            // outlives the workers, in which its fits run
+  bool has_motions_ = false;          // keyframes have KeyFrame::motion
+  double motions_hold_until_ = 1e18;  // InertialWatch::MotionsHoldUntil()
   Workers workers_;
   Tracker tracker_;
   MoverWatch movers_;

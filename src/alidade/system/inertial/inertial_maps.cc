@@ -27,6 +27,8 @@ constexpr double kLeastScale = 2e-3;
 void InertialWatch::ForgetMap() {
   fit_.reset();
   accepted_.reset();
+  doubtful_ = false;
+  agreed_until_ = doubted_until_ = kNever;
   reckoner_.Forget();
   ahead_.Forget();
   past_.clear();
@@ -147,8 +149,13 @@ std::optional<InertialWatch::Reckoned> InertialWatch::DeadReckoned(double time,
 }
 
 KeyFrameMotions::Motions InertialWatch::MissingMotions(const MapSnapshot& map) {
-  if (!accepted_ || !report_.metric || !report_.left_out.empty()) return {};
-  return motions_.Missing(map, map_, *accepted_, samples_);
+  if (!accepted_ || doubtful_ || !report_.metric || !report_.left_out.empty()) return {};
+  return motions_.Missing(map, map_, *accepted_, samples_, doubted_until_);
+}
+
+double InertialWatch::MotionsHoldUntil() const {
+  if (!report_.left_out.empty()) return kNever;
+  return doubtful_ ? agreed_until_ : -kNever;
 }
 
 std::optional<MapWorld> InertialWatch::World() const {

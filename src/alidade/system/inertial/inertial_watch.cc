@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "alidade/base/print.h"
 #include "alidade/map/view.h"
 
 namespace alidade {
@@ -28,6 +29,16 @@ constexpr double kRotationSigma = 0.03;  // radians
 constexpr size_t kPast = 60;  // poses, at least 5 s: a map is split where it began 1.5 s before
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
+
+// `meters`: of a unit of the map, by the readings.
+std::string AnotherUnit(double meters, Sensor sensor) {
+  if (sensor == Sensor::kMono) return "the map is in another unit, and it is not changed";
+  char text[120];
+  PrintTo(text, sizeof(text), "by the inertial readings lengths are %.1f %% %s than by the %s",
+          100 * std::abs(meters - 1), meters > 1 ? "longer" : "shorter",
+          sensor == Sensor::kStereo ? "stereo pair" : "depth camera");
+  return text;
+}
 
 }  // namespace
 
@@ -224,6 +235,23 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
       "(stabilized images, or readings of another device?)";
 }
 
+// Whether the newest readings are used: not while the fit contradicts them (a sensor that failed, a
+// clock that jumped). It holds poses and readings of up to 24 s, so that those since the last fit
+// that agreed stay in doubt when a later one agrees again.
+void InertialWatch::Trust(const InertialFit& fit) {
+  const bool agrees = fit.solved && fit.noise_factor < kMostNoiseFactor;
+  if (!agrees) {
+    doubtful_ = accepted_.has_value();
+    if (!doubtful_) return;
+    reckoner_.Forget();
+    ahead_.Forget();
+    past_.clear();
+    return;
+  }
+  if (std::exchange(doubtful_, false)) doubted_until_ = fit.first.time;
+  agreed_until_ = fit.last.time;
+}
+
 InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   std::optional<InertialAnswer> answer;
   {
@@ -233,10 +261,10 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   if (!answer) return {};
   awaiting_ = false;
   Judge(*answer);
-  if (!report_.left_out.empty() || !answer->fit.solved || answer->map != map_ ||
-      !map.Find(answer->reference))
-    return {};
+  if (!report_.left_out.empty() || answer->map != map_ || !map.Find(answer->reference)) return {};
   InertialFit& fit = answer->fit;
+  Trust(fit);
+  if (!fit.solved) return {};
   report_.bias = fit.states.back().bias;
   report_.model.T_camera_imu = fit.model.T_camera_imu;
   report_.model.time_offset = fit.model.time_offset;
@@ -256,7 +284,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
       fit.scale = 1;
     }
     report_.metric = changes.growth || off < kMetric;
-    report_.missing = report_.metric ? "" : "the map is in another unit, and it is not changed";
+    report_.missing = report_.metric ? "" : AnotherUnit(fit.scale, sensor_);
     report_.gravity = fit.gravity.normalized();
     report_.gravity_sigma = fit.gravity_sigma;
     report_.scale_sigma = fit.scale_sigma;
@@ -285,7 +313,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
 }
 
 std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to) const {
-  if (agreements_ < kAgreements || !report_.left_out.empty() || samples_.size() < 2)
+  if (agreements_ < kAgreements || doubtful_ || !report_.left_out.empty() || samples_.size() < 2)
     return std::nullopt;
   const ImuModel& model = report_.model;
   const bool known = model.rotation_known ||
@@ -295,6 +323,7 @@ std::optional<Eigen::Matrix3d> InertialWatch::TurnBetween(double from, double to
   if (!known || from < samples_.front().time || to > samples_.back().time + 0.01 || to < from)
     return std::nullopt;
   const auto samples = SamplesFrom(from - 0.1);
+  if (!TellMotion(samples, from, to)) return std::nullopt;
   const Eigen::Matrix3d turn = TurnOf(samples, from, to, report_.bias.gyro);
   const Eigen::Matrix3d& R = model.T_camera_imu.R;
   return R * turn.transpose() * R.transpose();

@@ -97,6 +97,8 @@ class InertialWatch {
 
   // Motions of keyframes that have none yet.
   KeyFrameMotions::Motions MissingMotions(const MapSnapshot& map);
+  // Motions of later keyframes (time of their image, seconds) are of no use; above all times: none.
+  double MotionsHoldUntil() const;
 
   // Whether a map is of use that was split off the map in meters because vision does not tell its
   // scale: the readings will tell it, and it is joined to that one then.
@@ -131,6 +133,7 @@ class InertialWatch {
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
   std::span<const ImuSample> SamplesFrom(double time) const;
   bool Accepts(const InertialFit& fit) const;
+  void Trust(const InertialFit& fit);
   void Judge(const InertialAnswer& answer);
 
   Sensor sensor_;
@@ -152,6 +155,9 @@ class InertialWatch {
   double asked_at_ = kNever;             // time of the newest pose of the last question
   std::optional<InertialFit> accepted_;  // the last one that was accepted, in map_
   KeyFrameMotions motions_;
+  bool doubtful_ = false;  // a fit was accepted in map_, and the last one contradicts the readings
+  double agreed_until_ = kNever;   // time of the newest pose of the last fit that agreed
+  double doubted_until_ = kNever;  // time of an image before which there was doubt
   bool awaiting_ = false;
   int agreements_ = 0;      // answers in which the rotations agree
   int contradictions_ = 0;  // consecutive answers in which rotations disagree

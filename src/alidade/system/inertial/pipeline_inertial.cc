@@ -39,22 +39,24 @@ void FramePipeline::KeepWorld() {
   workers_.map().Commit([&](MapCommit& commit) { commit.SetWorld(*world); });
 }
 
-// Keyframes get the motion since the one before; if the readings turn out to be of no use, those
-// that have it lose it.
+// Keyframes get the motion since the one before; those whose readings turn out to be of no use lose
+// it.
 void FramePipeline::KeepMotions(const MapSnapshot& map) {
-  const bool left_out = !inertial_.report().left_out.empty();
+  const double hold_until = inertial_.MotionsHoldUntil();
+  const bool fewer_hold = hold_until < std::exchange(motions_hold_until_, hold_until);
   const KeyFrameMotions::Motions motions = inertial_.MissingMotions(map);
-  if (settings_.localize || (motions.empty() && !(left_out && has_motions_))) return;
-  has_motions_ = !left_out;
+  if (settings_.localize || (motions.empty() && !(fewer_hold && has_motions_))) return;
+  has_motions_ = true;
   workers_.map().Commit([&](MapCommit& commit) {
     for (const auto& [id, motion] : motions) {
       KeyFrame* keyframe = commit.Edit(id);
       if (keyframe && commit.Find(motion->since)) keyframe->motion = motion;
     }
-    if (!left_out) return;
+    if (!fewer_hold) return;
     for (KeyFrameId id : map.KeyFrames()) {
       const KeyFrame* keyframe = commit.Find(id);
-      if (keyframe && keyframe->motion) commit.Edit(id)->motion.reset();
+      if (keyframe && keyframe->motion && keyframe->frame->time > hold_until)
+        commit.Edit(id)->motion.reset();
     }
   });
 }
