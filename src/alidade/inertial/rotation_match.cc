@@ -25,6 +25,17 @@ std::vector<RatePair> RatesAt(std::span<const TimedPose> poses, std::span<const 
   return pairs;
 }
 
+// Root mean square of the camera's rates, and of what the readings leave of them.
+void MeasureResidual(std::span<const RatePair> pairs, RotationMatch& match) {
+  double left = 0, turning = 0;
+  for (const RatePair& pair : pairs) {
+    left += (pair.camera - match.R_camera_imu * (pair.imu - match.gyro_bias)).squaredNorm();
+    turning += pair.camera.squaredNorm();
+  }
+  match.residual = std::sqrt(left / static_cast<double>(pairs.size()));
+  match.turning = std::sqrt(turning / static_cast<double>(pairs.size()));
+}
+
 RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, double offset) {
   RotationMatch match;
   match.time_offset = offset;
@@ -52,18 +63,25 @@ RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, do
     R = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
   }
   match.gyro_bias = imu - R.transpose() * camera;
-  double left = 0, turning = 0;
-  for (const RatePair& pair : pairs) {
-    left += (pair.camera - R * (pair.imu - match.gyro_bias)).squaredNorm();
-    turning += pair.camera.squaredNorm();
-  }
-  match.residual = std::sqrt(left / static_cast<double>(pairs.size()));
-  match.turning = std::sqrt(turning / static_cast<double>(pairs.size()));
+  MeasureResidual(pairs, match);
   match.ok = true;
   return match;
 }
 
 }  // namespace
+
+bool TurnsAsCamera(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                   const ImuModel& model, const Eigen::Vector3d& gyro_bias) {
+  if (poses.size() < 2 || samples.size() < 2) return false;
+  const std::vector<RatePair> pairs = RatesAt(poses, samples, model.time_offset);
+  if (pairs.empty()) return false;
+  RotationMatch match;
+  match.R_camera_imu = model.T_camera_imu.R;
+  match.gyro_bias = gyro_bias;
+  MeasureResidual(pairs, match);
+  match.ok = true;
+  return match.Tells() && !match.Contradicts();
+}
 
 RotationMatch MatchRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                              const ImuModel& model, double longest_offset) {

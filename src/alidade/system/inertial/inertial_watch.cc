@@ -19,6 +19,9 @@ constexpr double kMargin = 0.3;        // seconds of readings kept beside the po
 // In standard deviations of the scale: a map is scaled again when it is off by more than the first,
 // and one that must not be scaled is in meters when it is off by less than the second.
 constexpr double kRescale = 0.3, kMetric = 3;
+// Relative standard deviation of the lengths that a depth camera or a stereo pair tells: errors of
+// its calibration.
+constexpr double kDepthScale = 0.01;
 // Readings are left out when rotations contradict each other in this many fits in a row.
 constexpr int kContradictions = 3;
 // Readings are used once rotations have agreed in this many fits: until then nothing tells that
@@ -26,7 +29,8 @@ constexpr int kContradictions = 3;
 constexpr int kAgreements = 2;
 // The rotation of the sensor is known well enough to predict frames.
 constexpr double kRotationSigma = 0.03;  // radians
-constexpr size_t kPast = 60;  // poses, at least 5 s: a map is split where it began 1.5 s before
+constexpr size_t kPast = 60;   // poses, at least 5 s: a map is split where it began 1.5 s before
+constexpr double kNewest = 2;  // seconds of poses whose rotations tell whether the sensor works
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
 
@@ -56,6 +60,14 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
     found.rotation_known = found.time_offset_known = true;
   }
   answer.rotation = MatchRotations(question.poses, question.samples, found);
+  if (question.accepted && !question.poses.empty()) {
+    const auto newest = std::find_if(
+        question.poses.begin(), question.poses.end(),
+        [&](const TimedPose& pose) { return pose.time > question.poses.back().time - kNewest; });
+    const auto& [model, bias] = *question.accepted;
+    answer.turns =
+        TurnsAsCamera({newest, question.poses.end()}, question.samples, model, bias.gyro);
+  }
   answer.fit =
       FitInertial(question.poses, question.samples, question.model, question.priors, start);
   if (!answer.fit.solved && start)
@@ -201,9 +213,10 @@ std::optional<InertialQuestion> InertialWatch::Ask(const MapSnapshot& map) {
   question.samples.assign(samples.begin(), samples.end());
   question.model = calibration_.model;
   question.priors = calibration_.priors;
-  if (sensor_ != Sensor::kMono) question.priors.scale = 0.01;
+  if (sensor_ != Sensor::kMono) question.priors.scale = kDepthScale;
   if (sensor_ == Sensor::kMono && known_scale_ > 0) question.priors.scale = known_scale_;
   question.start = fit_;
+  if (accepted_) question.accepted = {accepted_->model, accepted_->states.back().bias};
   question.map = map_;
   question.reference = placements_.back().anchor.keyframe;
   question.T_reference_world = map.state().PoseOf(question.reference);
@@ -235,11 +248,13 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
       "(stabilized images, or readings of another device?)";
 }
 
-// Whether the newest readings are used: not while the fit contradicts them (a sensor that failed, a
-// clock that jumped). It holds poses and readings of up to 24 s, so that those since the last fit
-// that agreed stay in doubt when a later one agrees again.
-void InertialWatch::Trust(const InertialFit& fit) {
-  const bool agrees = fit.solved && fit.noise_factor < kMostNoiseFactor;
+// Whether the newest readings are used: not while poses and readings contradict each other because
+// of the readings (a sensor that failed, a clock that jumped). If the newest rotations agree
+// (`turns`) it is the map that is bent, and its motions hold it. A fit has poses and readings of up
+// to 24 s, so that those since the last one that agreed stay in doubt when a later one agrees
+// again.
+void InertialWatch::Trust(const InertialFit& fit, bool turns) {
+  const bool agrees = turns || (fit.solved && fit.noise_factor < kMostNoiseFactor);
   if (!agrees) {
     doubtful_ = accepted_.has_value();
     if (!doubtful_) return;
@@ -249,7 +264,7 @@ void InertialWatch::Trust(const InertialFit& fit) {
     return;
   }
   if (std::exchange(doubtful_, false)) doubted_until_ = fit.first.time;
-  agreed_until_ = fit.last.time;
+  if (fit.solved) agreed_until_ = fit.last.time;
 }
 
 InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
@@ -263,7 +278,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   Judge(*answer);
   if (!report_.left_out.empty() || answer->map != map_ || !map.Find(answer->reference)) return {};
   InertialFit& fit = answer->fit;
-  Trust(fit);
+  Trust(fit, answer->turns);
   if (!fit.solved) return {};
   report_.bias = fit.states.back().bias;
   report_.model.T_camera_imu = fit.model.T_camera_imu;
@@ -278,7 +293,8 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   fit.first.common.scale /= grown;
   if (accepted) {
     changes.join = JoinBy(fit, map);
-    const double off = std::abs(std::log(fit.scale)) / fit.scale_sigma;
+    const double unit = sensor_ == Sensor::kMono ? 0 : kDepthScale;
+    const double off = std::abs(std::log(fit.scale)) / std::hypot(fit.scale_sigma, unit);
     if (sensor_ == Sensor::kMono && may_scale_ && off > kRescale) {
       changes.growth = Growth{map_, fit.scale};
       fit.scale = 1;

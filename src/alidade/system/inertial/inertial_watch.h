@@ -30,6 +30,8 @@ struct InertialQuestion {
   ImuModel model;
   InertialPriors priors;
   std::optional<InertialFit> start;
+  // The sensor as in the last fit that was accepted; nullopt: none was.
+  std::optional<std::pair<ImuModel, ImuBias>> accepted;
   MapId map;
   KeyFrameId reference;   // of the newest pose
   Se3 T_reference_world;  // pose and KeyFrame::scale of that keyframe when it was asked
@@ -39,6 +41,7 @@ struct InertialQuestion {
 struct InertialAnswer {
   InertialFit fit;
   RotationMatch rotation;
+  bool turns = false;  // TurnsAsCamera() of the newest readings, by what was accepted
   MapId map;
   KeyFrameId reference;
   Se3 T_reference_world;
@@ -133,7 +136,7 @@ class InertialWatch {
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
   std::span<const ImuSample> SamplesFrom(double time) const;
   bool Accepts(const InertialFit& fit) const;
-  void Trust(const InertialFit& fit);
+  void Trust(const InertialFit& fit, bool turns);
   void Judge(const InertialAnswer& answer);
 
   Sensor sensor_;
