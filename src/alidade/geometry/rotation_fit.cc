@@ -17,6 +17,12 @@ constexpr double kMedianOfNorm = 1.177;  // of a 2-vector with unit variances: s
 constexpr double kLossWidth = 3;         // standard deviations: the weight there is a quarter
 constexpr double kInlier = 3;
 
+// Chains of products would leave the rotations exponentially fast, where one is the start of the
+// next.
+Eigen::Matrix3d Orthonormal(const Eigen::Matrix3d& R) {
+  return Eigen::Quaterniond(R).normalized().toRotationMatrix();
+}
+
 // Standard deviation along each axis from the median length of the residuals.
 double ScaleOf(std::vector<double> lengths, double least) {
   return std::max(least, UpperMedian(lengths) / kMedianOfNorm);
@@ -27,7 +33,7 @@ double ScaleOf(std::vector<double> lengths, double least) {
 RotationFit FitRotation(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b,
                         const Eigen::Matrix3d& start, double least_residual) {
   RotationFit fit;
-  fit.R_a_b = start;
+  fit.R_a_b = Orthonormal(start);
   if (a.size() < 3 || a.size() != b.size()) return fit;
   std::vector<double> lengths(a.size());
   const auto measure = [&] {
@@ -51,7 +57,7 @@ RotationFit FitRotation(std::span<const Eigen::Vector3d> a, std::span<const Eige
     if (solver.info() != Eigen::Success || !solver.isPositive()) return fit;
     const Eigen::Vector3d step = solver.solve(right);
     if (!step.allFinite()) return fit;
-    fit.R_a_b = fit.R_a_b * ExpSo3(step);
+    fit.R_a_b = Orthonormal(fit.R_a_b * ExpSo3(step));
     measure();
     if (step.norm() < kEnough) break;
   }

@@ -64,6 +64,7 @@ AttitudeFilter::AttitudeFilter(const ImuModel& model, const AttitudePriors& prio
   sigma.segment<3>(kGyro).setConstant(priors.gyro_bias);
   sigma.segment<3>(kAccel).setConstant(priors.accel_bias);
   sigma.segment<3>(kVelocity).setConstant(priors.held_speed);
+  sigma.segment<3>(kPosition).setZero();
   sigma.segment<3>(kTurn).setConstant(priors.rotation);
   sigma(kOffset) = priors.time_offset;
   covariance_ = sigma.cwiseAbs2().asDiagonal();
@@ -187,14 +188,17 @@ void AttitudeFilter::Step(const ImuSample& from, const ImuSample& to) {
   const Matrix3d R = R_world_imu_ * ExpSo3(turn / 2);
   const Vector3d force = R * ((from.specific_force + to.specific_force) / 2 - bias_.accel);
   R_world_imu_ = R_world_imu_ * ExpSo3(turn);
+  position_ += velocity_ * dt;
   velocity_ += (force - kGravity * kUp) * dt;
 
   Eigen::MatrixXd& P = covariance_;
   const auto rows = [&](int at) { return P.middleRows<3>(at); };
   const auto columns = [&](int at) { return P.middleCols<3>(at); };
   const Matrix3d v_by_attitude = -dt * Skew(force), by_bias = -dt * R;
+  rows(kPosition) += dt * rows(kVelocity);
   rows(kVelocity) += v_by_attitude * rows(kAttitude) + by_bias * rows(kAccel);
   rows(kAttitude) += by_bias * rows(kGyro);
+  columns(kPosition) += dt * columns(kVelocity);
   columns(kVelocity) +=
       columns(kAttitude) * v_by_attitude.transpose() + columns(kAccel) * by_bias.transpose();
   columns(kAttitude) += columns(kGyro) * by_bias.transpose();
@@ -213,6 +217,8 @@ void AttitudeFilter::Gap(double seconds) {
   covariance_.diagonal().segment<3>(kAttitude).array() += turn * turn;
   const double change = std::min(kGapForce * seconds, priors_.held_speed);
   covariance_.diagonal().segment<3>(kVelocity).array() += change * change;
+  const double way = priors_.held_speed * seconds;
+  covariance_.diagonal().segment<3>(kPosition).array() += way * way;
 }
 
 // `force`: mean of R (f - bias) over the last `seconds`. The derivative by the attitude is that at
@@ -227,6 +233,18 @@ void AttitudeFilter::MeasureMotion(double seconds, const Vector3d& force) {
   const double density = 2 * priors_.held_speed * priors_.held_speed / tau;
   const Vector3d innovation = kGravity * kUp - force - velocity_ / tau;
   Measure(by, innovation, Matrix3d::Identity() * (density / seconds), kNoGate);
+}
+
+void AttitudeFilter::StayAtSpot(double sigma) {
+  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(3, covariance_.cols());
+  by.middleCols<3>(kPosition).setIdentity();
+  Measure(by, -position_, sigma * sigma * Matrix3d::Identity(), kNoGate);
+}
+
+void AttitudeFilter::MoveOn() {
+  position_.setZero();
+  covariance_.middleRows<3>(kPosition).setZero();
+  covariance_.middleCols<3>(kPosition).setZero();
 }
 
 bool AttitudeFilter::See(int id, const Matrix3d& R_view_camera, const Matrix3d& covariance) {
@@ -262,6 +280,7 @@ void AttitudeFilter::Increase(const Eigen::VectorXd& step) {
   bias_.gyro += step.segment<3>(kGyro);
   bias_.accel += step.segment<3>(kAccel);
   velocity_ += step.segment<3>(kVelocity);
+  position_ += step.segment<3>(kPosition);
   Matrix3d& R = model_.T_camera_imu.R;
   R = Eigen::Quaterniond(R * ExpSo3(step.segment<3>(kTurn))).normalized().toRotationMatrix();
   model_.time_offset += step(kOffset);

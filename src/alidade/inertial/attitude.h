@@ -68,6 +68,11 @@ class AttitudeFilter {
   // that covariance, rad². False: it contradicts the state (chi², 99.9 %), and is not used.
   bool See(int id, const Eigen::Matrix3d& R_view_camera, const Eigen::Matrix3d& covariance);
 
+  // The camera is at a spot, from which it may turn away and come back: the images show no more
+  // motion than `sigma` (meters, standard deviation) since the last MoveOn().
+  void StayAtSpot(double sigma);
+  void MoveOn();  // to another spot
+
   Attitude Camera() const;
   Attitude View(int id) const;  // of the view, which is there
   ImuBias bias() const { return bias_; }
@@ -84,9 +89,10 @@ class AttitudeFilter {
     kGyro = 3,
     kAccel = 6,
     kVelocity = 9,
-    kTurn = 12,
-    kOffset = 15,
-    kViews = 16  // 3 of each view; the first one is the camera at the start
+    kPosition = 12,
+    kTurn = 15,
+    kOffset = 18,
+    kViews = 19  // 3 of each view; the first one is the camera at the start
   };
   struct SeenView {
     int id;
@@ -111,6 +117,7 @@ class AttitudeFilter {
   Eigen::Matrix3d R_world_imu_ = Eigen::Matrix3d::Identity();
   ImuBias bias_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();      // in the world, m/s
+  Eigen::Vector3d position_ = Eigen::Vector3d::Zero();      // from the spot, in the world, m
   Eigen::Vector3d angular_rate_ = Eigen::Vector3d::Zero();  // the last reading, bias not subtracted
   std::vector<SeenView> views_;
   Eigen::MatrixXd covariance_;

@@ -6,6 +6,7 @@
 
 #include "alidade/features/matching.h"
 #include "alidade/geometry/rotation_fit.h"
+#include "alidade/geometry/se3.h"
 
 namespace alidade {
 namespace {
@@ -45,6 +46,11 @@ void TurnViews::Reset() {
   R_start_last_ = last_turn_ = Matrix3d::Identity();
 }
 
+void TurnViews::Turned(const Matrix3d& R_start_camera) {
+  R_start_last_ = R_start_camera;
+  ++spot_;
+}
+
 TurnViews::View* TurnViews::Nearest(const Matrix3d& R_start_camera) {
   View* nearest = nullptr;
   double least = 0;
@@ -81,8 +87,8 @@ std::optional<TurnViews::Seen> TurnViews::Compare(const View& view, const Frame&
   const double enough =
       std::max(kFewestInliers * match_scale_, 0.5 * static_cast<double>(a.size()));
   if (fit.inliers < enough) return std::nullopt;
-  Seen seen{view.id, fit.R_a_b, {}};
   const double sigma = kOfResidual * fit.residual;
+  Seen seen{view.id, fit.R_a_b, {}, sigma, view.spot == spot_};
   const double angle = LogSo3(fit.R_a_b).norm() * camera.focal_sigma;
   seen.covariance =
       sigma * sigma * fit.information.inverse() + angle * angle * Matrix3d::Identity();
@@ -101,9 +107,10 @@ std::optional<int> TurnViews::MakeRoom() {
 TurnViews::Step TurnViews::Add(const Frame& frame, const Camera& camera,
                                const std::optional<Matrix3d>& turn) {
   Step step;
-  const Matrix3d guess = R_start_last_ * turn.value_or(last_turn_);
+  const Matrix3d turned = R_start_last_ * turn.value_or(last_turn_);
+  const Matrix3d guess = Eigen::Quaterniond(turned).normalized().toRotationMatrix();
   step.R_start_camera = guess;
-  bool view_serves = false;
+  bool tells = false, near = false;
   if (View* view = Nearest(guess)) {
     const Matrix3d R_view_camera = view->R_start_view.transpose() * guess;
     step.seen = Compare(*view, frame, camera, R_view_camera, (turn ? kNear : kFar) * camera.width);
@@ -112,16 +119,19 @@ TurnViews::Step TurnViews::Add(const Frame& frame, const Camera& camera,
       step.known = true;
       step.R_start_camera = view->R_start_view * step.seen->R_view_camera;
       const double apart = LogSo3(step.seen->R_view_camera).norm() * camera.fx;
-      view_serves = apart < kApart * camera.width && step.seen->covariance(0, 0) < kPoor * kPoor;
+      near = apart < kApart * camera.width;
+      tells = step.seen->covariance(0, 0) < kPoor * kPoor;
     }
   } else {
     step.known = true;  // the start
   }
-  if (!view_serves &&
+  if (!(near && tells) &&
       static_cast<double>(frame.keypoints.size()) >= 2 * kFewestInliers * match_scale_) {
     step.dropped = MakeRoom();
     step.added = next_++;
-    views_.push_back({*step.added, WithoutImages(frame), step.R_start_camera});
+    step.new_spot = !tells || !step.seen->at_spot;
+    if (step.new_spot) ++spot_;
+    views_.push_back({*step.added, WithoutImages(frame), step.R_start_camera, spot_});
   }
   last_turn_ =
       step.known ? (R_start_last_.transpose() * step.R_start_camera).eval() : Matrix3d::Identity();

@@ -23,10 +23,13 @@ class TurnViews {
     // taken to be as large as twice a residual. It changes slowly: errors of images that follow
     // each other are not independent.
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+    double moved = 0;  // standard deviation of |t| over the mean distance
+    bool at_spot = false;  // the view is of the spot the camera was at before
   };
   struct Step {
     std::optional<Seen> seen;
     std::optional<int> added;  // the image is a view now
+    bool new_spot = false;     // and no rotation connects it with the spot before: the camera moved
     std::optional<int> dropped;
     Eigen::Matrix3d R_start_camera = Eigen::Matrix3d::Identity();
     // R_start_camera follows from an image, not from a guess alone.
@@ -40,7 +43,7 @@ class TurnViews {
   // between the last two.
   Step Add(const Frame& frame, const Camera& camera, const std::optional<Eigen::Matrix3d>& turn);
   // The camera has turned while images were not added.
-  void Turned(const Eigen::Matrix3d& R_start_camera) { R_start_last_ = R_start_camera; }
+  void Turned(const Eigen::Matrix3d& R_start_camera);
   void Reset();
 
  private:
@@ -48,6 +51,7 @@ class TurnViews {
     int id;
     std::shared_ptr<const Frame> frame;  // without images
     Eigen::Matrix3d R_start_view;
+    int spot;      // number of the place where the camera turned
     int uses = 0;  // images that were compared with it
   };
   View* Nearest(const Eigen::Matrix3d& R_start_camera);
@@ -57,7 +61,7 @@ class TurnViews {
 
   double match_scale_;
   std::vector<View> views_;  // oldest first
-  int next_ = 0;
+  int next_ = 0, spot_ = 0;
   Eigen::Matrix3d R_start_last_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d last_turn_ = Eigen::Matrix3d::Identity();
 };

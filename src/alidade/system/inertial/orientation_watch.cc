@@ -25,6 +25,9 @@ constexpr double kLeastRotation = 0.01, kLeastOffset = 2e-3;
 // Errors of rotations to one view are alike for about this long (parallax changes slowly): each of
 // the images in that time is given its share of what one of them would tell.
 constexpr double kAlike = 0.5;         // seconds
+// A camera that turns at a spot: the way of the sensor, which is beside it, and of what is seen
+// from afar; and the distance, with which parallax is turned into motion.
+constexpr double kSway = 0.05, kDistance = 10;  // meters
 constexpr double kUnknownPose = 2e-3;  // radians: of a pose without covariance
 constexpr double kMapErrors = 1e-3;    // radians: of poses of one map, in common
 constexpr double kLongestPause = 2;    // seconds between frames
@@ -123,7 +126,12 @@ OrientationWatch::Event OrientationWatch::EventOf(const Frame& frame, const Came
   event.R_start_camera = step.R_start_camera;
   event.known = step.known;
   event.seen = step.seen;
-  if (event.seen) event.seen->covariance /= share;
+  if (event.seen) {
+    event.seen->covariance /= share;
+    if (event.seen->at_spot)
+      event.spot_sigma = std::hypot(kSway, kDistance * event.seen->moved) / std::sqrt(share);
+  }
+  event.new_spot = step.new_spot;
   if (step.dropped) event.dropped.push_back(*step.dropped);
   if (step.added) event.added.push_back({*step.added, Matrix3d::Identity()});
   if (map_.valid()) event.dropped.push_back(kMapView);
@@ -174,6 +182,8 @@ void OrientationWatch::Use(const Event& event, std::span<const ImuSample> sample
   } else if (event.seen) {
     filter.See(event.seen->view, event.seen->R_view_camera, event.seen->covariance);
   }
+  if (event.spot_sigma > 0) filter.StayAtSpot(event.spot_sigma);
+  if (event.new_spot) filter.MoveOn();
   for (const View& view : event.added) filter.AddView(view.id, view.R_camera_view);
 }
 

@@ -52,6 +52,8 @@ class OrientationWatch {
     std::optional<TurnViews::Seen> seen;
     std::vector<int> dropped;
     std::vector<View> added;
+    double spot_sigma = 0;  // of the camera's position at the spot, meters; 0: unknown
+    bool new_spot = false;
   };
   struct Learned {
     ImuModel model;
