@@ -122,17 +122,18 @@ Attitude AttitudeFilter::View(int id) const {
   return Told(views_[index].R_world_view, by);
 }
 
-void AttitudeFilter::AddView(int id, const Matrix3d& R_camera_view) {
+void AttitudeFilter::AddView(int id, const Matrix3d& R_camera_view, const Matrix3d& covariance) {
   DropView(id);
   const long size = covariance_.rows();
   const Rows3 by = ByCamera();
   const Rows3 cross = by * covariance_;
-  const Matrix3d own = cross * by.transpose();
+  const Matrix3d R = R_world_camera();
+  const Matrix3d own = cross * by.transpose() + R * covariance * R.transpose();
   covariance_.conservativeResize(size + 3, size + 3);
   covariance_.block(size, 0, 3, size) = cross;
   covariance_.block(0, size, size, 3) = cross.transpose();
   covariance_.block<3, 3>(size, size) = own;
-  views_.push_back({id, R_world_camera() * R_camera_view});
+  views_.push_back({id, R * R_camera_view});
 }
 
 void AttitudeFilter::DropView(int id) {

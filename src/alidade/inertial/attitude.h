@@ -40,8 +40,8 @@ struct AttitudePriors {
   double accel_bias = 0.3;    // m/s²
   double rotation = 3e-3;     // of model.T_camera_imu.R, radians, each axis
   double time_offset = 1e-3;  // seconds
-  double held_speed = 0.5;    // m/s, σ of the velocity: standing to walking
-  double held_seconds = 1;    // τ of the velocity: a step takes half a second
+  double held_speed = 1;      // m/s, σ of the velocity: a person who walks
+  double held_seconds = 3;    // τ of the velocity: indoors a walk changes its direction
 };
 
 class AttitudeFilter {
@@ -60,8 +60,9 @@ class AttitudeFilter {
 
   // A view is a direction that was seen before, or a map: anything whose rotation to the camera is
   // measured again and again. Its own attitude becomes part of the state: that of the present
-  // camera, turned by R_camera_view.
-  void AddView(int id, const Eigen::Matrix3d& R_camera_view);
+  // camera, turned by R_camera_view, which is known with a covariance (camera axes, rad²).
+  void AddView(int id, const Eigen::Matrix3d& R_camera_view,
+               const Eigen::Matrix3d& covariance = Eigen::Matrix3d::Zero());
   void DropView(int id);
   bool HasView(int id) const;
   // The measured rotation of the present camera to a view: R_view_camera Exp(e) is true, with e of

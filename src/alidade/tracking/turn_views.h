@@ -23,7 +23,7 @@ class TurnViews {
     // taken to be as large as twice a residual. It changes slowly: errors of images that follow
     // each other are not independent.
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-    double moved = 0;  // standard deviation of |t| over the mean distance
+    double moved = 0;      // standard deviation of |t| over the mean distance
     bool at_spot = false;  // the view is of the spot the camera was at before
   };
   struct Step {

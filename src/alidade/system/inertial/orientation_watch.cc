@@ -24,13 +24,16 @@ constexpr double kWidening = 3;
 constexpr double kLeastRotation = 0.01, kLeastOffset = 2e-3;
 // Errors of rotations to one view are alike for about this long (parallax changes slowly): each of
 // the images in that time is given its share of what one of them would tell.
-constexpr double kAlike = 0.5;         // seconds
+constexpr double kAlike = 0.5;  // seconds
 // A camera that turns at a spot: the way of the sensor, which is beside it, and of what is seen
 // from afar; and the distance, with which parallax is turned into motion.
 constexpr double kSway = 0.05, kDistance = 10;  // meters
-constexpr double kUnknownPose = 2e-3;  // radians: of a pose without covariance
-constexpr double kMapErrors = 1e-3;    // radians: of poses of one map, in common
-constexpr double kLongestPause = 2;    // seconds between frames
+constexpr double kFirstSpot = 1;  // seconds: in less, gravity is not known better than 2 degrees
+constexpr double kUnknownPose = 1e-2;  // radians: of a pose without covariance: two views
+// Radians, of poses of one map in common: a young map bends.
+constexpr double kMapErrors = 3e-3;
+constexpr int kRefused = 15;         // poses in a row: the map has changed
+constexpr double kLongestPause = 2;  // seconds between frames
 
 std::vector<double> LensOf(const Camera& camera) {
   std::vector<double> lens(camera.distortion.begin(), camera.distortion.end());
@@ -107,10 +110,13 @@ OrientationWatch::Event OrientationWatch::EventOf(const Frame& frame, const Came
   Event event;
   event.time = time;
   const double share = last_ ? std::min(1.0, (time - last_->time) / kAlike) : 1;
-  if (pose && pose->map == map_) {
-    Matrix3d covariance = pose->covariance;
+  Matrix3d covariance = Matrix3d::Zero();
+  if (pose) {
+    covariance = pose->covariance;
     if (covariance.isZero(0)) covariance = kUnknownPose * kUnknownPose * Matrix3d::Identity();
     covariance += kMapErrors * kMapErrors * Matrix3d::Identity();
+  }
+  if (pose && pose->map == map_) {
     event.seen = TurnViews::Seen{kMapView, pose->R_map_camera, covariance / share};
     event.R_start_camera = R_start_map_ * pose->R_map_camera;
     event.known = true;
@@ -128,16 +134,17 @@ OrientationWatch::Event OrientationWatch::EventOf(const Frame& frame, const Came
   event.seen = step.seen;
   if (event.seen) {
     event.seen->covariance /= share;
-    if (event.seen->at_spot)
+    if (event.seen->at_spot && time - spot_since_ > kFirstSpot)
       event.spot_sigma = std::hypot(kSway, kDistance * event.seen->moved) / std::sqrt(share);
   }
   event.new_spot = step.new_spot;
+  if (event.new_spot) spot_since_ = time;
   if (step.dropped) event.dropped.push_back(*step.dropped);
-  if (step.added) event.added.push_back({*step.added, Matrix3d::Identity()});
+  if (step.added) event.added.push_back({*step.added, Matrix3d::Identity(), Matrix3d::Zero()});
   if (map_.valid()) event.dropped.push_back(kMapView);
   map_ = pose ? pose->map : MapId{};
   if (pose) {
-    event.added.push_back({kMapView, pose->R_map_camera.transpose()});
+    event.added.push_back({kMapView, pose->R_map_camera.transpose(), covariance});
     R_start_map_ = event.R_start_camera * pose->R_map_camera.transpose();
   }
   return event;
@@ -173,53 +180,55 @@ void OrientationWatch::Begin(std::span<const ImuSample> samples) {
   filter_.emplace(sensor_->model, sensor_->priors, first.time, samples, first.R_start_camera);
 }
 
-void OrientationWatch::Use(const Event& event, std::span<const ImuSample> samples,
-                           AttitudeFilter& filter) const {
+// False: the measured rotation contradicts the filter.
+bool OrientationWatch::Use(const Event& event, std::span<const ImuSample> samples,
+                           AttitudeFilter& filter) {
+  bool agrees = true;
   filter.Advance(event.time, samples);
   for (int id : event.dropped) filter.DropView(id);
   if (event.seen && !filter.HasView(event.seen->view)) {  // from before the filter began
     filter.AddView(event.seen->view, event.seen->R_view_camera.transpose());
   } else if (event.seen) {
-    filter.See(event.seen->view, event.seen->R_view_camera, event.seen->covariance);
+    agrees = filter.See(event.seen->view, event.seen->R_view_camera, event.seen->covariance);
   }
   if (event.spot_sigma > 0) filter.StayAtSpot(event.spot_sigma);
   if (event.new_spot) filter.MoveOn();
-  for (const View& view : event.added) filter.AddView(view.id, view.R_camera_view);
+  for (const View& view : event.added) filter.AddView(view.id, view.R_camera_view, view.covariance);
+  return agrees;
 }
 
 void OrientationWatch::UseCovered(std::span<const ImuSample> samples) {
   while (!waiting_.empty()) {
+    const Event& event = waiting_.front();
     const double covered = samples.back().time - filter_->model().time_offset;
-    if (waiting_.front().time > covered && last_->time - waiting_.front().time < kLate) return;
-    Use(waiting_.front(), samples, *filter_);
+    if (event.time > covered && last_->time - event.time < kLate) return;
+    refused_ = Use(event, samples, *filter_) ? 0 : refused_ + 1;
+    if (refused_ >= kRefused && event.seen->view == kMapView) {
+      filter_->AddView(kMapView, event.seen->R_view_camera.transpose());
+      refused_ = 0;
+    }
     waiting_.pop_front();
   }
 }
 
+// While tracking it follows the pose, in the attitude of the map. What the map tells of gravity is
+// used by the inverse variances. The readings are the same as the filter's: the errors are taken as
+// those of the better one.
 CameraOrientation OrientationWatch::Told(const AttitudeFilter& filter,
-                                         const std::optional<MapPose>& pose) const {
-  Attitude camera = filter.Camera();
-  double tilt = 0;
-  if (pose && filter.HasView(kMapView)) {
-    // That of the pose, in the map's attitude.
-    const Attitude map = filter.View(kMapView);
-    camera.R_world_camera = map.R_world_camera * pose->R_map_camera;
-    camera.covariance = map.covariance + camera.R_world_camera * pose->covariance *
-                                             camera.R_world_camera.transpose();
-    if (pose->world && pose->world->down_sigma > 0) {
-      // What the map tells of gravity, by the inverse variances. The readings are the same: the
-      // errors are taken as those of the better one.
-      const double own = map.TiltSigma(), other = pose->world->down_sigma;
-      const Eigen::AngleAxisd upright(Eigen::Quaterniond::FromTwoVectors(
-          -(map.R_world_camera * pose->world->down), Vector3d(0, 0, 1)));
-      const double weight = own * own / (own * own + other * other);
-      camera.R_world_camera =
-          Eigen::AngleAxisd(weight * upright.angle(), upright.axis()) * camera.R_world_camera;
-      if (other < own) tilt = other;
-    }
-  }
-  if (tilt == 0) tilt = camera.TiltSigma();
-  return {camera.R_world_camera, tilt, camera.HeadingSigma()};
+                                         const std::optional<MapPose>& pose) {
+  const Attitude camera = filter.Camera();
+  CameraOrientation told{camera.R_world_camera, camera.TiltSigma(), camera.HeadingSigma()};
+  if (!pose || !pose->world || !(pose->world->down_sigma > 0) || !filter.HasView(kMapView))
+    return told;
+  const Attitude map = filter.View(kMapView);
+  const double own = map.TiltSigma(), other = pose->world->down_sigma;
+  const Eigen::AngleAxisd upright(Eigen::Quaterniond::FromTwoVectors(
+      -(map.R_world_camera * pose->world->down), Vector3d::UnitZ()));
+  const double weight = own * own / (own * own + other * other);
+  told.R_world_camera =
+      Eigen::AngleAxisd(weight * upright.angle(), upright.axis()) * told.R_world_camera;
+  told.tilt_sigma = std::min(told.tilt_sigma, other);
+  return told;
 }
 
 }  // namespace alidade

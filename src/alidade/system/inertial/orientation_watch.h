@@ -43,6 +43,7 @@ class OrientationWatch {
   struct View {
     int id;
     Eigen::Matrix3d R_camera_view;
+    Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   };
   // What one frame adds to the filter, once readings cover it.
   struct Event {
@@ -64,9 +65,9 @@ class OrientationWatch {
   std::optional<Eigen::Matrix3d> TurnSince(double time, std::span<const ImuSample> samples) const;
   void FindSensor(std::span<const ImuSample> samples);
   void Begin(std::span<const ImuSample> samples);
-  void Use(const Event& event, std::span<const ImuSample> samples, AttitudeFilter& filter) const;
+  static bool Use(const Event& event, std::span<const ImuSample> samples, AttitudeFilter& filter);
   void UseCovered(std::span<const ImuSample> samples);
-  CameraOrientation Told(const AttitudeFilter& filter, const std::optional<MapPose>& pose) const;
+  static CameraOrientation Told(const AttitudeFilter& filter, const std::optional<MapPose>& pose);
 
   ImuModel given_;
   std::optional<Learned> sensor_;  // what is known of it, once that is enough to begin
@@ -77,7 +78,9 @@ class OrientationWatch {
   std::optional<Event> last_;  // the last frame
   MapId map_;                  // that the last frame was tracked in; invalid: none
   Eigen::Matrix3d R_start_map_ = Eigen::Matrix3d::Identity();
-  int until_match_ = 0;  // frames until rotations are compared again
+  double spot_since_ = 0;  // seconds
+  int refused_ = 0;        // poses in a row that contradict the gyroscope
+  int until_match_ = 0;    // frames until rotations are compared again
 };
 
 }  // namespace alidade
