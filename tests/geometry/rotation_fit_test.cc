@@ -56,9 +56,10 @@ TEST(FitRotation, TellsThatTheCameraMoved) {
   const Matrix3d R = ExpSo3({0, 0.1, 0});
   const Directions seen(R, 0, {0.05, 0, 0}, 4);
   const RotationFit fit = FitRotation(seen.a, seen.b, R, 1e-5);
-  // The rotation is off by 0.05 over the mean distance, and twice the residual covers it.
-  EXPECT_GT(LogSo3(fit.R_a_b.transpose() * R).norm(), 0.01);
-  EXPECT_GT(2 * fit.residual, 0.5 * LogSo3(fit.R_a_b.transpose() * R).norm());
+  // The rotation is off by 0.05 over the mean distance, and the residual is a fifth of that.
+  const double error = LogSo3(fit.R_a_b.transpose() * R).norm();
+  EXPECT_NEAR(error, 0.025, 0.005);
+  EXPECT_NEAR(fit.residual, error / 5, error / 20);
 }
 
 TEST(FitRotation, StaysARotationInAChain) {

@@ -31,7 +31,7 @@ struct Told {
 };
 
 // `given`: with the readings.
-std::vector<Told> Run(const SynthSettings& settings, bool given) {
+std::vector<Told> Frames(const SynthSettings& settings, bool given) {
   const SynthRecording recording(settings);
   SlamSettings of_phone;
   of_phone.ApplyProfile("phone");
@@ -66,7 +66,7 @@ std::vector<Told> Run(const SynthSettings& settings, bool given) {
 }
 
 TEST(Orientation, IsKnownWhileTheCameraOnlyTurns) {
-  const std::vector<Told> all = Run(Turning("phone", "turn", 150), true);
+  const std::vector<Told> all = Frames(Turning("phone", "turn", 150), true);
   for (size_t i = 0; i < all.size(); ++i) {
     EXPECT_EQ(all[i].result.state, TrackState::kInitializing) << i;
     if (i < 30) continue;  // the sensor's rotation is found from turning
@@ -83,7 +83,7 @@ TEST(Orientation, IsKnownWhileTheCameraOnlyTurns) {
 }
 
 TEST(Orientation, OfAKnownSensorIsToldFromTheFirstFrameAndGoesOnWhenTheMapBegins) {
-  const std::vector<Told> all = Run(Turning("ideal", "turn-walk", 180), true);
+  const std::vector<Told> all = Frames(Turning("ideal", "turn-walk", 180), true);
   int tracked = 0;
   for (size_t i = 0; i < all.size(); ++i) {
     ASSERT_TRUE(all[i].result.orientation) << i;
@@ -97,7 +97,7 @@ TEST(Orientation, OfAKnownSensorIsToldFromTheFirstFrameAndGoesOnWhenTheMapBegins
 }
 
 TEST(Orientation, IsNotToldWithoutASensor) {
-  for (const Told& told : Run(Turning("ideal", "turn", 5), false))
+  for (const Told& told : Frames(Turning("ideal", "turn", 5), false))
     EXPECT_FALSE(told.result.orientation);
 }
 

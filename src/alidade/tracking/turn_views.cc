@@ -19,7 +19,9 @@ constexpr double kApart = 0.25;     // of the image's width: a camera turned fur
 constexpr double kPoor = 0.01;      // radians: a view that tells the rotation less well is left
 constexpr int kFewestInliers = 30;  // of 1000 features
 constexpr double kResidualPixels = 0.5;  // at least: corners are placed to 0.3 to 0.5 pixels
-constexpr double kOfResidual = 2;        // see Seen::covariance
+// Standard deviation of the rotation over the residual (Seen::covariance): of noise, in which half
+// a pixel of parallax may be hidden, and of the parallax beyond it.
+constexpr double kOfNoise = 2, kOfParallax = 5;
 // Half-width of the search, as a share of the image's width: where the turn is known to a degree,
 // and where the camera turns as before with 20 rad/s² more at 30 images per second.
 constexpr double kNear = 0.02, kFar = 0.06;
@@ -87,7 +89,9 @@ std::optional<TurnViews::Seen> TurnViews::Compare(const View& view, const Frame&
   const double enough =
       std::max(kFewestInliers * match_scale_, 0.5 * static_cast<double>(a.size()));
   if (fit.inliers < enough) return std::nullopt;
-  const double sigma = kOfResidual * fit.residual;
+  const double parallax = std::sqrt(fit.residual * fit.residual -
+                                    kResidualPixels * kResidualPixels / (camera.fx * camera.fx));
+  const double sigma = std::hypot(kOfNoise * fit.residual, kOfParallax * parallax);
   Seen seen{view.id, fit.R_a_b, {}, sigma, view.spot == spot_};
   const double angle = LogSo3(fit.R_a_b).norm() * camera.focal_sigma;
   seen.covariance =

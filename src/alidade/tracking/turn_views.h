@@ -19,9 +19,9 @@ class TurnViews {
     Eigen::Matrix3d R_view_camera = Eigen::Matrix3d::Identity();
     // R_view_camera Exp(e) is the true rotation, e ~ N(0, covariance), rad². If the camera has
     // moved by t since the view, a rotation alone is off by about |t| over the mean distance, and
-    // its residuals show the spread of |t| over the distances: a half to a quarter of that. So e is
-    // taken to be as large as twice a residual. It changes slowly: errors of images that follow
-    // each other are not independent.
+    // its residual, which is the spread of |t| over the distances, is a fifth of that (of distances
+    // from 1 to 3: tests/geometry/rotation_fit_test.cc). It changes slowly: errors of images that
+    // follow each other are not independent.
     Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
     double moved = 0;      // standard deviation of |t| over the mean distance
     bool at_spot = false;  // the view is of the spot the camera was at before
