@@ -85,12 +85,12 @@ std::optional<TurnViews::Seen> TurnViews::Compare(const View& view, const Frame&
     b.push_back(DirectionOf(frame.keypoints[match.b], camera));
   }
   if (static_cast<double>(a.size()) < kFewestInliers * match_scale_) return std::nullopt;
-  const RotationFit fit = FitRotation(a, b, R_view_camera, kResidualPixels / camera.fx);
+  const double noise = kResidualPixels / camera.fx;
+  const RotationFit fit = FitRotation(a, b, R_view_camera, noise);
   const double enough =
       std::max(kFewestInliers * match_scale_, 0.5 * static_cast<double>(a.size()));
   if (fit.inliers < enough) return std::nullopt;
-  const double parallax = std::sqrt(fit.residual * fit.residual -
-                                    kResidualPixels * kResidualPixels / (camera.fx * camera.fx));
+  const double parallax = std::sqrt(std::max(0.0, fit.residual * fit.residual - noise * noise));
   const double sigma = std::hypot(kOfNoise * fit.residual, kOfParallax * parallax);
   Seen seen{view.id, fit.R_a_b, {}, sigma, view.spot == spot_};
   const double angle = LogSo3(fit.R_a_b).norm() * camera.focal_sigma;
