@@ -146,5 +146,25 @@ TEST(AttitudeFilter, ErrorsAreAsLargeAsItSays) {
   }
 }
 
+// Of readings that end at 2 s, and of readings that lack 2 to 5 s.
+TEST(AttitudeFilter, KnowsThatReadingsAreMissing) {
+  const HeldPhone phone(6, 3);
+  std::vector<ImuSample> ended, broken;
+  for (const ImuSample& sample : phone.samples) {
+    if (sample.time < 2) ended.push_back(sample);
+    if (sample.time < 2 || sample.time > 5) broken.push_back(sample);
+  }
+  for (const auto* samples : {&ended, &broken}) {
+    AttitudeFilter filter(phone.model, phone.priors, 0, *samples, Matrix3d::Identity());
+    for (int k = 1; k <= 60; ++k) filter.Advance(k / 30.0, *samples);
+    const double before = filter.Camera().HeadingSigma();
+    for (int k = 61; k <= 150; ++k) filter.Advance(k / 30.0, *samples);
+    const Attitude camera = filter.Camera();
+    const double turned = LogSo3(Look(5) * camera.R_world_camera.transpose()).norm();
+    EXPECT_GT(camera.HeadingSigma(), 10 * before);
+    EXPECT_GT(3 * camera.HeadingSigma(), turned);
+  }
+}
+
 }  // namespace
 }  // namespace alidade

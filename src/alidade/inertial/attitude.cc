@@ -13,9 +13,11 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 const Vector3d kUp(0, 0, 1);
-constexpr double kFirstTilt = 0.3;       // radians: an acceleration of 3 m/s² at the start
-constexpr double kFirstSeconds = 0.5;    // of readings on either side that tell the first tilt
-constexpr double kLongestStep = 0.1;     // seconds between readings; what is longer is a gap
+constexpr double kFirstTilt = 0.3;     // radians: an acceleration of 3 m/s² at the start
+constexpr double kFirstSeconds = 0.5;  // of readings on either side that tell the first tilt
+constexpr double kLongestStep = 0.1;   // seconds between readings; what is longer is a gap
+// Of a camera without readings: rates that last for about kGapSeconds.
+constexpr double kGapSeconds = 1;
 constexpr double kGapRate = 1;           // rad/s
 constexpr double kGapForce = 2;          // m/s²
 constexpr double kMotionSeconds = 0.04;  // that one measurement of the motion averages, at most
@@ -65,8 +67,8 @@ AttitudeFilter::AttitudeFilter(const ImuModel& model, const AttitudePriors& prio
   sigma.segment<3>(kAccel).setConstant(priors.accel_bias);
   sigma.segment<3>(kVelocity).setConstant(priors.held_speed);
   sigma.segment<3>(kPosition).setZero();
-  sigma.segment<3>(kTurn).setConstant(priors.rotation);
-  sigma(kOffset) = priors.time_offset;
+  sigma.segment<3>(kMounting).setConstant(priors.rotation);
+  sigma(kClock) = priors.time_offset;
   covariance_ = sigma.cwiseAbs2().asDiagonal();
   AddView(kStart, R_start_camera.transpose());
 }
@@ -99,8 +101,8 @@ Matrix3d AttitudeFilter::R_world_camera() const {
 AttitudeFilter::Rows3 AttitudeFilter::ByCamera() const {
   Rows3 by = Rows3::Zero(3, covariance_.cols());
   by.middleCols<3>(kAttitude).setIdentity();
-  by.middleCols<3>(kTurn) = -R_world_imu_;
-  by.col(kOffset) = R_world_imu_ * (angular_rate_ - bias_.gyro);
+  by.middleCols<3>(kMounting) = -R_world_imu_;
+  by.col(kClock) = R_world_imu_ * (angular_rate_ - bias_.gyro);
   return by;
 }
 
@@ -158,9 +160,9 @@ void AttitudeFilter::Advance(double image_time, std::span<const ImuSample> sampl
   // What the motion is measured by: the mean of the last readings.
   double seconds = 0;
   Vector3d force = Vector3d::Zero();
-  const auto step = [&](const ImuSample& next) {
+  const auto step = [&](const ImuSample& next, bool covered) {
     const double span = next.time - last.time;
-    if (span > kLongestStep) {
+    if (!covered) {
       Gap(span);
     } else if (span > 0) {
       Step(last, next);
@@ -175,8 +177,12 @@ void AttitudeFilter::Advance(double image_time, std::span<const ImuSample> sampl
     }
     last = next;
   };
-  for (; sample != samples.end() && sample->time < until; ++sample) step(*sample);
-  step(ReadingAt(samples, until));
+  const auto covered_to = [&](double time) {
+    return sample == samples.begin() || time - std::prev(sample)->time <= kLongestStep;
+  };
+  for (; sample != samples.end() && sample->time < until; ++sample)
+    step(*sample, covered_to(sample->time));
+  step(ReadingAt(samples, until), covered_to(sample == samples.end() ? until : sample->time));
   if (seconds > 0) MeasureMotion(seconds, force / seconds);
   time_ = until;
   angular_rate_ = last.angular_rate;
@@ -214,12 +220,12 @@ void AttitudeFilter::Step(const ImuSample& from, const ImuSample& to) {
 }
 
 void AttitudeFilter::Gap(double seconds) {
-  const double turn = kGapRate * seconds;
-  covariance_.diagonal().segment<3>(kAttitude).array() += turn * turn;
-  const double change = std::min(kGapForce * seconds, priors_.held_speed);
-  covariance_.diagonal().segment<3>(kVelocity).array() += change * change;
-  const double way = priors_.held_speed * seconds;
-  covariance_.diagonal().segment<3>(kPosition).array() += way * way;
+  const auto wander = [&](int at, double rate) {
+    covariance_.diagonal().segment<3>(at).array() += rate * rate * kGapSeconds * seconds;
+  };
+  wander(kAttitude, kGapRate);
+  wander(kVelocity, kGapForce);
+  wander(kPosition, priors_.held_speed);
 }
 
 // `force`: mean of R (f - bias) over the last `seconds`. The derivative by the attitude is that at
@@ -283,18 +289,18 @@ void AttitudeFilter::Increase(const Eigen::VectorXd& step) {
   velocity_ += step.segment<3>(kVelocity);
   position_ += step.segment<3>(kPosition);
   Matrix3d& R = model_.T_camera_imu.R;
-  R = Eigen::Quaterniond(R * ExpSo3(step.segment<3>(kTurn))).normalized().toRotationMatrix();
-  model_.time_offset += step(kOffset);
+  R = Eigen::Quaterniond(R * ExpSo3(step.segment<3>(kMounting))).normalized().toRotationMatrix();
+  model_.time_offset += step(kClock);
   for (size_t i = 0; i < views_.size(); ++i)
     turn(views_[i].R_world_view, kViews + 3 * static_cast<int>(i));
 }
 
 double AttitudeFilter::RotationSigma() const {
-  return LargestSigma(covariance_.block<3, 3>(kTurn, kTurn));
+  return LargestSigma(covariance_.block<3, 3>(kMounting, kMounting));
 }
 
 double AttitudeFilter::TimeOffsetSigma() const {
-  return std::sqrt(std::max(0.0, covariance_(kOffset, kOffset)));
+  return std::sqrt(std::max(0.0, covariance_(kClock, kClock)));
 }
 
 }  // namespace alidade

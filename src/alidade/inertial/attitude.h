@@ -84,15 +84,15 @@ class AttitudeFilter {
   double TimeOffsetSigma() const;
 
  private:
-  // Order of the errors. kTurn: of R_camera_imu Exp(error).
+  // Order of the errors. kMounting: of R_camera_imu Exp(error).
   enum : int {
     kAttitude = 0,
     kGyro = 3,
     kAccel = 6,
     kVelocity = 9,
     kPosition = 12,
-    kTurn = 15,
-    kOffset = 18,
+    kMounting = 15,
+    kClock = 18,
     kViews = 19  // 3 of each view; the first one is the camera at the start
   };
   struct SeenView {

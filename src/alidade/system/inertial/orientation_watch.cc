@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr int kMapView = -2;         // the map, among the views of the filter
 constexpr double kWaits = 4;         // seconds of frames that wait for the sensor to be known
 constexpr double kLate = 0.3;        // seconds that a frame waits for readings
+constexpr double kCovers = 0.05;     // seconds that readings are extrapolated by
 constexpr size_t kFewestPoses = 15;  // whose rotations are compared
 constexpr int kMatchEvery = 5;       // frames
 constexpr double kSensorRotation = 0.1, kSensorOffset = 0.01;  // radians, seconds: enough to begin
@@ -76,15 +77,14 @@ std::optional<CameraOrientation> OrientationWatch::See(const Frame& frame, const
                                                        std::span<const ImuSample> samples,
                                                        const std::optional<MapPose>& pose) {
   if (last_ && !(time > last_->time && time - last_->time < kLongestPause)) Restart();
-  if (samples.empty()) return std::nullopt;
   last_ = EventOf(frame, camera, time, samples, pose);
   waiting_.push_back(*last_);
   if (!filter_) {
     if (!sensor_) FindSensor(samples);
-    if (sensor_) Begin(samples);
+    Begin(samples);
   }
   while (!filter_ && time - waiting_.front().time > kWaits) waiting_.pop_front();
-  if (!filter_) return std::nullopt;
+  if (!filter_ || samples.empty()) return std::nullopt;
   UseCovered(samples);
   if (waiting_.empty()) return Told(*filter_, pose);
   // Readings are late, or the clock of the images is: what they do not cover is extrapolated.
@@ -96,8 +96,9 @@ std::optional<CameraOrientation> OrientationWatch::See(const Frame& frame, const
 // By the gyroscope, R_last_now of the camera.
 std::optional<Matrix3d> OrientationWatch::TurnSince(double time,
                                                     std::span<const ImuSample> samples) const {
-  if (!filter_ || !last_) return std::nullopt;
+  if (!filter_ || !last_ || samples.empty()) return std::nullopt;
   const ImuModel& model = filter_->model();
+  if (time + model.time_offset > samples.back().time + kCovers) return std::nullopt;
   const Matrix3d turn = TurnOf(samples, last_->time + model.time_offset, time + model.time_offset,
                                filter_->bias().gyro);
   const Matrix3d& R = model.T_camera_imu.R;
@@ -177,6 +178,9 @@ void OrientationWatch::FindSensor(std::span<const ImuSample> samples) {
 
 void OrientationWatch::Begin(std::span<const ImuSample> samples) {
   const Event& first = waiting_.front();
+  if (!sensor_ || samples.empty() ||
+      samples.back().time < first.time + sensor_->model.time_offset - kCovers)
+    return;
   filter_.emplace(sensor_->model, sensor_->priors, first.time, samples, first.R_start_camera);
 }
 
