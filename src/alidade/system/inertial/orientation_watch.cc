@@ -142,9 +142,10 @@ OrientationWatch::Event OrientationWatch::EventOf(const Frame& frame, const Came
   if (event.new_spot) spot_since_ = time;
   if (step.dropped) event.dropped.push_back(*step.dropped);
   if (step.added) event.added.push_back({*step.added, Matrix3d::Identity(), Matrix3d::Zero()});
-  if (map_.valid()) event.dropped.push_back(kMapView);
-  map_ = pose ? pose->map : MapId{};
+  // A lost map may be found again, and tells the heading then.
   if (pose) {
+    if (map_.valid()) event.dropped.push_back(kMapView);
+    map_ = pose->map;
     event.added.push_back({kMapView, pose->R_map_camera.transpose(), covariance});
     R_start_map_ = event.R_start_camera * pose->R_map_camera.transpose();
   }

@@ -76,7 +76,7 @@ class OrientationWatch {
   std::deque<Event> waiting_;  // for the sensor to be known, or for readings
   std::optional<AttitudeFilter> filter_;
   std::optional<Event> last_;  // the last frame
-  MapId map_;                  // that the last frame was tracked in; invalid: none
+  MapId map_;                  // that a frame was tracked in last; invalid: none
   Eigen::Matrix3d R_start_map_ = Eigen::Matrix3d::Identity();
   double spot_since_ = 0;  // seconds
   int refused_ = 0;        // poses in a row that contradict the gyroscope
