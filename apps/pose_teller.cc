@@ -145,6 +145,14 @@ void PoseTeller::Frame(const SourceFrame& frame, const TrackResult& result) {
     line["failure"] = FailureName(result.failure);
     if (result.predicted) line["predicted"] = JsonOf(Mounted(*result.predicted, turn));
   }
+  if (result.orientation) {
+    const CameraOrientation& told = *result.orientation;
+    const Eigen::Quaterniond q =
+        Mounted({told.R_world_camera, Eigen::Vector3d::Zero()}, turn).Quaternion();
+    line["orientation"] = {{"rotation", {q.x(), q.y(), q.z(), q.w()}},
+                           {"tilt_sigma", told.tilt_sigma},
+                           {"heading_sigma", told.heading_sigma}};
+  }
   if (!result.quality.covariance.isZero(0)) {
     // Of the error in the camera as mounted.
     Matrix6d R = Matrix6d::Zero();

@@ -25,6 +25,13 @@ struct FrameNumbers {
   double qy = 0;
   double qz = 0;
   double qw = 1;
+  double oriented = 0;  // 1: the orientation by the inertial sensor is known, below
+  double ox = 0;
+  double oy = 0;
+  double oz = 0;
+  double ow = 1;
+  double tilt_sigma = 0;
+  double heading_sigma = 0;
 };
 
 // Of what the inertial sensor tells (InertialReport).

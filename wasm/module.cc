@@ -131,6 +131,9 @@ EMSCRIPTEN_KEEPALIVE const FrameNumbers* alidade_track(Session* session, int cha
         const alidade::TrackResult& result = frame.result;
         const alidade::Se3 pose = result.predicted.value_or(result.T_world_camera);
         const Eigen::Quaterniond q(pose.R);
+        const alidade::CameraOrientation oriented =
+            result.orientation.value_or(alidade::CameraOrientation{});
+        const Eigen::Quaterniond o(oriented.R_world_camera);
         const bool tracking = result.state == alidade::TrackState::kTracking;
         session->numbers = {.number = static_cast<double>(frame.number),
                             .state = static_cast<double>(result.state),
@@ -152,7 +155,14 @@ EMSCRIPTEN_KEEPALIVE const FrameNumbers* alidade_track(Session* session, int cha
                             .qx = q.x(),
                             .qy = q.y(),
                             .qz = q.z(),
-                            .qw = q.w()};
+                            .qw = q.w(),
+                            .oriented = result.orientation ? 1.0 : 0.0,
+                            .ox = o.x(),
+                            .oy = o.y(),
+                            .oz = o.z(),
+                            .ow = o.w(),
+                            .tilt_sigma = oriented.tilt_sigma,
+                            .heading_sigma = oriented.heading_sigma};
         return &session->numbers;
       },
       nullptr);

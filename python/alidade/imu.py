@@ -39,6 +39,19 @@ class Imu:
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
+class Orientation:
+    """Orientation of the camera by an inertial sensor, with a map and without. The z axis of its world is up, and its x
+    axis is the horizontal direction in which the camera looked in the first frame."""
+
+    rotation: numpy.ndarray
+    """(3, 3) R_world_camera; the camera's axes are x right, y down, z forward"""
+    tilt_sigma: float
+    """standard deviation of the vertical, along its less known direction, radians"""
+    heading_sigma: float
+    """standard deviation of the angle about the vertical since the first frame, radians"""
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
 class Inertial:
     """What images and inertial readings together tell so far."""
 

@@ -19,7 +19,7 @@ from ._paths import coded
 from ._renamed import Renamed, warn
 from .camera import Camera, PathLike
 from .errors import UsageError
-from .imu import Imu, Inertial
+from .imu import Imu, Inertial, Orientation
 from .maps import Map
 from .running import Detector
 
@@ -49,6 +49,8 @@ class TrackResult:
     """the frame became a keyframe"""
     predicted: Optional[numpy.ndarray]
     """(4, 4), if lost: pose by dead reckoning with an inertial sensor, otherwise shortly extrapolated from the motion"""
+    orientation: Optional[Orientation]
+    """with an inertial sensor, in every state; None: its rotation to the camera is not known yet"""
     cut: str
     """why the frame does not continue the previous one; empty: it does"""
     expected: int
@@ -210,7 +212,10 @@ class Slam:
         if imu is not None and not self._has_imu:
             raise UsageError("imu= is given, but this Slam knows of no inertial sensor; create it with imu=alidade.Imu()")
         try:
-            return TrackResult(**self._core.track(t, image, depth, right, color, imu, stamp))
+            told = self._core.track(t, image, depth, right, color, imu, stamp)
+            if told["orientation"] is not None:
+                told["orientation"] = Orientation(*told["orientation"])
+            return TrackResult(**told)
         finally:
             tell_warnings()
 

@@ -31,6 +31,17 @@ py::object CovarianceOf(const TrackedFrame& frame) {
   return array;
 }
 
+py::object OrientationOf(const TrackedFrame& frame) {
+  const std::optional<CameraOrientation>& orientation = frame.result.orientation;
+  if (!orientation) return py::none();
+  py::array_t<double> array({3, 3});
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column)
+      *array.mutable_data(row, column) = orientation->R_world_camera(row, column);
+  }
+  return py::make_tuple(array, orientation->tilt_sigma, orientation->heading_sigma);
+}
+
 py::object FailureOf(const TrackedFrame& frame) {
   const TrackFailure failure = frame.result.failure;
   return failure == TrackFailure::kNone ? py::object(py::none())
@@ -44,7 +55,8 @@ py::dict FieldsOf(const TrackedFrame& frame) {
       "frame"_a = frame.frame, "time"_a = frame.time, "state"_a = StateOf(frame),
       "pose"_a = PoseOf(frame), "failure"_a = FailureOf(frame), "reason"_a = result.reason(),
       "matches"_a = result.matches, "covariance"_a = CovarianceOf(frame),
-      "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame), "cut"_a = result.cut,
+      "keyframe"_a = result.keyframe, "predicted"_a = PredictedOf(frame),
+      "orientation"_a = OrientationOf(frame), "cut"_a = result.cut,
       "expected"_a = result.quality.expected, "inliers"_a = result.quality.inliers,
       "found_share"_a = result.quality.found_share, "probability"_a = result.quality.probability,
       "warning"_a = PathText(result.warning));

@@ -53,6 +53,20 @@ def test_slam_takes_them(folder):
     assert (known.T_camera_imu == pose).all() and known.rate == 200 and known.time_offset is None
 
 
+def test_frames_tell_the_orientation(folder):
+    path, _ = folder
+    with alidade.open(path) as recording:
+        slam = alidade.Slam(recording.camera, imu={"T_camera_imu": numpy.eye(4), "time_offset": 0.01})
+        told = [slam.track(frame.time, frame.image, imu=frame.imu).orientation for frame in recording]
+    last = told[-1].rotation
+    assert last.shape == (3, 3) and numpy.allclose(last @ last.T, numpy.eye(3))
+    up = last[2]  # in the camera: the accelerations of the folder are along its y axis
+    assert up[1] > 0.99 and 0 < told[-1].tilt_sigma < 0.5 and 0 < told[-1].heading_sigma < 1
+    with alidade.open(path) as recording:  # where nothing is known of the sensor, a camera that sees nothing tells nothing
+        slam = alidade.Slam(recording.camera, imu=recording.imu)
+        assert all(slam.track(f.time, f.image, imu=f.imu).orientation is None for f in recording)
+
+
 def test_slips_are_named():
     image = numpy.zeros((48, 64), numpy.uint8)
     slam = alidade.Slam(CAMERA, imu={})

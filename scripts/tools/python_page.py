@@ -24,7 +24,7 @@ map units. A trajectory is (n, 8): timestamp, tx, ty, tz, qx, qy, qz, qw.
 """
 SECTIONS = (
     ("Whole recordings", ("run", "localize", "Result", "Progress")),
-    ("Frame by frame", ("Slam", "TrackResult", "FramePose", "Features", "Imu", "Inertial")),
+    ("Frame by frame", ("Slam", "TrackResult", "FramePose", "Features", "Imu", "Inertial", "Orientation")),
     ("Recordings and cameras", ("open", "Recording", "Frame", "Camera", "Rectifier")),
     ("Maps", ("Map", "MapPart", "KeyFrames", "Points", "Observations", "Cloud")),
     ("Evaluation", ("ate", "rpe", "depth_errors", "TrajectoryError", "RelativePoseError", "ErrorStatistics",

@@ -1,11 +1,14 @@
 #include "alidade/inertial/rotation_match.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <cmath>
 #include <vector>
 
 namespace alidade {
 namespace {
+
+constexpr double kUnknown = 1e3;  // standard deviation of what the rates do not tell
 
 struct RatePair {
   Eigen::Vector3d camera, imu;  // rad/s
@@ -47,9 +50,12 @@ RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, do
   }
   camera /= static_cast<double>(pairs.size());
   imu /= static_cast<double>(pairs.size());
-  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero();
-  for (const RatePair& pair : pairs)
-    correlation += (pair.camera - camera) * (pair.imu - imu).transpose();
+  Eigen::Matrix3d correlation = Eigen::Matrix3d::Zero(), moments = correlation;
+  for (const RatePair& pair : pairs) {
+    const Eigen::Vector3d rate = pair.camera - camera;
+    correlation += rate * (pair.imu - imu).transpose();
+    moments += rate * rate.transpose();
+  }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation,
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   if (svd.singularValues()(0) > 0)
@@ -64,6 +70,14 @@ RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, do
   }
   match.gyro_bias = imu - R.transpose() * camera;
   MeasureResidual(pairs, match);
+  if (!model.rotation_known) {
+    // The information of rates w is the sum of |w|² I - w w'.
+    const Eigen::Vector3d moment =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly)
+            .eigenvalues();
+    const double information = moment(0) + moment(1);
+    match.rotation_sigma = information > 0 ? match.residual / std::sqrt(3 * information) : kUnknown;
+  }
   match.ok = true;
   return match;
 }
@@ -116,6 +130,11 @@ RotationMatch MatchRotations(std::span<const TimedPose> poses, std::span<const I
   if (before > 0 && after > 0 && bend > 0) {
     const RotationMatch finer = at(best.time_offset + 0.5 * kStep * (before - after) / bend);
     if (finer.ok && finer.residual <= best.residual) best = finer;
+    // Squared residuals are about m + (bend / 2) (offset / step)², of as many pairs as poses.
+    best.time_offset_sigma =
+        kStep * std::sqrt(2 * middle / (3 * static_cast<double>(poses.size()) * bend));
+  } else {
+    best.time_offset_sigma = kUnknown;
   }
   return best;
 }

@@ -18,6 +18,9 @@ struct RotationMatch {
   // Second singular value of the correlation, relative to the first: near zero when the camera
   // turned about one axis only, and the rotation about it is unknown.
   double second_axis = 0;
+  // Standard deviations where errors of the rates are independent: of R_camera_imu about its least
+  // known axis, radians, and of time_offset, seconds. 0: given.
+  double rotation_sigma = 0, time_offset_sigma = 0;
   bool ok = false;
 
   // The camera turned enough (0.1 rad/s) to compare rotations.

@@ -57,6 +57,7 @@ FramePipeline::FramePipeline(const Camera& camera, const SlamSettings& settings,
       camera_(camera),
       dense_(settings.semidense.enabled && !settings.localize),
       inertial_(settings.sensor, !settings.localize),
+      orientation_(settings.start.match_scale),
       workers_(camera, settings),
       tracker_(camera, settings.tracker),
       movers_(camera, settings, detector),
@@ -87,6 +88,7 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   ExtractFeatures(prepared, time, now);
   TrackResult result = Localize(now);
   Observe(time, now);
+  result.orientation = Orient(time, now, result);
   if (now.map_left && result.state != TrackState::kTracking)
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);

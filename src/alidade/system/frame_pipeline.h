@@ -11,6 +11,7 @@
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
 #include "alidade/system/inertial/inertial_watch.h"
+#include "alidade/system/inertial/orientation_watch.h"
 #include "alidade/system/left_out.h"
 #include "alidade/system/mover_watch.h"
 #include "alidade/system/present_frame.h"
@@ -55,6 +56,7 @@ class FramePipeline {
     session_.Apply(SessionEvent::kCut, steady);
     left_out_.Cut();
     inertial_.Cut();
+    orientation_.Restart();
   }
   void BeginRecording();
   // Waits for the workers, `limit` seconds at most, and uses what they found.
@@ -85,6 +87,8 @@ class FramePipeline {
   void KeepMotions(const MapSnapshot& map);
   void ForgetUnit(MapId map);
   void Observe(double time, const PresentFrame& now);
+  std::optional<CameraOrientation> Orient(double time, const PresentFrame& now,
+                                          const TrackResult& result);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);
@@ -107,9 +111,10 @@ class FramePipeline {
 
   const SlamSettings& settings_;
   Camera camera_;
-  Published<Camera> camera_shown_;    // camera_, for other threads
-  bool dense_;                        // semi-dense mapping is on
-  InertialWatch inertial_;            // outlives the workers, in which its fits run
+  Published<Camera> camera_shown_;  // camera_, for other threads
+  bool dense_;                      // semi-dense mapping is on
+  InertialWatch inertial_;          // outlives the workers, in which its fits run
+  OrientationWatch orientation_;
   bool has_motions_ = false;          // keyframes have KeyFrame::motion
   double motions_hold_until_ = 1e18;  // InertialWatch::MotionsHoldUntil()
   Workers workers_;

@@ -63,6 +63,17 @@ struct PoseQuality {
   double found_share = 0;  // inliers / expected, in [0, 1]; about a third is usual (occlusions)
 };
 
+// Orientation of the camera by an inertial sensor (docs/guides/inertial.md).
+struct CameraOrientation {
+  // The z axis of this world is up, and its x axis is the horizontal direction in which the camera
+  // looked in the first frame (where it looked down or up: in which the upper or lower edge of the
+  // image was).
+  Eigen::Matrix3d R_world_camera = Eigen::Matrix3d::Identity();
+  // Standard deviations, radians: of the vertical, along its less known direction, and of the angle
+  // about the vertical since the first frame.
+  double tilt_sigma = 0, heading_sigma = 0;
+};
+
 struct TrackResult {
   TrackState state = TrackState::kInitializing;
   Se3 T_world_camera;  // valid when tracking
@@ -70,6 +81,10 @@ struct TrackResult {
   // what was seen; without an inertial sensor, or while the unit of the map is unknown,
   // extrapolated at constant velocity for tracker.predict_seconds. A guess: it is in no trajectory.
   std::optional<Se3> predicted;
+  // With an inertial sensor, in every state, as soon as its rotation to the camera is known: given,
+  // or found from about a second of turning. It continues after a gap in the images from a new
+  // start.
+  std::optional<CameraOrientation> orientation;
   int matches = 0;                             // landmarks that agree with the pose
   bool keyframe = false;                       // this frame became a keyframe
   TrackFailure failure = TrackFailure::kNone;  // why there is no pose

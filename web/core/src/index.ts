@@ -76,11 +76,19 @@ export interface Pose {
   orientation: [number, number, number, number];
 }
 
+/** By the inertial sensor: the world's z axis is up, and the camera looked along its x axis in the first image. */
+export interface Orientation {
+  rotation: [number, number, number, number]; // quaternion x y z w: rotates the camera's axes into that world
+  tiltSigma: number; // standard deviation of the vertical, radians
+  headingSigma: number; // standard deviation of the angle about the vertical since the first image, radians
+}
+
 export interface Frame {
   number: number; // number of the image passed to track(), from 0
   state: State;
   pose: Pose | null; // null unless tracking
   predicted: Pose | null; // recently lost: extrapolated from the motion, a guess; null otherwise
+  orientation: Orientation | null; // with inertial readings, in every state, once the sensor's mounting is known
   failure: Failure | null; // why there is no pose; null while tracking
   reason: string; // `failure` in words; '' for null
   counts: { keyframes: number; landmarks: number; matches: number; features: number; maps: number };
@@ -222,6 +230,8 @@ export class Slam {
       state: STATES[n.state] ?? 'lost',
       pose: n.placed && !n.predicted ? pose : null,
       predicted: n.predicted ? pose : null,
+      orientation: n.oriented
+        ? { rotation: [n.ox, n.oy, n.oz, n.ow], tiltSigma: n.tiltSigma, headingSigma: n.headingSigma } : null,
       failure,
       reason: failure ? REASONS[failure] : '',
       counts: { keyframes: n.keyframes, landmarks: n.landmarks, matches: n.matches, features: n.features, maps: n.maps },

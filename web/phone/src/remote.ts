@@ -164,7 +164,7 @@ export class RemoteEngine implements Engine {
       frame: {
         number: told.frame!, state: stateFrom(told.state), ...failureFrom(told), pose: poseFrom(told.pose), predicted: poseFrom(told.predicted),
         counts: { keyframes: told.keyframes ?? 0, landmarks: told.landmarks ?? 0, matches: told.matches ?? 0, features: told.features ?? 0, maps: 0 },
-        milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0,
+        milliseconds: told.milliseconds ?? 0, fov: told.fov ?? 0, fovSigma: told.fovSigma ?? 0, cameraChanges: 0, orientation: null,
       },
     });
   }

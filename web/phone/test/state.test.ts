@@ -11,7 +11,7 @@ import { lensText, statusOf } from '../src/words.ts';
 
 const FRAME: Frame = {
   number: 0, state: 'tracking', pose: null, predicted: null, failure: null, reason: '', counts: { keyframes: 5, landmarks: 300, matches: 80, features: 500, maps: 1 },
-  milliseconds: 8, fov: 62, fovSigma: 0, cameraChanges: 0,
+  milliseconds: 8, fov: 62, fovSigma: 0, cameraChanges: 0, orientation: null,
 };
 const done = (frame: Partial<Frame> = {}, bitmap: { close(): void } | null = null): Done =>
   ({ kind: 'done', number: 0, time: 0, light: 100, messages: [], turn: 0, bitmap: bitmap as ImageBitmap | null, inertial: null, spreads: {}, frame: { ...FRAME, ...frame } });

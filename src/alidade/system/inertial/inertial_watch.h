@@ -62,6 +62,8 @@ class InertialWatch {
   // The frame of `time` (seconds, on the clock of the images) has a pose.
   void Placed(double time, const Anchor& anchor, const Matrix6d& covariance,
               const MapSnapshot& map);
+  // The newest readings, at least those of the last 5 s.
+  std::span<const ImuSample> samples() const { return samples_; }
   void Cut();  // the next readings and poses do not continue the last ones
   // Poses relative to culled keyframes become relative to live ones.
   void Reanchor(const MapSnapshot& map);

@@ -24,9 +24,10 @@ bool Covered(std::span<const ImuSample> samples, double from, double to) {
   return true;
 }
 
-// Whether the gyroscope turned as the camera did: within the noise that a fit may have, or so that it
-// explains more than half of the turn (RotationMatch::Contradicts()), because poses may be wrong,
-// too, and motions are to hold them. A wrong motion bends the map before the next fit can tell.
+// Whether the gyroscope turned as the camera did: within the noise that a fit may have, or so that
+// it explains more than half of the turn (RotationMatch::Contradicts()), because poses may be
+// wrong, too, and motions are to hold them. A wrong motion bends the map before the next fit can
+// tell.
 bool TurnsAlike(const Preintegration& motion, const KeyFrame& since, const KeyFrame& keyframe,
                 const InertialFit& fit) {
   const Eigen::Matrix3d& R = fit.model.T_camera_imu.R;

@@ -9,6 +9,7 @@ namespace alidade {
 
 void FramePipeline::SetImu(const ImuModel& imu) {
   inertial_.SetImu(imu);
+  orientation_.SetImu(imu);
   inertial_shown_.Set(inertial_.report());
 }
 
@@ -81,6 +82,21 @@ void FramePipeline::Observe(double time, const PresentFrame& now) {
     workers_.AddErrand(
         [this, question = std::move(*question)] { inertial_.Answer(AnswerOf(question)); });
   }
+}
+
+// How the camera is oriented with respect to gravity and to the first frame.
+std::optional<CameraOrientation> FramePipeline::Orient(double time, const PresentFrame& now,
+                                                       const TrackResult& result) {
+  if (!inertial_.given() || !inertial_.report().left_out.empty()) return std::nullopt;
+  std::optional<OrientationWatch::MapPose> pose;
+  const MapSnapshot map = workers_.map().Snapshot();
+  const MapId in = map.MapOf(tracker_.reference());
+  if (result.state == TrackState::kTracking && in.valid()) {
+    const MapWorld* world = map.WorldOf(in);
+    pose = {in, result.T_world_camera.R, result.quality.covariance.bottomRightCorner<3, 3>(),
+            world && world->KnowsDown() ? std::optional(*world) : std::nullopt};
+  }
+  return orientation_.See(*now.frame, camera_, time, inertial_.samples(), pose);
 }
 
 // Tells where a frame that does not follow a tracked one is by dead reckoning.
