@@ -84,17 +84,18 @@ RotationMatch MatchAt(std::span<const RatePair> pairs, const ImuModel& model, do
 
 }  // namespace
 
-bool TurnsAsCamera(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
-                   const ImuModel& model, const Eigen::Vector3d& gyro_bias) {
-  if (poses.size() < 2 || samples.size() < 2) return false;
-  const std::vector<RatePair> pairs = RatesAt(poses, samples, model.time_offset);
-  if (pairs.empty()) return false;
+RotationMatch CompareRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                               const ImuModel& model, const Eigen::Vector3d& gyro_bias) {
   RotationMatch match;
   match.R_camera_imu = model.T_camera_imu.R;
+  match.time_offset = model.time_offset;
   match.gyro_bias = gyro_bias;
+  if (poses.size() < 2 || samples.size() < 2) return match;
+  const std::vector<RatePair> pairs = RatesAt(poses, samples, model.time_offset);
+  if (pairs.empty()) return match;
   MeasureResidual(pairs, match);
   match.ok = true;
-  return match.Tells() && !match.Contradicts();
+  return match;
 }
 
 RotationMatch MatchRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,

@@ -35,9 +35,8 @@ struct RotationMatch {
 RotationMatch MatchRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
                              const ImuModel& model, double longest_offset = 0.12);
 
-// True if the gyroscope, with all that is known of it, turned as the camera did: the camera turned
-// (0.1 rad/s), and the readings explain more than half of it.
-bool TurnsAsCamera(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
-                   const ImuModel& model, const Eigen::Vector3d& gyro_bias);
+// How well a gyroscope of which all is known turned as the camera did.
+RotationMatch CompareRotations(std::span<const TimedPose> poses, std::span<const ImuSample> samples,
+                               const ImuModel& model, const Eigen::Vector3d& gyro_bias);
 
 }  // namespace alidade

@@ -30,7 +30,7 @@ constexpr int kAgreements = 2;
 // The rotation of the sensor is known well enough to predict frames.
 constexpr double kRotationSigma = 0.03;  // radians
 constexpr size_t kPast = 60;   // poses, at least 5 s: a map is split where it began 1.5 s before
-constexpr double kNewest = 2;  // seconds of poses whose rotations tell whether the sensor works
+constexpr double kNewest = 1;  // seconds of poses whose rotations tell whether the sensor works
 // Readings without a pose are kept this long, seconds.
 constexpr double kLongestGap = 30;
 
@@ -65,8 +65,8 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
         question.poses.begin(), question.poses.end(),
         [&](const TimedPose& pose) { return pose.time > question.poses.back().time - kNewest; });
     const auto& [model, bias] = *question.accepted;
-    answer.turns =
-        TurnsAsCamera({newest, question.poses.end()}, question.samples, model, bias.gyro);
+    answer.newest =
+        CompareRotations({newest, question.poses.end()}, question.samples, model, bias.gyro);
   }
   answer.fit =
       FitInertial(question.poses, question.samples, question.model, question.priors, start);
@@ -231,9 +231,11 @@ void InertialWatch::Answer(InertialAnswer answer) {
   answer_ = std::move(answer);
 }
 
-bool InertialWatch::Accepts(const InertialFit& fit) const {
-  return agreements_ >= kAgreements && fit.solved && fit.noise_factor < kMostNoiseFactor &&
-         fit.scale_sigma < kMostScaleSigma && fit.gravity_sigma < kMostGravitySigma;
+bool InertialWatch::Accepts(const InertialAnswer& answer) const {
+  const InertialFit& fit = answer.fit;
+  return agreements_ >= kAgreements && !answer.newest.Contradicts() && fit.solved &&
+         fit.noise_factor < kMostNoiseFactor && fit.scale_sigma < kMostScaleSigma &&
+         fit.gravity_sigma < kMostGravitySigma;
 }
 
 // Readings of another device, or images that were stabilized, do not turn as the camera does.
@@ -250,10 +252,12 @@ void InertialWatch::Judge(const InertialAnswer& answer) {
 
 // Whether the newest readings are used: not while poses and readings contradict each other because
 // of the readings (a sensor that failed, a clock that jumped). If the newest rotations agree
-// (`turns`) it is the map that is bent, and its motions hold it. A fit has poses and readings of up
+// it is the map that is bent, and its motions hold it. A fit has poses and readings of up
 // to 24 s, so that those since the last one that agreed stay in doubt when a later one agrees
 // again.
-void InertialWatch::Trust(const InertialFit& fit, bool turns) {
+void InertialWatch::Trust(const InertialAnswer& answer) {
+  const InertialFit& fit = answer.fit;
+  const bool turns = answer.newest.Tells() && !answer.newest.Contradicts();
   const bool agrees = turns || (fit.solved && fit.noise_factor < kMostNoiseFactor);
   if (!agrees) {
     doubtful_ = accepted_.has_value();
@@ -278,7 +282,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   Judge(*answer);
   if (!report_.left_out.empty() || answer->map != map_ || !map.Find(answer->reference)) return {};
   InertialFit& fit = answer->fit;
-  Trust(fit, answer->turns);
+  Trust(*answer);
   if (!fit.solved) return {};
   report_.bias = fit.states.back().bias;
   report_.model.T_camera_imu = fit.model.T_camera_imu;
@@ -286,7 +290,7 @@ InertialWatch::Changes InertialWatch::UseAnswer(const MapSnapshot& map) {
   report_.rotation_sigma = fit.rotation_sigma;
   report_.time_offset_sigma = fit.time_offset_sigma;
   Changes changes;
-  const bool accepted = Accepts(fit);
+  const bool accepted = Accepts(*answer);
   // The map may have been scaled since the question.
   const double grown = map.ScaleOf(answer->reference) / answer->scale;
   fit.scale /= grown;

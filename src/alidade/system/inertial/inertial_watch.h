@@ -41,7 +41,7 @@ struct InertialQuestion {
 struct InertialAnswer {
   InertialFit fit;
   RotationMatch rotation;
-  bool turns = false;  // TurnsAsCamera() of the newest readings, by what was accepted
+  RotationMatch newest;  // CompareRotations() of the newest readings, by what was accepted
   MapId map;
   KeyFrameId reference;
   Se3 T_reference_world;
@@ -137,8 +137,8 @@ class InertialWatch {
   static Calibration LearnedFrom(const InertialFit& fit);
   std::optional<Join> JoinBy(const InertialFit& fit, const MapSnapshot& map);
   std::span<const ImuSample> SamplesFrom(double time) const;
-  bool Accepts(const InertialFit& fit) const;
-  void Trust(const InertialFit& fit, bool turns);
+  bool Accepts(const InertialAnswer& answer) const;
+  void Trust(const InertialAnswer& answer);
   void Judge(const InertialAnswer& answer);
 
   Sensor sensor_;

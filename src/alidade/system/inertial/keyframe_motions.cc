@@ -25,9 +25,8 @@ bool Covered(std::span<const ImuSample> samples, double from, double to) {
 }
 
 // Whether the gyroscope turned as the camera did: within the noise that a fit may have, or so that
-// it explains more than half of the turn (RotationMatch::Contradicts()), because poses may be
-// wrong, too, and motions are to hold them. A wrong motion bends the map before the next fit can
-// tell.
+// it explains three quarters of the turn. Poses may be wrong, too, and motions are to hold them;
+// but a wrong motion bends the map before the next fit can tell.
 bool TurnsAlike(const Preintegration& motion, const KeyFrame& since, const KeyFrame& keyframe,
                 const InertialFit& fit) {
   const Eigen::Matrix3d& R = fit.model.T_camera_imu.R;
@@ -38,7 +37,7 @@ bool TurnsAlike(const Preintegration& motion, const KeyFrame& since, const KeyFr
                           std::pow(fit.gyro_bias_sigma * motion.seconds, 2) +
                           std::pow(fit.rotation_sigma * angle, 2) + 2 * CommonErrors(0)(5, 5);
   const double error = LogSo3(motion.dR.transpose() * turn).squaredNorm();
-  return error < 3 * kMostNoiseFactor * kMostNoiseFactor * variance || 2 * std::sqrt(error) < angle;
+  return error < 3 * kMostNoiseFactor * kMostNoiseFactor * variance || 4 * std::sqrt(error) < angle;
 }
 
 }  // namespace
