@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "alidade/inertial/largest_sigma.h"
+
 namespace alidade {
 namespace {
 
@@ -15,7 +17,7 @@ using Eigen::Vector3d;
 const Vector3d kUp(0, 0, 1);
 constexpr double kFirstTilt = 0.3;     // radians: an acceleration of 3 m/s² at the start
 constexpr double kFirstSeconds = 0.5;  // of readings on either side that tell the first tilt
-constexpr double kLongestStep = 0.1;   // seconds between readings; what is longer is a gap
+constexpr double kLongestPause = 0.1;  // seconds between readings; what is longer is a gap
 // Of a camera without readings: rates that last for about kGapSeconds.
 constexpr double kGapSeconds = 1;
 constexpr double kGapRate = 1;           // rad/s
@@ -25,11 +27,6 @@ constexpr double kMotionSeconds = 0.04;  // that one measurement of the motion a
 constexpr double kGate = 16.27;
 constexpr int kStart = -1;  // SeenView::id of the camera at the start
 constexpr double kNoGate = std::numeric_limits<double>::infinity();
-
-double LargestSigma(const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues().tail<1>()(0)));
-}
 
 // Mean specific force of the second around `time`, in the axes of the sensor at that time.
 Vector3d MeanForce(std::span<const ImuSample> samples, double time, const ImuBias& bias) {
@@ -50,7 +47,11 @@ Vector3d MeanForce(std::span<const ImuSample> samples, double time, const ImuBia
 
 }  // namespace
 
-double Attitude::TiltSigma() const { return LargestSigma(covariance.topLeftCorner<2, 2>()); }
+double Attitude::TiltSigma() const {
+  Matrix3d horizontal = Matrix3d::Zero();
+  horizontal.topLeftCorner<2, 2>() = covariance.topLeftCorner<2, 2>();
+  return LargestSigma(horizontal);
+}
 double Attitude::HeadingSigma() const { return std::sqrt(std::max(0.0, covariance(2, 2))); }
 
 AttitudeFilter::AttitudeFilter(const ImuModel& model, const AttitudePriors& priors,
@@ -178,7 +179,7 @@ void AttitudeFilter::Advance(double image_time, std::span<const ImuSample> sampl
     last = next;
   };
   const auto covered_to = [&](double time) {
-    return sample == samples.begin() || time - std::prev(sample)->time <= kLongestStep;
+    return sample == samples.begin() || time - std::prev(sample)->time <= kLongestPause;
   };
   for (; sample != samples.end() && sample->time < until; ++sample)
     step(*sample, covered_to(sample->time));
@@ -233,7 +234,7 @@ void AttitudeFilter::Gap(double seconds) {
 // it would tell the heading (errors in variables).
 void AttitudeFilter::MeasureMotion(double seconds, const Vector3d& force) {
   const double tau = priors_.held_seconds;
-  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(3, covariance_.cols());
+  Rows3 by = Rows3::Zero(3, covariance_.cols());
   by.middleCols<3>(kAttitude) = -Skew(kGravity * kUp - velocity_ / tau);
   by.middleCols<3>(kAccel) = -R_world_imu_;
   by.middleCols<3>(kVelocity) = Matrix3d::Identity() / tau;
@@ -243,7 +244,7 @@ void AttitudeFilter::MeasureMotion(double seconds, const Vector3d& force) {
 }
 
 void AttitudeFilter::StayAtSpot(double sigma) {
-  Eigen::MatrixXd by = Eigen::MatrixXd::Zero(3, covariance_.cols());
+  Rows3 by = Rows3::Zero(3, covariance_.cols());
   by.middleCols<3>(kPosition).setIdentity();
   Measure(by, -position_, sigma * sigma * Matrix3d::Identity(), kNoGate);
 }
@@ -258,23 +259,24 @@ bool AttitudeFilter::See(int id, const Matrix3d& R_view_camera, const Matrix3d& 
   const int index = IndexOf(id);
   if (index < 0) return false;
   const Matrix3d R = R_world_camera();
-  Eigen::MatrixXd by = ByCamera();
+  Rows3 by = ByCamera();
   by.middleCols<3>(kViews + 3 * index) -= Matrix3d::Identity();
   // In the axes of the world, of the measured camera against the believed one.
   const Vector3d residual = R * LogSo3(R.transpose() * views_[index].R_world_view * R_view_camera);
   return Measure(by, residual, R * covariance * R.transpose(), kGate);
 }
 
-bool AttitudeFilter::Measure(const Eigen::MatrixXd& by, const Eigen::VectorXd& residual,
-                             const Eigen::MatrixXd& noise, double gate) {
-  const Eigen::MatrixXd cross = covariance_ * by.transpose();
-  const Eigen::LLT<Eigen::MatrixXd> solver(by * cross + noise);
+bool AttitudeFilter::Measure(const Rows3& by, const Vector3d& residual, const Matrix3d& noise,
+                             double gate) {
+  const Rows3 cross = by * covariance_;
+  const Eigen::LLT<Matrix3d> solver(cross * by.transpose() + noise);
   if (solver.info() != Eigen::Success) return false;
-  const Eigen::VectorXd weighed = solver.solve(residual);
+  const Vector3d weighed = solver.solve(residual);
   if (!(residual.dot(weighed) <= gate)) return false;
-  covariance_ -= cross * solver.solve(cross.transpose());
+  const Rows3 solved = solver.solve(cross);
+  covariance_ -= cross.transpose() * solved;
   covariance_ = (0.5 * (covariance_ + covariance_.transpose())).eval();
-  Increase(cross * weighed);
+  Increase(cross.transpose() * weighed);
   return true;
 }
 

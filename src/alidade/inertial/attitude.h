@@ -108,8 +108,8 @@ class AttitudeFilter {
   void Step(const ImuSample& from, const ImuSample& to);
   void Gap(double seconds);
   void MeasureMotion(double seconds, const Eigen::Vector3d& force);
-  bool Measure(const Eigen::MatrixXd& by_state, const Eigen::VectorXd& residual,
-               const Eigen::MatrixXd& noise, double gate);
+  bool Measure(const Rows3& by_state, const Eigen::Vector3d& residual, const Eigen::Matrix3d& noise,
+               double gate);
   void Increase(const Eigen::VectorXd& step);
 
   ImuModel model_;

@@ -8,6 +8,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/inertial/chain_system.h"
+#include "alidade/inertial/largest_sigma.h"
 #include "alidade/inertial/pose_measurement.h"
 #include "alidade/inertial/rotation_match.h"
 
@@ -219,10 +220,9 @@ class Fit {
     const MotionBelief::Matrix joint = more * solution.last_covariance;
     const ChainSystem::CommonMatrix covariance = joint.bottomRightCorner<kCommon, kCommon>();
     const auto largest = [&](int at, int size) {
-      const Eigen::MatrixXd block = covariance.block(at, at, size, size);
-      const double value =
-          Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(block).eigenvalues().maxCoeff();
-      return std::sqrt(std::max(0.0, value));
+      Eigen::Matrix3d block = Eigen::Matrix3d::Zero();
+      block.topLeftCorner(size, size) = covariance.block(at, at, size, size);
+      return LargestSigma(block);
     };
     fit.solved = true;
     fit.scale = common_.scale;

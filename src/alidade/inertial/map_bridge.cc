@@ -1,19 +1,15 @@
 #include "alidade/inertial/map_bridge.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
+
+#include "alidade/inertial/largest_sigma.h"
 
 namespace alidade {
 namespace {
 
 constexpr double kChiSquared3 = 16.3, kChiSquared2 = 13.8;  // 99.9 %
 constexpr int kVelocity = 3, kPosition = 6, kTiltAt = MotionBelief::kState + kTilt;
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues().maxCoeff()));
-}
 
 }  // namespace
 

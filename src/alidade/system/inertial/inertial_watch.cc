@@ -61,12 +61,11 @@ InertialAnswer AnswerOf(const InertialQuestion& question) {
   }
   answer.rotation = MatchRotations(question.poses, question.samples, found);
   if (question.accepted && !question.poses.empty()) {
-    const auto newest = std::find_if(
-        question.poses.begin(), question.poses.end(),
-        [&](const TimedPose& pose) { return pose.time > question.poses.back().time - kNewest; });
+    const std::span<const TimedPose> poses(question.poses);
+    size_t first = poses.size() - 1;
+    while (first > 0 && poses[first - 1].time > poses.back().time - kNewest) --first;
     const auto& [model, bias] = *question.accepted;
-    answer.newest =
-        CompareRotations({newest, question.poses.end()}, question.samples, model, bias.gyro);
+    answer.newest = CompareRotations(poses.subspan(first), question.samples, model, bias.gyro);
   }
   answer.fit =
       FitInertial(question.poses, question.samples, question.model, question.priors, start);
