@@ -51,8 +51,6 @@ class AttitudeFilter {
   AttitudeFilter(const ImuModel& model, const AttitudePriors& priors, double image_time,
                  std::span<const ImuSample> samples, const Eigen::Matrix3d& R_start_camera);
 
-  // Of the image that the state is at, seconds.
-  double image_time() const { return time_ - model_.time_offset; }
   // Carries the state to the image of `image_time`, not before the present one, by readings in
   // order of time. What they do not cover is extrapolated; of a gap of more than 0.1 s it is
   // assumed that the camera turns by 1 rad/s.

@@ -10,18 +10,11 @@ namespace {
 // Noise of the readings, as a share of what is assumed, which is on the safe side: what is above in
 // a fit is the error of the poses.
 constexpr double kLeastNoise = 0.3, kMostNoise = 1;
-constexpr double kLongestMotion = 3;     // seconds: after that it tells little
-constexpr double kLongestSilence = 0.1;  // seconds between readings
+constexpr double kLongestMotion = 3;  // seconds: after that it tells little
 
 bool Covered(std::span<const ImuSample> samples, double from, double to) {
-  if (samples.empty() || from < samples.front().time || to > samples.back().time) return false;
-  const auto before = [](const ImuSample& sample, double time) { return sample.time < time; };
-  auto at = std::lower_bound(samples.begin(), samples.end(), from, before);
-  for (double last = from; at != samples.end(); last = at->time, ++at) {
-    if (at->time - last > kLongestSilence) return false;
-    if (at->time >= to) return true;
-  }
-  return true;
+  return !samples.empty() && from >= samples.front().time && to <= samples.back().time &&
+         TellMotion(samples, from, to);
 }
 
 // Whether the gyroscope turned as the camera did: within the noise that a fit may have, or so that
