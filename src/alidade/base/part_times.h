@@ -24,6 +24,7 @@ enum class FramePart {
   kGrid,         // keypoints by place
   kDepth,        // depth of keypoints: depth image, or stereo matching
   kGlance,       // small copy of the image that start and relocalization compare
+  kAlign,        // landmarks aligned with the image of the reference frame
   kLastFrame,    // landmarks of the last frame looked for
   kLocalMap,     // landmarks around gathered and projected
   kLocalSearch,  // and looked for

@@ -85,7 +85,10 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   now.index = log_.size() - 1;
   UseNews(now);
   UseInertial(prepared.imu);
-  ExtractFeatures(prepared, time, now);
+  movers_.Begin(prepared, NumberOf(now.index), session_.has_pose() && TrustsFocalLength(),
+                young_.WantsGlance(NumberOf(now.index)));
+  tracker_.SetReadout(workers_.readout());
+  if (!AlignFrame(prepared, time, now)) ExtractFeatures(prepared, time, now);
   TrackResult result = Localize(now);
   Observe(time, now);
   result.orientation = Orient(time, now, result);
@@ -103,10 +106,11 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
 
 // The pose of the frame: by motion after a tracked frame, by descriptors otherwise.
 TrackResult FramePipeline::Localize(PresentFrame& now) {
-  const MapSnapshot map = workers_.map().Snapshot();
+  const MapSnapshot map = now.aligned ? now.aligned->map : workers_.map().Snapshot();
   TrackFailure failure = TrackFailure::kNotRecognized;
   if (session_.has_pose()) {
-    TrackEstimate estimate = FollowMotion(now, map);
+    TrackEstimate estimate =
+        now.aligned ? std::move(now.aligned->estimate) : FollowMotion(now, map);
     failure = JudgeTracked(estimate, now, map);
     if (failure == TrackFailure::kNone) return Place(std::move(estimate), now, map);
   } else {
@@ -173,11 +177,36 @@ void FramePipeline::DropUnknownScale(PresentFrame& now) {
   }
 }
 
+// Whether the frame may do without features of its own. Frames that are processed again later need
+// them, and so does what tells moving objects.
+bool FramePipeline::MayAlign(int number) const {
+  return settings_.tracker.align && session_.state() == SessionState::kTracking && !movers_.on() &&
+         !young_.WantsGlance(number) && !early_.Wants(number) && !CollectsForRebuild() &&
+         !KeepsForFixedParts();
+}
+
+// False: the frame needs features.
+bool FramePipeline::AlignFrame(const FrameInput& prepared, double time, PresentFrame& now) {
+  const int number = NumberOf(now.index);
+  if (!MayAlign(number)) return false;
+  const Stopwatch watch;
+  MapSnapshot map = workers_.map().Snapshot();
+  tracker_.SetTurn(time, inertial_.TurnBetween(tracker_.last_time(), time));
+  std::optional<TrackEstimate> estimate =
+      tracker_.Align(prepared.image, prepared.depth, time, number, map);
+  if (!estimate) return false;
+  now.frame = std::const_pointer_cast<Frame>(estimate->placed.frame);
+  now.placed.frame = now.frame;
+  track_ms_.Add(watch.Milliseconds());
+  const PoseGuess where = GuessOf(estimate->placed, tracker_.reference(), map);
+  movers_.Judge(*now.frame, &where);
+  now.aligned = AlignedEstimate{std::move(*estimate), std::move(map)};
+  return true;
+}
+
 void FramePipeline::ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now) {
   const int number = NumberOf(now.index);
   const bool tracked = session_.has_pose();
-  movers_.Begin(prepared, number, tracked && TrustsFocalLength(), young_.WantsGlance(number));
-  tracker_.SetReadout(workers_.readout());
   const Stopwatch watch;
   now.frame = tracker_.Extract(prepared.image, prepared.right, prepared.depth, time, number,
                                left_out_.With(movers_.Expected()));

@@ -91,6 +91,8 @@ class FramePipeline {
                                           const TrackResult& result);
   void LeaveOutFixedParts(int number);
   void DropUnknownScale(PresentFrame& now);
+  bool MayAlign(int number) const;
+  bool AlignFrame(const FrameInput& prepared, double time, PresentFrame& now);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);
   TrackResult Localize(PresentFrame& now);
   TrackEstimate FollowMotion(PresentFrame& now, const MapSnapshot& map);

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "alidade/map/anchor.h"
-#include "alidade/tracking/placed_frame.h"
+#include "alidade/tracking/tracker.h"
 
 namespace alidade {
 
@@ -17,6 +17,12 @@ struct Reattachment {
   MapId map;
 };
 
+// The frame was aligned with an earlier one instead of extracting its features.
+struct AlignedEstimate {
+  TrackEstimate estimate;
+  MapSnapshot map;
+};
+
 struct PresentFrame {
   std::shared_ptr<Frame> frame;
   int index = 0;             // in the trajectory
@@ -25,6 +31,7 @@ struct PresentFrame {
   PlacedFrame placed;        // as tracked; `placed.frame` is set without a pose, too
   KeyFrameId keyframe;       // the keyframe it became
   bool map_left = false;     // the map it was expected in was dropped: its scale is unknown
+  std::optional<AlignedEstimate> aligned;
   std::optional<Reattachment> reattachment;
 };
 

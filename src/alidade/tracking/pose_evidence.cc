@@ -91,11 +91,21 @@ PoseEvidence::PoseEvidence(const Frame& frame, int width, int height, const Meas
     const double sigma = noise.sigma_px * ScaleOfLevel(level);
     const double keypoints = on_level[level] + (level > 0 ? on_level[level - 1] : 0);
     const double in_window = area * sigma * sigma * keypoints / (1.0 * width * height);
-    for (size_t q = 0; q < kSimilar.size(); ++q) {
-      const double similar = std::max(kSimilar[q] * in_window, 1e-6);
-      log_found_[level][q] = std::log(-std::expm1(-similar));
-      log_missed_[level][q] = -similar;
-    }
+    SetChance(level, in_window);
+  }
+}
+
+PoseEvidence::PoseEvidence(int width, int height, double window,
+                           const PoseEvidenceSettings& settings)
+    : settings_(settings), width_(width), height_(height), window2_(window * window) {
+  for (int level = 0; level < kPyramidLevels; ++level) SetChance(level, 1);
+}
+
+void PoseEvidence::SetChance(int level, double in_window) {
+  for (size_t q = 0; q < kSimilar.size(); ++q) {
+    const double similar = std::max(kSimilar[q] * in_window, 1e-6);
+    log_found_[level][q] = std::log(-std::expm1(-similar));
+    log_missed_[level][q] = -similar;
   }
 }
 

@@ -56,6 +56,10 @@ class PoseEvidence {
   PoseEvidence(const Frame& frame, int width, int height, const MeasurementNoise& noise,
                double window, bool disparities, const PoseEvidenceSettings& settings);
 
+  // Of landmarks that are looked for by aligning patches, at which a patch of another place agrees
+  // with probability 1 - exp(-q).
+  PoseEvidence(int width, int height, double window, const PoseEvidenceSettings& settings);
+
   // A landmark that was expected at (u, v), undistorted pixels, on `level`, and not found.
   void Missed(double u, double v, int level);
   // Found there with the squared error `chi2` (σ², of the pixel) and `chi2_disparity` (< 0:
@@ -75,6 +79,8 @@ class PoseEvidence {
     double landmarks = 0, found = 0, chi2 = 0, disparities = 0, chi2_disparity = 0;
     std::array<double, kSimilar.size()> chance{};  // log P(found or missed | wrong), by q
   };
+  // `in_window`: n A.
+  void SetChance(int level, double in_window);
   size_t CellAt(double u, double v) const;
   static size_t PartOf(size_t cell);
 

@@ -31,6 +31,10 @@ std::span<const Setting> TrackerSettings::Table() {
           "tracker.keyframe_share_depth", kPositive, "",
           "Stereo and RGB-D: a new keyframe when inliers fall below this share of their maximum "
           "since the last one."),
+      PublicSetting<&T::align>(
+          "tracker.align", kOnOff, "",
+          "Between keyframes, landmarks are aligned with the image instead of extracting features; "
+          "off: features are extracted from every frame."),
       PublicSetting<&T::min_keyframe_gap>("tracker.min_keyframe_gap", kNotNegative, "frames",
                                           "Fewest frames between two keyframes."),
       PublicSetting<&T::max_keyframe_gap>("tracker.max_keyframe_gap", kPositive, "frames",

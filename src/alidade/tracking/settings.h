@@ -53,6 +53,8 @@ struct TrackerSettings {
   double bad_frame_sigma = 3.0;
   double keyframe_share_mono = 0.9;
   double keyframe_share_depth = 0.8;
+  // Frames between keyframes are aligned with the last extracted one (Tracker::Align()).
+  bool align = true;
   int min_keyframe_gap = 1;
   int max_keyframe_gap = 30;
   MotionSettings motion;

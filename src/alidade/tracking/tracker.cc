@@ -41,6 +41,10 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
     if (!right.empty())
       MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
   }
+  if (settings_.align) {
+    extracted_ = frame->image;
+    extracted_number_ = number;
+  }
   frame->pyramid.clear();  // needed only for extraction and stereo matching
   frame->image.release();
   return frame;
@@ -49,6 +53,7 @@ std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& rig
 void Tracker::SetCamera(const Camera& camera) {
   camera_ = camera;
   passing_ = PassingPoints(camera);
+  reference_ = {};
   if (!last_.frame) return;
   auto last = std::make_shared<Frame>(*last_.frame);
   UndistortKeypoints(camera, *last);
@@ -336,6 +341,7 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
   // Allocations come first, so that bad_alloc leaves the tracker unchanged.
   PlacedFrame copy = placed;
   const Anchor anchor = AnchorTo(map.state(), reference, placed.T_camera_world);
+  KeepReference(placed, reference, map);
   unproven_ = last_.frame ? std::max(0, unproven_ - 1) : settings_.unconfirmed_frames;
   if (last_.frame && placed.frame->number > last_.frame->number) {
     motion_.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(),
@@ -349,6 +355,7 @@ void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const Ma
 }
 
 void Tracker::Reanchor(const MapSnapshot& map) {
+  if (!map.Find(reference_.anchor.keyframe)) reference_ = {};
   if (!last_anchor_.keyframe.valid() || map.Find(last_anchor_.keyframe)) return;
   const KeyFrameId heir = Reanchored(map.state(), last_anchor_).keyframe;
   // Converts to current map units. AnchorTo() stores the scale of the new anchor, which changes by
@@ -360,6 +367,7 @@ void Tracker::Reanchor(const MapSnapshot& map) {
 
 void Tracker::Forget() {
   passing_.Clear();
+  reference_ = {};
   last_ = {};
   motion_.Clear();
 }

@@ -14,6 +14,7 @@
 #include "alidade/map/anchor.h"
 #include "alidade/map/map_store.h"
 #include "alidade/optimize/pose_only.h"
+#include "alidade/tracking/frame_alignment.h"
 #include "alidade/tracking/local_map.h"
 #include "alidade/tracking/local_search.h"
 #include "alidade/tracking/motion.h"
@@ -49,6 +50,12 @@ class Tracker {
   // Extracts features. `right` and `depth` may be empty. `avoid`: see Extractor::Extract().
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number, const cv::Mat& avoid = {});
+  // The frame of `image` by aligning the landmarks of the last extracted frame with it, instead of
+  // extracting its features; its keypoints are those landmarks. `depth` may be empty. nullopt:
+  // features are needed, because a keyframe is due or too few landmarks are found; `align` is off;
+  // or there is no such frame.
+  std::optional<TrackEstimate> Align(const cv::Mat& image, const cv::Mat& depth, double time,
+                                     int number, const MapSnapshot& map);
   // Changes the readout time (Camera::readout) from the next frame on.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
   // Rotation R_now_last of the frame at `time` since the last frame, as an inertial sensor tells
@@ -119,6 +126,13 @@ class Tracker {
   }
 
  private:
+  void KeepReference(const PlacedFrame& placed, KeyFrameId keyframe, const MapSnapshot& map);
+  std::vector<LandmarkId> ReferenceMatches(const MapSnapshot& map) const;
+  std::optional<TrackEstimate> JudgeAligned(PlacedFrame placed, Frame& frame,
+                                            std::span<const ReferencePoint> points,
+                                            std::span<const LandmarkId> ids,
+                                            std::span<const AlignedPoint> aligned,
+                                            const MapSnapshot& map);
   struct InverseDepthsSeen {
     std::vector<float> of_keypoints;  // 1 / map units; 0: unknown
     double common = 0;                // median
@@ -165,6 +179,19 @@ class Tracker {
   Extractor extractor_, right_extractor_;
   LocalMapGatherer gatherer_;
   PassingPoints passing_;
+
+  // The last frame with a pose whose features were extracted. Frames are aligned to it.
+  struct {
+    std::shared_ptr<const Frame> frame;
+    std::vector<LandmarkId> matches;
+    Anchor anchor;             // relative to its reference keyframe
+    bool is_keyframe = false;  // then `anchor` is relative to itself
+    int inliers = 0;
+    int most_found = 0;  // largest number of inliers among the frames aligned to it
+  } reference_;
+  FrameAlignment alignment_;
+  cv::Mat extracted_;  // image of the frame extracted last, until it has a pose
+  int extracted_number_ = -1;
 
   PlacedFrame last_;
   Anchor last_anchor_;  // pose of the last frame relative to its reference keyframe

@@ -46,7 +46,7 @@ void EarlyFrames::Begin(MapId map, int number) {
 }
 
 void EarlyFrames::Tracked(const Frame& frame, int index) {
-  if (map_.valid() && frame.number - begun_ < settings_.settle_frames) Keep(frame, index, map_);
+  if (Wants(frame.number)) Keep(frame, index, map_);
 }
 
 void EarlyFrames::Release() {

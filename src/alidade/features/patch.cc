@@ -1,0 +1,191 @@
+#include "alidade/features/patch.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgproc.hpp>
+
+namespace alidade {
+namespace {
+
+// Four floats in one register; compilers for SSE2, NEON and WebAssembly give the same bits.
+typedef float Float4 __attribute__((vector_size(16)));
+typedef uint8_t Bytes4 __attribute__((vector_size(4)));
+
+Float4 Load(const float* at) {
+  Float4 v;
+  std::memcpy(&v, at, sizeof v);
+  return v;
+}
+
+Float4 LoadBytes(const uint8_t* at) {
+  Bytes4 bytes;
+  std::memcpy(&bytes, at, sizeof bytes);
+  return __builtin_convertvector(bytes, Float4);
+}
+
+float Sum(Float4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
+
+// LaneSum over the pixels of a patch, in four lanes.
+struct LaneSum {
+  Float4 of{};
+  void Add(Float4 a) { of += a; }
+  float total() const { return Sum(of); }
+};
+
+constexpr int kPatchSide = Patch::kSide;
+constexpr int kRim = kPatchSide + 2;        // of the samples from which gradients are taken
+constexpr float kMinDeterminant = 1;   // (gray levels per pixel)⁴, of the mean over the pixels
+
+bool InsideImage(const cv::Mat& image, float x, float y, float reach) {
+  return x >= reach && y >= reach && x < static_cast<float>(image.cols - 1) - reach &&
+         y < static_cast<float>(image.rows - 1) - reach;
+}
+
+float Bilinear(const cv::Mat& image, float x, float y) {
+  const int column = static_cast<int>(x), row = static_cast<int>(y);
+  const float fx = x - static_cast<float>(column), fy = y - static_cast<float>(row);
+  const uint8_t* a = image.ptr<uint8_t>(row) + column;
+  const uint8_t* b = a + image.step[0];
+  const float above = static_cast<float>(a[0]) + fx * static_cast<float>(a[1] - a[0]);
+  const float below = static_cast<float>(b[0]) + fx * static_cast<float>(b[1] - b[0]);
+  return above + fy * (below - above);
+}
+
+// The pixels around a place, interpolated.
+void SamplePatch(const cv::Mat& image, float x, float y, std::array<Float4, Patch::kPixels / 4>& out) {
+  const float left = x - 0.5f * (kPatchSide - 1), top = y - 0.5f * (kPatchSide - 1);
+  const int column = static_cast<int>(left), row = static_cast<int>(top);
+  const float fx = left - static_cast<float>(column), fy = top - static_cast<float>(row);
+  Float4 above[2];
+  for (int r = 0; r <= kPatchSide; ++r) {
+    const uint8_t* pixels = image.ptr<uint8_t>(row + r) + column;
+    for (int half = 0; half < 2; ++half) {
+      const Float4 here = LoadBytes(pixels + 4 * half), next = LoadBytes(pixels + 4 * half + 1);
+      const Float4 between = here + fx * (next - here);
+      if (r > 0) out[2 * (r - 1) + half] = above[half] + fy * (between - above[half]);
+      above[half] = between;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<cv::Mat> HalvedImages(const cv::Mat& image, int count) {
+  constexpr int kShortest = 16;
+  std::vector<cv::Mat> images = {image};
+  while (static_cast<int>(images.size()) < count) {
+    const cv::Mat& last = images.back();
+    const cv::Size half(last.cols / 2, last.rows / 2);
+    if (std::min(half.width, half.height) < kShortest) break;
+    cv::Mat next;
+    cv::resize(last(cv::Rect(0, 0, 2 * half.width, 2 * half.height)), next, half, 0, 0,
+               cv::INTER_AREA);
+    images.push_back(next);
+  }
+  return images;
+}
+
+bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::Matrix2f& warp,
+              Patch& patch) {
+  constexpr float kHalf = 0.5f * (kRim - 1);
+  const Eigen::Array2f reach = kHalf * warp.cwiseAbs().rowwise().sum().array() + 1;
+  if (!InsideImage(image, center.x(), center.y(), 0) || !(center.x() >= reach.x()) ||
+      !(center.y() >= reach.y()) || !(center.x() < static_cast<float>(image.cols - 1) - reach.x()) ||
+      !(center.y() < static_cast<float>(image.rows - 1) - reach.y()))
+    return false;
+  float samples[kRim][kRim];
+  for (int r = 0; r < kRim; ++r) {
+    for (int c = 0; c < kRim; ++c) {
+      const float u = static_cast<float>(c) - kHalf, v = static_cast<float>(r) - kHalf;
+      samples[r][c] = Bilinear(image, center.x() + warp(0, 0) * u + warp(0, 1) * v,
+                               center.y() + warp(1, 0) * u + warp(1, 1) * v);
+    }
+  }
+  float mean = 0;
+  for (int r = 0; r < kPatchSide; ++r) {
+    for (int c = 0; c < kPatchSide; ++c) mean += samples[r + 1][c + 1];
+  }
+  mean /= Patch::kPixels;
+  for (int r = 0, i = 0; r < kPatchSide; ++r) {
+    for (int c = 0; c < kPatchSide; ++c, ++i) {
+      patch.value[i] = samples[r + 1][c + 1] - mean;
+      patch.dx[i] = 0.5f * (samples[r + 1][c + 2] - samples[r + 1][c]);
+      patch.dy[i] = 0.5f * (samples[r + 2][c + 1] - samples[r][c + 1]);
+    }
+  }
+  LaneSum xx, xy, xv, x1, yy, yv, y1, vv, v1;
+  for (int i = 0; i < Patch::kPixels; i += 4) {
+    const Float4 dx = Load(&patch.dx[i]), dy = Load(&patch.dy[i]), value = Load(&patch.value[i]);
+    xx.Add(dx * dx);
+    xy.Add(dx * dy);
+    xv.Add(dx * value);
+    x1.Add(dx);
+    yy.Add(dy * dy);
+    yv.Add(dy * value);
+    y1.Add(dy);
+    vv.Add(value * value);
+    v1.Add(value);
+  }
+  // Gain and offset are eliminated from the shift by the Schur complement.
+  Eigen::Matrix2f A, B, C;
+  A << xx.total(), xy.total(), xy.total(), yy.total();
+  B << xv.total(), x1.total(), yv.total(), y1.total();
+  C << vv.total(), v1.total(), v1.total(), Patch::kPixels;
+  if (!(C.determinant() > 0)) return false;
+  const Eigen::Matrix2f C_inverse = C.inverse();
+  const Eigen::Matrix2f BC = B * C_inverse;
+  patch.information = A - BC * B.transpose();
+  constexpr float kPixels2 = static_cast<float>(Patch::kPixels) * Patch::kPixels;
+  if (!(patch.information.determinant() > kMinDeterminant * kPixels2)) return false;
+  const Eigen::Matrix2f covariance = patch.information.inverse();
+  patch.inverse.topLeftCorner<2, 2>() = covariance;
+  patch.inverse.topRightCorner<2, 2>() = -covariance * BC;
+  patch.inverse.bottomLeftCorner<2, 2>() = patch.inverse.topRightCorner<2, 2>().transpose();
+  patch.inverse.bottomRightCorner<2, 2>() = C_inverse + BC.transpose() * covariance * BC;
+  return true;
+}
+
+PatchStep StepOf(const Patch& patch, const cv::Mat& image, const Eigen::Vector2f& place) {
+  PatchStep step;
+  if (!InsideImage(image, place.x(), place.y(), Patch::kReach)) return step;
+  step.inside = true;
+  std::array<Float4, Patch::kPixels / 4> pixels;
+  SamplePatch(image, place.x(), place.y(), pixels);
+  LaneSum x, y, v, one, square;
+  for (int i = 0; i < Patch::kPixels / 4; ++i) {
+    x.Add(Load(&patch.dx[4 * i]) * pixels[i]);
+    y.Add(Load(&patch.dy[4 * i]) * pixels[i]);
+    v.Add(Load(&patch.value[4 * i]) * pixels[i]);
+    one.Add(pixels[i]);
+    square.Add(pixels[i] * pixels[i]);
+  }
+  // Least squares of pixels = gain (value + (dx, dy) s) + offset. The patch is at place - s.
+  const Eigen::Vector4f b(x.total(), y.total(), v.total(), one.total());
+  const Eigen::Vector4f z = patch.inverse * b;
+  step.gain = z[2];
+  if (!(step.gain > 0)) return step;
+  step.shift = -z.head<2>() / step.gain;
+  constexpr float kCount = Patch::kPixels;
+  const float variance = square.total() - b[3] * b[3] / kCount;
+  const float explained = z.dot(b) - b[3] * b[3] / kCount;
+  step.residual2 = std::max(0.0f, variance - explained) / kCount;
+  if (variance > 0) step.correlation = std::sqrt(std::clamp(explained / variance, 0.0f, 1.0f));
+  return step;
+}
+
+bool AlignPatch(const Patch& patch, const cv::Mat& image, float reach, float min_correlation,
+                Eigen::Vector2f& place) {
+  const Eigen::Vector2f start = place;
+  for (int i = 0; i < kPatchSteps; ++i) {
+    const PatchStep step = StepOf(patch, image, place);
+    if (!step.inside || !(step.gain > 0)) return false;
+    place += step.shift;
+    if (!((place - start).squaredNorm() <= reach * reach)) return false;
+    if (step.shift.squaredNorm() < kAligned * kAligned) return step.correlation >= min_correlation;
+  }
+  return false;
+}
+
+}  // namespace alidade

@@ -1,0 +1,173 @@
+#include "alidade/tracking/frame_alignment.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "alidade/base/part_times.h"
+#include "alidade/features/frame.h"
+#include "alidade/features/pyramid.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kLevels = 4;          // of the halved images, at most
+constexpr size_t kCoarsePoints = 100;  // whose patches find the pose; more change little
+constexpr int kCoarseSteps = 8;     // on each level
+// Gray levels: noise of a pixel and what a patch changes between two views.
+constexpr float kNoise = 5;
+constexpr float kLinear = 2;  // pixels: gradients predict brightness no farther
+constexpr double kSmallStep = 0.05;  // pixels of the level: the pose is found
+constexpr float kReach = 6;  // pixels of the level: largest error of the pose found before
+constexpr float kMinCorrelation = 0.8f;
+
+float ScaleOf(size_t level) { return static_cast<float>(1 << level); }
+
+// The halved image in which a keypoint is about as sharp as on its own level of the pyramid.
+size_t HalvedLevel(int level, size_t count) {
+  constexpr double kEach = 0.263034;  // log2(1.2)
+  return std::min(static_cast<size_t>(level * kEach + 0.25), count - 1);
+}
+
+Eigen::Vector2f OnLevel(const Eigen::Vector2f& raw, size_t level) {
+  const float scale = ScaleOf(level);
+  return ((raw.array() + 0.5f) / scale - 0.5f).matrix();
+}
+
+Eigen::Vector2f FromLevel(const Eigen::Vector2f& place, size_t level) {
+  const float scale = ScaleOf(level);
+  return ((place.array() + 0.5f) * scale - 0.5f).matrix();
+}
+
+// Raw pixel of a point in front of the camera.
+Eigen::Vector2f RawPixel(const Camera& camera, const Eigen::Vector3d& p) {
+  const Eigen::Vector2d pixel = camera.Project(p);
+  return (camera.HasDistortion() ? camera.Distort(pixel) : pixel).cast<float>();
+}
+
+// Derivative of the pixel by a left increment of the pose (translation; rotation).
+Eigen::Matrix<double, 2, 6> PixelByPose(const Camera& camera, const Eigen::Vector3d& p) {
+  const double inv_z = 1 / p.z();
+  Eigen::Matrix<double, 2, 3> by_point;
+  by_point << camera.fx * inv_z, 0, -camera.fx * p.x() * inv_z * inv_z, 0, camera.fy * inv_z,
+      -camera.fy * p.y() * inv_z * inv_z;
+  Eigen::Matrix<double, 2, 6> J;
+  J.leftCols<3>() = by_point;
+  J.rightCols<3>() = -by_point * Skew(p);
+  return J;
+}
+
+constexpr double kInFront = 0.01;  // map units: in front of the camera
+
+}  // namespace
+
+void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
+  const PartTimer timer(FramePart::kAlign);
+  reference_ = HalvedImages(reference, kLevels);
+  patches_.assign(reference_.size(), std::vector<LevelPatch>());
+  for (size_t level = 1; level < reference_.size(); ++level) patches_[level].resize(keypoints);
+}
+
+std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
+                                                std::span<const ReferencePoint> points,
+                                                const Se3& T_reference_world,
+                                                Se3& T_camera_world) {
+  const PartTimer timer(FramePart::kAlign);
+  image_ = HalvedImages(image, kLevels);
+  // Evenly over the list, which is sorted by level and place.
+  std::vector<ReferencePoint> some;
+  const size_t step = std::max<size_t>(1, points.size() / kCoarsePoints);
+  for (size_t i = 0; i < points.size(); i += step) some.push_back(points[i]);
+  for (size_t level = reference_.size() - 1; level > 0; --level)
+    AlignOn(level, camera, some, T_camera_world);
+
+  std::vector<AlignedPoint> aligned;
+  aligned.reserve(points.size());
+  for (const ReferencePoint& point : points)
+    aligned.push_back(Find(camera, point, T_reference_world, T_camera_world));
+  return aligned;
+}
+
+const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) {
+  LevelPatch& known = patches_[level][static_cast<size_t>(point.keypoint)];
+  if (known.state == LevelPatch::kUnknown) {
+    const bool usable = CutPatch(reference_[level], OnLevel(point.raw, level),
+                                 Eigen::Matrix2f::Identity(), known.patch);
+    known.state = usable ? LevelPatch::kUsable : LevelPatch::kUnusable;
+  }
+  return known.state == LevelPatch::kUsable ? &known.patch : nullptr;
+}
+
+// Gauss-Newton steps: each patch measures how far its landmark is from where the pose predicts it,
+// with the information its gradients give.
+void FrameAlignment::AlignOn(size_t level, const Camera& camera,
+                             std::span<const ReferencePoint> points, Se3& T_camera_world) {
+  const double scale = ScaleOf(level);
+  for (int i = 0; i < kCoarseSteps; ++i) {
+    Matrix6d H = Matrix6d::Zero();
+    Vector6d g = Vector6d::Zero();
+    double weights = 0;
+    for (const ReferencePoint& point : points) {
+      const Patch* patch = PatchOn(level, point);
+      const Eigen::Vector3d p = T_camera_world * point.p_world;
+      if (!patch || !(p.z() > kInFront)) continue;
+      const PatchStep step =
+          StepOf(*patch, image_[level], OnLevel(RawPixel(camera, p), level));
+      if (!step.inside || !(step.gain > 0)) continue;
+      const float length = step.shift.norm();
+      const float trust = length > kLinear ? kLinear / length : 1;
+      const double weight = trust / (kNoise * kNoise + step.residual2);
+      const Eigen::Matrix2d information = weight * patch->information.cast<double>();
+      const Eigen::Matrix<double, 2, 6> J = PixelByPose(camera, p) / scale;
+      const Eigen::Matrix<double, 6, 2> JtI = J.transpose() * information;
+      H += JtI * J;
+      g += JtI * step.shift.cast<double>();
+      weights += information.trace() / 2;
+    }
+    const Eigen::LDLT<Matrix6d> solver(H);
+    if (solver.info() != Eigen::Success || !solver.isPositive()) return;
+    const Vector6d increment = solver.solve(g);
+    if (!increment.allFinite()) return;
+    T_camera_world = Se3::Exp(increment) * T_camera_world;
+    // Mean squared motion of the points.
+    if (increment.dot(g) < kSmallStep * kSmallStep * weights) return;
+  }
+}
+
+AlignedPoint FrameAlignment::Find(const Camera& camera, const ReferencePoint& point,
+                                  const Se3& T_reference_world, const Se3& T_camera_world) const {
+  AlignedPoint aligned;
+  const Eigen::Vector3d p = T_reference_world * point.p_world, q = T_camera_world * point.p_world;
+  if (!(p.z() > kInFront) || !(q.z() > kInFront)) return aligned;
+  // Of a surface parallel to the reference image.
+  const Se3 T_camera_reference = T_camera_world * T_reference_world.Inverse();
+  Eigen::Matrix<double, 2, 3> by_point;
+  by_point << camera.fx / q.z(), 0, -camera.fx * q.x() / (q.z() * q.z()), 0, camera.fy / q.z(),
+      -camera.fy * q.y() / (q.z() * q.z());
+  Eigen::Matrix2d turned = by_point * T_camera_reference.R.leftCols<2>() * p.z();
+  turned.col(0) /= camera.fx;
+  turned.col(1) /= camera.fy;
+  if (!(turned.determinant() > 0)) return aligned;
+
+  const size_t level = HalvedLevel(point.level, reference_.size());
+  const cv::Mat& image = image_[level];
+  Eigen::Vector2f place = OnLevel(RawPixel(camera, q), level);
+  const float rim = Patch::kReach;
+  aligned.expected = place.x() >= rim && place.y() >= rim &&
+                     place.x() < static_cast<float>(image.cols - 1) - rim &&
+                     place.y() < static_cast<float>(image.rows - 1) - rim;
+  if (!aligned.expected) return aligned;
+  Patch patch;
+  if (!CutPatch(reference_[level], OnLevel(point.raw, level), turned.inverse().cast<float>(),
+                patch)) {
+    aligned.expected = false;
+    return aligned;
+  }
+  aligned.found = AlignPatch(patch, image, kReach, kMinCorrelation, place);
+  aligned.raw = FromLevel(place, level);
+  aligned.turn = static_cast<float>(std::atan2(turned(1, 0), turned(0, 0)));
+  return aligned;
+}
+
+}  // namespace alidade
