@@ -58,12 +58,12 @@ cv::Mat NearestOfCells(const DepthImage& depth) {
 
 }  // namespace
 
-void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
+void ReadDepths(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
   const bool integers = depth.type() == CV_16UC1;
   if (!integers && depth.type() != CV_32FC1) {
     ThrowInput("depth image: must have one channel of 16-bit integers or 32-bit floats");
   }
-  if (depth.size() != frame.image.size()) {
+  if (depth.cols != camera.width || depth.rows != camera.height) {
     ThrowInput("depth image: its size differs from that of the color image");
   }
   if (integers && !(camera.depth_factor > 0)) {
@@ -77,7 +77,11 @@ void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, doubl
     if (k.depth > range || bf > kMostDisparity * k.depth) k.depth = Keypoint::kNoDepth;
     k.right_x = k.has_depth() ? k.x - bf / k.depth : Keypoint::kNoDepth;
   }
-  frame.nearest = NearestOfCells(image);
+}
+
+void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame, double range) {
+  ReadDepths(depth, camera, frame, range);
+  frame.nearest = NearestOfCells(DepthImage(depth, camera));
 }
 
 }  // namespace alidade

@@ -67,6 +67,9 @@ class Extractor {
 // keypoint keeps no depth if there is no reading, if the depths of its 3x3 neighborhood differ by
 // more than 5 % (depth discontinuity), or if the depth exceeds `range` (meters), where some sensors
 // report a constant. Throws Error (input) if type, size or depth_factor do not fit.
+void ReadDepths(const cv::Mat& depth, const Camera& camera, Frame& frame,
+                double range = std::numeric_limits<double>::infinity());
+// The same, and Frame::nearest.
 void AttachDepth(const cv::Mat& depth, const Camera& camera, Frame& frame,
                  double range = std::numeric_limits<double>::infinity());
 

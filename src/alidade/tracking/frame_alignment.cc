@@ -65,8 +65,8 @@ constexpr double kInFront = 0.01;  // map units: in front of the camera
 void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
   const PartTimer timer(FramePart::kAlign);
   reference_ = HalvedImages(reference, kLevels);
-  patches_.assign(reference_.size(), std::vector<LevelPatch>());
-  for (size_t level = 1; level < reference_.size(); ++level) patches_[level].resize(keypoints);
+  patches_.clear();
+  patch_of_.assign(reference_.size(), std::vector<int>(keypoints, kUnknown));
 }
 
 std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
@@ -90,13 +90,15 @@ std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::
 }
 
 const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) {
-  LevelPatch& known = patches_[level][static_cast<size_t>(point.keypoint)];
-  if (known.state == LevelPatch::kUnknown) {
+  int& index = patch_of_[level][static_cast<size_t>(point.keypoint)];
+  if (index == kUnknown) {
+    Patch patch;
     const bool usable = CutPatch(reference_[level], OnLevel(point.raw, level),
-                                 Eigen::Matrix2f::Identity(), known.patch);
-    known.state = usable ? LevelPatch::kUsable : LevelPatch::kUnusable;
+                                 Eigen::Matrix2f::Identity(), patch);
+    index = usable ? static_cast<int>(patches_.size()) : kUnusable;
+    if (usable) patches_.push_back(patch);
   }
-  return known.state == LevelPatch::kUsable ? &known.patch : nullptr;
+  return index == kUnusable ? nullptr : &patches_[static_cast<size_t>(index)];
 }
 
 // Gauss-Newton steps: each patch measures how far its landmark is from where the pose predicts it,

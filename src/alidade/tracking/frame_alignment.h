@@ -46,10 +46,7 @@ class FrameAlignment {
                                   const Se3& T_reference_world, Se3& T_camera_world);
 
  private:
-  struct LevelPatch {
-    enum { kUnknown, kUsable, kUnusable } state = kUnknown;
-    Patch patch;
-  };
+  static constexpr int kUnknown = -1, kUnusable = -2;
   const Patch* PatchOn(size_t level, const ReferencePoint& point);
   void AlignOn(size_t level, const Camera& camera, std::span<const ReferencePoint> points,
                Se3& T_camera_world);
@@ -57,7 +54,8 @@ class FrameAlignment {
                     const Se3& T_camera_world) const;
 
   std::vector<cv::Mat> reference_, image_;        // halved images, the largest first
-  std::vector<std::vector<LevelPatch>> patches_;  // by level, keypoint; not turned or scaled
+  std::vector<Patch> patches_;                    // of the reference; neither turned nor scaled
+  std::vector<std::vector<int>> patch_of_;        // index by level, keypoint; or kUnknown, kUnusable
 };
 
 }  // namespace alidade

@@ -71,8 +71,14 @@ void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {
 }
 
 void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const {
+  UndoShutter(frame, estimate.placed, map);
+  if (last_.frame && frame.time > last_.frame->time && camera_.RollingShutter())
+    Optimise(estimate.placed, map);
+}
+
+// With the motion since the last frame and the depths that the pose of `placed` tells.
+void Tracker::UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnapshot& map) const {
   if (!last_.frame) return;
-  PlacedFrame& placed = estimate.placed;
   const double seconds = frame.time - last_.frame->time;
   if (!(seconds > 0)) return;
   Motion motion = motion_;
@@ -80,7 +86,6 @@ void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapsh
   motion.Add(placed.T_camera_world * PoseOf(map.state(), last_anchor_).Inverse(), seconds);
   const InverseDepthsSeen depths = InverseDepths(placed, map);
   UndoRollingShutter(camera_, motion.Velocity(), depths.of_keypoints, depths.common, frame);
-  if (camera_.RollingShutter()) Optimise(placed, map);
 }
 
 std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
@@ -334,7 +339,7 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
     if (placed.frame->Static(static_cast<int>(i)) < Frame::kMappable) continue;
     ++(placed.matches[i].valid() ? near_tracked : near_new);
   }
-  return near_tracked < Scaled(100) && near_new > Scaled(70);
+  return near_tracked < Scaled(kFewNear) && near_new > Scaled(70);
 }
 
 void Tracker::Remember(const PlacedFrame& placed, KeyFrameId reference, const MapSnapshot& map) {

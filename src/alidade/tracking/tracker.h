@@ -127,12 +127,21 @@ class Tracker {
 
  private:
   void KeepReference(const PlacedFrame& placed, KeyFrameId keyframe, const MapSnapshot& map);
-  std::vector<LandmarkId> ReferenceMatches(const MapSnapshot& map) const;
-  std::optional<TrackEstimate> JudgeAligned(PlacedFrame placed, Frame& frame,
-                                            std::span<const ReferencePoint> points,
-                                            std::span<const LandmarkId> ids,
-                                            std::span<const AlignedPoint> aligned,
-                                            const MapSnapshot& map);
+  struct ReferenceView {
+    Se3 T_camera_world;
+    std::vector<ReferencePoint> points;
+    std::vector<const Landmark*> landmarks;  // of the points
+    std::vector<Eigen::Vector2f> errors;     // their projections minus their keypoints, pixels
+  };
+  ReferenceView ViewReference(const MapSnapshot& map);
+  void AddAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned, Frame& frame,
+                  std::vector<LandmarkId>& matches) const;
+  static void MoveByErrors(const ReferenceView& view, std::span<const AlignedPoint> aligned,
+                           Frame& frame);
+  void CountAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned,
+                    TrackEstimate& estimate) const;
+  bool SufficesAligned(const TrackEstimate& estimate);
+  void UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnapshot& map) const;
   struct InverseDepthsSeen {
     std::vector<float> of_keypoints;  // 1 / map units; 0: unknown
     double common = 0;                // median
@@ -171,6 +180,8 @@ class Tracker {
   void Judge(TrackEstimate& estimate, double prior, const MapSnapshot& map);
   double Spread(const PlacedFrame& placed) const;
   bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
+  // With fewer landmarks with depth in view, a keyframe is due.
+  static constexpr int kFewNear = 100;
   int Scaled(int count) const { return static_cast<int>(count * settings_.match_scale + 0.5); }
 
   Camera camera_;

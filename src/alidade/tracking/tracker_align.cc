@@ -5,12 +5,13 @@
 #include <numbers>
 
 #include "alidade/base/part_times.h"
-#include "alidade/features/rolling_shutter.h"
 #include "alidade/features/undistort.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {
 namespace {
+
+constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
 
 float WrappedAngle(float angle) {
   constexpr float kPi = std::numbers::pi_v<float>;
@@ -21,7 +22,7 @@ float WrappedAngle(float angle) {
 
 void Tracker::KeepReference(const PlacedFrame& placed, KeyFrameId keyframe,
                             const MapSnapshot& map) {
-  if (!settings_.align || extracted_.empty() || placed.frame->number != extracted_number_) return;
+  if (extracted_.empty() || placed.frame->number != extracted_number_) return;
   const KeyFrame* found = map.Find(keyframe);
   reference_.frame = placed.frame;
   reference_.matches = placed.matches;
@@ -33,123 +34,160 @@ void Tracker::KeepReference(const PlacedFrame& placed, KeyFrameId keyframe,
   extracted_.release();
 }
 
-// The landmarks that the reference frame shows. A keyframe's may have been added since.
-std::vector<LandmarkId> Tracker::ReferenceMatches(const MapSnapshot& map) const {
+// The landmarks of the reference frame. A keyframe may have got more since.
+Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
   const KeyFrame* keyframe =
       reference_.is_keyframe ? map.Find(reference_.anchor.keyframe) : nullptr;
   if (keyframe && keyframe->landmarks.size() == reference_.matches.size())
-    return keyframe->landmarks;
-  return reference_.matches;
+    reference_.matches = keyframe->landmarks;
+  ReferenceView view;
+  view.T_camera_world = PoseOf(map.state(), reference_.anchor);
+  for (size_t k = 0; k < reference_.matches.size(); ++k) {
+    LandmarkId& id = reference_.matches[k];
+    id = map.Current(id);  // older ids are released
+    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
+    if (!landmark) continue;
+    const Keypoint& keypoint = reference_.frame->keypoints[k];
+    const Eigen::Vector3d p = view.T_camera_world * landmark->p_world;
+    if (!(p.z() > 0)) continue;
+    const Eigen::Vector2d error = camera_.Project(p) - keypoint.pixel();
+    const double sigma = settings_.noise.sigma_px * ScaleOfLevel(keypoint.level);
+    if (!(error.norm() <= kGate * settings_.bad_frame_sigma * sigma)) continue;
+    view.points.push_back({landmark->p_world,
+                           {keypoint.raw_x, keypoint.raw_y},
+                           keypoint.level,
+                           static_cast<int>(k)});
+    view.landmarks.push_back(landmark);
+    view.errors.push_back(error.cast<float>());
+  }
+  return view;
 }
 
 std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat& depth, double time,
                                             int number, const MapSnapshot& map) {
-  if (!reference_.frame || !alignment_.has_reference() || !last_.frame) return std::nullopt;
-  if (number - reference_.frame->number >= settings_.max_keyframe_gap || unproven_ > 0 ||
-      time - last_.frame->time > settings_.max_motion_age || !map.Find(reference_.anchor.keyframe))
+  if (!reference_.frame || !last_.frame || unproven_ > 0 ||
+      number - reference_.frame->number >= settings_.max_keyframe_gap ||
+      !(time - last_.frame->time <= settings_.max_motion_age) ||
+      !map.Find(reference_.anchor.keyframe))
     return std::nullopt;
-  const Frame& before = *reference_.frame;
-  std::vector<LandmarkId> matches = ReferenceMatches(map);
-  std::vector<ReferencePoint> points;
-  std::vector<LandmarkId> ids;
-  for (size_t k = 0; k < matches.size(); ++k) {
-    const LandmarkId id = matches[k] = map.Current(matches[k]);
-    const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (!landmark) continue;
-    const Keypoint& keypoint = before.keypoints[k];
-    points.push_back({landmark->p_world,
-                      {keypoint.raw_x, keypoint.raw_y},
-                      keypoint.level,
-                      static_cast<int>(k)});
-    ids.push_back(id);
-  }
-  reference_.matches = std::move(matches);  // older ids are released
+  const ReferenceView view = ViewReference(map);
   PlacedFrame placed;
   placed.T_camera_world = MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
-  const std::vector<AlignedPoint> aligned =
-      alignment_.Align(camera_, image, points, PoseOf(map.state(), reference_.anchor),
-                       placed.T_camera_world);
+  const std::vector<AlignedPoint> aligned = alignment_.Align(
+      camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
 
   auto frame = std::make_shared<Frame>();
   frame->time = time;
   frame->number = number;
-  for (size_t i = 0; i < points.size(); ++i) {
+  placed.frame = frame;
+  AddAligned(view, aligned, *frame, placed.matches);
+  if (!depth.empty()) {
+    const PartTimer timer(FramePart::kDepth);
+    ReadDepths(depth, camera_, *frame, settings_.depth_range);
+  }
+  UndoShutter(*frame, placed, map);
+  MoveByErrors(view, aligned, *frame);
+  TrackEstimate estimate;
+  estimate.reference = reference_.anchor.keyframe;
+  estimate.agreement = Optimise(placed, map);
+  estimate.placed = std::move(placed);
+  CountAligned(view, aligned, estimate);
+  if (!SufficesAligned(estimate)) return std::nullopt;
+  estimate.tracked = true;
+  return estimate;
+}
+
+// Sets the frame's keypoints, and their landmarks.
+void Tracker::AddAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned,
+                         Frame& frame, std::vector<LandmarkId>& matches) const {
+  const Frame& before = *reference_.frame;
+  for (size_t i = 0; i < aligned.size(); ++i) {
     if (!aligned[i].found) continue;
-    Keypoint keypoint = before.keypoints[points[i].keypoint];
+    const auto k = static_cast<size_t>(view.points[i].keypoint);
+    Keypoint keypoint = before.keypoints[k];
     keypoint.raw_x = aligned[i].raw.x();
     keypoint.raw_y = aligned[i].raw.y();
     keypoint.angle = WrappedAngle(keypoint.angle + aligned[i].turn);
     keypoint.depth = keypoint.right_x = Keypoint::kNoDepth;
-    frame->keypoints.push_back(keypoint);
-    frame->descriptors.push_back(before.descriptors[points[i].keypoint]);
-    placed.matches.push_back(ids[i]);
+    frame.keypoints.push_back(keypoint);
+    frame.descriptors.push_back(before.descriptors[k]);
+    matches.push_back(view.landmarks[i]->id);
   }
-  UndistortKeypoints(camera_, *frame);
-  if (!depth.empty()) {
-    const PartTimer timer(FramePart::kDepth);
-    frame->image = image;
-    AttachDepth(depth, camera_, *frame, settings_.depth_range);
-    frame->image.release();
-  }
-  UndoShutter(*frame, map);
-  placed.frame = frame;
-  return JudgeAligned(std::move(placed), *frame, points, ids, aligned, map);
+  UndistortKeypoints(camera_, frame);
 }
 
-std::optional<TrackEstimate> Tracker::JudgeAligned(PlacedFrame placed, Frame& frame,
-                                                   std::span<const ReferencePoint> points,
-                                                   std::span<const LandmarkId> ids,
-                                                   std::span<const AlignedPoint> aligned,
-                                                   const MapSnapshot& map) {
-  TrackEstimate estimate;
-  estimate.agreement = Optimise(placed, map);
-  estimate.reference = reference_.anchor.keyframe;
-  estimate.placed = std::move(placed);
-  if (camera_.RollingShutter()) UndoShutter(frame, estimate, map);
+// A keypoint of the reference is some tenths of a pixel beside its landmark's projection, and what
+// is aligned with it is beside it by as much. Without that, the pose relative to the reference is
+// as precise as the alignment.
+void Tracker::MoveByErrors(const ReferenceView& view, std::span<const AlignedPoint> aligned,
+                           Frame& frame) {
+  size_t k = 0;
+  for (size_t i = 0; i < aligned.size(); ++i) {
+    if (!aligned[i].found) continue;
+    Keypoint& keypoint = frame.keypoints[k++];
+    keypoint.x += view.errors[i].x();
+    keypoint.y += view.errors[i].y();
+    if (keypoint.has_depth()) keypoint.right_x += view.errors[i].x();
+  }
+}
 
+// Sets the sightings and the evidence. The covariance is that of keypoints that were not moved by
+// MoveByErrors(): their errors tell how well the landmarks are known.
+void Tracker::CountAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned,
+                           TrackEstimate& estimate) const {
   const PartTimer timer(FramePart::kEvidence);
-  const PlacedFrame& result = estimate.placed;
-  constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
+  PlacedFrame& placed = estimate.placed;
+  const Frame& frame = *placed.frame;
   PoseEvidence evidence(camera_.width, camera_.height, kGate * settings_.bad_frame_sigma,
                         settings_.evidence);
-  int near_tracked = 0;
-  for (size_t i = 0, k = 0; i < points.size(); ++i) {
+  double moved2 = 0, unmoved2 = 0;  // sums of squared errors
+  size_t k = 0;
+  for (size_t i = 0; i < aligned.size(); ++i) {
     if (!aligned[i].expected) continue;
-    bool found = false;
-    const Keypoint& before = reference_.frame->keypoints[points[i].keypoint];
-    const Landmark* landmark = map.Find(ids[i]);
-    if (aligned[i].found) {
-      found = result.matches[k].valid();
-      if (found && landmark) {
-        const MatchError error = ErrorOf(result, k, *landmark);
-        evidence.Found(frame.keypoints[k].x, frame.keypoints[k].y, before.level, error.chi2, -1);
-        near_tracked += before.has_depth();
-      }
-      ++k;
+    const Landmark& landmark = *view.landmarks[i];
+    const int level = view.points[i].level;
+    const Eigen::Vector2d expected =
+        camera_.Project(placed.T_camera_world * landmark.p_world);
+    const bool found = aligned[i].found && placed.matches[k].valid();
+    if (found) {
+      const MatchError error = ErrorOf(placed, k, landmark);
+      evidence.Found(frame.keypoints[k].x, frame.keypoints[k].y, level, error.chi2, -1);
+      const Eigen::Vector2d moved = frame.keypoints[k].pixel() - expected;
+      const double weight = 1 / (ScaleOfLevel(level) * ScaleOfLevel(level));
+      moved2 += weight * moved.squaredNorm();
+      unmoved2 += weight * (moved - view.errors[i].cast<double>()).squaredNorm();
+    } else {
+      evidence.Missed(expected.x(), expected.y(), level);
     }
-    if (!found && landmark) {
-      const Eigen::Vector2d pixel = camera_.Project(result.T_camera_world * landmark->p_world);
-      evidence.Missed(pixel.x(), pixel.y(), before.level);
-    }
-    estimate.sightings.push_back({ids[i], found});
+    k += aligned[i].found;
+    estimate.sightings.push_back({landmark.id, found});
   }
+  if (moved2 > 0) placed.covariance *= std::max(1.0, unmoved2 / moved2);
   estimate.evidence = evidence.LogLikelihoodRatio();
-  estimate.placed.log_odds =
+  placed.log_odds =
       AfterSeconds(belief_.log_odds, frame.time - belief_.time, settings_.evidence) +
       estimate.evidence;
-  reference_.most_found = std::max(reference_.most_found, result.inliers);
-  // As many as an extraction would find, if it loses the same share.
-  const double expected = static_cast<double>(result.inliers) / std::max(1, reference_.most_found) *
-                          reference_.inliers;
+}
+
+// Whether the frame needs no features of its own: its pose is right, and it is no keyframe.
+bool Tracker::SufficesAligned(const TrackEstimate& estimate) {
+  const PlacedFrame& placed = estimate.placed;
+  reference_.most_found = std::max(reference_.most_found, placed.inliers);
+  if (estimate.agreement < settings_.good_agreement ||
+      placed.inliers < 2 * Scaled(settings_.min_tracked) ||
+      placed.log_odds < LogOdds(settings_.evidence.min_probability))
+    return false;
+  if (reference_.is_keyframe) most_inliers_ = std::max(most_inliers_, placed.inliers);
+  // What an extraction would find, if it lost the same share of what it found in the reference.
+  const double left = static_cast<double>(placed.inliers) / reference_.most_found;
+  const double expected = left * std::max(reference_.inliers, reference_.most_found);
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
-  const bool few = expected < share * std::max(most_inliers_, reference_.inliers) ||
-                   result.inliers < 2 * Scaled(settings_.min_tracked) ||
-                   (has_depth_ && near_tracked < Scaled(100));
-  if (few || estimate.agreement < settings_.good_agreement ||
-      result.log_odds < LogOdds(settings_.evidence.min_probability))
-    return std::nullopt;
-  estimate.tracked = true;
-  return estimate;
+  if (expected < share * most_inliers_) return false;
+  if (!has_depth_) return true;
+  const auto& before = reference_.frame->keypoints;
+  int near = 0;
+  for (size_t k = 0; k < before.size(); ++k) near += reference_.matches[k].valid() && before[k].has_depth();
+  return near * left >= Scaled(kFewNear);
 }
 
 }  // namespace alidade
