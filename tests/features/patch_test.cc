@@ -64,8 +64,7 @@ TEST(Patch, IsWarpedIntoTheOtherImage) {
     for (float y = 45; y <= 75; y += 10) {
       Patch patch;
       if (!CutPatch(reference, {x, y}, warp.cast<float>(), patch)) continue;
-      const Eigen::Vector2d truth =
-          middle + warp.inverse() * (Eigen::Vector2d(x, y) - middle);
+      const Eigen::Vector2d truth = middle + warp.inverse() * (Eigen::Vector2d(x, y) - middle);
       Eigen::Vector2f place = truth.cast<float>() + Eigen::Vector2f(1.5f, -1);
       if (!AlignPatch(patch, image, 6, 0.9f, place)) continue;
       ++found;
@@ -106,8 +105,13 @@ TEST(Patch, WithoutBothCoordinatesIsRefused) {
 TEST(Patch, BeyondTheImageIsRefused) {
   const cv::Mat image = ImageOf(Eigen::Matrix2d::Identity(), {0, 0}, 1, 0);
   Patch patch;
-  for (const auto& [x, y] : {std::pair{2.0f, 60.0f}, {157.0f, 60.0f}, {80.0f, 3.0f},
-                             {80.0f, 117.0f}, {-50.0f, 60.0f}, {NAN, 60.0f}, {1e30f, 1e30f}})
+  for (const auto& [x, y] : {std::pair{2.0f, 60.0f},
+                             {157.0f, 60.0f},
+                             {80.0f, 3.0f},
+                             {80.0f, 117.0f},
+                             {-50.0f, 60.0f},
+                             {NAN, 60.0f},
+                             {1e30f, 1e30f}})
     EXPECT_FALSE(CutPatch(image, {x, y}, kUnchanged, patch)) << x << ' ' << y;
   ASSERT_TRUE(CutPatch(image, {80, 60}, kUnchanged, patch));
   for (const auto& [x, y] : {std::pair{4.0f, 60.0f}, {155.0f, 60.0f}, {NAN, 60.0f}, {1e30f, 0.0f}})

@@ -57,8 +57,7 @@ Outcome Play(RenderedFrames& room, const SlamSettings& settings, const Change& c
   }
   outcome.extracted = slam.Times().extract.size();
   outcome.trajectory = FormatTumTrajectory(estimate);
-  const Alignment alignment =
-      settings.sensor == Sensor::kMono ? Alignment::kSim3 : Alignment::kSe3;
+  const Alignment alignment = settings.sensor == Sensor::kMono ? Alignment::kSim3 : Alignment::kSe3;
   outcome.rmse = EvaluateAte(truth, estimate, {.align = alignment}).error.rmse;
   return outcome;
 }
@@ -101,9 +100,10 @@ INSTANTIATE_TEST_SUITE_P(Sensors, AlignTest,
 TEST(Align, AllowsForAnExposureThatChangesFromOneFrameToTheNext) {
   RenderedFrames& room = Room(Sensor::kRgbd);
   const Outcome steady = Play(room, Settings(Sensor::kRgbd, true));
-  const Outcome stepping = Play(room, Settings(Sensor::kRgbd, true), [](int number, cv::Mat& image) {
-    image.convertTo(image, -1, number % 8 < 4 ? 1 : 0.6, number % 8 < 4 ? 0 : 20);
-  });
+  const Outcome stepping =
+      Play(room, Settings(Sensor::kRgbd, true), [](int number, cv::Mat& image) {
+        image.convertTo(image, -1, number % 8 < 4 ? 1 : 0.6, number % 8 < 4 ? 0 : 20);
+      });
   EXPECT_EQ(stepping.tracked, kFrames);
   EXPECT_LT(stepping.extracted, 2 * steady.extracted);
   EXPECT_LT(stepping.rmse, std::max(1.5 * steady.rmse, 0.01));

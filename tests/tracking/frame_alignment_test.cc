@@ -117,8 +117,8 @@ TEST(FrameAlignment, SurvivesImagesThatShowNothing) {
     EXPECT_TRUE(pose.t.allFinite() && pose.R.allFinite());
   }
   Se3 pose = scene.Pose(0);
-  EXPECT_TRUE(alignment.Align(scene.recording.camera(), reference.image, {}, scene.Pose(0), pose)
-                  .empty());
+  EXPECT_TRUE(
+      alignment.Align(scene.recording.camera(), reference.image, {}, scene.Pose(0), pose).empty());
 }
 
 }  // namespace

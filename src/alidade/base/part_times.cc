@@ -8,10 +8,10 @@ constinit thread_local PartTimes* PartTimer::listening = nullptr;
 
 const char* NameOf(FramePart part) {
   constexpr const char* kNames[kFrameParts] = {
-      "news",      "prepare",      "inertial", "movers",  "buffers",  "pyramid", "smooth",
-      "corners",   "spread",       "describe", "grid",    "depth",    "glance",  "align", "last frame",
-      "local map", "local search", "passing",  "pose",    "evidence", "place",   "keyframe",
-      "left out",  "publish",      "earlier",  "mapping", "other"};
+      "news",       "prepare",   "inertial",     "movers",  "buffers", "pyramid",  "smooth",
+      "corners",    "spread",    "describe",     "grid",    "depth",   "glance",   "align",
+      "last frame", "local map", "local search", "passing", "pose",    "evidence", "place",
+      "keyframe",   "left out",  "publish",      "earlier", "mapping", "other"};
   return kNames[static_cast<int>(part)];
 }
 

@@ -35,8 +35,8 @@ struct LaneSum {
 };
 
 constexpr int kPatchSide = Patch::kSide;
-constexpr int kRim = kPatchSide + 2;        // of the samples from which gradients are taken
-constexpr float kMinDeterminant = 1;   // (gray levels per pixel)⁴, of the mean over the pixels
+constexpr int kRim = kPatchSide + 2;  // of the samples from which gradients are taken
+constexpr float kMinDeterminant = 1;  // (gray levels per pixel)⁴, of the mean over the pixels
 
 bool InsideImage(const cv::Mat& image, float x, float y, float reach) {
   return x >= reach && y >= reach && x < static_cast<float>(image.cols - 1) - reach &&
@@ -54,7 +54,8 @@ float Bilinear(const cv::Mat& image, float x, float y) {
 }
 
 // The pixels around a place, interpolated.
-void SamplePatch(const cv::Mat& image, float x, float y, std::array<Float4, Patch::kPixels / 4>& out) {
+void SamplePatch(const cv::Mat& image, float x, float y,
+                 std::array<Float4, Patch::kPixels / 4>& out) {
   const float left = x - 0.5f * (kPatchSide - 1), top = y - 0.5f * (kPatchSide - 1);
   const int column = static_cast<int>(left), row = static_cast<int>(top);
   const float fx = left - static_cast<float>(column), fy = top - static_cast<float>(row);
@@ -92,7 +93,8 @@ bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::
   constexpr float kHalf = 0.5f * (kRim - 1);
   const Eigen::Array2f reach = kHalf * warp.cwiseAbs().rowwise().sum().array() + 1;
   if (!InsideImage(image, center.x(), center.y(), 0) || !(center.x() >= reach.x()) ||
-      !(center.y() >= reach.y()) || !(center.x() < static_cast<float>(image.cols - 1) - reach.x()) ||
+      !(center.y() >= reach.y()) ||
+      !(center.x() < static_cast<float>(image.cols - 1) - reach.x()) ||
       !(center.y() < static_cast<float>(image.rows - 1) - reach.y()))
     return false;
   float samples[kRim][kRim];

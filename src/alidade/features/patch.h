@@ -40,7 +40,7 @@ bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::
 struct PatchStep {
   bool inside = false;  // the place is far enough from the image's border; otherwise nothing is set
   Eigen::Vector2f shift = Eigen::Vector2f::Zero();  // from the place to the patch, pixels
-  float gain = 0;         // of the image relative to the patch; unitless
+  float gain = 0;                                   // of the image relative to the patch; unitless
   float correlation = 0;  // of the pixels and the patch shifted to the first order, -1 to 1
   float residual2 = 0;    // mean squared difference left by shift, gain and offset, gray levels²
 };

@@ -12,14 +12,14 @@
 namespace alidade {
 namespace {
 
-constexpr int kLevels = 4;          // of the halved images, at most
+constexpr int kLevels = 4;             // of the halved images, at most
 constexpr size_t kCoarsePoints = 100;  // whose patches find the pose; more change little
-constexpr int kCoarseSteps = 8;     // on each level
+constexpr int kCoarseSteps = 8;        // on each level
 // Gray levels: noise of a pixel and what a patch changes between two views.
 constexpr float kNoise = 5;
-constexpr float kLinear = 2;  // pixels: gradients predict brightness no farther
+constexpr float kLinear = 2;         // pixels: gradients predict brightness no farther
 constexpr double kSmallStep = 0.05;  // pixels of the level: the pose is found
-constexpr float kReach = 6;  // pixels of the level: largest error of the pose found before
+constexpr float kReach = 6;          // pixels of the level: largest error of the pose found before
 constexpr float kMinCorrelation = 0.8f;
 
 float ScaleOf(size_t level) { return static_cast<float>(1 << level); }
@@ -71,8 +71,7 @@ void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
 
 std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
                                                 std::span<const ReferencePoint> points,
-                                                const Se3& T_reference_world,
-                                                Se3& T_camera_world) {
+                                                const Se3& T_reference_world, Se3& T_camera_world) {
   const PartTimer timer(FramePart::kAlign);
   image_ = HalvedImages(image, kLevels);
   // Evenly over the list, which is sorted by level and place.
@@ -93,8 +92,8 @@ const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) 
   int& index = patch_of_[level][static_cast<size_t>(point.keypoint)];
   if (index == kUnknown) {
     Patch patch;
-    const bool usable = CutPatch(reference_[level], OnLevel(point.raw, level),
-                                 Eigen::Matrix2f::Identity(), patch);
+    const bool usable =
+        CutPatch(reference_[level], OnLevel(point.raw, level), Eigen::Matrix2f::Identity(), patch);
     index = usable ? static_cast<int>(patches_.size()) : kUnusable;
     if (usable) patches_.push_back(patch);
   }
@@ -114,8 +113,7 @@ void FrameAlignment::AlignOn(size_t level, const Camera& camera,
       const Patch* patch = PatchOn(level, point);
       const Eigen::Vector3d p = T_camera_world * point.p_world;
       if (!patch || !(p.z() > kInFront)) continue;
-      const PatchStep step =
-          StepOf(*patch, image_[level], OnLevel(RawPixel(camera, p), level));
+      const PatchStep step = StepOf(*patch, image_[level], OnLevel(RawPixel(camera, p), level));
       if (!step.inside || !(step.gain > 0)) continue;
       const float length = step.shift.norm();
       const float trust = length > kLinear ? kLinear / length : 1;

@@ -53,9 +53,9 @@ class FrameAlignment {
   AlignedPoint Find(const Camera& camera, const ReferencePoint& point, const Se3& T_reference_world,
                     const Se3& T_camera_world) const;
 
-  std::vector<cv::Mat> reference_, image_;        // halved images, the largest first
-  std::vector<Patch> patches_;                    // of the reference; neither turned nor scaled
-  std::vector<std::vector<int>> patch_of_;        // index by level, keypoint; or kUnknown, kUnusable
+  std::vector<cv::Mat> reference_, image_;  // halved images, the largest first
+  std::vector<Patch> patches_;              // of the reference; neither turned nor scaled
+  std::vector<std::vector<int>> patch_of_;  // index by level, keypoint; or kUnknown, kUnusable
 };
 
 }  // namespace alidade

@@ -53,10 +53,8 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
     const Eigen::Vector2d error = camera_.Project(p) - keypoint.pixel();
     const double sigma = settings_.noise.sigma_px * ScaleOfLevel(keypoint.level);
     if (!(error.norm() <= kGate * settings_.bad_frame_sigma * sigma)) continue;
-    view.points.push_back({landmark->p_world,
-                           {keypoint.raw_x, keypoint.raw_y},
-                           keypoint.level,
-                           static_cast<int>(k)});
+    view.points.push_back(
+        {landmark->p_world, {keypoint.raw_x, keypoint.raw_y}, keypoint.level, static_cast<int>(k)});
     view.landmarks.push_back(landmark);
     view.errors.push_back(error.cast<float>());
   }
@@ -73,8 +71,8 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   const ReferenceView view = ViewReference(map);
   PlacedFrame placed;
   placed.T_camera_world = MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
-  const std::vector<AlignedPoint> aligned = alignment_.Align(
-      camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
+  const std::vector<AlignedPoint> aligned =
+      alignment_.Align(camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
 
   auto frame = std::make_shared<Frame>();
   frame->time = time;
@@ -146,8 +144,7 @@ void Tracker::CountAligned(const ReferenceView& view, std::span<const AlignedPoi
     if (!aligned[i].expected) continue;
     const Landmark& landmark = *view.landmarks[i];
     const int level = view.points[i].level;
-    const Eigen::Vector2d expected =
-        camera_.Project(placed.T_camera_world * landmark.p_world);
+    const Eigen::Vector2d expected = camera_.Project(placed.T_camera_world * landmark.p_world);
     const bool found = aligned[i].found && placed.matches[k].valid();
     if (found) {
       const MatchError error = ErrorOf(placed, k, landmark);
@@ -164,9 +161,8 @@ void Tracker::CountAligned(const ReferenceView& view, std::span<const AlignedPoi
   }
   if (moved2 > 0) placed.covariance *= std::max(1.0, unmoved2 / moved2);
   estimate.evidence = evidence.LogLikelihoodRatio();
-  placed.log_odds =
-      AfterSeconds(belief_.log_odds, frame.time - belief_.time, settings_.evidence) +
-      estimate.evidence;
+  placed.log_odds = AfterSeconds(belief_.log_odds, frame.time - belief_.time, settings_.evidence) +
+                    estimate.evidence;
 }
 
 // Whether the frame needs no features of its own: its pose is right, and it is no keyframe.
@@ -177,16 +173,17 @@ bool Tracker::SufficesAligned(const TrackEstimate& estimate) {
       placed.inliers < 2 * Scaled(settings_.min_tracked) ||
       placed.log_odds < LogOdds(settings_.evidence.min_probability))
     return false;
-  if (reference_.is_keyframe) most_inliers_ = std::max(most_inliers_, placed.inliers);
+  const int of_reference = std::max(reference_.inliers, reference_.most_found);
+  if (reference_.is_keyframe) most_inliers_ = std::max(most_inliers_, of_reference);
   // What an extraction would find, if it lost the same share of what it found in the reference.
   const double left = static_cast<double>(placed.inliers) / reference_.most_found;
-  const double expected = left * std::max(reference_.inliers, reference_.most_found);
+  const double expected = left * of_reference;
   const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
   if (expected < share * most_inliers_) return false;
   if (!has_depth_) return true;
-  const auto& before = reference_.frame->keypoints;
   int near = 0;
-  for (size_t k = 0; k < before.size(); ++k) near += reference_.matches[k].valid() && before[k].has_depth();
+  for (size_t k = 0; k < reference_.matches.size(); ++k)
+    near += reference_.matches[k].valid() && reference_.frame->keypoints[k].has_depth();
   return near * left >= Scaled(kFewNear);
 }
 

@@ -26,9 +26,7 @@ class EarlyFrames {
   // Buffers a frame that was tracked in the newest map, if that is young.
   void Tracked(const Frame& frame, int index);
   // Whether Tracked() would buffer frame `number`.
-  bool Wants(int number) const {
-    return map_.valid() && number - begun_ < settings_.settle_frames;
-  }
+  bool Wants(int number) const { return map_.valid() && number - begun_ < settings_.settle_frames; }
   // The newest map is dropped: its frames may be localized in the next one.
   void Release();
   // Drops the waiting frames: the frames to come need not continue them.
