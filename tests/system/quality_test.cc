@@ -45,16 +45,21 @@ double MetersPerUnit(const Slam& slam, RenderedFrames& room) {
   return AlignPoints(truth, found, true).s;
 }
 
-class Quality : public testing::TestWithParam<Sensor> {};
+class Quality : public testing::TestWithParam<Sensor> {
+ protected:
+  void ExpectErrorsOfTheSizeOfTheCovariance(bool align);
+};
 
 // Checks the motion between two frames, computed from their poses in the map; a common error of the
 // map cancels. Its covariance is the sum of those of the poses. If the covariances are right, the
 // root mean square of error / standard deviation is 1. All six parameters of the motion count
 // equally.
-TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
+void Quality::ExpectErrorsOfTheSizeOfTheCovariance(bool align) {
   RenderedFrames& room = TheRoom(GetParam());
   SlamSettings settings;
   settings.sensor = GetParam();
+  settings.tracker.align = align;
+  settings.fixed_parts = false;  // it needs the features of the first frames
   if (GetParam() != Sensor::kMono)
     settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
   Slam slam(room.camera(), settings);
@@ -82,6 +87,12 @@ TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) {
   RecordProperty("normalised_error", std::to_string(normalised));
   EXPECT_GT(normalised, 0.7);
   EXPECT_LT(normalised, 1.5);
+}
+
+TEST_P(Quality, CovarianceIsTheSizeOfTheErrors) { ExpectErrorsOfTheSizeOfTheCovariance(false); }
+
+TEST_P(Quality, CovarianceOfAlignedFramesIsTheSizeOfTheErrors) {
+  ExpectErrorsOfTheSizeOfTheCovariance(true);
 }
 
 TEST_P(Quality, SaysHowMuchOfWhatIsExpectedWasFound) {
