@@ -175,7 +175,10 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   setup.source.told = inspected.told;
   setup.reading = wanted;
   settings.sensor = setup.source.sensor;
-  settings.threaded = ThreadedFrom(options, setup.source.kind == "camera");
+  const bool live = setup.source.kind == "camera";
+  settings.threaded = ThreadedFrom(options, live);
+  const Rate rate = RateFrom(options, settings.threaded);
+  settings.wait_for_mapping = rate.kind == Rate::Kind::kMax && !live;
   OutputFolder folder(ClaimOf(options, setup.source));
   outcome.folder = folder.path();
   if (saved && saved->camera.width < setup.source.camera.width)
@@ -197,8 +200,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (options.write_masks) masks.emplace(folder);
   ReadAhead frames(std::move(source));
   for (RunWatcher* watcher : watchers) watcher->Begin({slam, setup, finding, log}, folder.draft());
-  RunFrames(frames, RateFrom(options, settings.threaded), settings, slam, watchers, log,
-            masks ? &*masks : nullptr);
+  RunFrames(frames, rate, settings, slam, watchers, log, masks ? &*masks : nullptr);
   for (RunWatcher* watcher : watchers) watcher->Finished();
   TakeRefinedCamera(slam, setup, log.frames, finding);
   finding.readout = slam.camera().readout;

@@ -327,8 +327,11 @@ TrackResult FramePipeline::Place(TrackEstimate estimate, PresentFrame& now,
   // keyframes, so more may queue.
   const int max_backlog = settings_.sensor == Sensor::kMono ? 1 : 2;
   result.keyframe = estimate.wants_keyframe && session_.state() != SessionState::kConfirming &&
-                    workers_.backlog() <= max_backlog && !settings_.localize &&
-                    !workers_.mapping_stopped() && HoldsWithoutMovers(estimate.placed);
+                    !settings_.localize && !workers_.mapping_stopped() &&
+                    HoldsWithoutMovers(estimate.placed);
+  if (result.keyframe && settings_.wait_for_mapping && workers_.backlog() > max_backlog)
+    workers_.AwaitMapping();
+  result.keyframe = result.keyframe && workers_.backlog() <= max_backlog;
   if (!settings_.localize) {
     const LandmarkNews news = movers_.NewsOf(estimate, map);
     workers_.mapper().Doubt(news.evidence);

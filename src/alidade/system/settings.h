@@ -55,6 +55,10 @@ struct SlamSettings {
 
   Sensor sensor = Sensor::kMono;
   bool threaded = false;  // each stage on its own thread; false: in a fixed order after each frame
+  // Threaded: a frame that is to become a keyframe waits until the mapper can take it. For
+  // recordings that are processed as fast as possible. False: it becomes none, as with a live
+  // camera, whose frames do not wait.
+  bool wait_for_mapping = false;
   // 1920 x 1080 takes 22 ms on two cores, 4K takes 90 ms, and 1000 features are no better placed
   // there (decision 0027-image-size-limit).
   int image_width = 0;
