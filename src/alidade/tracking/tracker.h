@@ -51,11 +51,12 @@ class Tracker {
   std::shared_ptr<Frame> Extract(const cv::Mat& image, const cv::Mat& right, const cv::Mat& depth,
                                  double time, int number, const cv::Mat& avoid = {});
   // The frame of `image` by aligning the landmarks of the last extracted frame with it, instead of
-  // extracting its features; its keypoints are those landmarks. `depth` may be empty. nullopt:
-  // features are needed, because a keyframe is due or too few landmarks are found; `align` is off;
-  // or there is no such frame.
+  // extracting its features; its keypoints are those landmarks. `depth` may be empty. `left_out`:
+  // CV_8U of any size, stretched over the image, nonzero where nothing is used; may be empty.
+  // nullopt: features are needed, because a keyframe is due or too few landmarks are found; `align`
+  // is off; or there is no such frame.
   std::optional<TrackEstimate> Align(const cv::Mat& image, const cv::Mat& depth, double time,
-                                     int number, const MapSnapshot& map);
+                                     int number, const cv::Mat& left_out, const MapSnapshot& map);
   // Changes the readout time (Camera::readout) from the next frame on.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
   // Rotation R_now_last of the frame at `time` since the last frame, as an inertial sensor tells

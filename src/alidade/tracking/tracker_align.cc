@@ -18,6 +18,16 @@ float WrappedAngle(float angle) {
   return angle > kPi ? angle - 2 * kPi : angle <= -kPi ? angle + 2 * kPi : angle;
 }
 
+// Whether a mask, which is stretched over the image, is nonzero at a raw pixel.
+bool Marks(const cv::Mat& mask, const Eigen::Vector2f& raw, const Camera& camera) {
+  if (mask.empty()) return false;
+  const int x = static_cast<int>((raw.x() + 0.5f) * static_cast<float>(mask.cols) /
+                                 static_cast<float>(camera.width));
+  const int y = static_cast<int>((raw.y() + 0.5f) * static_cast<float>(mask.rows) /
+                                 static_cast<float>(camera.height));
+  return mask.at<uint8_t>(std::clamp(y, 0, mask.rows - 1), std::clamp(x, 0, mask.cols - 1)) != 0;
+}
+
 }  // namespace
 
 void Tracker::KeepReference(const PlacedFrame& placed, KeyFrameId keyframe,
@@ -62,7 +72,8 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
 }
 
 std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat& depth, double time,
-                                            int number, const MapSnapshot& map) {
+                                            int number, const cv::Mat& left_out,
+                                            const MapSnapshot& map) {
   if (!reference_.frame || !last_.frame || unproven_ > 0 ||
       number - reference_.frame->number >= settings_.max_keyframe_gap ||
       !(time - last_.frame->time <= settings_.max_motion_age) ||
@@ -71,8 +82,11 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   const ReferenceView view = ViewReference(map);
   PlacedFrame placed;
   placed.T_camera_world = MotionUntil(time, map) * PoseOf(map.state(), last_anchor_);
-  const std::vector<AlignedPoint> aligned =
+  std::vector<AlignedPoint> aligned =
       alignment_.Align(camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
+  for (AlignedPoint& point : aligned) {
+    if (point.found && Marks(left_out, point.raw, camera_)) point = {};
+  }
 
   auto frame = std::make_shared<Frame>();
   frame->time = time;
