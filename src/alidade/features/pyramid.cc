@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
 
 #include "alidade/base/part_times.h"
 #include "alidade/features/frame.h"
+#include "alidade/features/shrink.h"
 
 namespace alidade {
 
@@ -25,7 +25,7 @@ std::vector<cv::Mat> BuildPyramid(const cv::Mat& image) {
   std::vector<cv::Mat> pyramid(kPyramidLevels);
   pyramid[0] = image;
   for (int level = 1; level < kPyramidLevels; ++level) {
-    cv::resize(pyramid[level - 1], pyramid[level], sizes[level], 0, 0, cv::INTER_LINEAR);
+    pyramid[level] = ShrinkLinear(pyramid[level - 1], sizes[level]);
   }
   return pyramid;
 }
