@@ -109,9 +109,8 @@ int FastRow16(const uint8_t* pixels, int first, int end, ptrdiff_t stride, uint8
 
 FastRow FastRowFor(int end) {
   constexpr int kReach = 3;  // of the circle
-#ifdef ALIDADE_FAST_ROW_32
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2 && end >= 2 * kLanes + kReach) return FastRow32;
+#ifdef ALIDADE_AVX2
+  if (HasAvx2() && end >= 2 * kLanes + kReach) return FastRow32;
 #endif
   return end >= kLanes + kReach ? FastRow16 : nullptr;
 }

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "alidade/features/cpu.h"
+
 namespace alidade {
 
 // Scores plus one of the pixels [first, end) of a row into `score`, which is 0 there before: 0
@@ -17,8 +19,7 @@ using FastRow = int (*)(const uint8_t* pixels, int first, int end, ptrdiff_t str
 int FastRow16(const uint8_t* pixels, int first, int end, ptrdiff_t stride, uint8_t threshold,
               uint8_t* score, int* columns);
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define ALIDADE_FAST_ROW_32
+#ifdef ALIDADE_AVX2
 // 32 pixels at once, with AVX2. `end` at least 35.
 int FastRow32(const uint8_t* pixels, int first, int end, ptrdiff_t stride, uint8_t threshold,
               uint8_t* score, int* columns);
