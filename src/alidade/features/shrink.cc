@@ -1,11 +1,11 @@
 #include "alidade/features/shrink.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
 #include "alidade/features/pick.h"
@@ -133,17 +133,24 @@ class AreaRow {
     }
   }
   bool empty() const { return blocks_.size() == 0; }
-  void operator()(const uint8_t* row, float* sums) const {
+  // Of two rows at once, which share weights.
+  void operator()(std::array<const uint8_t*, 2> rows, std::array<float*, 2> sums) const {
     const float* weight = weights_.data();
     for (int b = 0; b < blocks_.size(); ++b) {
-      const uint8_t* window = row + blocks_.begin[b];
+      int at = blocks_.begin[b];
       const cv::v_uint8x16 picked = cv::v_load(picked_.data() + b * kWindowBytes);
-      cv::v_float32x4 sum = cv::v_setzero_f32();
-      for (int k = 0; k < taps_; ++k, window += channels_, weight += kLanes) {
-        const cv::v_uint8x16 pixels = Pick(cv::v_load(window), picked);
-        sum = sum + cv::v_cvt_f32(cv::v_reinterpret_as_s32(pixels)) * cv::v_load(weight);
+      cv::v_float32x4 first = cv::v_setzero_f32(), second = first;
+      for (int k = 0; k < taps_; ++k, at += channels_, weight += kLanes) {
+        const cv::v_float32x4 share = cv::v_load(weight);
+        const auto weighted = [&](const uint8_t* row) {
+          const cv::v_uint8x16 pixels = Pick(cv::v_load(row + at), picked);
+          return cv::v_cvt_f32(cv::v_reinterpret_as_s32(pixels)) * share;
+        };
+        first = first + weighted(rows[0]);
+        second = second + weighted(rows[1]);
       }
-      cv::v_store(sums + blocks_.result[b], sum);
+      cv::v_store(sums[0] + blocks_.result[b], first);
+      cv::v_store(sums[1] + blocks_.result[b], second);
     }
   }
 
@@ -169,16 +176,21 @@ class LinearRow {
       weights_.insert(weights_.end(), axis.WeightsOf(result), axis.WeightsOf(result + kLanes));
   }
   bool empty() const { return blocks_.size() == 0; }
-  void operator()(const uint8_t* row, int16_t* sums) const {
-    constexpr int kHalf = 8;  // weights of half a block
+  void operator()(std::array<const uint8_t*, 2> rows, std::array<int16_t*, 2> sums) const {
     for (int b = 0; b < blocks_.size(); ++b) {
-      const cv::v_uint8x16 window = cv::v_load(row + blocks_.begin[b]);
-      const auto half = [&](int h) {
-        const cv::v_uint8x16 pixels = Pick(window, cv::v_load(picked_.data() + h * kWindowBytes));
-        const cv::v_int16x8 weights = cv::v_load(weights_.data() + h * kHalf);
-        return cv::v_shr<4>(cv::v_dotprod(cv::v_reinterpret_as_s16(pixels), weights));
-      };
-      cv::v_store(sums + blocks_.result[b], cv::v_pack(half(2 * b), half(2 * b + 1)));
+      const uint8_t* picked = picked_.data() + b * 2 * kWindowBytes;
+      const int16_t* weight = weights_.data() + b * 2 * kLanes;
+      const cv::v_uint8x16 left = cv::v_load(picked), right = cv::v_load(picked + kWindowBytes);
+      const cv::v_int16x8 of_left = cv::v_load(weight), of_right = cv::v_load(weight + kLanes);
+      for (int r = 0; r < 2; ++r) {
+        const cv::v_uint8x16 window = cv::v_load(rows[r] + blocks_.begin[b]);
+        const auto half = [&](const cv::v_uint8x16& index, const cv::v_int16x8& weights) {
+          const cv::v_int16x8 pixels = cv::v_reinterpret_as_s16(Pick(window, index));
+          return cv::v_shr<4>(cv::v_dotprod(pixels, weights));
+        };
+        cv::v_store(sums[r] + blocks_.result[b],
+                    cv::v_pack(half(left, of_left), half(right, of_right)));
+      }
     }
   }
 
@@ -230,22 +242,27 @@ void SumDown(const std::vector<const int16_t*>& lines, const int16_t* weights, i
 
 // The sums along the last rows are kept: the next result begins with them.
 template <typename Row, typename Weight>
-cv::Mat Shrink(const cv::Mat& image, cv::Size size, const Row& along, const Axis<Weight>& down) {
-  const int count = size.width * image.channels();
-  std::vector<typename Row::Sum> sums(static_cast<size_t>(count) * down.taps);
-  std::vector<int> row_of(down.taps, -1);
+void Shrink(const cv::Mat& image, const Row& along, const Axis<Weight>& down, cv::Mat& small) {
+  const int count = small.cols * small.channels(), kept = down.taps + 1;
+  std::vector<typename Row::Sum> sums(static_cast<size_t>(count) * kept);
+  std::vector<int> row_of(kept, -1);
   std::vector<const typename Row::Sum*> lines(down.taps);
-  cv::Mat small(size, image.type());
-  for (int y = 0; y < size.height; ++y) {
+  const auto line_of = [&](int row) {
+    return sums.data() + static_cast<size_t>(row % kept) * count;
+  };
+  for (int y = 0; y < small.rows; ++y) {
     for (int k = 0; k < down.taps; ++k) {
-      const int row = std::min(down.first[y] + k, image.rows - 1), slot = row % down.taps;
-      typename Row::Sum* line = sums.data() + static_cast<size_t>(slot) * count;
-      if (std::exchange(row_of[slot], row) != row) along(image.ptr<uint8_t>(row), line);
-      lines[k] = line;
+      const int row = std::min(down.first[y] + k, image.rows - 1);
+      if (row_of[row % kept] != row) {
+        const int next = std::min(row + 1, image.rows - 1);
+        along({image.ptr<uint8_t>(row), image.ptr<uint8_t>(next)}, {line_of(row), line_of(next)});
+        row_of[row % kept] = row;
+        row_of[next % kept] = next;
+      }
+      lines[k] = line_of(row);
     }
     SumDown(lines, down.WeightsOf(y), count, small.ptr<uint8_t>(y));
   }
-  return small;
 }
 
 #endif
@@ -253,28 +270,35 @@ cv::Mat Shrink(const cv::Mat& image, cv::Size size, const Row& along, const Axis
 }  // namespace
 
 cv::Mat ShrinkArea(const cv::Mat& image, cv::Size size) {
+  cv::Mat small;
 #ifdef ALIDADE_PICK
   if (image.depth() == CV_8U && size.width * image.channels() >= kColumnsAtOnce &&
       Shrinks(image.size(), size)) {
     const AreaRow along(image.cols, size.width, image.channels());
-    if (!along.empty()) return Shrink(image, size, along, AreaAxis(image.rows, size.height));
+    if (!along.empty()) {
+      small.create(size, image.type());
+      Shrink(image, along, AreaAxis(image.rows, size.height), small);
+      return small;
+    }
   }
 #endif
-  cv::Mat small;
   cv::resize(image, small, size, 0, 0, cv::INTER_AREA);
   return small;
 }
 
-cv::Mat ShrinkLinear(const cv::Mat& image, cv::Size size) {
+cv::Mat ShrinkLinear(const cv::Mat& image, cv::Size size, cv::Mat memory) {
 #ifdef ALIDADE_PICK
   if (image.type() == CV_8UC1 && Shrinks(image.size(), size)) {
     const LinearRow along(image.cols, size.width);
-    if (!along.empty()) return Shrink(image, size, along, LinearAxis(image.rows, size.height));
+    if (!along.empty()) {
+      memory.create(size, image.type());
+      Shrink(image, along, LinearAxis(image.rows, size.height), memory);
+      return memory;
+    }
   }
 #endif
-  cv::Mat small;
-  cv::resize(image, small, size, 0, 0, cv::INTER_LINEAR);
-  return small;
+  cv::resize(image, memory, size, 0, 0, cv::INTER_LINEAR);
+  return memory;
 }
 
 }  // namespace alidade

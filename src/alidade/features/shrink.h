@@ -13,7 +13,8 @@ namespace ALIDADE_API alidade {
 cv::Mat ShrinkArea(const cv::Mat& image, cv::Size size);
 
 // Linear interpolation between the pixels around each center: as cv::resize with INTER_LINEAR. Sums
-// less than ShrinkArea(); meant for factors below 2. `image` and `size` as there.
-cv::Mat ShrinkLinear(const cv::Mat& image, cv::Size size);
+// less than ShrinkArea(); meant for factors below 2. `image` and `size` as there. The result is
+// written to `memory` if that is of its size and type.
+cv::Mat ShrinkLinear(const cv::Mat& image, cv::Size size, cv::Mat memory = {});
 
 }  // namespace alidade

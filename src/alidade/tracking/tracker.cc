@@ -33,13 +33,13 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
 std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right,
                                         const cv::Mat& depth, double time, int number,
                                         const cv::Mat& avoid) {
-  auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number, avoid));
+  auto frame = std::make_shared<Frame>(extractor_.ExtractInPlace(image, camera_, time, number, avoid));
   const PartTimer timer(FramePart::kBuffers);
   {
     const PartTimer depth_timer(FramePart::kDepth);
     if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
     if (!right.empty())
-      MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+      MatchStereo(right_extractor_.ExtractInPlace(right, camera_, time, number), camera_, *frame);
   }
   frame->pyramid.clear();  // needed only for extraction and stereo matching
   frame->image.release();
