@@ -33,7 +33,8 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
 std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right,
                                         const cv::Mat& depth, double time, int number,
                                         const cv::Mat& avoid) {
-  auto frame = std::make_shared<Frame>(extractor_.ExtractInPlace(image, camera_, time, number, avoid));
+  auto frame =
+      std::make_shared<Frame>(extractor_.ExtractInPlace(image, camera_, time, number, avoid));
   const PartTimer timer(FramePart::kBuffers);
   {
     const PartTimer depth_timer(FramePart::kDepth);
@@ -56,6 +57,7 @@ void Tracker::SetCamera(const Camera& camera) {
 }
 
 void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   if (!camera_.RollingShutter() || !last_.frame || !motion_.known()) return;
   const double seconds = frame.time - last_.frame->time;
   if (!(seconds > 0)) return;
@@ -66,6 +68,7 @@ void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {
 }
 
 void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   if (!last_.frame) return;
   PlacedFrame& placed = estimate.placed;
   const double seconds = frame.time - last_.frame->time;
@@ -80,6 +83,7 @@ void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapsh
 
 std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
                                                   const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   std::vector<ReadoutMatch> matches;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
