@@ -59,6 +59,19 @@ TEST(Extractor, GivesTheSameFromAPartOfALargerImageAndTheSecondTime) {
   EXPECT_EQ(cv::norm(first.image, part, cv::NORM_INF), 0);
 }
 
+TEST(Extractor, GivesTheSameInPlace) {
+  const cv::Mat one = MakeTexture(320, 240, 1), other = MakeTexture(320, 240, 2);
+  Extractor extractor;
+  const uint8_t* level_1 = nullptr;
+  for (const cv::Mat& image : {one, other, one}) {
+    const Frame frame = extractor.ExtractInPlace(image, CameraOf(image), 0, 0);
+    ExpectSame(frame, Extract(image));
+    EXPECT_EQ(frame.image.data, image.data);
+    EXPECT_TRUE(!level_1 || frame.pyramid[1].data == level_1);
+    level_1 = frame.pyramid[1].data;
+  }
+}
+
 TEST(Extractor, KeepsItsOwnImage) {
   cv::Mat image = MakeTexture(320, 240, 1);
   const cv::Mat before = image.clone();

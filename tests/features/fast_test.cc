@@ -89,12 +89,7 @@ TEST(FastCorners, AreTheSameInBandsAndInPartsOfLargerImages) {
 // The same scores for any number of pixels at once, at any threshold and length of the row.
 TEST(FastRow, IsTheSameHoweverManyPixelsAtOnce) {
   const cv::Mat image = MakeTexture(131, 90, 3);
-  int circle[16];
-  for (int k = 0; k < 16; ++k) {
-    constexpr int kX[] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
-    constexpr int kY[] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
-    circle[k] = kY[k] * static_cast<int>(image.step[0]) + kX[k];
-  }
+  const auto stride = static_cast<ptrdiff_t>(image.step[0]);
   int found = 0;
   for (int end : {19, 34, 35, 36, 64, 100, 128}) {
     const FastRow fastest = FastRowFor(end);
@@ -104,7 +99,7 @@ TEST(FastRow, IsTheSameHoweverManyPixelsAtOnce) {
         const auto look = [&](FastRow row, std::vector<uint8_t>& score) {
           std::vector<int> columns(image.cols);
           score.assign(image.cols, 0);
-          columns.resize(row(image.ptr<uint8_t>(y), 3, end, circle, static_cast<uint8_t>(threshold),
+          columns.resize(row(image.ptr<uint8_t>(y), 3, end, stride, static_cast<uint8_t>(threshold),
                              score.data(), columns.data()));
           return columns;
         };

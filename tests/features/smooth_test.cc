@@ -51,5 +51,27 @@ TEST(Smooth, OfABandIsThatPartOfTheWhole) {
   EXPECT_EQ(cv::norm(band, whole.rowRange(40, 60), cv::NORM_INF), 0);
 }
 
+// However many columns are computed at once: strips have fewer than any vector holds.
+TEST(Smooth, OfAStripIsThatPartOfTheWhole) {
+  const cv::Mat image = MakeTexture(203, 60, 6);
+  cv::Mat binomial(image.size(), CV_8UC1), box(image.size(), CV_8UC1);
+  SmoothBinomial(image, 0, binomial);
+  SmoothBox(image, 0, box);
+  constexpr int kWidth = 11, kRim = 2;
+  for (int x = 0; x + kWidth <= image.cols; x += kWidth - 2 * kRim) {
+    cv::Mat strip(image.rows, kWidth, CV_8UC1);
+    const int left = x == 0 ? 0 : kRim, right = x + kWidth == image.cols ? kWidth : kWidth - kRim;
+    const auto differs = [&](const cv::Mat& whole) {
+      return cv::norm(strip.colRange(left, right), whole.colRange(x + left, x + right),
+                      cv::NORM_INF);
+    };
+    const cv::Mat part = image.colRange(x, x + kWidth);
+    SmoothBinomial(part, 0, strip);
+    EXPECT_EQ(differs(binomial), 0) << x;
+    SmoothBox(part, 0, strip);
+    EXPECT_EQ(differs(box), 0) << x;
+  }
+}
+
 }  // namespace
 }  // namespace alidade::smooth_test

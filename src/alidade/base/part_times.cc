@@ -10,8 +10,8 @@ const char* NameOf(FramePart part) {
   constexpr const char* kNames[kFrameParts] = {
       "news",       "prepare",   "inertial",     "movers",  "buffers", "pyramid",  "smooth",
       "corners",    "spread",    "describe",     "grid",    "depth",   "glance",   "align",
-      "last frame", "local map", "local search", "passing", "pose",    "evidence", "place",
-      "keyframe",   "left out",  "publish",      "earlier", "mapping", "other"};
+      "last frame", "local map", "local search", "passing", "pose",    "evidence", "shutter",
+      "place",      "keyframe",  "left out",     "publish", "earlier", "mapping",  "other"};
   return kNames[static_cast<int>(part)];
 }
 

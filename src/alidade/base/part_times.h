@@ -31,6 +31,7 @@ enum class FramePart {
   kPassing,      // with depth: points of the last frames looked for
   kPose,         // pose from matches
   kEvidence,     // whether the pose is right
+  kShutter,      // rolling shutter: what it did to keypoints, and what they tell of it
   kPlace,        // pose kept; keyframe decision; evidence for the mapper
   kKeyFrame,     // keyframe inserted
   kLeftOut,      // parts of the image that move with the camera

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "alidade/base/error.h"
+#include "alidade/base/part_times.h"
 #include "alidade/base/settings_table.h"
 #include "alidade/calibration/camera_estimate.h"
 
@@ -64,6 +65,7 @@ ReadoutWatch::ReadoutWatch(const Camera& camera, const MeasurementNoise& noise,
       sum_(camera) {}
 
 void ReadoutWatch::Placed(const Vector6d& motion, std::span<const ReadoutMatch> matches) {
+  const PartTimer timer(FramePart::kShutter);
   const std::lock_guard<std::mutex> lock(mutex_);
   sum_.Add(motion, matches);
 }

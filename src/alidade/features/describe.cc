@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <opencv2/core/hal/intrin.hpp>
@@ -20,52 +21,51 @@ constexpr std::array<Pair, kBits> kPattern = {{
 #include "alidade/features/orb_pattern.inc"
 }};
 
-// Weights for the intensity moments of the disc, row by row: 32 columns from -15 to 16.
+// Weights for the intensity moments of the middle row of the disc and those below: 32 columns from
+// -15 to 16, 0 outside of the disc.
 struct DiscWeights {
   static constexpr int kColumns = 32;
-  using Row = std::array<uint8_t, kColumns>;
-  std::array<Row, 2 * kPatchRadius + 1> inside{};  // 1 inside the disc
-  std::array<Row, 2 * kPatchRadius + 1> column{};  // u + kBias inside the disc
-  static constexpr int kBias = 16;                 // keeps the weights positive
+  using Row = std::array<int16_t, kColumns>;
+  std::array<Row, kPatchRadius + 1> column{}, row{};  // u and v inside the disc; v from 0 to radius
 };
 
-const DiscWeights& Disc() {
-  static const DiscWeights kDisc = [] {
-    DiscWeights disc;
-    for (int v = -kPatchRadius; v <= kPatchRadius; ++v) {
-      for (int u = -kPatchRadius; u <= kPatchRadius; ++u) {
-        if (u * u + v * v > kPatchRadius * kPatchRadius) continue;
-        disc.inside[v + kPatchRadius][u + kPatchRadius] = 1;
-        disc.column[v + kPatchRadius][u + kPatchRadius] =
-            static_cast<uint8_t>(u + DiscWeights::kBias);
-      }
+constexpr DiscWeights MakeDisc() {
+  DiscWeights disc;
+  for (int v = 0; v <= kPatchRadius; ++v) {
+    for (int u = -kPatchRadius; u <= kPatchRadius; ++u) {
+      if (u * u + v * v > kPatchRadius * kPatchRadius) continue;
+      disc.column[v][u + kPatchRadius] = static_cast<int16_t>(u);
+      disc.row[v][u + kPatchRadius] = static_cast<int16_t>(v);
     }
-    return disc;
-  }();
-  return kDisc;
+  }
+  return disc;
 }
+
+constexpr DiscWeights kDisc = MakeDisc();
 
 }  // namespace
 
 float PatchAngle(const cv::Mat& level, int x, int y) {
-  const DiscWeights& disc = Disc();
-  cv::v_uint32x4 all = cv::v_setzero_u32(), by_column = all, by_row = all;
-  for (int row = 0; row <= 2 * kPatchRadius; ++row) {
-    const uint8_t* p = level.ptr<uint8_t>(y + row - kPatchRadius) + x - kPatchRadius;
-    const cv::v_uint8x16 left = cv::v_load(p), right = cv::v_load(p + 16);
-    const uint8_t* inside = disc.inside[row].data();
-    const uint8_t* column = disc.column[row].data();
-    const cv::v_uint32x4 sum = cv::v_dotprod_expand_fast(
-        right, cv::v_load(inside + 16), cv::v_dotprod_expand_fast(left, cv::v_load(inside)));
-    by_column = cv::v_dotprod_expand_fast(left, cv::v_load(column), by_column);
-    by_column = cv::v_dotprod_expand_fast(right, cv::v_load(column + 16), by_column);
-    by_row = by_row + sum * cv::v_setall_u32(static_cast<unsigned>(row));
-    all = all + sum;
+  constexpr int kLanes = 8;
+  const uint8_t* middle = level.ptr<uint8_t>(y) + x - kPatchRadius;
+  const auto stride = static_cast<ptrdiff_t>(level.step[0]);
+  cv::v_int32x4 moment_x = cv::v_setzero_s32(), moment_y = moment_x;
+  const auto load = [](const uint8_t* p) { return cv::v_reinterpret_as_s16(cv::v_load_expand(p)); };
+  for (int u = 0; u < DiscWeights::kColumns; u += kLanes)
+    moment_x = cv::v_dotprod(load(middle + u), cv::v_load(kDisc.column[0].data() + u), moment_x);
+  // Rows v and -v have the same weights u and opposite weights v.
+  for (int v = 1; v <= kPatchRadius; ++v) {
+    const uint8_t *below = middle + v * stride, *above = middle - v * stride;
+    const int16_t *column = kDisc.column[v].data(), *row = kDisc.row[v].data();
+#pragma GCC unroll 4
+    for (int u = 0; u < DiscWeights::kColumns; u += kLanes) {
+      const cv::v_int16x8 a = load(above + u), b = load(below + u);
+      moment_x = cv::v_dotprod(a + b, cv::v_load(column + u), moment_x);
+      moment_y = cv::v_dotprod(b - a, cv::v_load(row + u), moment_y);
+    }
   }
-  const int sum = static_cast<int>(cv::v_reduce_sum(all));
-  const int moment_x = static_cast<int>(cv::v_reduce_sum(by_column)) - DiscWeights::kBias * sum;
-  const int moment_y = static_cast<int>(cv::v_reduce_sum(by_row)) - kPatchRadius * sum;
-  return std::atan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+  return std::atan2(static_cast<float>(cv::v_reduce_sum(moment_y)),
+                    static_cast<float>(cv::v_reduce_sum(moment_x)));
 }
 
 SteeredPattern::SteeredPattern(int stride) : stride_(stride), offsets_(kTurns * kBits * 2) {
@@ -90,11 +90,14 @@ Descriptor SteeredPattern::Describe(const uint8_t* centre, float angle) const {
   const int* offset = offsets_.data() + turn * kBits * 2;
   Descriptor descriptor;
   for (uint64_t& word : descriptor.words) {
+    // From the last bit to the first: doubling and adding takes fewer instructions than shifting
+    // each bit to its place.
     uint64_t bits = 0;
-    for (int bit = 0; bit < 64; ++bit, offset += 2) {
-      bits |= static_cast<uint64_t>(centre[offset[0]] < centre[offset[1]]) << bit;
-    }
+#pragma GCC unroll 4
+    for (int i = 2 * 63; i >= 0; i -= 2)
+      bits = bits + bits + (centre[offset[i]] < centre[offset[i + 1]]);
     word = bits;
+    offset += 2 * 64;
   }
   return descriptor;
 }

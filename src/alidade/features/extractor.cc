@@ -164,8 +164,8 @@ std::vector<Corner> Extractor::LookThrough(const cv::Mat& level, const Band& ban
                        settings_.fast_threshold);
 }
 
-Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time, int number,
-                         const cv::Mat& avoid) {
+Frame Extractor::ExtractFrom(const cv::Mat& image, const Camera& camera, double time, int number,
+                             const cv::Mat& avoid, bool reuse) {
   if (image.type() != CV_8UC1) ThrowUsage("extractor: the image must be 8-bit gray");
   if (image.cols != camera.width || image.rows != camera.height) {
     ThrowUsage("extractor: the image is " + std::to_string(image.cols) + "x" +
@@ -176,7 +176,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
   Frame frame;
   frame.time = time;
   frame.number = number;
-  frame.image = image.clone();  // the caller may reuse its buffer
+  frame.image = image;
   const std::vector<cv::Size> sizes = PyramidSizes(frame.image.size());
   PrepareBuffers(sizes);
 
@@ -187,7 +187,7 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
       std::count_if(bands.begin(), bands.end(), [](const Band& b) { return b.level == 0; }));
   ParallelFor(1 + of_level_0, [&](int i) {
     if (i == 0)
-      frame.pyramid = BuildPyramid(frame.image);
+      frame.pyramid = BuildPyramid(frame.image, std::move(pyramid_));
     else
       found[i - 1] = LookThrough(frame.image, bands[i - 1]);
   });
@@ -195,6 +195,11 @@ Frame Extractor::Extract(const cv::Mat& image, const Camera& camera, double time
     const Band& band = bands[of_level_0 + i];
     found[of_level_0 + i] = LookThrough(frame.pyramid[band.level], band);
   });
+
+  if (reuse) {
+    pyramid_ = frame.pyramid;
+    pyramid_[0].release();
+  }
 
   // Select corners level by level.
   std::array<std::vector<Corner>, kPyramidLevels> corners;

@@ -43,13 +43,24 @@ class Extractor {
   // are taken there, in addition to the full budget elsewhere. The result does not depend on the
   // number of threads. An image without structure gives an empty frame.
   Frame Extract(const cv::Mat& image, const Camera& camera, double time, int number,
-                const cv::Mat& avoid = {});
+                const cv::Mat& avoid = {}) {
+    return ExtractFrom(image.clone(), camera, time, number, avoid, false);
+  }
+  // The same without copies: the frame's image is `image`, and its pyramid is overwritten by the
+  // next call.
+  Frame ExtractInPlace(const cv::Mat& image, const Camera& camera, double time, int number,
+                       const cv::Mat& avoid = {}) {
+    return ExtractFrom(image, camera, time, number, avoid, true);
+  }
 
   struct Band {
     int level, first_row, end_row;
   };
 
  private:
+  // `reuse`: the pyramid of the last call is overwritten.
+  Frame ExtractFrom(const cv::Mat& image, const Camera& camera, double time, int number,
+                    const cv::Mat& avoid, bool reuse);
   void PrepareBuffers(const std::vector<cv::Size>& sizes);
   // Smooths the band's rows into both buffers and returns its corners.
   void Smooth(const cv::Mat& level, const Band& band, int top, cv::Mat& fine);
@@ -59,6 +70,7 @@ class Extractor {
   // All levels stacked in one image each, with a common row stride: lightly smoothed for corners,
   // more strongly for descriptors.
   std::vector<cv::Mat> fine_, smooth_;
+  std::vector<cv::Mat> pyramid_;           // of the last ExtractInPlace()
   std::optional<SteeredPattern> pattern_;  // for that row stride
 };
 

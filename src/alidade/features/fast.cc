@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <opencv2/core/hal/intrin.hpp>
 #include <utility>
 #include <vector>
@@ -20,61 +21,55 @@ constexpr std::array<int, kCircle> kCircleX = {0, 1,  2,  3,  3,  3,  2,  1,
 constexpr std::array<int, kCircle> kCircleY = {-3, -3, -2, -1, 0, 1,  2,  3,
                                                3,  3,  2,  1,  0, -1, -2, -3};
 
-using Offsets = std::array<int, kCircle>;
-
-Offsets CircleOffsets(const cv::Mat& image) {
-  Offsets offsets;
-  for (int k = 0; k < kCircle; ++k) {
-    offsets[k] = kCircleY[k] * static_cast<int>(image.step[0]) + kCircleX[k];
-  }
-  return offsets;
-}
-
-// Maximum over the 16 runs of nine contiguous values of the minimum of the run. Runs k and k + 1
-// share eight values: with m their minimum, the better run of the two gives min(m, max(first,
-// last)).
-template <typename Vector>
+// Of the 16 runs of nine contiguous values the one whose weakest value is the strongest: that
+// value. Runs k and k + 1 share eight values: with m their weakest, the better run of the two gives
+// weaker(m, stronger(first, last)). Bright: a value is the stronger the larger it is; else the
+// smaller.
+template <bool bright, typename Vector>
 Vector BestRun(const std::array<Vector, kCircle>& d) {
-  using cv::v_max;
-  using cv::v_min;
+  const auto weaker = [](const Vector& a, const Vector& b) {
+    return bright ? cv::v_min(a, b) : cv::v_max(a, b);
+  };
+  const auto stronger = [](const Vector& a, const Vector& b) {
+    return bright ? cv::v_max(a, b) : cv::v_min(a, b);
+  };
   std::array<Vector, kCircle / 2> two, four;  // runs that begin at odd positions
-  for (int i = 0; i < kCircle / 2; ++i) two[i] = v_min(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
-  for (int i = 0; i < kCircle / 2; ++i) four[i] = v_min(two[i], two[(i + 1) % 8]);
+#pragma GCC unroll 8
+  for (int i = 0; i < kCircle / 2; ++i) two[i] = weaker(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
+#pragma GCC unroll 8
+  for (int i = 0; i < kCircle / 2; ++i) four[i] = weaker(two[i], two[(i + 1) % 8]);
   Vector best;
+#pragma GCC unroll 8
   for (int i = 0; i < kCircle / 2; ++i) {
-    const Vector eight = v_min(four[i], four[(i + 2) % 8]);
-    const Vector nine = v_min(eight, v_max(d[2 * i], d[(2 * i + 9) % kCircle]));
-    best = i == 0 ? nine : v_max(best, nine);
+    const Vector eight = weaker(four[i], four[(i + 2) % 8]);
+    const Vector nine = weaker(eight, stronger(d[2 * i], d[(2 * i + 9) % kCircle]));
+    best = i == 0 ? nine : stronger(best, nine);
   }
   return best;
 }
 
 // Scores plus one of 16 pixels, 0 where the score is at most `threshold`. Returns false if all are
 // 0.
-bool ScoreBlock(const uint8_t* p, const int* circle, const cv::v_uint8x16& threshold,
+bool ScoreBlock(const uint8_t* p, ptrdiff_t stride, const cv::v_uint8x16& threshold,
                 cv::v_uint8x16& scores) {
   using cv::v_max;
   using cv::v_min;
   const cv::v_uint8x16 centre = cv::v_load(p);
-  std::array<cv::v_uint8x16, kCircle> d;
   // Nine contiguous pixels contain the top or bottom and the left or right pixel. Subtraction
   // saturates at 0.
-  const cv::v_uint8x16 top = cv::v_load(p + circle[0]), right = cv::v_load(p + circle[4]);
-  const cv::v_uint8x16 bottom = cv::v_load(p + circle[8]), left = cv::v_load(p + circle[12]);
+  const cv::v_uint8x16 top = cv::v_load(p - 3 * stride), right = cv::v_load(p + 3);
+  const cv::v_uint8x16 bottom = cv::v_load(p + 3 * stride), left = cv::v_load(p - 3);
   const cv::v_uint8x16 bright = v_min(v_max(top, bottom), v_max(left, right)) - centre;
   const cv::v_uint8x16 dark = centre - v_max(v_min(top, bottom), v_min(left, right));
   const bool maybe_bright = cv::v_check_any(bright > threshold);
   const bool maybe_dark = cv::v_check_any(dark > threshold);
   if (!maybe_bright && !maybe_dark) return false;
+  std::array<cv::v_uint8x16, kCircle> d;
+#pragma GCC unroll 16
+  for (int k = 0; k < kCircle; ++k) d[k] = cv::v_load(p + kCircleY[k] * stride + kCircleX[k]);
   cv::v_uint8x16 best = cv::v_setzero_u8();
-  if (maybe_bright) {
-    for (int k = 0; k < kCircle; ++k) d[k] = cv::v_load(p + circle[k]) - centre;
-    best = BestRun(d);
-  }
-  if (maybe_dark) {
-    for (int k = 0; k < kCircle; ++k) d[k] = centre - cv::v_load(p + circle[k]);
-    best = v_max(best, BestRun(d));
-  }
+  if (maybe_bright) best = BestRun<true>(d) - centre;
+  if (maybe_dark) best = v_max(best, centre - BestRun<false>(d));
   const cv::v_uint8x16 corner = best > threshold;
   if (!cv::v_check_any(corner)) return false;
   scores = best & corner;
@@ -90,7 +85,7 @@ struct ScoreRow {
 
 }  // namespace
 
-int FastRow16(const uint8_t* pixels, int first, int end, const int* circle, uint8_t threshold,
+int FastRow16(const uint8_t* pixels, int first, int end, ptrdiff_t stride, uint8_t threshold,
               uint8_t* score, int* columns) {
   const cv::v_uint8x16 over = cv::v_setall_u8(threshold);
   int count = 0;
@@ -99,7 +94,7 @@ int FastRow16(const uint8_t* pixels, int first, int end, const int* circle, uint
     // processed twice.
     const int x0 = std::min(x, end - kLanes);
     cv::v_uint8x16 scores;
-    if (!ScoreBlock(pixels + x0, circle, over, scores)) continue;
+    if (!ScoreBlock(pixels + x0, stride, over, scores)) continue;
     std::array<uint8_t, kLanes> values;
     cv::v_store(values.data(), scores);
     for (int mask = cv::v_signmask(scores > cv::v_setzero_u8()), lane = 0; mask != 0;
@@ -114,9 +109,8 @@ int FastRow16(const uint8_t* pixels, int first, int end, const int* circle, uint
 
 FastRow FastRowFor(int end) {
   constexpr int kReach = 3;  // of the circle
-#ifdef ALIDADE_FAST_ROW_32
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2 && end >= 2 * kLanes + kReach) return FastRow32;
+#ifdef ALIDADE_AVX2
+  if (HasAvx2() && end >= 2 * kLanes + kReach) return FastRow32;
 #endif
   return end >= kLanes + kReach ? FastRow16 : nullptr;
 }
@@ -129,7 +123,6 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
   // On narrow images a block may extend past the border, but not past the image.
   const FastRow score_row = FastRowFor(end);
   if (first_row >= end_row || end - first <= 2 || !score_row) return corners;
-  const Offsets circle = CircleOffsets(image);
   const auto over = static_cast<uint8_t>(threshold);
   std::array<ScoreRow, 3> rows;  // above, this, below
   for (ScoreRow& row : rows) {
@@ -138,8 +131,8 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
   }
   const auto look = [&](int y, ScoreRow& row) {
     for (int i = 0; i < row.count; ++i) row.score[row.columns[i]] = 0;
-    row.count = score_row(image.ptr<uint8_t>(y), first, end, circle.data(), over, row.score.data(),
-                          row.columns.data());
+    row.count = score_row(image.ptr<uint8_t>(y), first, end, static_cast<ptrdiff_t>(image.step[0]),
+                          over, row.score.data(), row.columns.data());
   };
   look(first_row - 1, rows[0]);
   look(first_row, rows[1]);
@@ -164,22 +157,34 @@ std::vector<Corner> FastCorners(const cv::Mat& image, int threshold, int border,
 Eigen::Vector2d RefineCorner(const cv::Mat& image, const Corner& corner) {
   // Half a pixel plus noise: farther away the neighbor would have the higher score.
   constexpr double kFarthest = 0.6;
-  const Offsets circle = CircleOffsets(image);
-  // Signed scores of 3 rows of 8 pixels (3 of each are used), as bright and as dark corner.
-  std::array<std::array<int16_t, 8>, 3> bright, dark;
+  const auto stride = static_cast<ptrdiff_t>(image.step[0]);
+  const uint8_t* centre = image.ptr<uint8_t>(corner.y) + corner.x - 1;
+  // Four pixels of each of the three rows, of which three are used.
+  const auto around = [&](const uint8_t* p) {
+    const auto four = [&](ptrdiff_t offset) {
+      unsigned pixels;
+      std::memcpy(&pixels, p + offset, sizeof pixels);
+      return pixels;
+    };
+    return cv::v_reinterpret_as_u8(cv::v_uint32x4(four(-stride), four(0), four(stride), 0));
+  };
+  std::array<cv::v_uint8x16, kCircle> d;
+#pragma GCC unroll 16
+  for (int k = 0; k < kCircle; ++k) d[k] = around(centre + kCircleY[k] * stride + kCircleX[k]);
+  // Signed scores, as bright and as dark corner.
+  std::array<uint8_t, 16> middle, brightest, darkest;
+  cv::v_store(middle.data(), around(centre));
+  cv::v_store(brightest.data(), BestRun<true>(d));
+  cv::v_store(darkest.data(), BestRun<false>(d));
+  constexpr int kOwn = 5;  // the corner's own: row 1, column 1
+  const bool is_bright = brightest[kOwn] + darkest[kOwn] >= 2 * middle[kOwn];
+  std::array<std::array<int, 3>, 3> s;
   for (int row = 0; row < 3; ++row) {
-    const uint8_t* p = image.ptr<uint8_t>(corner.y + row - 1) + corner.x - 1;
-    const cv::v_int16x8 centre = cv::v_reinterpret_as_s16(cv::v_load_expand(p));
-    std::array<cv::v_int16x8, kCircle> up, down;
-    for (int k = 0; k < kCircle; ++k) {
-      const cv::v_int16x8 rim = cv::v_reinterpret_as_s16(cv::v_load_expand(p + circle[k]));
-      up[k] = rim - centre;
-      down[k] = centre - rim;
+    for (int column = 0; column < 3; ++column) {
+      const int i = 4 * row + column;
+      s[row][column] = is_bright ? brightest[i] - middle[i] : middle[i] - darkest[i];
     }
-    cv::v_store(bright[row].data(), BestRun(up));
-    cv::v_store(dark[row].data(), BestRun(down));
   }
-  const auto& s = bright[1][1] >= dark[1][1] ? bright : dark;
   // Central differences, smoothed across with 1 2 1.
   const double gx = ((s[0][2] - s[0][0]) + 2 * (s[1][2] - s[1][0]) + (s[2][2] - s[2][0])) / 8.0;
   const double gy = ((s[2][0] - s[0][0]) + 2 * (s[2][1] - s[0][1]) + (s[2][2] - s[0][2])) / 8.0;

@@ -7,6 +7,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "alidade/base/part_times.h"
+#include "alidade/features/shrink.h"
 
 namespace alidade {
 namespace {
@@ -42,7 +43,7 @@ cv::Mat Glance(const cv::Mat& image) {
   const int width = std::min(kWidth, image.cols);
   const int height = std::max(
       1, static_cast<int>(std::lround(static_cast<double>(image.rows) * width / image.cols)));
-  cv::resize(image, small, {width, height}, 0, 0, cv::INTER_AREA);
+  small = ShrinkArea(image, {width, height});
   small.convertTo(smooth, CV_32F);
   cv::GaussianBlur(smooth, smooth, {3, 3}, 0);
   return smooth;

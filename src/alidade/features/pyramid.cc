@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "alidade/base/part_times.h"
 #include "alidade/features/frame.h"
+#include "alidade/features/shrink.h"
 
 namespace alidade {
 
@@ -19,13 +20,14 @@ std::vector<cv::Size> PyramidSizes(cv::Size image) {
   return sizes;
 }
 
-std::vector<cv::Mat> BuildPyramid(const cv::Mat& image) {
+std::vector<cv::Mat> BuildPyramid(const cv::Mat& image, std::vector<cv::Mat> memory) {
   const PartTimer timer(FramePart::kPyramid);
   const std::vector<cv::Size> sizes = PyramidSizes(image.size());
-  std::vector<cv::Mat> pyramid(kPyramidLevels);
+  std::vector<cv::Mat> pyramid = std::move(memory);
+  pyramid.resize(kPyramidLevels);
   pyramid[0] = image;
   for (int level = 1; level < kPyramidLevels; ++level) {
-    cv::resize(pyramid[level - 1], pyramid[level], sizes[level], 0, 0, cv::INTER_LINEAR);
+    pyramid[level] = ShrinkLinear(pyramid[level - 1], sizes[level], std::move(pyramid[level]));
   }
   return pyramid;
 }

@@ -9,8 +9,9 @@ namespace alidade {
 // Sizes of all levels; every side is at least one pixel.
 std::vector<cv::Size> PyramidSizes(cv::Size image);
 
-// All levels, 8-bit gray. Level 0 shares the data of `image`.
-std::vector<cv::Mat> BuildPyramid(const cv::Mat& image);
+// All levels, 8-bit gray. Level 0 shares the data of `image`; the others overwrite `memory`, a
+// pyramid of the same size, if it is given.
+std::vector<cv::Mat> BuildPyramid(const cv::Mat& image, std::vector<cv::Mat> memory = {});
 
 // Converts one coordinate between a level and level 0. Image borders coincide, hence the shift of
 // half a pixel.

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <opencv2/core/hal/intrin.hpp>
+#include <utility>
 #include <vector>
+
+#include "alidade/features/smooth_row.h"
 
 namespace alidade {
 namespace {
@@ -61,9 +64,44 @@ const uint8_t* RowOf(const cv::Mat& image, int y) {
   return image.ptr<uint8_t>(std::clamp(y, 0, image.rows - 1));
 }
 
+#ifdef ALIDADE_AVX2
+bool UsesAvx2(int width) {
+  constexpr int kLeast = 32;
+  return width >= kLeast && HasAvx2();
+}
+
+void SmoothBinomialAvx2(const cv::Mat& level, int first_row, cv::Mat& out) {
+  SumRow sums(level.cols, kSumRim);
+  for (int i = 0; i < out.rows; ++i) {
+    const int y = first_row + i;
+    BinomialRowAvx2(RowOf(level, y - 1), RowOf(level, y), RowOf(level, y + 1), level.cols,
+                    sums.begin(), out.ptr<uint8_t>(i));
+  }
+}
+
+// The column sums of a row are those of the row before, with one row more and one less.
+void SmoothBoxAvx2(const cv::Mat& image, int first_row, cv::Mat& out) {
+  SumRow sums(image.cols, kSumRim), before(image.cols, kSumRim);
+  const std::vector<uint8_t> nothing(image.cols);
+  const auto move = [&](const uint8_t* comes, const uint8_t* goes) {
+    std::swap(sums, before);
+    BoxColumnsAvx2(before.begin(), comes, goes, image.cols, sums.begin());
+  };
+  for (int k = -3; k <= 1; ++k) move(RowOf(image, first_row + k), nothing.data());
+  for (int i = 0; i < out.rows; ++i) {
+    const int y = first_row + i;
+    move(RowOf(image, y + 2), RowOf(image, y - 3));
+    BoxRowAvx2(sums.begin(), image.cols, out.ptr<uint8_t>(i));
+  }
+}
+#endif
+
 }  // namespace
 
 void SmoothBinomial(const cv::Mat& level, int first_row, cv::Mat out) {
+#ifdef ALIDADE_AVX2
+  if (UsesAvx2(level.cols)) return SmoothBinomialAvx2(level, first_row, out);
+#endif
   SumRow sums(level.cols, 1);
   uint16_t* sum = sums.begin();
   for (int i = 0; i < out.rows; ++i) {
@@ -89,6 +127,9 @@ void SmoothBinomial(const cv::Mat& level, int first_row, cv::Mat out) {
 }
 
 void SmoothBox(const cv::Mat& image, int first_row, cv::Mat out) {
+#ifdef ALIDADE_AVX2
+  if (UsesAvx2(image.cols)) return SmoothBoxAvx2(image, first_row, out);
+#endif
   SumRow sums(image.cols, 2);
   uint16_t* sum = sums.begin();
   for (int i = 0; i < out.rows; ++i) {

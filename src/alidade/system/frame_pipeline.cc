@@ -336,6 +336,7 @@ void FramePipeline::LocalizeEarlierFrames(int count, int number) {
 
 // Stores everything relative to living keyframes, so that the map can forget culled ones.
 void FramePipeline::Reanchor() {
+  const PartTimer timer(FramePart::kPlace);
   const MapSnapshot map = workers_.map().Snapshot();
   log_.Reanchor(map);
   tracker_.Reanchor(map);

@@ -7,6 +7,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/features/color.h"
+#include "alidade/features/shrink.h"
 
 namespace alidade {
 
@@ -60,7 +61,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
       ThrowInput("color images must have three or four channels of 8 bits");
     if (prepared.color.channels() == 4) prepared.color = BgrOf(prepared.color);
     if (used.width != given.width)
-      cv::resize(prepared.color, prepared.color, {used.width, used.height}, 0, 0, cv::INTER_AREA);
+      prepared.color = ShrinkArea(prepared.color, {used.width, used.height});
   }
   for (cv::Mat* image : {&prepared.image, &prepared.right}) {
     if (image->empty()) continue;
@@ -68,8 +69,7 @@ FrameInput Prepare(const FrameInput& input, const Camera& given, const Camera& u
     if (const int n = image->channels(); n != 1 && n != 3 && n != 4)
       ThrowInput("images must have one, three or four channels, not " + std::to_string(n));
     if (image->channels() > 1) *image = GrayOf(*image);
-    if (used.width != given.width)
-      cv::resize(*image, *image, {used.width, used.height}, 0, 0, cv::INTER_AREA);
+    if (used.width != given.width) *image = ShrinkArea(*image, {used.width, used.height});
   }
   if (!prepared.depth.empty() && used.width != given.width) {
     cv::resize(prepared.depth, prepared.depth, {used.width, used.height}, 0, 0, cv::INTER_NEAREST);

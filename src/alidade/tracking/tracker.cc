@@ -33,16 +33,17 @@ Tracker::Tracker(const Camera& camera, TrackerSettings settings)
 std::shared_ptr<Frame> Tracker::Extract(const cv::Mat& image, const cv::Mat& right,
                                         const cv::Mat& depth, double time, int number,
                                         const cv::Mat& avoid) {
-  auto frame = std::make_shared<Frame>(extractor_.Extract(image, camera_, time, number, avoid));
+  auto frame =
+      std::make_shared<Frame>(extractor_.ExtractInPlace(image, camera_, time, number, avoid));
   const PartTimer timer(FramePart::kBuffers);
   {
     const PartTimer depth_timer(FramePart::kDepth);
     if (!depth.empty()) AttachDepth(depth, camera_, *frame, settings_.depth_range);
     if (!right.empty())
-      MatchStereo(right_extractor_.Extract(right, camera_, time, number), camera_, *frame);
+      MatchStereo(right_extractor_.ExtractInPlace(right, camera_, time, number), camera_, *frame);
   }
   if (settings_.align) {
-    extracted_ = frame->image;
+    extracted_ = frame->image.clone();  // the caller may reuse its buffer
     extracted_number_ = number;
   }
   frame->pyramid.clear();  // needed only for extraction and stereo matching
@@ -61,6 +62,7 @@ void Tracker::SetCamera(const Camera& camera) {
 }
 
 void Tracker::UndoShutter(Frame& frame, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   if (!camera_.RollingShutter() || !last_.frame || !motion_.known()) return;
   const double seconds = frame.time - last_.frame->time;
   if (!(seconds > 0)) return;
@@ -78,6 +80,7 @@ void Tracker::UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapsh
 
 // With the motion since the last frame and the depths that the pose of `placed` tells.
 void Tracker::UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   if (!last_.frame) return;
   const double seconds = frame.time - last_.frame->time;
   if (!(seconds > 0)) return;
@@ -90,6 +93,7 @@ void Tracker::UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnap
 
 std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
                                                   const MapSnapshot& map) const {
+  const PartTimer timer(FramePart::kShutter);
   std::vector<ReadoutMatch> matches;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;

@@ -1,14 +1,17 @@
-// Compiled with AVX2 and run only where the processor has it: nothing inline of other headers may
-// be in this file, because the linker could take its copy for other processors.
+// Compiled with AVX2 and run only where the processor has it: see cpu.h.
 #include "alidade/features/fast_row.h"
 
-#ifdef ALIDADE_FAST_ROW_32
+#ifdef ALIDADE_AVX2
 #include <immintrin.h>
+
+#include <cstddef>
 
 namespace alidade {
 namespace {
 
 constexpr int kCircle = 16, kLanes = 32;
+constexpr int kCircleX[kCircle] = {0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3, -3, -3, -2, -1};
+constexpr int kCircleY[kCircle] = {-3, -3, -2, -1, 0, 1, 2, 3, 3, 3, 2, 1, 0, -1, -2, -3};
 
 inline __m256i Load(const uint8_t* p) {
   return _mm256_loadu_si256(reinterpret_cast<const __m256i*>(p));
@@ -22,42 +25,44 @@ inline bool AnyAbove(__m256i values, __m256i threshold) {
   return _mm256_testz_si256(above, above) == 0;
 }
 
-// As in fast.cc.
-inline __m256i BestRun(const __m256i* d) {
-  __m256i two[kCircle / 2], four[kCircle / 2];
-  for (int i = 0; i < kCircle / 2; ++i) two[i] = Min(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
-  for (int i = 0; i < kCircle / 2; ++i) four[i] = Min(two[i], two[(i + 1) % 8]);
-  __m256i best = _mm256_setzero_si256();
+// As in fast.cc. Unrolled, or the compiler would keep the arrays in memory.
+template <bool bright>
+inline __m256i BestRun(const uint8_t* p, ptrdiff_t stride) {
+  const auto weaker = [](__m256i a, __m256i b) { return bright ? Min(a, b) : Max(a, b); };
+  const auto stronger = [](__m256i a, __m256i b) { return bright ? Max(a, b) : Min(a, b); };
+  __m256i d[kCircle], two[kCircle / 2], four[kCircle / 2];
+#pragma GCC unroll 16
+  for (int k = 0; k < kCircle; ++k) d[k] = Load(p + kCircleY[k] * stride + kCircleX[k]);
+#pragma GCC unroll 8
+  for (int i = 0; i < kCircle / 2; ++i) two[i] = weaker(d[2 * i + 1], d[(2 * i + 2) % kCircle]);
+#pragma GCC unroll 8
+  for (int i = 0; i < kCircle / 2; ++i) four[i] = weaker(two[i], two[(i + 1) % 8]);
+  __m256i best = _mm256_set1_epi8(bright ? 0 : -1);
+#pragma GCC unroll 8
   for (int i = 0; i < kCircle / 2; ++i) {
-    const __m256i eight = Min(four[i], four[(i + 2) % 8]);
-    best = Max(best, Min(eight, Max(d[2 * i], d[(2 * i + 9) % kCircle])));
+    const __m256i eight = weaker(four[i], four[(i + 2) % 8]);
+    best = stronger(best, weaker(eight, stronger(d[2 * i], d[(2 * i + 9) % kCircle])));
   }
   return best;
 }
 
-inline __m256i ScoresOf(const uint8_t* p, const int* circle, __m256i threshold) {
+inline __m256i ScoresOf(const uint8_t* p, ptrdiff_t stride, __m256i threshold) {
   const __m256i centre = Load(p), zero = _mm256_setzero_si256();
   // Nine contiguous pixels contain the top or bottom and the left or right pixel.
-  const __m256i top = Load(p + circle[0]), right = Load(p + circle[4]);
-  const __m256i bottom = Load(p + circle[8]), left = Load(p + circle[12]);
+  const __m256i top = Load(p - 3 * stride), right = Load(p + 3);
+  const __m256i bottom = Load(p + 3 * stride), left = Load(p - 3);
   const bool bright = AnyAbove(Minus(Min(Max(top, bottom), Max(left, right)), centre), threshold);
   const bool dark = AnyAbove(Minus(centre, Max(Min(top, bottom), Min(left, right))), threshold);
-  __m256i best = zero, d[kCircle];
-  if (bright) {
-    for (int k = 0; k < kCircle; ++k) d[k] = Minus(Load(p + circle[k]), centre);
-    best = BestRun(d);
-  }
-  if (dark) {
-    for (int k = 0; k < kCircle; ++k) d[k] = Minus(centre, Load(p + circle[k]));
-    best = Max(best, BestRun(d));
-  }
+  __m256i best = zero;
+  if (bright) best = Minus(BestRun<true>(p, stride), centre);
+  if (dark) best = Max(best, Minus(centre, BestRun<false>(p, stride)));
   const __m256i none = _mm256_cmpeq_epi8(Minus(best, threshold), zero);
   return _mm256_andnot_si256(none, best);
 }
 
 }  // namespace
 
-int FastRow32(const uint8_t* pixels, int first, int end, const int* circle, uint8_t threshold,
+int FastRow32(const uint8_t* pixels, int first, int end, ptrdiff_t stride, uint8_t threshold,
               uint8_t* score, int* columns) {
   const __m256i over = _mm256_set1_epi8(static_cast<char>(threshold));
   const __m256i zero = _mm256_setzero_si256();
@@ -65,7 +70,7 @@ int FastRow32(const uint8_t* pixels, int first, int end, const int* circle, uint
   for (int x = first; x < end; x += kLanes) {
     // The last block moves back to stay inside the row: pixels before x are known.
     const int x0 = x < end - kLanes ? x : end - kLanes;
-    const __m256i scores = ScoresOf(pixels + x0, circle, over);
+    const __m256i scores = ScoresOf(pixels + x0, stride, over);
     uint32_t mask = ~static_cast<uint32_t>(_mm256_movemask_epi8(_mm256_cmpeq_epi8(scores, zero)));
     mask &= 0xffffffffu << (x - x0);
     if (mask == 0) continue;
