@@ -7,7 +7,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "alidade/features/fast_row.h"
+#include "alidade/features/simd/fast_row.h"
 #include "support/texture.h"
 
 namespace alidade::fast_test {

@@ -1,4 +1,4 @@
-#include "alidade/system/camera_clock.h"
+#include "alidade/system/camera/camera_clock.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "alidade/features/fast_row.h"
+#include "alidade/features/simd/fast_row.h"
 
 namespace alidade {
 namespace {

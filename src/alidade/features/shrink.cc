@@ -8,7 +8,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "alidade/features/pick.h"
+#include "alidade/features/simd/pick.h"
 
 namespace alidade {
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "alidade/features/smooth_row.h"
+#include "alidade/features/simd/smooth_row.h"
 
 namespace alidade {
 namespace {

@@ -189,9 +189,7 @@ TrackEstimate FramePipeline::FollowMotion(PresentFrame& now, const MapSnapshot& 
   TrackEstimate estimate = tracker_.Estimate(std::move(guess), map);
   if (estimate.tracked) {
     tracker_.UndoShutter(*now.frame, estimate, map);
-    if (settings_.readout.enabled && !camera_.readout_known)
-      workers_.readout_watch().Placed(now.frame->motion,
-                                      tracker_.ReadoutMatches(estimate.placed, map));
+    WatchReadout(estimate, map);
   }
   track_ms_.Add(predicting + estimating.Milliseconds());
   return estimate;

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "alidade/system/camera_update.h"
+#include "alidade/system/camera/camera_update.h"
 #include "alidade/system/frame_log.h"
 #include "alidade/system/frame_placer.h"
 #include "alidade/system/inertial/inertial_watch.h"
@@ -93,6 +93,7 @@ class FramePipeline {
   void DropUnknownScale(PresentFrame& now);
   bool MayAlign(int number) const;
   bool AlignFrame(const FrameInput& prepared, double time, PresentFrame& now);
+  void WatchReadout(const TrackEstimate& estimate, const MapSnapshot& map);
   void ExtractFeatures(const FrameInput& prepared, double time, PresentFrame& now);
   TrackResult Localize(PresentFrame& now);
   TrackEstimate FollowMotion(PresentFrame& now, const MapSnapshot& map);

@@ -9,7 +9,7 @@
 #include "alidade/base/error.h"
 #include "alidade/looping/loop_closer.h"
 #include "alidade/mapping/fuse.h"
-#include "alidade/system/change_camera.h"
+#include "alidade/system/camera/change_camera.h"
 #include "alidade/system/setting_names.h"
 #include "alidade/system/settings.h"
 

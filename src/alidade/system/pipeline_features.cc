@@ -32,6 +32,7 @@ bool FramePipeline::AlignFrame(const FrameInput& prepared, double time, PresentF
   track_ms_.Add(watch.Milliseconds());
   const PoseGuess where = GuessOf(estimate->placed, tracker_.reference(), map);
   movers_.Judge(*now.frame, &where);
+  WatchReadout(*estimate, map);
   now.aligned = AlignedEstimate{std::move(*estimate), std::move(map)};
   return true;
 }
@@ -49,6 +50,13 @@ void FramePipeline::ExtractFeatures(const FrameInput& prepared, double time, Pre
     now.frame->glance = Glance(prepared.image);
   left_out_.RemoveFrom(*now.frame, camera_);
   now.placed.frame = now.frame;
+}
+
+// The residuals of the frame tell the readout time of a rolling shutter.
+void FramePipeline::WatchReadout(const TrackEstimate& estimate, const MapSnapshot& map) {
+  if (!settings_.readout.enabled || camera_.readout_known) return;
+  workers_.readout_watch().Placed(estimate.placed.frame->motion,
+                                  tracker_.ReadoutMatches(estimate, map));
 }
 
 // Optical flow is compared with poses only when the focal length is trusted: with a wrong one the

@@ -16,7 +16,7 @@
 #include "alidade/mapping/settings.h"
 #include "alidade/place/settings.h"
 #include "alidade/semidense/settings.h"
-#include "alidade/system/camera_clock.h"
+#include "alidade/system/camera/camera_clock.h"
 #include "alidade/tracking/mono_start.h"
 #include "alidade/tracking/settings.h"
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <mutex>
 
-#include "alidade/system/camera_clock.h"
+#include "alidade/system/camera/camera_clock.h"
 #include "alidade/system/frame_pipeline.h"
 #include "alidade/system/slam.h"
 

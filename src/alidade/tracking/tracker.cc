@@ -91,9 +91,10 @@ void Tracker::UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnap
   UndoRollingShutter(camera_, motion.Velocity(), depths.of_keypoints, depths.common, frame);
 }
 
-std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
+std::vector<ReadoutMatch> Tracker::ReadoutMatches(const TrackEstimate& estimate,
                                                   const MapSnapshot& map) const {
   const PartTimer timer(FramePart::kShutter);
+  const PlacedFrame& placed = estimate.placed;
   std::vector<ReadoutMatch> matches;
   for (size_t i = 0; i < placed.matches.size(); ++i) {
     const Landmark* landmark = placed.matches[i].valid() ? map.Find(placed.matches[i]) : nullptr;
@@ -101,8 +102,10 @@ std::vector<ReadoutMatch> Tracker::ReadoutMatches(const PlacedFrame& placed,
     const Keypoint& keypoint = placed.frame->keypoints[i];
     const Eigen::Vector3d p = placed.T_camera_world * landmark->p_world;
     if (!(p.z() > 0)) continue;
+    Eigen::Vector2d seen = keypoint.pixel();
+    if (!estimate.moved.empty()) seen -= estimate.moved[i].cast<double>();
     matches.push_back({p,
-                       keypoint.pixel() - camera_.Project(p),
+                       seen - camera_.Project(p),
                        {keypoint.raw_x, keypoint.raw_y},
                        Measure(keypoint, settings_.noise).inv_sigma2});
   }

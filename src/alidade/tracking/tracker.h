@@ -39,6 +39,9 @@ struct TrackEstimate {
   double agreement = 0;                  // share of the matches that fit the pose
   double evidence = 0;  // log-likelihood ratio of a right to a wrong pose (PoseEvidence)
   bool wants_keyframe = false;
+  // Of an aligned frame, one per keypoint: what was added to its position so that it agrees with
+  // its landmark in the reference, pixels. Otherwise empty.
+  std::vector<Eigen::Vector2f> moved;
 };
 
 // One thread at a time.
@@ -79,7 +82,8 @@ class Tracker {
   // estimate's frame.
   void UndoShutter(Frame& frame, TrackEstimate& estimate, const MapSnapshot& map) const;
   // Residuals of the frame for estimating the readout time.
-  std::vector<ReadoutMatch> ReadoutMatches(const PlacedFrame& placed, const MapSnapshot& map) const;
+  std::vector<ReadoutMatch> ReadoutMatches(const TrackEstimate& estimate,
+                                           const MapSnapshot& map) const;
   // Initial pose: constant velocity and matches with the last frame's landmarks, or matches with
   // the reference keyframe.
   PlacedFrame Predict(std::shared_ptr<const Frame> frame, const MapSnapshot& map);
@@ -137,8 +141,9 @@ class Tracker {
   ReferenceView ViewReference(const MapSnapshot& map);
   void AddAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned, Frame& frame,
                   std::vector<LandmarkId>& matches) const;
-  static void MoveByErrors(const ReferenceView& view, std::span<const AlignedPoint> aligned,
-                           Frame& frame);
+  static std::vector<Eigen::Vector2f> MoveByErrors(const ReferenceView& view,
+                                                   std::span<const AlignedPoint> aligned,
+                                                   Frame& frame);
   void CountAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned,
                     TrackEstimate& estimate) const;
   bool SufficesAligned(const TrackEstimate& estimate);

@@ -98,8 +98,8 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
     ReadDepths(depth, camera_, *frame, settings_.depth_range);
   }
   UndoShutter(*frame, placed, map);
-  MoveByErrors(view, aligned, *frame);
   TrackEstimate estimate;
+  estimate.moved = MoveByErrors(view, aligned, *frame);
   estimate.reference = reference_.anchor.keyframe;
   estimate.agreement = Optimise(placed, map);
   estimate.placed = std::move(placed);
@@ -131,16 +131,20 @@ void Tracker::AddAligned(const ReferenceView& view, std::span<const AlignedPoint
 // A keypoint of the reference is some tenths of a pixel beside its landmark's projection, and what
 // is aligned with it is beside it by as much. Without that, the pose relative to the reference is
 // as precise as the alignment.
-void Tracker::MoveByErrors(const ReferenceView& view, std::span<const AlignedPoint> aligned,
-                           Frame& frame) {
-  size_t k = 0;
+// Returns what was added, one per keypoint.
+std::vector<Eigen::Vector2f> Tracker::MoveByErrors(const ReferenceView& view,
+                                                   std::span<const AlignedPoint> aligned,
+                                                   Frame& frame) {
+  std::vector<Eigen::Vector2f> moved;
   for (size_t i = 0; i < aligned.size(); ++i) {
     if (!aligned[i].found) continue;
-    Keypoint& keypoint = frame.keypoints[k++];
+    Keypoint& keypoint = frame.keypoints[moved.size()];
     keypoint.x += view.errors[i].x();
     keypoint.y += view.errors[i].y();
     if (keypoint.has_depth()) keypoint.right_x += view.errors[i].x();
+    moved.push_back(view.errors[i]);
   }
+  return moved;
 }
 
 // Sets the sightings and the evidence. The covariance is that of keypoints that were not moved by

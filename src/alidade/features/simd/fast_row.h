@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "alidade/features/cpu.h"
+#include "alidade/features/simd/cpu.h"
 
 namespace alidade {
 

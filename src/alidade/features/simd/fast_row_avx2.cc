@@ -1,5 +1,5 @@
 // Compiled with AVX2 and run only where the processor has it: see cpu.h.
-#include "alidade/features/fast_row.h"
+#include "alidade/features/simd/fast_row.h"
 
 #ifdef ALIDADE_AVX2
 #include <immintrin.h>

@@ -1,4 +1,4 @@
-#include "alidade/system/change_camera.h"
+#include "alidade/system/camera/change_camera.h"
 
 #include <memory>
 #include <utility>

@@ -1,5 +1,5 @@
 // Compiled with AVX2 and run only where the processor has it: see cpu.h.
-#include "alidade/features/smooth_row.h"
+#include "alidade/features/simd/smooth_row.h"
 
 #ifdef ALIDADE_AVX2
 #include <immintrin.h>

@@ -1,4 +1,4 @@
-#include "alidade/system/camera_update.h"
+#include "alidade/system/camera/camera_update.h"
 
 #include "alidade/calibration/camera_estimate.h"
 #include "alidade/features/undistort.h"
