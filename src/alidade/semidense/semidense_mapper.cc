@@ -184,14 +184,11 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
                                       [&](KeyFrameId other) { return Find(other) != nullptr; })) {
     const KeyFrame& other = *map.Find(id);
     const Entry& partner = *Find(id);
-    EpipolarPair pair;
-    pair.reference = &entry.image;
-    pair.other = &partner.image;
-    pair.T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
-    pair.values = WithExposure(entry.image.values,
-                               CompareExposures(keyframe, entry.image, other, partner.image));
-    pairs.push_back(pair);
-    entry.partners.push_back({id, pair.T_other_reference});
+    const Se3 T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
+    const Exposure exposure = CompareExposures(keyframe, entry.image, other, partner.image);
+    pairs.emplace_back(entry.image, partner.image, WithExposure(entry.image.values, exposure),
+                       T_other_reference);
+    entry.partners.push_back({id, T_other_reference});
   }
   std::sort(pairs.begin(), pairs.end(), [](const EpipolarPair& a, const EpipolarPair& b) {
     return a.T_other_reference.t.squaredNorm() < b.T_other_reference.t.squaredNorm();
