@@ -168,16 +168,18 @@ void EpipolarSearch::WalkLine(const LineParts& parts, bool rows, int lane) {
   const cv::Mat& values = rows ? pair_.other->values : pair_.other_turned;
   const auto along = static_cast<std::ptrdiff_t>(values.step[0]);
   const uint8_t* line = values.ptr<uint8_t>() + (parts.first[lane] - kLineMargin) * along;
-  const int32_t step = parts.fixed_slope[lane], start = parts.fixed_across[lane];
-  const int n = parts.places[lane] + 2 * kLineMargin;
-  for (int i = 0; i < n; i += kLanes) {
-    const int first = std::min(i, n - kLanes);  // the last block overlaps the previous one
+  const int64_t step = parts.fixed_slope[lane], start = parts.fixed_across[lane];
+  const auto slope = static_cast<int32_t>(step);
+  const Ints steps(0, slope, 2 * slope, 3 * slope);
+  const int last = parts.places[lane] + 2 * kLineMargin - kLanes;
+  for (int first = 0;; first = std::min(first + kLanes, last)) {  // the last two blocks may overlap
     const uint8_t* p = line + first * along;
-    const int32_t x0 = start + first * step, x1 = x0 + step, x2 = x1 + step, x3 = x2 + step;
-    const auto two = [&](int k, int32_t x) { return Two(p + k * along + 2 * (x >> kFixed)); };
-    const Sums sums(v_uint32x4(two(0, x0), two(1, x1), two(2, x2), two(3, x3)),
-                    WeightsAt<kShift>(Ints(x0, x1, x2, x3)));
+    const int64_t x = start + first * step;
+    const auto two = [&](int k) { return Two(p + k * along + 2 * ((x + k * step) >> kFixed)); };
+    const Sums sums(v_uint32x4(two(0), two(1), two(2), two(3)),
+                    WeightsAt<kShift>(All(static_cast<int>(x)) + steps));
     cv::v_store(&line_[first], Joined(sums.intensity, sums.gradient));
+    if (first == last) break;
   }
 }
 
