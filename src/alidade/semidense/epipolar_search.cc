@@ -215,6 +215,10 @@ void EpipolarSearch::SearchPart(const LineParts& parts, bool rows, int lane, Mat
   matches.place[lane] = parts.first[lane] + best;
   matches.across[lane] = parts.across[lane] + static_cast<float>(best) * parts.slope[lane];
   matches.slope[lane] = parts.slope[lane];
+  const int at = matches.place[lane], beside = static_cast<int>(matches.across[lane]);
+  // Turned() will look there.
+  __builtin_prefetch(rows ? pair_.other->direction.ptr(at, beside)
+                          : pair_.other->direction.ptr(beside, at));
   const uint32_t* from = &line_[best + kLineMargin - kHalf - 1];
   for (int i = 0; i < kAround; i += kLanes)
     cv::v_store(&matches.samples[lane][i], cv::v_load(from + i));
