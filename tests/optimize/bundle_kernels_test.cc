@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "alidade/base/random.h"
 #include "alidade/geometry/se3.h"
+#include "alidade/optimize/schur_row.h"
 
 namespace alidade::bundle_kernels_test {
 namespace {
@@ -206,6 +208,26 @@ TEST_F(BundleKernels, DampingIsAShareOfTheDiagonalWithAFloorByTheLargest) {
   Vector6d expected;  // translations and rotations have separate scales
   expected << 1, 4e-6, 4, 3e-4, 300, 3e-4;
   EXPECT_LT((DampingOf(block, 0.5) - expected).norm(), 1e-12);
+}
+
+TEST_F(BundleKernels, EveryVersionOfARowOfProductsGivesTheSameBits) {
+  constexpr int kCount = 5, kBlocks = 9;
+  std::vector<double> A(18), B(18 * kCount), blocks(36 * kBlocks);
+  for (auto* values : {&A, &B, &blocks}) {
+    for (double& value : *values) value = random_.Gaussian();
+  }
+  const std::array<int, kCount> places{0, 2, 3, 7, 8};
+  std::vector<double> two = blocks, fastest = blocks;
+  SubtractRow2(A.data(), B.data(), places.data(), kCount, two.data());
+  FastestSubtractRow()(A.data(), B.data(), places.data(), kCount, fastest.data());
+  EXPECT_EQ(two, fastest);
+  const Eigen::Map<const Matrix63> a(A.data());
+  for (int n = 0; n < kCount; ++n) {
+    const Eigen::Map<const Matrix63> b(B.data() + static_cast<ptrdiff_t>(18) * n);
+    const Eigen::Map<const Matrix6d> before(blocks.data() + static_cast<ptrdiff_t>(36) * places[n]);
+    const Eigen::Map<const Matrix6d> after(two.data() + static_cast<ptrdiff_t>(36) * places[n]);
+    EXPECT_LT((before - a * b.transpose() - after).norm(), 10 * kRounding);
+  }
 }
 
 }  // namespace

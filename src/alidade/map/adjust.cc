@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "alidade/base/id_map.h"
 #include "alidade/base/median.h"
@@ -130,10 +131,12 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   problem.camera = camera;
   IdMap<KeyFrameId, int> camera_index;
   std::vector<KeyFrameId> cameras;
+  std::vector<const KeyFrame*> keyframes;
   for (const auto* set : {&free, &fixed}) {
     for (KeyFrameId id : *set) {
       camera_index[id] = static_cast<int>(problem.T_camera_world.size());
-      problem.T_camera_world.push_back(map.Find(id)->T_camera_world);
+      keyframes.push_back(map.Find(id));
+      problem.T_camera_world.push_back(keyframes.back()->T_camera_world);
       problem.fixed.push_back(set == &fixed);
       cameras.push_back(id);
     }
@@ -158,7 +161,7 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
       const int* index = camera_index.Find(o.keyframe);
       if (!index) continue;
       const Measurement m =
-          Measure(map.Find(o.keyframe)->frame->keypoints[o.keypoint], settings.noise);
+          Measure(keyframes[*index]->frame->keypoints[o.keypoint], settings.noise);
       problem.observations.push_back(
           {*index, point, m.pixel, m.inv_sigma2, m.inv_sigma2_right, landmark->static_probability});
     }
@@ -184,13 +187,6 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
   }
   result.report =
       Adjust(problem, bundle, one_camera && fixed.size() == 1, static_cast<int>(free.size()), stop);
-  const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
-  if (kCovariances && index && !(stop && *stop)) {
-    const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
-    result.newest = newest;
-    result.covariance = CovarianceOf(problem, bundle, static_cast<int>(cameras.size()), *index,
-                                     static_cast<int>(oldest));
-  }
   for (size_t i = 0; i < free.size(); ++i)
     result.poses.push_back({free[i], problem.T_camera_world[i]});
   for (size_t i = 0; i < points.size(); ++i)
@@ -200,6 +196,13 @@ Adjustment AdjustKeyFrames(const MapSnapshot& map, const std::vector<KeyFrameId>
     const double chi2 =
         ChiSquared(camera, problem.T_camera_world[o.camera], problem.points[o.point], o);
     if (chi2 > Gate(o)) result.outliers.push_back({points[o.point], cameras[o.camera]});
+  }
+  const int* index = newest.valid() ? camera_index.Find(newest) : nullptr;
+  if (kCovariances && index && !(stop && *stop)) {
+    const auto oldest = std::min_element(cameras.begin(), cameras.end()) - cameras.begin();
+    result.newest = newest;
+    result.covariance = CovarianceOf(std::move(problem), bundle, static_cast<int>(cameras.size()),
+                                     *index, static_cast<int>(oldest));
   }
   return result;
 }

@@ -21,6 +21,7 @@ struct SquareBlock {
 
   double operator()(int row, int col) const { return column[col][row / 2][row % 2]; }
   void Set(int row, int col, double value) { column[col][row / 2][row % 2] = value; }
+  double* data() { return reinterpret_cast<double*>(column); }
   void Add(const SquareBlock& other) {
     for (int j = 0; j < kSize; ++j) {
       for (int i = 0; i < kPairs; ++i) column[j][i] += other.column[j][i];

@@ -104,12 +104,16 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
       continue;
     }
     Apply(layout, state, step, trial);
-    Linearise(layout, &state, trial, next);
+    // A step that promises less than what ends the adjustment is most likely the last one, and then
+    // only its cost is needed.
+    const double least = settings.min_relative_decrease * system.cost;
+    const bool derivatives = step.predicted >= least;
+    Linearise(layout, &state, trial, next, derivatives);
     const double actual = system.cost - next.cost;
     const bool better = next.valid && actual > 0;
-    report.converged = step.predicted <= 1e-14 * system.cost ||
-                       (better && actual < settings.min_relative_decrease * system.cost);
+    report.converged = step.predicted <= 1e-14 * system.cost || (better && actual < least);
     if (better) {
+      if (!derivatives && !report.converged) Linearise(layout, &state, trial, next);
       std::swap(state, trial);
       std::swap(system, next);
       damping.Accepted(actual, step.predicted);

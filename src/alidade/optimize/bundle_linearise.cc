@@ -111,8 +111,8 @@ struct ChunkSums {
 class Worker {
  public:
   Worker(const BundleLayout& layout, const BundleState& state, Linearisation& result,
-         ChunkSums& sums)
-      : layout_(layout), state_(state), result_(result), sums_(sums) {
+         ChunkSums& sums, bool derivatives)
+      : layout_(layout), state_(state), result_(result), sums_(sums), derivatives_(derivatives) {
     sums.cameras.resize(layout.free_cameras.size());
   }
 
@@ -133,6 +133,11 @@ class Worker {
     }
     if (!(in_front[0] & in_front[1])) return false;
     Double2 H[6]{}, g[3]{}, cost{};
+    if (!derivatives_) {
+      for (int n = 0; n < pairs; ++n) cost += terms_[n].cost;
+      sums_.cost += Sum(cost);
+      return true;
+    }
     Coupling* coupling = result_.couplings.data() + point.coupling;
     for (int n = 0; n < pairs; ++n) {
       const Terms& t = terms_[n];
@@ -160,6 +165,7 @@ class Worker {
   const BundleState& state_;
   Linearisation& result_;
   ChunkSums& sums_;
+  bool derivatives_;
   std::vector<Terms> terms_;  // of the current point
 };
 
@@ -196,12 +202,12 @@ void CameraBlock::Add(const Matrix6d& H, const Vector6d& g) {
 }
 
 void Linearise(const BundleLayout& layout, const BundleState* before, BundleState& state,
-               Linearisation& result) {
+               Linearisation& result, bool derivatives) {
   result.couplings.resize(layout.couplings);
   result.points.resize(layout.points.size());
   std::vector<ChunkSums> sums(layout.chunk_count());
   ParallelFor(layout.chunk_count(), [&](int chunk) {
-    Worker worker(layout, state, result, sums[chunk]);
+    Worker worker(layout, state, result, sums[chunk], derivatives);
     for (int j = layout.chunks[chunk]; j < layout.chunks[chunk + 1]; ++j) {
       if (worker.Add(j, state.points[j])) continue;
       if (before) state.points[j] = before->points[j];

@@ -72,7 +72,8 @@ struct Linearisation {
 
 // Linearizes at `state`. A point of `state` that is behind one of its cameras is reset to its
 // position in `before`, if given; if that does not help, the result is not valid.
+// Without `derivatives` only `cost` and `valid` of the result have a meaning.
 void Linearise(const BundleLayout& layout, const BundleState* before, BundleState& state,
-               Linearisation& result);
+               Linearisation& result, bool derivatives = true);
 
 }  // namespace alidade

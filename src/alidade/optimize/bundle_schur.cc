@@ -7,6 +7,7 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/optimize/bundle_kernels.h"
+#include "alidade/optimize/schur_row.h"
 
 namespace alidade {
 namespace {
@@ -85,6 +86,8 @@ void SchurSolver::Eliminate(const Linearisation& system, double lambda, int chun
   reduced.blocks.assign(row_begin_[rows_], SquareBlock<6>{});
   reduced.right.assign(rows_, Vector6d::Zero());
   std::vector<CouplingFactor> factors;
+  std::vector<int> places;  // of the blocks of a row
+  const SubtractRow subtract = FastestSubtractRow();
   for (int j = layout_.chunks[chunk]; j < layout_.chunks[chunk + 1]; ++j) {
     const BundlePoint& point = layout_.points[j];
     const PointBlock& block = system.points[j];
@@ -92,7 +95,10 @@ void SchurSolver::Eliminate(const Linearisation& system, double lambda, int chun
     eliminated_[j] = L;
     const std::array<double, 3> y = SolveLower(L, block.g);
     const int count = point.free_end - point.begin;
-    if (static_cast<int>(factors.size()) < count) factors.resize(count);
+    if (static_cast<int>(factors.size()) < count) {
+      factors.resize(count);
+      places.resize(count);
+    }
     const Coupling* couplings = system.couplings.data() + point.coupling;
     for (int a = 0; a < count; ++a) {
       CouplingFactor& E = factors[a];
@@ -100,13 +106,11 @@ void SchurSolver::Eliminate(const Linearisation& system, double lambda, int chun
       const int row = couplings[a].slot;
       AddProduct(E, y, reduced.right[row]);
       int at = row_begin_[row];
-      for (int b = 0; b <= a; ++b) {
-        at = FindBlock(row, couplings[b].slot, at);
-        SquareBlock<6>& S = reduced.blocks[at];
-        SubtractProduct(E, factors[b], S);
-        // The same camera observes the point twice.
-        if (b < a && couplings[b].slot == row) SubtractProduct(factors[b], E, S);
-      }
+      for (int b = 0; b <= a; ++b) places[b] = at = FindBlock(row, couplings[b].slot, at);
+      subtract(E.column[0], factors[0].column[0], places.data(), a + 1, reduced.blocks[0].data());
+      // The same camera observes the point more than once: both orders of the two.
+      for (int b = a; b-- > 0 && couplings[b].slot == row;)
+        SubtractProduct(factors[b], E, reduced.blocks[places[b]]);
     }
   }
 }

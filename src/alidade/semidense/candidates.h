@@ -17,6 +17,7 @@ class Candidates {
 
   void Add(const Hypothesis& h) {
     if (!h.known()) return;
+    ++known_;
     const float w = 1 / (h.sigma * h.sigma);
     for (int i = 0; i < count_; ++i) {
       if (!Compatible(groups_[i].mean, h, chi2_)) continue;
@@ -28,6 +29,8 @@ class Candidates {
     }
     if (count_ < kMost) groups_[count_++] = {w * h.inverse_depth, w, h};
   }
+
+  int known() const { return known_; }  // hypotheses added
 
   // Intervals of ±3 standard deviations around each group; all of `range` if there are none. Valid
   // until the next call.
@@ -51,7 +54,7 @@ class Candidates {
   float chi2_;
   std::array<Group, kMost> groups_;
   std::array<DepthInterval, kMost> intervals_;
-  int count_ = 0;
+  int count_ = 0, known_ = 0;
 };
 
 }  // namespace alidade

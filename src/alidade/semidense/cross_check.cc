@@ -4,66 +4,107 @@
 #include <cmath>
 
 #include "alidade/base/parallel.h"
+#include "alidade/semidense/lanes.h"
+#include "alidade/semidense/pixel_index.h"
 #include "alidade/semidense/pixel_transfer.h"
 
 namespace alidade {
 namespace {
 
+// Pixels of the reference and their depth, with the normal equation of each inverse depth: sums of
+// J² / σ² and J r / σ², J being the derivative and r the residual of what a view has seen.
+struct Checks {
+  std::vector<float> x, y, inverse_depth, sigma, jj, jr;
+  std::vector<int> confirmed;  // views
+
+  // Room for some more, so that whole vectors can be read.
+  explicit Checks(size_t count) : confirmed(count) {
+    for (auto* values : {&x, &y, &inverse_depth, &sigma, &jj, &jr}) values->resize(count + kLanes);
+  }
+};
+
 // Depth of another view, indexed by pixel, with the transfer to that view.
 class Witness {
  public:
   Witness(const DepthView& view, const Camera& camera)
-      : view_(view), width_(camera.width), height_(camera.height), index_(width_ * height_, -1) {
+      : width_(camera.width),
+        height_(camera.height),
+        to_view_(camera, view.T_view_reference),
+        index_(width_, height_) {
+    known_.reserve(view.edges.size());
     for (size_t i = 0; i < view.edges.size(); ++i) {
-      if (view.depth[i].known())
-        index_[view.edges[i].y * width_ + view.edges[i].x] = static_cast<int>(i);
+      if (!view.depth[i].known()) continue;
+      index_.Append(view.edges[i]);
+      known_.push_back(view.depth[i]);
     }
-    const PixelTransfer to_view(camera, view.T_view_reference);
-    M_ = to_view.at_infinity;
-    b_ = to_view.shift;
+    index_.Finish();
   }
 
-  // Adds the compatible depths of the view at the four pixels around the projection to the normal
-  // equation of the reference's inverse depth: residual r, derivative J and variance of each.
-  // Returns false if there are none.
-  bool Confirms(const EdgePixel& pixel, const Hypothesis& hypothesis, float chi2, float* jj,
-                float* jr) const {
-    const Eigen::Vector3f a = M_ * Eigen::Vector3f(pixel.x, pixel.y, 1);
-    const Eigen::Vector3f h = a + hypothesis.inverse_depth * b_;
-    if (h.z() < 0.05f) return false;
-    const float x = h.x() / h.z(), y = h.y() / h.z();
-    if (!(x >= 1 && y >= 1 && x < static_cast<float>(width_ - 2) &&
-          y < static_cast<float>(height_ - 2)))
-      return false;
-    // Inverse depth in the view is rho / h.z (z' = h.z / rho); its derivative by rho is a.z / h.z².
-    const float there = hypothesis.inverse_depth / h.z();
-    const float derivative = a.z() / (h.z() * h.z());
-    const float own = hypothesis.sigma * derivative;
-    const int xi = static_cast<int>(x), yi = static_cast<int>(y);
-    bool confirmed = false;
-    for (int dy = 0; dy <= 1; ++dy) {
-      for (int dx = 0; dx <= 1; ++dx) {
-        const int i = index_[(yi + dy) * width_ + xi + dx];
-        if (i < 0) continue;
-        const Hypothesis& seen = view_.depth[i];
-        const float sigma = seen.sigma;
-        const float r = seen.inverse_depth - there;
-        if (r * r > chi2 * (sigma * sigma + own * own)) continue;
-        confirmed = true;
-        const float w = 1 / (sigma * sigma);
-        *jj += derivative * derivative * w;
-        *jr += derivative * r * w;
+  void Check(float chi2, Checks& checks) const {
+    const int count = static_cast<int>(checks.confirmed.size());
+    for (int first = 0; first < count; first += kLanes) {
+      const Projections seen = Project(checks, first);
+      for (int lane = 0; lane < std::min(kLanes, count - first); ++lane) {
+        if (seen.inside >> lane & 1) Confirm(seen, lane, chi2, first + lane, checks);
       }
     }
-    return confirmed;
   }
 
  private:
-  const DepthView& view_;
+  struct Projections {
+    Lanes<int> x, y;
+    // Inverse depth in the view is rho / h.z (z' = h.z / rho); its derivative by rho is a.z / h.z².
+    // `variance`: of the inverse depth in the view.
+    Lanes<float> there, derivative, variance;
+    int inside;  // bit per lane: in the image and in front of the camera
+  };
+
+  Projections Project(const Checks& checks, int first) const {
+    const auto at = [&](const std::vector<float>& values) { return cv::v_load(&values[first]); };
+    const Floats x = at(checks.x), y = at(checks.y), rho = at(checks.inverse_depth);
+    const Eigen::Matrix3f& M = to_view_.at_infinity;
+    const auto far = [&](int i) { return All(M(i, 0)) * x + (All(M(i, 1)) * y + All(M(i, 2))); };
+    const auto moved = [&](const Floats& a, int i) { return a + rho * All(to_view_.shift[i]); };
+    const Floats a_z = far(2), z = moved(a_z, 2);
+    const Floats u = moved(far(0), 0) / z, v = moved(far(1), 1) / z, one = All(1.0f);
+    const Floats derivative = a_z / (z * z), own = at(checks.sigma) * derivative;
+    Projections result;
+    result.inside = cv::v_signmask((z >= All(0.05f)) & (u >= one) & (v >= one) &
+                                   (u < All(static_cast<float>(width_ - 2))) &
+                                   (v < All(static_cast<float>(height_ - 2))));
+    cv::v_store(result.x.data(), cv::v_trunc(u));
+    cv::v_store(result.y.data(), cv::v_trunc(v));
+    cv::v_store(result.there.data(), rho / z);
+    cv::v_store(result.derivative.data(), derivative);
+    cv::v_store(result.variance.data(), own * own);
+    return result;
+  }
+
+  // Adds the compatible depths of the view at the four pixels around the projection.
+  void Confirm(const Projections& at, int lane, float chi2, int i, Checks& checks) const {
+    const float derivative = at.derivative[lane];
+    bool confirmed = false;
+    for (int dy = 0; dy <= 1; ++dy) {
+      for (int dx = 0; dx <= 1; ++dx) {
+        const int found = index_.At(at.x[lane] + dx, at.y[lane] + dy);
+        if (found < 0) continue;
+        const Hypothesis& seen = known_[found];
+        const float variance = seen.sigma * seen.sigma;
+        const float r = seen.inverse_depth - at.there[lane];
+        if (r * r > chi2 * (variance + at.variance[lane])) continue;
+        confirmed = true;
+        const float w = 1 / variance;
+        checks.jj[i] += derivative * derivative * w;
+        checks.jr[i] += derivative * r * w;
+      }
+    }
+    checks.confirmed[i] += confirmed;
+  }
+
   int width_, height_;
-  std::vector<int> index_;
-  Eigen::Matrix3f M_;
-  Eigen::Vector3f b_;
+  PixelTransfer to_view_;
+  PixelIndex index_;
+  std::vector<Hypothesis> known_;  // in the order of index_
 };
 
 }  // namespace
@@ -80,16 +121,24 @@ std::vector<Hypothesis> CrossCheck(std::span<const EdgePixel> edges,
   const int count = static_cast<int>(edges.size());
   ParallelFor((count + kChunk - 1) / kChunk, [&](int chunk) {
     const int end = std::min(count, (chunk + 1) * kChunk);
+    std::vector<int> indices;  // of pixels with depth
     for (int i = chunk * kChunk; i < end; ++i) {
-      if (!depth[i].known()) continue;
-      int confirmed = 0;
-      const float own = 1 / (depth[i].sigma * depth[i].sigma);
-      float jj = own, jr = 0;
-      for (const Witness& witness : witnesses) {
-        confirmed += witness.Confirms(edges[i], depth[i], settings.chi2, &jj, &jr);
-      }
-      if (confirmed < settings.enough) continue;
-      checked[i] = {depth[i].inverse_depth + jr / jj, depth[i].sigma};
+      if (depth[i].known()) indices.push_back(i);
+    }
+    Checks checks(indices.size());
+    for (size_t k = 0; k < indices.size(); ++k) {
+      const Hypothesis& h = depth[indices[k]];
+      checks.x[k] = edges[indices[k]].x;
+      checks.y[k] = edges[indices[k]].y;
+      checks.inverse_depth[k] = h.inverse_depth;
+      checks.sigma[k] = h.sigma;
+      checks.jj[k] = 1 / (h.sigma * h.sigma);
+    }
+    for (const Witness& witness : witnesses) witness.Check(settings.chi2, checks);
+    for (size_t k = 0; k < indices.size(); ++k) {
+      const float shift = checks.jr[k] / checks.jj[k];
+      if (checks.confirmed[k] >= settings.enough)
+        checked[indices[k]] = {checks.inverse_depth[k] + shift, checks.sigma[k]};
     }
   });
   return checked;

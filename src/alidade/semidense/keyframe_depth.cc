@@ -1,6 +1,8 @@
 #include "alidade/semidense/keyframe_depth.h"
 
 #include <algorithm>
+#include <numeric>
+#include <span>
 
 #include "alidade/base/parallel.h"
 #include "alidade/semidense/candidates.h"
@@ -11,6 +13,7 @@ namespace alidade {
 namespace {
 
 constexpr int kChunk = 2048;  // pixels per task
+constexpr int kBlock = 256;   // pixels searched in one partner after the other
 
 // Without fusion: the hypothesis with the smallest variance.
 Hypothesis MostCertain(std::span<const Hypothesis> hypotheses) {
@@ -19,6 +22,38 @@ Hypothesis MostCertain(std::span<const Hypothesis> hypotheses) {
     if (h.known() && (!best.known() || h.sigma < best.sigma)) best = h;
   }
   return best;
+}
+
+// Searches the pixels in all partners: one hypothesis per pixel and partner, pixel by pixel.
+std::vector<Hypothesis> SearchAll(std::vector<EpipolarSearch>& searches,
+                                  std::span<const EdgePixel> pixels, const DepthRange& range,
+                                  const SemiDenseSettings& settings, SearchCount& count) {
+  const size_t partners = searches.size();
+  std::vector<Hypothesis> found(pixels.size() * partners);
+  std::vector<Candidates> candidates(pixels.size(),
+                                     Candidates(static_cast<float>(settings.chi2_pair)));
+  std::vector<size_t> open(pixels.size());
+  std::iota(open.begin(), open.end(), size_t{0});
+  for (size_t partner = 0; partner < partners; ++partner) {
+    // A pixel is left out once the remaining partners cannot give it the required number.
+    const int missing = settings.min_compatible - static_cast<int>(partners - partner);
+    if (settings.fuse)
+      std::erase_if(open, [&](size_t i) { return candidates[i].known() < missing; });
+    for (size_t i = 0; i < open.size(); i += kLanes) {
+      const size_t n = std::min<size_t>(kLanes, open.size() - i);
+      Lanes<EpipolarQuery> queries;
+      for (size_t k = 0; k < n; ++k) {
+        const EdgePixel& pixel = pixels[open[i + k]];
+        queries[k] = {pixel, candidates[open[i + k]].Around(range.At(pixel.x, pixel.y))};
+      }
+      const Lanes<Hypothesis> result = searches[partner].Search({queries.data(), n}, count);
+      for (size_t k = 0; k < n; ++k) {
+        found[open[i + k] * partners + partner] = result[k];
+        candidates[open[i + k]].Add(result[k]);
+      }
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -35,24 +70,18 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
   std::vector<SearchCount> counts(chunks);
   ParallelFor(chunks, [&](int chunk) {
     const size_t begin = static_cast<size_t>(chunk) * kChunk;
-    const size_t n = std::min<size_t>(kChunk, pixels - begin);
+    const size_t end = std::min<size_t>(begin + kChunk, pixels);
     std::vector<EpipolarSearch> searches;
     for (const EpipolarPair& pair : pairs) searches.emplace_back(pair, camera, settings);
-    std::vector<Hypothesis> found(pairs.size());
-    for (size_t i = begin; i < begin + n; ++i) {
-      const DepthInterval whole = range.At(edges[i].x, edges[i].y);
-      int known = 0;
-      Candidates candidates(chi2);
-      for (size_t k = 0; k < pairs.size(); ++k) {
-        found[k] = {};
-        // Skip if the remaining pairs cannot reach the required number.
-        if (settings.fuse && known + static_cast<int>(pairs.size() - k) < settings.min_compatible)
-          continue;
-        found[k] = searches[k].Search(edges[i], candidates.Around(whole), counts[chunk]);
-        candidates.Add(found[k]);
-        known += found[k].known();
+    for (size_t i = begin; i < end; i += kBlock) {
+      const std::span block(edges.data() + i, std::min<size_t>(kBlock, end - i));
+      const std::vector<Hypothesis> found =
+          SearchAll(searches, block, range, settings, counts[chunk]);
+      for (size_t k = 0; k < block.size(); ++k) {
+        const std::span of_pixel(found.data() + k * pairs.size(), pairs.size());
+        fused[i + k] =
+            settings.fuse ? Fuse(of_pixel, chi2, settings.min_compatible) : MostCertain(of_pixel);
       }
-      fused[i] = settings.fuse ? Fuse(found, chi2, settings.min_compatible) : MostCertain(found);
     }
   });
   if (count) {

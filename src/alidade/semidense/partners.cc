@@ -107,9 +107,9 @@ cv::Mat WithExposure(const cv::Mat& values, const Exposure& exposure) {
   for (int y = 0; y < values.rows; ++y) {
     const auto* from = values.ptr<uint8_t>(y);
     auto* to = result.ptr<uint8_t>(y);
-    constexpr int kLanes = 16;
-    for (int i = 0; i < bytes; i += kLanes) {
-      const int at = std::min(i, bytes - kLanes);  // the last block overlaps the previous one
+    constexpr int kBytes = 16;
+    for (int i = 0; i < bytes; i += kBytes) {
+      const int at = std::min(i, bytes - kBytes);  // the last block overlaps the previous one
       cv::v_uint16x8 low, high;
       cv::v_expand(cv::v_load(from + at), low, high);
       cv::v_store(to + at, cv::v_pack_u(changed(low), changed(high)));

@@ -163,7 +163,8 @@ SemiDenseMapper::Entry* SemiDenseMapper::NewestMoved(const MapSnapshot& map) {
   return nullptr;
 }
 
-void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
+void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry,
+                               std::span<const DepthView> views) {
   const KeyFrame& keyframe = *map.Find(entry.id);
   entry.estimated = true;
   entry.of_other_camera = false;
@@ -176,7 +177,6 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
     entry.depth = PackedDepth(entry.sensor);
     return;
   }
-  const std::vector<DepthView> views = Views(map, keyframe);
   const DepthRange range(map, keyframe, camera_, views);
   if (!range.known()) return;
   std::vector<EpipolarPair> pairs;
@@ -184,14 +184,11 @@ void SemiDenseMapper::Estimate(const MapSnapshot& map, Entry& entry) {
                                       [&](KeyFrameId other) { return Find(other) != nullptr; })) {
     const KeyFrame& other = *map.Find(id);
     const Entry& partner = *Find(id);
-    EpipolarPair pair;
-    pair.reference = &entry.image;
-    pair.other = &partner.image;
-    pair.T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
-    pair.values = WithExposure(entry.image.values,
-                               CompareExposures(keyframe, entry.image, other, partner.image));
-    pairs.push_back(pair);
-    entry.partners.push_back({id, pair.T_other_reference});
+    const Se3 T_other_reference = other.T_camera_world * keyframe.T_camera_world.Inverse();
+    const Exposure exposure = CompareExposures(keyframe, entry.image, other, partner.image);
+    pairs.emplace_back(entry.image, partner.image, WithExposure(entry.image.values, exposure),
+                       T_other_reference);
+    entry.partners.push_back({id, T_other_reference});
   }
   std::sort(pairs.begin(), pairs.end(), [](const EpipolarPair& a, const EpipolarPair& b) {
     return a.T_other_reference.t.squaredNorm() < b.T_other_reference.t.squaredNorm();
@@ -214,12 +211,12 @@ std::vector<DepthView> SemiDenseMapper::Views(const MapSnapshot& map, const KeyF
   return views;
 }
 
-std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map,
-                                                         const Entry& entry) {
+std::shared_ptr<const DepthMap> SemiDenseMapper::Checked(const MapSnapshot& map, const Entry& entry,
+                                                         std::span<const DepthView> views) {
   const KeyFrame& keyframe = *map.Find(entry.id);
   std::vector<Hypothesis> depth = entry.depth.Unpack(entry.scale / keyframe.scale);
   if (settings_.cross_check) {
-    depth = CrossCheck(entry.image.edges, depth, Views(map, keyframe), camera_,
+    depth = CrossCheck(entry.image.edges, depth, views, camera_,
                        {static_cast<float>(settings_.chi2_check), settings_.min_compatible});
   }
   const bool believed =
@@ -276,8 +273,9 @@ void SemiDenseMapper::Process() {
 }
 
 void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
-  Estimate(map, entry);
-  const std::shared_ptr<const DepthMap> depth = Checked(map, entry);
+  const std::vector<DepthView> views = Views(map, *map.Find(entry.id));
+  Estimate(map, entry, views);
+  const std::shared_ptr<const DepthMap> depth = Checked(map, entry, views);
   CountBytes(map_.Commit([&](MapCommit& commit) {
     if (KeyFrame* keyframe = commit.Edit(entry.id)) keyframe->depth = depth;
   }));
@@ -287,15 +285,18 @@ void SemiDenseMapper::WorkOn(const MapSnapshot& map, Entry& entry) {
 void SemiDenseMapper::Finish(const std::atomic<bool>* stop) {
   const auto enough = [stop] { return stop && stop->load(); };
   const MapSnapshot map = TakeIn();
+  const auto views = [&](const Entry& entry) { return Views(map, *map.Find(entry.id)); };
+  const auto estimate = [&](Entry& entry) { Estimate(map, entry, views(entry)); };
   for (const auto& entry : entries_) {
-    if (!entry->estimated && !enough()) Estimate(map, *entry);
+    if (!entry->estimated && !enough()) estimate(*entry);
   }
   for (size_t i = entries_.size(); i-- > 0 && !enough();) {
-    if (Moved(map, *entries_[i])) Estimate(map, *entries_[i]);
+    if (Moved(map, *entries_[i])) estimate(*entries_[i]);
   }
   std::vector<std::pair<KeyFrameId, std::shared_ptr<const DepthMap>>> checked;
   for (const auto& entry : entries_) {
-    if (entry->estimated && !enough()) checked.push_back({entry->id, Checked(map, *entry)});
+    if (entry->estimated && !enough())
+      checked.push_back({entry->id, Checked(map, *entry, views(*entry))});
   }
   CountBytes(map_.Commit([&](MapCommit& commit) {
     for (const auto& [id, depth] : checked) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -56,9 +57,11 @@ class SemiDenseMapper {
   void CountBytes(const MapSnapshot& map);
   void Tell();
   void WorkOn(const MapSnapshot& map, Entry& entry);
-  void Estimate(const MapSnapshot& map, Entry& entry);
+  // `views`: Views() of the keyframe.
+  void Estimate(const MapSnapshot& map, Entry& entry, std::span<const DepthView> views);
   std::vector<DepthView> Views(const MapSnapshot& map, const KeyFrame& keyframe);
-  std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry);
+  std::shared_ptr<const DepthMap> Checked(const MapSnapshot& map, const Entry& entry,
+                                          std::span<const DepthView> views);
 
   MapStore& map_;
   Camera camera_;
