@@ -120,5 +120,26 @@ TEST(Align, ExtractsWhereImagesAreBlurredAndGoesOnAfterwards) {
   EXPECT_LT(outcome.rmse, 0.03);
 }
 
+TEST(Align, UsesNothingWhereTheUserLeavesOut) {
+  RenderedFrames& room = Room(Sensor::kRgbd);
+  Camera camera = room.camera();
+  camera.baseline = 0;
+  Slam slam(camera, Settings(Sensor::kRgbd, true));
+  cv::Mat mask = cv::Mat::zeros(30, 40, CV_8U);
+  mask.colRange(0, 15).setTo(255);
+  slam.LeaveOut(mask);
+  size_t features = 0;
+  for (int i = 0; i < kFrames; ++i) {
+    const RenderedFrame& frame = room.Frame(i);
+    slam.Track({frame.time, frame.image, {}, frame.depth});
+    for (const FeatureUse& feature : slam.Features()) {
+      ++features;
+      EXPECT_GE(feature.x, 149.0f);
+    }
+  }
+  EXPECT_LT(slam.Times().extract.size(), size_t{80});  // the others were aligned
+  EXPECT_GT(features, size_t{5000});
+}
+
 }  // namespace
 }  // namespace alidade::align_test

@@ -58,9 +58,13 @@ struct PoseQuality {
   // while its views differ by a few pixels only (docs/benchmarks/reliability.md).
   // Zero: unknown, or the first frame of a map, whose pose is the identity by definition.
   Matrix6d covariance = Matrix6d::Zero();
-  int expected = 0;        // landmarks that should be visible
-  int inliers = 0;         // of these, matched in agreement with the pose
-  double found_share = 0;  // inliers / expected, in [0, 1]; about a third is usual (occlusions)
+  // Landmarks that should be visible: of the local map, or, where the frame was aligned with an
+  // earlier one (tracker.align), of that frame.
+  int expected = 0;
+  int inliers = 0;  // of these, matched in agreement with the pose
+  // inliers / expected, in [0, 1]; about a third of the local map is usual (occlusions), and nine
+  // tenths of an earlier frame's.
+  double found_share = 0;
 };
 
 // Orientation of the camera by an inertial sensor (docs/guides/inertial.md).
