@@ -74,11 +74,11 @@ std::vector<Hypothesis> DepthFromMotion(const std::vector<EpipolarPair>& pairs,
     std::vector<EpipolarSearch> searches;
     for (const EpipolarPair& pair : pairs) searches.emplace_back(pair, camera, settings);
     for (size_t i = begin; i < end; i += kBlock) {
-      const std::span block(edges.data() + i, std::min<size_t>(kBlock, end - i));
+      const std::span<const EdgePixel> block(edges.data() + i, std::min<size_t>(kBlock, end - i));
       const std::vector<Hypothesis> found =
           SearchAll(searches, block, range, settings, counts[chunk]);
       for (size_t k = 0; k < block.size(); ++k) {
-        const std::span of_pixel(found.data() + k * pairs.size(), pairs.size());
+        const std::span<const Hypothesis> of_pixel(found.data() + k * pairs.size(), pairs.size());
         fused[i + k] =
             settings.fuse ? Fuse(of_pixel, chi2, settings.min_compatible) : MostCertain(of_pixel);
       }
