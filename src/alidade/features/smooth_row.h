@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "alidade/features/cpu.h"
+#include "alidade/base/cpu.h"
 
 #ifdef ALIDADE_AVX2
 namespace alidade {
