@@ -5,10 +5,15 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <opencv2/core/hal/intrin.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
-
-#include "alidade/features/simd/pick.h"
+#if defined(__SSSE3__)
+#include <tmmintrin.h>
+#endif
+#if defined(__SSSE3__) || defined(__aarch64__) || defined(__wasm_simd128__)
+#define ALIDADE_PICK  // an instruction picks bytes of a vector by index
+#endif
 
 namespace alidade {
 
@@ -20,6 +25,19 @@ namespace {
 
 constexpr int kWindowBytes = 16;  // bytes that a block of results picks from
 constexpr int kMostTaps = 16;
+
+constexpr uint8_t kPickZero = 0x80;  // the index that gives 0
+
+// Byte i is bytes[index[i]], or 0 where index[i] is kPickZero. Other indices are 0 to 15.
+cv::v_uint8x16 Pick(const cv::v_uint8x16& bytes, const cv::v_uint8x16& index) {
+#if defined(__SSSE3__)
+  return cv::v_uint8x16(_mm_shuffle_epi8(bytes.val, index.val));
+#elif defined(__aarch64__)
+  return cv::v_uint8x16(vqtbl1q_u8(bytes.val, index.val));
+#else
+  return cv::v_uint8x16(wasm_i8x16_swizzle(bytes.val, index.val));
+#endif
+}
 
 // Pixels per result along one axis, rounded as in cv::resize.
 double Factor(int pixels, int results) { return 1 / (static_cast<double>(results) / pixels); }

@@ -15,9 +15,8 @@ void SubtractRow2(const double* a, const double* b, const int* places, int count
 }
 
 SubtractRow FastestSubtractRow() {
-#ifdef ALIDADE_SUBTRACT_ROW_4
-  static const bool has_avx2 = __builtin_cpu_supports("avx2");
-  if (has_avx2) return SubtractRow4;
+#ifdef ALIDADE_AVX2
+  if (HasAvx2()) return SubtractRow4;
 #endif
   return SubtractRow2;
 }

@@ -2,6 +2,8 @@
 // that observe the same point. All versions give the same bits.
 #pragma once
 
+#include "alidade/base/cpu.h"
+
 namespace alidade {
 
 // blocks[places[b]] -= A B_b' for b in [0, count), in this order. Every B_b is 6x3 (CouplingFactor)
@@ -12,8 +14,7 @@ using SubtractRow = void (*)(const double* a, const double* b, const int* places
 // Two numbers at once.
 void SubtractRow2(const double* a, const double* b, const int* places, int count, double* blocks);
 
-#if defined(__x86_64__) && defined(__GNUC__)
-#define ALIDADE_SUBTRACT_ROW_4
+#ifdef ALIDADE_AVX2
 // Four numbers at once, with AVX2.
 void SubtractRow4(const double* a, const double* b, const int* places, int count, double* blocks);
 #endif

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "alidade/features/simd/cpu.h"
+#include "alidade/base/cpu.h"
 
 namespace alidade {
 

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "alidade/features/simd/cpu.h"
+#include "alidade/base/cpu.h"
 
 #ifdef ALIDADE_AVX2
 namespace alidade {

@@ -1,4 +1,4 @@
-#include "alidade/features/simd/cpu.h"
+#include "alidade/base/cpu.h"
 
 #ifdef ALIDADE_AVX2
 namespace alidade {

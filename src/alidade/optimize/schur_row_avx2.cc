@@ -1,8 +1,7 @@
-// Compiled with AVX2 and run only where the processor has it: nothing inline of other headers may
-// be in this file, because the linker could take its copy for other processors.
+// Compiled with AVX2 and run only where the processor has it: see cpu.h.
 #include "alidade/optimize/schur_row.h"
 
-#ifdef ALIDADE_SUBTRACT_ROW_4
+#ifdef ALIDADE_AVX2
 #include <immintrin.h>
 
 namespace alidade {
