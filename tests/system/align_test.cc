@@ -1,4 +1,4 @@
-// Frames between keyframes are aligned (tracker.align): fewer extractions, poses as good.
+// Frames between keyframes are aligned (expert.tracker.align): fewer extractions, poses as good.
 #include <gtest/gtest.h>
 
 #include <functional>

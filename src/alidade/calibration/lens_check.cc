@@ -62,8 +62,6 @@ std::span<const Setting> LensCheckSettings::Table() {
                                       "The same where there are too few for min_windows windows."),
       ExpertSetting<&T::min_windows>("lens.min_windows", AtLeast(2), "windows",
                                      "With fewer windows nothing is reported."),
-      ExpertSetting<&T::max_windows>("lens.max_windows", AtLeast(2), "windows",
-                                     "Most windows, spread over the map."),
       ExpertSetting<&T::min_seen>("lens.min_seen", AtLeast(2), "keyframes",
                                   "Keyframes of a window that must see a landmark."),
       ExpertSetting<&T::min_bend>("lens.min_bend", kPositive, "",

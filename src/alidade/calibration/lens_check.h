@@ -14,9 +14,9 @@ struct Setting;
 // Range, unit and meaning: Table() in lens_check.cc.
 struct LensCheckSettings {
   int window = 10;
-  int least_window = 6;
+  int least_window = 4;
   int min_windows = 3;
-  // One takes some 5 ms.
+  // Spread over the map. One takes some 5 ms.
   int max_windows = 40;
   int min_seen = 3;
   // Calibrated lenses and those with little distortion have up to 0.04, an undeclared k1 = -0.22

@@ -88,7 +88,7 @@ constexpr std::string_view kDropped =
     "dynamics.votes.consensus_tracks dynamics.votes.depth_noise "
     "dynamics.votes.homography_share dynamics.votes.least_ago dynamics.votes.measured_px "
     "dynamics.votes.measured_share dynamics.votes.most_ago dynamics.votes.rival_block "
-    "dynamics.votes.rival_blocks early.leap_seconds loop.alike_radius "
+    "dynamics.votes.rival_blocks early.leap_seconds lens.max_windows loop.alike_radius "
     "loop.bundle.min_relative_decrease loop.confirm_found loop.graph.length_scale "
     "loop.group loop.max_drift_floor loop.max_plain_scale loop.reach.elsewhere_share "
     "loop.reach.floor loop.reach.plain_alike loop.reach.plain_share loop.reach.span "

@@ -59,7 +59,7 @@ struct PoseQuality {
   // Zero: unknown, or the first frame of a map, whose pose is the identity by definition.
   Matrix6d covariance = Matrix6d::Zero();
   // Landmarks that should be visible: of the local map, or, where the frame was aligned with an
-  // earlier one (tracker.align), of that frame.
+  // earlier one (expert.tracker.align), of that frame.
   int expected = 0;
   int inliers = 0;  // of these, matched in agreement with the pose
   // inliers / expected, in [0, 1]; about a third of the local map is usual (occlusions), and nine

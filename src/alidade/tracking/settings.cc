@@ -31,7 +31,7 @@ std::span<const Setting> TrackerSettings::Table() {
           "tracker.keyframe_share_depth", kPositive, "",
           "Stereo and RGB-D: a new keyframe when inliers fall below this share of their maximum "
           "since the last one."),
-      PublicSetting<&T::align>(
+      ExpertSetting<&T::align>(
           "tracker.align", kOnOff, "",
           "Between keyframes, landmarks are aligned with the image instead of extracting features; "
           "off: features are extracted from every frame."),
