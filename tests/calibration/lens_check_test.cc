@@ -104,7 +104,7 @@ TEST(CheckLens, SaysNothingWherePartsOfTheMapDisagree) {
 }
 
 TEST(CheckLens, SaysNothingOfAFewKeyframes) {
-  EXPECT_EQ(CheckOf({.keyframes = 17, .k1 = -0.25}).windows, 0);
+  EXPECT_EQ(CheckOf({.keyframes = 11, .k1 = -0.25}).windows, 0);
   EXPECT_TRUE(CheckOf({.keyframes = 18, .k1 = -0.25}).strong);
   EXPECT_EQ(CheckLens(MapSnapshot(), MapId{0}, MakeVgaCamera(), {}).windows, 0);
 }
@@ -114,7 +114,7 @@ TEST(CheckLens, LooksAtAFewPartsOfALargeMap) {
 }
 
 TEST(CheckLens, RefusesSettingsThatCannotBe) {
-  EXPECT_THAT(ComplaintAbout(LensCheckSettings{.window = 5}), testing::HasSubstr("lens.window"));
+  EXPECT_THAT(ComplaintAbout(LensCheckSettings{.window = 3}), testing::HasSubstr("lens.window"));
   EXPECT_THAT(ComplaintAbout(LensCheckSettings{.min_seen = 1}),
               testing::HasSubstr("lens.min_seen"));
   EXPECT_EQ(ComplaintAbout(LensCheckSettings{}), "");
