@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <opencv2/imgproc.hpp>
 
 #include "alidade/base/parallel.h"
 #include "alidade/evaluation/ate.h"
