@@ -16,26 +16,28 @@ constexpr int kFrames = 60;
 struct Outcome {
   std::string trajectory, keyframes, map;  // bytes
   int tracked = 0;
-  double worst = 0;  // largest distance to the true position, map units
+  size_t inserted = 0;  // keyframes
+  double worst = 0;     // largest distance to the true position, map units
 };
 
-Outcome Play(Sensor sensor, int threads, bool threaded = false) {
+Outcome Play(Sensor sensor, int threads, bool threaded = false, bool wait = false) {
   RenderedFrames& room = SmallRoom(320, 240);
   SetThreadCount(threads);
   SlamSettings settings;
   settings.sensor = sensor;
   settings.threaded = threaded;
+  settings.wait_for_mapping = wait;
   settings.tracker.extractor.features = 600;  // for a small image
   settings.tracker.match_scale = settings.mapper.match_scale = settings.start.match_scale = 0.8;
   Slam slam(room.camera(), settings);
+  Outcome outcome;
   for (int i = 0; i < kFrames; ++i) {
     const RenderedFrame& frame = room.Frame(i);
-    slam.Track({frame.time, frame.image, frame.right, frame.depth});
+    outcome.inserted += slam.Track({frame.time, frame.image, frame.right, frame.depth}).keyframe;
   }
   slam.Finish();
   SetThreadCount(0);
 
-  Outcome outcome;
   Trajectory trajectory, keyframes;
   const Se3 T_first_world = room.Pose(0).Inverse();
   for (const FramePose& pose : slam.Trajectory()) {
@@ -89,6 +91,14 @@ TEST(ThreadedSchedule, FinishesAndTracks) {
   EXPECT_GE(run.tracked, 57);  // the mapper may lag behind
   EXPECT_LT(run.worst, 0.1);
   EXPECT_EQ(DecodeMap(run.map).sensor, "rgbd");
+}
+
+// As fast as frames can be tracked: without waiting, keyframes may be left out.
+TEST(ThreadedSchedule, WaitsForTheMapperIfAskedTo) {
+  const Outcome run = Play(Sensor::kRgbd, 2, /*threaded=*/true, /*wait=*/true);
+  EXPECT_EQ(run.tracked, kFrames);
+  EXPECT_GE(run.inserted, Play(Sensor::kRgbd, 2).inserted * 2 / 3);
+  EXPECT_LT(run.worst, 0.1);
 }
 
 }  // namespace

@@ -27,21 +27,10 @@ Float4 LoadBytes(const uint8_t* at) {
 
 float Sum(Float4 v) { return (v[0] + v[1]) + (v[2] + v[3]); }
 
-// LaneSum over the pixels of a patch, in four lanes.
-struct LaneSum {
-  Float4 of{};
-  void Add(Float4 a) { of += a; }
-  float total() const { return Sum(of); }
-};
-
 constexpr int kPatchSide = Patch::kSide;
 constexpr int kRim = kPatchSide + 2;  // of the samples from which gradients are taken
-constexpr float kMinDeterminant = 1;  // (gray levels per pixel)⁴, of the mean over the pixels
-
-bool InsideImage(const cv::Mat& image, float x, float y, float reach) {
-  return x >= reach && y >= reach && x < static_cast<float>(image.cols - 1) - reach &&
-         y < static_cast<float>(image.rows - 1) - reach;
-}
+// Of Patch::information: with noise of 4 gray levels a shift is told to half a pixel.
+constexpr float kMinDeterminant = 4 / 0.5f * (4 / 0.5f) * (4 / 0.5f) * (4 / 0.5f);
 
 float Bilinear(const cv::Mat& image, float x, float y) {
   const int column = static_cast<int>(x), row = static_cast<int>(y);
@@ -92,8 +81,7 @@ bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::
               Patch& patch) {
   constexpr float kHalf = 0.5f * (kRim - 1);
   const Eigen::Array2f reach = kHalf * warp.cwiseAbs().rowwise().sum().array() + 1;
-  if (!InsideImage(image, center.x(), center.y(), 0) || !(center.x() >= reach.x()) ||
-      !(center.y() >= reach.y()) ||
+  if (!(center.x() >= reach.x()) || !(center.y() >= reach.y()) ||
       !(center.x() < static_cast<float>(image.cols - 1) - reach.x()) ||
       !(center.y() < static_cast<float>(image.rows - 1) - reach.y()))
     return false;
@@ -117,30 +105,29 @@ bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::
       patch.dy[i] = 0.5f * (samples[r + 2][c + 1] - samples[r][c + 1]);
     }
   }
-  LaneSum xx, xy, xv, x1, yy, yv, y1, vv, v1;
+  Float4 xx{}, xy{}, xv{}, x1{}, yy{}, yv{}, y1{}, vv{}, v1{};
   for (int i = 0; i < Patch::kPixels; i += 4) {
     const Float4 dx = Load(&patch.dx[i]), dy = Load(&patch.dy[i]), value = Load(&patch.value[i]);
-    xx.Add(dx * dx);
-    xy.Add(dx * dy);
-    xv.Add(dx * value);
-    x1.Add(dx);
-    yy.Add(dy * dy);
-    yv.Add(dy * value);
-    y1.Add(dy);
-    vv.Add(value * value);
-    v1.Add(value);
+    xx += dx * dx;
+    xy += dx * dy;
+    xv += dx * value;
+    x1 += dx;
+    yy += dy * dy;
+    yv += dy * value;
+    y1 += dy;
+    vv += value * value;
+    v1 += value;
   }
   // Gain and offset are eliminated from the shift by the Schur complement.
   Eigen::Matrix2f A, B, C;
-  A << xx.total(), xy.total(), xy.total(), yy.total();
-  B << xv.total(), x1.total(), yv.total(), y1.total();
-  C << vv.total(), v1.total(), v1.total(), Patch::kPixels;
+  A << Sum(xx), Sum(xy), Sum(xy), Sum(yy);
+  B << Sum(xv), Sum(x1), Sum(yv), Sum(y1);
+  C << Sum(vv), Sum(v1), Sum(v1), Patch::kPixels;
   if (!(C.determinant() > 0)) return false;
   const Eigen::Matrix2f C_inverse = C.inverse();
   const Eigen::Matrix2f BC = B * C_inverse;
   patch.information = A - BC * B.transpose();
-  constexpr float kPixels2 = static_cast<float>(Patch::kPixels) * Patch::kPixels;
-  if (!(patch.information.determinant() > kMinDeterminant * kPixels2)) return false;
+  if (!(patch.information.determinant() > kMinDeterminant)) return false;
   const Eigen::Matrix2f covariance = patch.information.inverse();
   patch.inverse.topLeftCorner<2, 2>() = covariance;
   patch.inverse.topRightCorner<2, 2>() = -covariance * BC;
@@ -149,28 +136,35 @@ bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::
   return true;
 }
 
+bool HoldsPatch(const cv::Mat& image, const Eigen::Vector2f& place) {
+  constexpr float kRimWidth = Patch::kReach;
+  return place.x() >= kRimWidth && place.y() >= kRimWidth &&
+         place.x() < static_cast<float>(image.cols - 1) - kRimWidth &&
+         place.y() < static_cast<float>(image.rows - 1) - kRimWidth;
+}
+
 PatchStep StepOf(const Patch& patch, const cv::Mat& image, const Eigen::Vector2f& place) {
   PatchStep step;
-  if (!InsideImage(image, place.x(), place.y(), Patch::kReach)) return step;
+  if (!HoldsPatch(image, place)) return step;
   step.inside = true;
   std::array<Float4, Patch::kPixels / 4> pixels;
   SamplePatch(image, place.x(), place.y(), pixels);
-  LaneSum x, y, v, one, square;
+  Float4 x{}, y{}, v{}, one{}, square{};
   for (int i = 0; i < Patch::kPixels / 4; ++i) {
-    x.Add(Load(&patch.dx[4 * i]) * pixels[i]);
-    y.Add(Load(&patch.dy[4 * i]) * pixels[i]);
-    v.Add(Load(&patch.value[4 * i]) * pixels[i]);
-    one.Add(pixels[i]);
-    square.Add(pixels[i] * pixels[i]);
+    x += Load(&patch.dx[4 * i]) * pixels[i];
+    y += Load(&patch.dy[4 * i]) * pixels[i];
+    v += Load(&patch.value[4 * i]) * pixels[i];
+    one += pixels[i];
+    square += pixels[i] * pixels[i];
   }
   // Least squares of pixels = gain (value + (dx, dy) s) + offset. The patch is at place - s.
-  const Eigen::Vector4f b(x.total(), y.total(), v.total(), one.total());
+  const Eigen::Vector4f b(Sum(x), Sum(y), Sum(v), Sum(one));
   const Eigen::Vector4f z = patch.inverse * b;
   step.gain = z[2];
   if (!(step.gain > 0)) return step;
   step.shift = -z.head<2>() / step.gain;
   constexpr float kCount = Patch::kPixels;
-  const float variance = square.total() - b[3] * b[3] / kCount;
+  const float variance = Sum(square) - b[3] * b[3] / kCount;
   const float explained = z.dot(b) - b[3] * b[3] / kCount;
   step.residual2 = std::max(0.0f, variance - explained) / kCount;
   if (variance > 0) step.correlation = std::sqrt(std::clamp(explained / variance, 0.0f, 1.0f));

@@ -36,6 +36,9 @@ struct Patch {
 bool CutPatch(const cv::Mat& image, const Eigen::Vector2f& center, const Eigen::Matrix2f& warp,
               Patch& patch);
 
+// Whether the pixels of a patch around `place` are in the image.
+bool HoldsPatch(const cv::Mat& image, const Eigen::Vector2f& place);
+
 // One step of the alignment of a patch with the pixels around a place.
 struct PatchStep {
   bool inside = false;  // the place is far enough from the image's border; otherwise nothing is set

@@ -8,6 +8,7 @@
 
 #include "alidade/base/log.h"
 #include "alidade/base/part_times.h"
+#include "alidade/features/mask.h"
 #include "alidade/features/subset.h"
 
 namespace alidade {
@@ -24,15 +25,6 @@ cv::Mat Union(const cv::Mat& a, const cv::Mat& b) {
 }
 
 constexpr double kLeastMore = 0.005;  // share of the image: less is the rim of what is known
-
-bool Marks(const cv::Mat& mask, float x, float y, const Camera& camera) {
-  const int column = static_cast<int>((x + 0.5f) * static_cast<float>(mask.cols) /
-                                      static_cast<float>(camera.width));
-  const int row = static_cast<int>((y + 0.5f) * static_cast<float>(mask.rows) /
-                                   static_cast<float>(camera.height));
-  return column >= 0 && row >= 0 && column < mask.cols && row < mask.rows &&
-         mask.at<uint8_t>(row, column) != 0;
-}
 
 double ShareOf(const cv::Mat& mask) {
   return mask.empty() ? 0 : cv::countNonZero(mask) / static_cast<double>(mask.total());

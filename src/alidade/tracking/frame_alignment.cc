@@ -22,7 +22,7 @@ constexpr double kSmallStep = 0.05;  // pixels of the level: the pose is found
 constexpr float kReach = 6;          // pixels of the level: largest error of the pose found before
 constexpr float kMinCorrelation = 0.8f;
 
-float ScaleOf(size_t level) { return static_cast<float>(1 << level); }
+double ScaleOf(size_t level) { return 1 << level; }
 
 // The halved image in which a keypoint is about as sharp as on its own level of the pyramid.
 size_t HalvedLevel(int level, size_t count) {
@@ -31,13 +31,15 @@ size_t HalvedLevel(int level, size_t count) {
 }
 
 Eigen::Vector2f OnLevel(const Eigen::Vector2f& raw, size_t level) {
-  const float scale = ScaleOf(level);
-  return ((raw.array() + 0.5f) / scale - 0.5f).matrix();
+  const double scale = ScaleOf(level);
+  return Eigen::Vector2d(FromLevelZero(raw.x(), scale), FromLevelZero(raw.y(), scale))
+      .cast<float>();
 }
 
 Eigen::Vector2f FromLevel(const Eigen::Vector2f& place, size_t level) {
-  const float scale = ScaleOf(level);
-  return ((place.array() + 0.5f) * scale - 0.5f).matrix();
+  const double scale = ScaleOf(level);
+  return Eigen::Vector2d(ToLevelZero(place.x(), scale), ToLevelZero(place.y(), scale))
+      .cast<float>();
 }
 
 // Raw pixel of a point in front of the camera.
@@ -46,12 +48,18 @@ Eigen::Vector2f RawPixel(const Camera& camera, const Eigen::Vector3d& p) {
   return (camera.HasDistortion() ? camera.Distort(pixel) : pixel).cast<float>();
 }
 
+// Derivative of the pixel by the point in the camera's frame.
+Eigen::Matrix<double, 2, 3> PixelByPoint(const Camera& camera, const Eigen::Vector3d& p) {
+  const double inv_z = 1 / p.z();
+  Eigen::Matrix<double, 2, 3> J;
+  J << camera.fx * inv_z, 0, -camera.fx * p.x() * inv_z * inv_z, 0, camera.fy * inv_z,
+      -camera.fy * p.y() * inv_z * inv_z;
+  return J;
+}
+
 // Derivative of the pixel by a left increment of the pose (translation; rotation).
 Eigen::Matrix<double, 2, 6> PixelByPose(const Camera& camera, const Eigen::Vector3d& p) {
-  const double inv_z = 1 / p.z();
-  Eigen::Matrix<double, 2, 3> by_point;
-  by_point << camera.fx * inv_z, 0, -camera.fx * p.x() * inv_z * inv_z, 0, camera.fy * inv_z,
-      -camera.fy * p.y() * inv_z * inv_z;
+  const Eigen::Matrix<double, 2, 3> by_point = PixelByPoint(camera, p);
   Eigen::Matrix<double, 2, 6> J;
   J.leftCols<3>() = by_point;
   J.rightCols<3>() = -by_point * Skew(p);
@@ -83,8 +91,9 @@ std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::
 
   std::vector<AlignedPoint> aligned;
   aligned.reserve(points.size());
+  const Se3 T_camera_reference = T_camera_world * T_reference_world.Inverse();
   for (const ReferencePoint& point : points)
-    aligned.push_back(Find(camera, point, T_reference_world, T_camera_world));
+    aligned.push_back(Find(camera, point, T_camera_reference, T_camera_world));
   return aligned;
 }
 
@@ -136,16 +145,13 @@ void FrameAlignment::AlignOn(size_t level, const Camera& camera,
 }
 
 AlignedPoint FrameAlignment::Find(const Camera& camera, const ReferencePoint& point,
-                                  const Se3& T_reference_world, const Se3& T_camera_world) const {
+                                  const Se3& T_camera_reference, const Se3& T_camera_world) const {
   AlignedPoint aligned;
-  const Eigen::Vector3d p = T_reference_world * point.p_world, q = T_camera_world * point.p_world;
-  if (!(p.z() > kInFront) || !(q.z() > kInFront)) return aligned;
+  const Eigen::Vector3d q = T_camera_world * point.p_world;
+  const double z = T_camera_reference.R.col(2).dot(q - T_camera_reference.t);  // in the reference
+  if (!(z > kInFront) || !(q.z() > kInFront)) return aligned;
   // Of a surface parallel to the reference image.
-  const Se3 T_camera_reference = T_camera_world * T_reference_world.Inverse();
-  Eigen::Matrix<double, 2, 3> by_point;
-  by_point << camera.fx / q.z(), 0, -camera.fx * q.x() / (q.z() * q.z()), 0, camera.fy / q.z(),
-      -camera.fy * q.y() / (q.z() * q.z());
-  Eigen::Matrix2d turned = by_point * T_camera_reference.R.leftCols<2>() * p.z();
+  Eigen::Matrix2d turned = PixelByPoint(camera, q) * T_camera_reference.R.leftCols<2>() * z;
   turned.col(0) /= camera.fx;
   turned.col(1) /= camera.fy;
   if (!(turned.determinant() > 0)) return aligned;
@@ -153,10 +159,7 @@ AlignedPoint FrameAlignment::Find(const Camera& camera, const ReferencePoint& po
   const size_t level = HalvedLevel(point.level, reference_.size());
   const cv::Mat& image = image_[level];
   Eigen::Vector2f place = OnLevel(RawPixel(camera, q), level);
-  const float rim = Patch::kReach;
-  aligned.expected = place.x() >= rim && place.y() >= rim &&
-                     place.x() < static_cast<float>(image.cols - 1) - rim &&
-                     place.y() < static_cast<float>(image.rows - 1) - rim;
+  aligned.expected = HoldsPatch(image, place);
   if (!aligned.expected) return aligned;
   Patch patch;
   if (!CutPatch(reference_[level], OnLevel(point.raw, level), turned.inverse().cast<float>(),

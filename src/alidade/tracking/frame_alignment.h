@@ -50,8 +50,8 @@ class FrameAlignment {
   const Patch* PatchOn(size_t level, const ReferencePoint& point);
   void AlignOn(size_t level, const Camera& camera, std::span<const ReferencePoint> points,
                Se3& T_camera_world);
-  AlignedPoint Find(const Camera& camera, const ReferencePoint& point, const Se3& T_reference_world,
-                    const Se3& T_camera_world) const;
+  AlignedPoint Find(const Camera& camera, const ReferencePoint& point,
+                    const Se3& T_camera_reference, const Se3& T_camera_world) const;
 
   std::vector<cv::Mat> reference_, image_;  // halved images, the largest first
   std::vector<Patch> patches_;              // of the reference; neither turned nor scaled

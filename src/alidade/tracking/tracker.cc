@@ -193,7 +193,6 @@ void Tracker::CountExpected(const LocalMatches& found, const MapSnapshot& map,
   const PartTimer timer(FramePart::kEvidence);
   const PlacedFrame& placed = estimate.placed;
   // The largest error of a match, σ: the search radius, or the gate of a bad frame.
-  constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
   const double radius = has_depth_ ? settings_.local_radius_depth : settings_.local_radius;
   PoseEvidence evidence(*placed.frame, camera_.width, camera_.height, settings_.noise,
                         std::min(radius, kGate * settings_.bad_frame_sigma), has_depth_,

@@ -5,27 +5,16 @@
 #include <numbers>
 
 #include "alidade/base/part_times.h"
+#include "alidade/features/mask.h"
 #include "alidade/features/undistort.h"
 #include "alidade/tracking/tracker.h"
 
 namespace alidade {
 namespace {
 
-constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
-
 float WrappedAngle(float angle) {
   constexpr float kPi = std::numbers::pi_v<float>;
   return angle > kPi ? angle - 2 * kPi : angle <= -kPi ? angle + 2 * kPi : angle;
-}
-
-// Whether a mask, which is stretched over the image, is nonzero at a raw pixel.
-bool Marks(const cv::Mat& mask, const Eigen::Vector2f& raw, const Camera& camera) {
-  if (mask.empty()) return false;
-  const int x = static_cast<int>((raw.x() + 0.5f) * static_cast<float>(mask.cols) /
-                                 static_cast<float>(camera.width));
-  const int y = static_cast<int>((raw.y() + 0.5f) * static_cast<float>(mask.rows) /
-                                 static_cast<float>(camera.height));
-  return mask.at<uint8_t>(std::clamp(y, 0, mask.rows - 1), std::clamp(x, 0, mask.cols - 1)) != 0;
 }
 
 }  // namespace
@@ -85,7 +74,7 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   std::vector<AlignedPoint> aligned =
       alignment_.Align(camera_, image, view.points, view.T_camera_world, placed.T_camera_world);
   for (AlignedPoint& point : aligned) {
-    if (point.found && Marks(left_out, point.raw, camera_)) point = {};
+    if (point.found && Marks(left_out, point.raw.x(), point.raw.y(), camera_)) point = {};
   }
 
   auto frame = std::make_shared<Frame>();
@@ -129,9 +118,8 @@ void Tracker::AddAligned(const ReferenceView& view, std::span<const AlignedPoint
 }
 
 // A keypoint of the reference is some tenths of a pixel beside its landmark's projection, and what
-// is aligned with it is beside it by as much. Without that, the pose relative to the reference is
-// as precise as the alignment.
-// Returns what was added, one per keypoint.
+// is aligned with it is beside it by as much. Taking this error off makes the pose relative to the
+// reference as precise as the alignment. Returns what was added, one per keypoint.
 std::vector<Eigen::Vector2f> Tracker::MoveByErrors(const ReferenceView& view,
                                                    std::span<const AlignedPoint> aligned,
                                                    Frame& frame) {
