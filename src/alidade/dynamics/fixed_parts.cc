@@ -23,10 +23,19 @@ float LogOdds(double probability) {
   return static_cast<float>(std::log(probability / (1 - probability)));
 }
 
-Eigen::Vector2f GradientAt(const cv::Mat& image, int x, int y) {
-  return {0.5f * (image.at<float>(y, x + 1) - image.at<float>(y, x - 1)),
-          0.5f * (image.at<float>(y + 1, x) - image.at<float>(y - 1, x))};
-}
+// Derivatives of a float image along one of its rows.
+class RowGradients {
+ public:
+  RowGradients(const cv::Mat& image, int y)
+      : above_(image.ptr<float>(y - 1)),
+        row_(image.ptr<float>(y)),
+        below_(image.ptr<float>(y + 1)) {}
+  float dx(int x) const { return 0.5f * (row_[x + 1] - row_[x - 1]); }
+  float dy(int x) const { return 0.5f * (below_[x] - above_[x]); }
+
+ private:
+  const float *above_, *row_, *below_;
+};
 
 }  // namespace
 
@@ -78,35 +87,33 @@ void FixedParts::Cut() { frame_then_ = nullptr; }
 // Corners of the earlier thumbnail: the smaller eigenvalue of the gradients' square, averaged over
 // 3 × 3 pixels. An edge is none, since it does not change when it moves along itself.
 FixedParts::Corners FixedParts::Compare(const cv::Mat& thumbnail) const {
-  struct Sums {
-    float xx = 0, yy = 0, xy = 0, change = 0;
-  };
-  const int width = then_.cols, height = then_.rows;
-  std::vector<Sums> at(static_cast<size_t>(width) * height);
-  for (int y = 1; y + 1 < height; ++y) {
-    for (int x = 1; x + 1 < width; ++x) {
-      const Eigen::Vector2f g = GradientAt(then_, x, y);
-      at[y * width + x] = {g.x() * g.x(), g.y() * g.y(), g.x() * g.y(),
-                           (GradientAt(thumbnail, x, y) - g).squaredNorm()};
+  cv::Mat xx = cv::Mat::zeros(then_.size(), CV_32F), yy = xx.clone(), xy = xx.clone(),
+          change = xx.clone();
+  for (int y = 1; y + 1 < then_.rows; ++y) {
+    const RowGradients before(then_, y), now(thumbnail, y);
+    float *const to_xx = xx.ptr<float>(y), *const to_yy = yy.ptr<float>(y),
+                 *const to_xy = xy.ptr<float>(y), *const to_change = change.ptr<float>(y);
+    for (int x = 1; x + 1 < then_.cols; ++x) {
+      const float dx = before.dx(x), dy = before.dy(x);
+      const float more_x = now.dx(x) - dx, more_y = now.dy(x) - dy;
+      to_xx[x] = dx * dx;
+      to_yy[x] = dy * dy;
+      to_xy[x] = dx * dy;
+      to_change[x] = more_x * more_x + more_y * more_y;
     }
   }
+  for (cv::Mat* sums : {&xx, &yy, &xy, &change}) cv::blur(*sums, *sums, {3, 3});
   Corners corners{cv::Mat(then_.size(), CV_8U, cv::Scalar(0)),
                   cv::Mat(then_.size(), CV_8U, cv::Scalar(0))};
-  for (int y = 1; y + 1 < height; ++y) {
-    for (int x = 1; x + 1 < width; ++x) {
-      Sums mean;
-      for (int dy = -1; dy <= 1; ++dy) {
-        for (int dx = -1; dx <= 1; ++dx) {
-          const Sums& s = at[(y + dy) * width + x + dx];
-          mean = {mean.xx + s.xx / 9, mean.yy + s.yy / 9, mean.xy + s.xy / 9,
-                  mean.change + s.change / 9};
-        }
-      }
-      const float half = 0.5f * (mean.xx - mean.yy);
-      const float smaller = 0.5f * (mean.xx + mean.yy) - std::sqrt(half * half + mean.xy * mean.xy);
+  for (int y = 1; y + 1 < then_.rows; ++y) {
+    for (int x = 1; x + 1 < then_.cols; ++x) {
+      const float half = 0.5f * (xx.at<float>(y, x) - yy.at<float>(y, x));
+      const float mean = 0.5f * (xx.at<float>(y, x) + yy.at<float>(y, x));
+      const float across = xy.at<float>(y, x);
+      const float smaller = mean - std::sqrt(half * half + across * across);
       if (smaller < settings_.corner) continue;
       corners.is.at<uint8_t>(y, x) = 1;
-      corners.stayed.at<uint8_t>(y, x) = mean.change < settings_.same * smaller;
+      corners.stayed.at<uint8_t>(y, x) = change.at<float>(y, x) < settings_.same * smaller;
     }
   }
   return corners;

@@ -53,6 +53,8 @@ double StillShare(const cv::Mat& a, const cv::Mat& b, const GlanceSettings& sett
   if (a.empty() || a.size() != b.size()) return 0;
   Eigen::Matrix2d all = Eigen::Matrix2d::Zero(), still = Eigen::Matrix2d::Zero();
   Places everywhere, at_rest;
+  const double least2 = settings.min_gradient * settings.min_gradient;
+  const double same2 = settings.same * settings.same;
   for (int top = 1; top + settings.cell < a.rows; top += settings.cell) {
     for (int left = 1; left + settings.cell < a.cols; left += settings.cell) {
       int pixels = 0, stayed = 0;
@@ -60,11 +62,11 @@ double StillShare(const cv::Mat& a, const cv::Mat& b, const GlanceSettings& sett
       for (int y = top; y < top + settings.cell; ++y) {
         for (int x = left; x < left + settings.cell; ++x) {
           const Eigen::Vector2d before = GradientAt(a, x, y);
-          const double strength = before.norm();
-          if (!(strength >= settings.min_gradient)) continue;  // or left out: not a number
+          const double strength2 = before.squaredNorm();
+          if (!(strength2 >= least2)) continue;  // or left out: not a number
           ++pixels;
-          stayed += (GradientAt(b, x, y) - before).norm() <= settings.same * strength;
-          T += before * before.transpose() / (strength * strength);
+          stayed += (GradientAt(b, x, y) - before).squaredNorm() <= same2 * strength2;
+          T += before * before.transpose() / strength2;
         }
       }
       if (pixels < settings.min_pixels) continue;
