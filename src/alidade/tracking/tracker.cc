@@ -328,6 +328,16 @@ void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& ma
   if (has_depth_) passing_.Update(placed, map.corrections());
 }
 
+// How many landmarks a frame is extracted with differs from frame to frame. If all frames are
+// extracted, the first that loses more by chance becomes a keyframe. Aligned frames lose landmarks
+// steadily, so that the same density of keyframes needs what the count may lose by chance: two σ of
+// a Poisson distribution.
+double Tracker::LeastInliers() const {
+  const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
+  const double least = share * most_inliers_;
+  return settings_.align ? least + 2 * std::sqrt(std::max(0.0, most_inliers_ - least)) : least;
+}
+
 bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
   const int since = placed.frame->number - last_keyframe_number_;
   // A blurred or poorly fitting frame would distort the map. Wait for a better one unless tracking
@@ -336,8 +346,7 @@ bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
     return false;
   if (since >= settings_.max_keyframe_gap) return true;
   if (since < settings_.min_keyframe_gap) return false;
-  const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
-  if (placed.inliers < share * most_inliers_) return true;
+  if (placed.inliers < LeastInliers()) return true;
   if (!has_depth_) return false;
   int near_tracked = 0, near_new = 0;
   for (size_t i = 0; i < placed.matches.size(); ++i) {

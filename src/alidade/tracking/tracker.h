@@ -186,6 +186,7 @@ class Tracker {
   void Judge(TrackEstimate& estimate, double prior, const MapSnapshot& map);
   double Spread(const PlacedFrame& placed) const;
   bool WantsKeyFrame(const PlacedFrame& placed, double agreement) const;
+  double LeastInliers() const;            // a frame with fewer becomes a keyframe
   static constexpr double kGate = 2.448;  // root of chi², 95 % with 2 degrees of freedom
   // With fewer landmarks with depth in view, a keyframe is due.
   static constexpr int kFewNear = 100;

@@ -184,8 +184,7 @@ bool Tracker::SufficesAligned(const TrackEstimate& estimate) {
   // What an extraction would find, if it lost the same share of what it found in the reference.
   const double left = static_cast<double>(placed.inliers) / reference_.most_found;
   const double expected = left * of_reference;
-  const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
-  if (expected < share * most_inliers_) return false;
+  if (expected < LeastInliers()) return false;
   if (!has_depth_) return true;
   int near = 0;
   for (size_t k = 0; k < reference_.matches.size(); ++k)
