@@ -39,7 +39,7 @@ class Watcher {
     frame_.time = seen.time;
     const PoseGuess guess{T_camera_world, 0.4};
     filter_.Judge(frame_, senses_.pose ? &guess : nullptr);
-    filter_.Remember(frame_, senses_.pose ? &T_camera_world : nullptr, {});
+    filter_.Remember(frame_, true, senses_.pose ? &T_camera_world : nullptr, {});
   }
   cv::Mat Mask() const { return filter_.Mask(); }
   const Frame& frame() const { return frame_; }
@@ -205,7 +205,7 @@ TEST_F(FilterOfAWalkedRoom, GoesOnAfterFramesWithoutAPoseAndAfterTheMapWasCorrec
     const WorldId world{{}, i >= 10 ? 1u : 0u};
     const PoseGuess guess{pose, 0.4, world};
     filter.Judge(frame, lost ? nullptr : &guess);
-    filter.Remember(frame, lost ? nullptr : &pose, world);
+    filter.Remember(frame, true, lost ? nullptr : &pose, world);
     if (i >= 70) overlap += OverlapOf(filter.Mask(), seen.mask) / 10;
   }
   EXPECT_GT(overlap, 0.6);

@@ -82,6 +82,10 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
                                           : std::max(judged.geometry[i], kLeastGeometry);
   }
   belief_ = std::move(judged);
+  Apply(frame);
+}
+
+void DynamicFilter::Apply(Frame& frame) const {
   frame.static_probability = StaticProbabilities(cells_, belief_, DepthImage(now_.depth, camera_),
                                                  frame.keypoints, settings_);
 }
@@ -191,9 +195,14 @@ void DynamicFilter::Enter(const WorldId& world) {
   world_ = world;
 }
 
-void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world) {
+void DynamicFilter::Remember(const Frame& frame, bool extracted, const Se3* T_camera_world,
+                             const WorldId& world) {
   if (T_camera_world) Enter(world);
-  tracks_.Seed(frame.keypoints, now_.gray.size());
+  if (extracted) {
+    tracks_.Seed(frame.keypoints, now_.gray.size());
+  } else {
+    tracks_.SeedCorners();
+  }
   std::shared_ptr<PastView> view;
   if (T_camera_world) {
     view = std::make_shared<PastView>();

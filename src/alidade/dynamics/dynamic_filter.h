@@ -63,8 +63,12 @@ class DynamicFilter {
   cv::Mat ExpectedMovers() const;
   // Sets frame.static_probability. `guess`: the predicted pose; null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
-  // Ends the frame. `T_camera_world`: its pose in `world`; null when lost.
-  void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
+  // The same for other keypoints of the image that was judged last.
+  void Apply(Frame& frame) const;
+  // Ends the frame. `T_camera_world`: its pose in `world`; null when lost. Tracks are started at
+  // keypoints of the frame if it has features of its own (`extracted`), otherwise at any corners.
+  void Remember(const Frame& frame, bool extracted, const Se3* T_camera_world,
+                const WorldId& world);
 
   // Share of the image that agrees on a motion other than that of the pose passed to Judge(), 0…1;
   // see ShareOfRivalMotion().

@@ -6,6 +6,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "alidade/base/parallel.h"
+#include "alidade/features/fast.h"
 
 namespace alidade {
 namespace {
@@ -75,6 +76,25 @@ void FlowTracks::Advance(const cv::Mat& gray) {
     tracks_ = std::move(kept);
   }
   pyramid_ = std::move(pyramid);
+  size_ = gray.size();
+}
+
+void FlowTracks::SeedCorners() {
+  constexpr int kThreshold = 12;  // gray levels, of the half-size image
+  constexpr int kBorder = 18;     // pixels of it
+  const cv::Mat& image = pyramid_.front();
+  std::vector<Corner> corners =
+      FastCorners(image, kThreshold, kBorder, kBorder, image.rows - kBorder);
+  std::stable_sort(corners.begin(), corners.end(),
+                   [](const Corner& a, const Corner& b) { return a.score > b.score; });
+  std::vector<Keypoint> keypoints;
+  for (const Corner& corner : corners) {
+    Keypoint keypoint;
+    keypoint.raw_x = static_cast<float>(kShrink * corner.x);
+    keypoint.raw_y = static_cast<float>(kShrink * corner.y);
+    keypoints.push_back(keypoint);
+  }
+  Seed(keypoints, size_);
 }
 
 void FlowTracks::Seed(std::span<const Keypoint> keypoints, cv::Size image) {

@@ -32,10 +32,13 @@ class FlowTracks {
   void Advance(const cv::Mat& gray);
   // Starts tracks at keypoints of that frame with no track nearby.
   void Seed(std::span<const Keypoint> keypoints, cv::Size image);
+  // The same at corners of the image.
+  void SeedCorners();
   const std::vector<FlowTrack>& tracks() const { return tracks_; }
 
  private:
   std::vector<cv::Mat> pyramid_;  // of the previous frame, at half size
+  cv::Size size_;                 // of the image
   std::vector<FlowTrack> tracks_;
   uint32_t next_id_ = 0;
   int frames_ = 0;

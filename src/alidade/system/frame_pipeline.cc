@@ -94,7 +94,7 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   if (now.map_left && result.state != TrackState::kTracking)
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);
-  movers_.End(*now.placed.frame, result);
+  movers_.End(*now.placed.frame, !now.aligned, result);
   more_left_out_ = left_out_.See(prepared.image, now.frame) || more_left_out_;
   Publish(now);
   if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitializing)

@@ -51,6 +51,7 @@ void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool
   if (!placed) watched_ = 0;
   looks_ = filter_ && (used_ || (placed && Watches(young)));
   counts_ = looks_ && used_;
+  judged_ = false;
   if (!looks_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
@@ -111,7 +112,12 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!looks_) return;
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
-  filter_->Judge(frame, guess);
+  if (judged_) {
+    filter_->Apply(frame);
+  } else {
+    filter_->Judge(frame, guess);
+    judged_ = true;
+  }
   if (!counts_) frame.static_probability.clear();
   if (counts_ && frame.picture) {
     Picture picture = *frame.picture;
@@ -149,14 +155,14 @@ void MoverWatch::Forget() {
   if (filter_) filter_->Forget();
 }
 
-void MoverWatch::End(const Frame& frame, const TrackResult& result) {
+void MoverWatch::End(const Frame& frame, bool extracted, const TrackResult& result) {
   const PartTimer timer(FramePart::kMovers);
   if (!looks_) return;
   looks_ = false;
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
-  filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
-                    world_);
+  filter_->Remember(frame, extracted,
+                    result.state == TrackState::kTracking ? &T_camera_world : nullptr, world_);
   milliseconds_.Add(present_ms_ + watch.Milliseconds());
 }
 

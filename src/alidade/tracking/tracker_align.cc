@@ -45,7 +45,7 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
     LandmarkId& id = reference_.matches[k];
     id = map.Current(id);  // older ids are released
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (!landmark) continue;
+    if (!landmark || !reference_.frame->IsUsable(static_cast<int>(k))) continue;
     const Keypoint& keypoint = reference_.frame->keypoints[k];
     const Eigen::Vector3d p = view.T_camera_world * landmark->p_world;
     if (!(p.z() > 0)) continue;
@@ -62,7 +62,7 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
 
 std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat& depth, double time,
                                             int number, const cv::Mat& left_out,
-                                            const MapSnapshot& map) {
+                                            const MapSnapshot& map, const JudgeFrame& judge) {
   if (!reference_.frame || !last_.frame || unproven_ > 0 ||
       number - reference_.frame->number >= settings_.max_keyframe_gap ||
       !(time - last_.frame->time <= settings_.max_motion_age) ||
@@ -90,6 +90,15 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   TrackEstimate estimate;
   estimate.moved = MoveByErrors(view, aligned, *frame);
   estimate.reference = reference_.anchor.keyframe;
+  if (judge) {
+    PlacedFrame guess = placed;
+    Optimise(guess, map);
+    if (guess.inliers < LeastAligned()) return std::nullopt;
+    judge(*frame, guess);
+    for (size_t k = 0; k < placed.matches.size(); ++k) {
+      if (!frame->IsUsable(static_cast<int>(k))) placed.matches[k] = {};
+    }
+  }
   estimate.agreement = Optimise(placed, map);
   estimate.placed = std::move(placed);
   CountAligned(view, aligned, estimate);
@@ -175,8 +184,7 @@ void Tracker::CountAligned(const ReferenceView& view, std::span<const AlignedPoi
 bool Tracker::SufficesAligned(const TrackEstimate& estimate) {
   const PlacedFrame& placed = estimate.placed;
   reference_.most_found = std::max(reference_.most_found, placed.inliers);
-  if (estimate.agreement < settings_.good_agreement ||
-      placed.inliers < 2 * Scaled(settings_.min_tracked) ||
+  if (estimate.agreement < settings_.good_agreement || placed.inliers < LeastAligned() ||
       placed.log_odds < LogOdds(settings_.evidence.min_probability))
     return false;
   const int of_reference = std::max(reference_.inliers, reference_.most_found);
