@@ -181,6 +181,20 @@ TEST_F(FilterOfAWalkedRoom, ProbabilitiesAreOneForEachFeatureAndProbabilities) {
   }
 }
 
+TEST_F(FilterOfAWalkedRoom, AppliesItsBeliefToOtherKeypointsOfTheImage) {
+  Watcher watcher(Walked().camera, Geometry());
+  for (int i = 0; i < 40; ++i) watcher.See(i, Walked().frames[i], Walked().T_camera_world[i]);
+  Frame every_second;
+  std::vector<float> expected;
+  for (size_t k = 0; k < watcher.frame().keypoints.size(); k += 2) {
+    every_second.keypoints.push_back(watcher.frame().keypoints[k]);
+    expected.push_back(watcher.frame().static_probability[k]);
+  }
+  watcher.filter().Apply(every_second);
+  EXPECT_EQ(every_second.static_probability, expected);
+  EXPECT_LT(*std::min_element(expected.begin(), expected.end()), Frame::kUsable);
+}
+
 TEST_F(FilterOfAWalkedRoom, IsTheSameRunAfterRun) {
   Watcher a(Walked().camera, Geometry()), b(Walked().camera, Geometry());
   for (int i = 0; i < 40; ++i) {

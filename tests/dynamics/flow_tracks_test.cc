@@ -76,6 +76,25 @@ TEST_F(FlowTracksTest, FollowAMotionOfPartsOfAPixel) {
   }
 }
 
+TEST_F(FlowTracksTest, BeginAtCornersOfTheImageAndFollowThem) {
+  const cv::Point2f step(3.4f, 1.6f);
+  tracks_.Advance(Seen({}));
+  tracks_.SeedCorners();
+  const size_t begun = tracks_.tracks().size();
+  EXPECT_GT(begun, 100u);
+  for (const FlowTrack& track : tracks_.tracks())
+    EXPECT_TRUE(cv::Rect({}, kSize).contains(track.at())) << track.at();
+  for (int i = 1; i <= 5; ++i) tracks_.Advance(Seen(i * step, 2, static_cast<uint64_t>(i) + 1));
+  std::vector<double> errors;
+  for (const FlowTrack& track : tracks_.tracks())
+    errors.push_back(Length(track.at() - track.Before(5) - 5 * step));
+  ASSERT_GT(2 * errors.size(), begun);
+  std::sort(errors.begin(), errors.end());
+  EXPECT_LT(errors[errors.size() / 2], 0.2);
+  tracks_.SeedCorners();  // where there are tracks, none are started
+  EXPECT_LT(tracks_.tracks().size(), begun + begun / 2);
+}
+
 TEST_F(FlowTracksTest, TellWhereAPointWasInEveryFrameSince) {
   Begin(Seen({}));
   for (int i = 1; i <= 8; ++i) tracks_.Advance(Seen({2.0f * static_cast<float>(i), 0}));
