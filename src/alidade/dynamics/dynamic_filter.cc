@@ -69,8 +69,15 @@ cv::Mat DynamicFilter::ExpectedMovers() const {
 }
 
 void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
+  Judge(guess, true);
+  Apply(frame);
+}
+
+void DynamicFilter::JudgeTracks(const PoseGuess* guess) { Judge(guess, false); }
+
+void DynamicFilter::Judge(const PoseGuess* guess, bool surfaces) {
   if (guess) Enter(guess->world);
-  const GeometryBelief geometry = JudgeGeometry(guess);
+  const GeometryBelief geometry = JudgeGeometry(guess, surfaces);
   FrameBelief judged = Unknown();
   judged.depth = belief_.depth;
   judged.geometry = geometry.log_odds;
@@ -82,7 +89,6 @@ void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
                                           : std::max(judged.geometry[i], kLeastGeometry);
   }
   belief_ = std::move(judged);
-  Apply(frame);
 }
 
 void DynamicFilter::Apply(Frame& frame) const {
@@ -90,13 +96,13 @@ void DynamicFilter::Apply(Frame& frame) const {
                                                  frame.keypoints, settings_);
 }
 
-DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* guess) {
+DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* guess, bool surfaces) {
   GeometryBelief unchanged;
   unchanged.votes.assign(tracks_.tracks().size(), 0);
   unchanged.log_odds = belief_.geometry;
   if (!settings_.geometry) return unchanged;
   if (!belief_.depth.empty()) {
-    if (guess) return JudgeWithDepth(*guess);
+    if (guess) return JudgeWithDepth(*guess, surfaces);
     unchanged.log_odds.assign(cells_.count(), kUnknownStatic);
     return unchanged;
   }
@@ -105,8 +111,17 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* gues
   return had_depth ? unchanged : JudgeWithoutDepth(guess);
 }
 
-DynamicFilter::GeometryBelief DynamicFilter::JudgeWithDepth(const PoseGuess& guess) {
+DynamicFilter::GeometryBelief DynamicFilter::JudgeWithDepth(const PoseGuess& guess, bool surfaces) {
   const std::vector<float>& depth = belief_.depth;
+  GeometryBelief judged;
+  judged.votes = Consensus(cells_, depth, tracks_.tracks(),
+                           VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world,
+                                      history_, guess.nearest, settings_.votes),
+                           settings_.votes, settings_.depth);
+  if (!surfaces) {
+    judged.log_odds.assign(cells_.count(), kUnknownStatic);
+    return judged;
+  }
   const std::vector<int> from = surfaces_.Carry(depth, guess.T_camera_world, history_);
   std::vector<uint8_t> resting(cells_.count(), 0), suspect(cells_.count(), 0);
   for (int i = 0; i < cells_.count(); ++i) {
@@ -116,11 +131,6 @@ DynamicFilter::GeometryBelief DynamicFilter::JudgeWithDepth(const PoseGuess& gue
     if (object.carried) continue;
     for (int i : CellsInBox(cells_, object.box)) suspect[i] = 1;
   }
-  GeometryBelief judged;
-  judged.votes = Consensus(cells_, depth, tracks_.tracks(),
-                           VoteByPose(camera_, cells_, tracks_.tracks(), guess.T_camera_world,
-                                      history_, guess.nearest, settings_.votes),
-                           settings_.votes, settings_.depth);
   surfaces_.Update(now_.number, depth, guess.T_camera_world, history_, resting, suspect,
                    tracks_.tracks(), judged.votes);
   judged.log_odds = surfaces_.log_odds();

@@ -63,6 +63,9 @@ class DynamicFilter {
   cv::Mat ExpectedMovers() const;
   // Sets frame.static_probability. `guess`: the predicted pose; null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
+  // Instead of Judge(), where only RivalShare() and MovedShare() are asked for: with depth,
+  // surfaces are not compared with earlier views.
+  void JudgeTracks(const PoseGuess* guess);
   // The same for other keypoints of the image that was judged last.
   void Apply(Frame& frame) const;
   // Ends the frame. `T_camera_world`: its pose in `world`; null when lost. Tracks are started at
@@ -97,8 +100,9 @@ class DynamicFilter {
     std::vector<uint8_t> proven;
   };
   FrameBelief Unknown() const;
-  GeometryBelief JudgeGeometry(const PoseGuess* guess);
-  GeometryBelief JudgeWithDepth(const PoseGuess& guess);
+  void Judge(const PoseGuess* guess, bool surfaces);
+  GeometryBelief JudgeGeometry(const PoseGuess* guess, bool surfaces);
+  GeometryBelief JudgeWithDepth(const PoseGuess& guess, bool surfaces);
   GeometryBelief JudgeWithoutDepth(const PoseGuess* guess);
   // Finds the cells that each object covers: sets judged.object and judged.resting.
   void FindObjects(std::span<const uint8_t> proven, FrameBelief& judged);

@@ -112,13 +112,10 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!looks_) return;
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
-  if (judged_) {
-    filter_->Apply(frame);
-  } else {
-    filter_->Judge(frame, guess);
-    judged_ = true;
-  }
-  if (!counts_) frame.static_probability.clear();
+  if (!judged_ && counts_) filter_->Judge(frame, guess);
+  if (!judged_ && !counts_) filter_->JudgeTracks(guess);
+  if (judged_ && counts_) filter_->Apply(frame);
+  judged_ = true;
   if (counts_ && frame.picture) {
     Picture picture = *frame.picture;
     const cv::Mat left_out = picture.mask;
