@@ -1,13 +1,10 @@
 #include "alidade/run/outputs.h"
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <exception>
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/memory.h"
 #include "alidade/io/cloud.h"
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/report/keyframe_pictures.h"
@@ -29,14 +26,6 @@ Cloud LandmarksOf(const RunResults& results) {
   return cloud;
 }
 
-// Returns freed memory to the system: pictures of the report take what the run does not need any
-// more, instead of more than it did at its peak.
-void ReturnFreedMemory() {
-#ifdef __GLIBC__
-  malloc_trim(0);
-#endif
-}
-
 }  // namespace
 
 RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& setup,
@@ -48,6 +37,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
   std::exception_ptr failure;  // the first exception other than of the disk or the folder
   // Continues with the next file if memory is exhausted.
   const auto attempt = [&](const auto& write) {
+    ReturnFreedMemory();  // so that the process takes no more than in the run
     try {
       write();
     } catch (const Error&) {
@@ -56,7 +46,6 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
       if (!failure) failure = std::current_exception();
     }
   };
-  ReturnFreedMemory();
   try {
     results = ResultsOf(slam, log, setup.source.R_camera_rectified);
     for (size_t i = 0; i < results.maps.size(); ++i) {

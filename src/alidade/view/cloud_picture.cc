@@ -150,7 +150,8 @@ Eye LookAt(const CloudScene& scene, CloudView view, const CloudPictureSettings& 
 }
 
 struct Dot {
-  float x, y, z;  // pixels, and depth
+  float x, y, z;    // pixels, and depth
+  uint32_t number;  // of the point
   cv::Vec3b color;
 };
 
@@ -222,7 +223,7 @@ std::vector<Dot> Dots(const CloudScene& scene, const Eye& eye, cv::Size size, do
       continue;
     if (ShowsItsBack(p_world, p_eye, up, witnesses)) continue;
     dots.push_back({static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
-                    static_cast<float>(p.z()),
+                    static_cast<float>(p.z()), static_cast<uint32_t>(i),
                     cloud.colors.empty() ? kGray : Lifted(cloud.colors[i])});
   }
   return dots;
@@ -268,8 +269,9 @@ void DrawLine(const Eigen::Vector3d& p_world, const Eigen::Vector3d& q_world, co
 // From far to near, so that no pixel's depth must be stored (15 MB). Of equally near ones the first
 // is in front.
 void SortByDepth(std::vector<Dot>& dots) {
-  std::reverse(dots.begin(), dots.end());
-  std::stable_sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) { return a.z > b.z; });
+  std::sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) {
+    return a.z > b.z || (a.z == b.z && a.number > b.number);
+  });
 }
 
 // Draws a camera as a viewing pyramid of length `size`.
