@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <vector>
@@ -35,7 +36,9 @@ struct Errors {
 Hypothesis Find(EpipolarSearch& search, const EdgePixel& pixel,
                 std::span<const DepthInterval> intervals, SearchCount& count) {
   const EpipolarQuery query{pixel, intervals};
-  return search.Search({&query, 1}, count)[0];
+  std::array<Hypothesis, 1> found;
+  search.Search({&query, 1}, found, count);
+  return found[0];
 }
 
 // Searches all edge pixels of a view in another one, between 1 and 8 meters.
@@ -208,6 +211,53 @@ TEST(EpipolarSearch, ReadsNothingBesideThePictures) {
     }
   }
   EXPECT_GT(found, 500);
+}
+
+// Inverse depth and sigma of every edge pixel, searched in one to three intervals.
+std::vector<float> FoundWith(LineSearch search, const EpipolarPair& pair, const Camera& camera,
+                             SearchCount& count) {
+  const SemiDenseSettings settings;
+  EpipolarSearch searcher(pair, camera, settings, search);
+  const std::array<DepthInterval, kMostIntervals> parts = {
+      {{0.3f, 0.4f}, {0.125f, 0.25f}, {0.1f, 1.0f}}};
+  const std::vector<EdgePixel>& edges = pair.reference->edges;
+  std::vector<float> bits;
+  for (size_t i = 0; i < edges.size(); i += searcher.lanes()) {
+    const size_t n = std::min<size_t>(searcher.lanes(), edges.size() - i);
+    std::array<EpipolarQuery, kMostLanes> queries;
+    std::array<Hypothesis, kMostLanes> found;
+    for (size_t k = 0; k < n; ++k) queries[k] = {edges[i + k], {parts.data(), 1 + (i + k) % 3}};
+    searcher.Search({queries.data(), n}, found, count);
+    for (size_t k = 0; k < n; ++k) {
+      bits.push_back(found[k].inverse_depth);
+      bits.push_back(found[k].sigma);
+    }
+  }
+  return bits;
+}
+
+TEST_F(EpipolarSearchTest, IsTheSameToTheBitWithEightLanes) {
+#ifdef ALIDADE_AVX2
+  if (!HasAvx2()) GTEST_SKIP() << "no AVX2";
+  const SemiDenseSettings settings;
+  const GradientImageMaker maker(camera_, settings.min_gradient, settings.gradient_weight);
+  const DenseView from = world_.Look(CameraAt({0, 0, 0}));
+  Vector6d roll = Vector6d::Zero();
+  roll[5] = 0.3;
+  for (const Se3& T : {CameraAt({0.2, 0.02, 0}), CameraAt({0.02, 0.3, 0}), CameraAt({0.02, 0, 0.4}),
+                       Se3::Exp(roll) * CameraAt({0.2, 0, 0})}) {
+    const GradientImage a = maker.Make({from.image});
+    const GradientImage b = maker.Make({world_.Look(T, {.noise_seed = 2}).image});
+    const EpipolarPair pair{a, b, a.values, T * from.T_camera_world.Inverse()};
+    SearchCount four, eight;
+    const std::vector<float> expected = FoundWith(LineSearch4, pair, camera_, four);
+    const std::vector<float> found = FoundWith(LineSearch8, pair, camera_, eight);
+    EXPECT_EQ(found, expected);
+    EXPECT_GT(std::count_if(found.begin(), found.end(), [](float x) { return x > 0; }), 1000);
+    EXPECT_EQ(eight.searches, four.searches);
+    EXPECT_EQ(eight.samples, four.samples);
+  }
+#endif
 }
 
 TEST(WithExposure, IsGainAndOffsetOfEveryPixel) {

@@ -15,8 +15,8 @@ namespace alidade {
 
 class ReadAhead : public FrameSource {
  public:
-  // Buffers at most `capacity` frames.
-  explicit ReadAhead(std::unique_ptr<FrameSource> source, int capacity = 8);
+  // Buffers at most `capacity` frames: about 1 MB each with depth at 640 x 480, 2 MB with color.
+  explicit ReadAhead(std::unique_ptr<FrameSource> source, int capacity = 4);
   ~ReadAhead() override;
 
   const SourceInfo& Info() const override { return info_; }

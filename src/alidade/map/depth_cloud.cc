@@ -4,7 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <unordered_map>
+#include <deque>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace alidade {
 namespace {
@@ -35,15 +38,42 @@ void ForEachSample(const std::vector<PlacedDepth>& keyframes, const Camera& came
 
 using Voxel = std::array<int64_t, 3>;
 
-struct VoxelHash {
-  size_t operator()(const Voxel& voxel) const {
+// Numbers voxels in the order in which they are met. A table of numbers and a list of voxels: half
+// the memory of std::unordered_map.
+class VoxelNumbers {
+ public:
+  size_t Of(const Voxel& voxel) {
+    if (2 * voxels_.size() >= table_.size()) Grow();
+    uint32_t& number = table_[Slot(voxel)];
+    if (number == kNone) {
+      number = static_cast<uint32_t>(voxels_.size());
+      voxels_.push_back(voxel);
+    }
+    return number;
+  }
+
+ private:
+  static constexpr uint32_t kNone = UINT32_MAX;
+
+  // Where the number of the voxel is or has to be, by linear probing.
+  size_t Slot(const Voxel& voxel) const {
     uint64_t hash = 0;
     for (const int64_t i : voxel) {
       hash = (hash ^ static_cast<uint64_t>(i)) * 0x9e3779b97f4a7c15ull;
       hash ^= hash >> 29;
     }
-    return static_cast<size_t>(hash);
+    size_t slot = static_cast<size_t>(hash) & (table_.size() - 1);
+    while (table_[slot] != kNone && voxels_[table_[slot]] != voxel)
+      slot = (slot + 1) & (table_.size() - 1);
+    return slot;
   }
+  void Grow() {
+    table_.assign(std::max<size_t>(1024, 2 * table_.size()), kNone);
+    for (size_t i = 0; i < voxels_.size(); ++i) table_[Slot(voxels_[i])] = static_cast<uint32_t>(i);
+  }
+
+  std::vector<uint32_t> table_;  // a power of two, at most half full
+  std::deque<Voxel> voxels_;     // needs no room to grow
 };
 
 // Weighted sums over the samples of one voxel.
@@ -83,8 +113,8 @@ Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& ca
     ForEachSample(keyframes, camera, [&](const Sample& sample) { Append(cloud, sample); });
     return cloud;
   }
-  std::unordered_map<Voxel, size_t, VoxelHash> places;  // index of each voxel in `sums`
-  std::vector<Sums> sums;
+  std::optional<VoxelNumbers> places(std::in_place);  // index of each voxel in `sums`
+  std::deque<Sums> sums;
   ForEachSample(keyframes, camera, [&](const Sample& sample) {
     constexpr double kFarthest = 1e15;  // voxels; beyond it indices lose precision
     const Eigen::Vector3d index = sample.p_world / voxel;
@@ -92,7 +122,7 @@ Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& ca
     Voxel key{};
     for (int axis = 0; axis < 3; ++axis)
       key[static_cast<size_t>(axis)] = static_cast<int64_t>(std::floor(index[axis]));
-    const size_t place = places.try_emplace(key, sums.size()).first->second;
+    const size_t place = places->Of(key);
     if (place == sums.size()) sums.emplace_back();
     // Lower limit of a millionth of a voxel: a sigma of 0 would give infinite weight.
     const double sigma = std::max(sample.sigma, 1e-6 * voxel);
@@ -103,6 +133,10 @@ Cloud MakeDepthCloud(const std::vector<PlacedDepth>& keyframes, const Camera& ca
       sum.rgb[channel] += weight * sample.rgb[static_cast<size_t>(channel)];
     sum.weight += weight;
   });
+  places.reset();
+  cloud.points.reserve(sums.size());
+  cloud.colors.reserve(sums.size());
+  cloud.sigmas.reserve(sums.size());
   for (const Sums& sum : sums) Append(cloud, MeanOf(sum));
   return cloud;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "alidade/base/error.h"
+#include "alidade/base/memory.h"
 #include "alidade/io/cloud.h"
 #include "alidade/run/calibration/unknown_camera.h"
 #include "alidade/run/report/keyframe_pictures.h"
@@ -36,6 +37,7 @@ RunSummary WriteOutputs(OutputFolder& folder, const Slam& slam, const RunSetup& 
   std::exception_ptr failure;  // the first exception other than of the disk or the folder
   // Continues with the next file if memory is exhausted.
   const auto attempt = [&](const auto& write) {
+    ReturnFreedMemory();  // so that the process takes no more than in the run
     try {
       write();
     } catch (const Error&) {

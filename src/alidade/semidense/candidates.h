@@ -7,6 +7,7 @@
 #include <span>
 
 #include "alidade/semidense/fuse.h"
+#include "alidade/semidense/simd/line_search.h"
 
 namespace alidade {
 
@@ -45,7 +46,7 @@ class Candidates {
   }
 
  private:
-  static constexpr int kMost = 3;
+  static constexpr int kMost = kMostIntervals;
   struct Group {
     // Sum of weighted inverse depths; sum of weights (inverse variances).
     float sum = 0, weight = 0;

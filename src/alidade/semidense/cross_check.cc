@@ -82,22 +82,24 @@ class Witness {
 
   // Adds the compatible depths of the view at the four pixels around the projection.
   void Confirm(const Projections& at, int lane, float chi2, int i, Checks& checks) const {
-    const float derivative = at.derivative[lane];
+    const float there = at.there[lane], own = at.variance[lane], derivative = at.derivative[lane];
+    float jj = checks.jj[i], jr = checks.jr[i];
     bool confirmed = false;
     for (int dy = 0; dy <= 1; ++dy) {
-      for (int dx = 0; dx <= 1; ++dx) {
-        const int found = index_.At(at.x[lane] + dx, at.y[lane] + dy);
-        if (found < 0) continue;
+      auto [bits, found] = index_.At(at.x[lane], at.y[lane] + dy, 2);
+      for (; bits != 0; bits &= bits - 1, ++found) {
         const Hypothesis& seen = known_[found];
         const float variance = seen.sigma * seen.sigma;
-        const float r = seen.inverse_depth - at.there[lane];
-        if (r * r > chi2 * (variance + at.variance[lane])) continue;
+        const float r = seen.inverse_depth - there;
+        if (r * r > chi2 * (variance + own)) continue;
         confirmed = true;
         const float w = 1 / variance;
-        checks.jj[i] += derivative * derivative * w;
-        checks.jr[i] += derivative * r * w;
+        jj += derivative * derivative * w;
+        jr += derivative * r * w;
       }
     }
+    checks.jj[i] = jj;
+    checks.jr[i] = jr;
     checks.confirmed[i] += confirmed;
   }
 

@@ -2,16 +2,15 @@
 // line (Mur-Artal & Tardós, RSS 2015, §III-A).
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 #include "alidade/geometry/camera.h"
-#include "alidade/semidense/epipolar_lines.h"
+#include "alidade/geometry/se3.h"
 #include "alidade/semidense/gradient_image.h"
 #include "alidade/semidense/hypothesis.h"
 #include "alidade/semidense/report.h"
 #include "alidade/semidense/settings.h"
+#include "alidade/semidense/simd/line_search.h"
 
 namespace alidade {
 
@@ -31,50 +30,29 @@ struct EpipolarPair {
 
 struct EpipolarQuery {
   EdgePixel pixel;                           // of the reference
-  std::span<const DepthInterval> intervals;  // at least one
+  std::span<const DepthInterval> intervals;  // one to kMostIntervals
 };
 
-// Searches the epipolar lines of one pair. Not thread-safe.
+// Searches the epipolar lines of one pair, which it keeps a reference to. Not thread-safe.
 class EpipolarSearch {
  public:
+  // `search`: the fastest one that this processor admits.
   EpipolarSearch(const EpipolarPair& pair, const Camera& camera, const SemiDenseSettings& settings);
+  EpipolarSearch(const EpipolarPair& pair, const Camera& camera, const SemiDenseSettings& settings,
+                 LineSearch search);
 
-  // Best match of each pixel within any of its intervals, for up to kLanes pixels. Unknown if depth
-  // is not observable along the line or no match is good enough.
-  Lanes<Hypothesis> Search(std::span<const EpipolarQuery> queries, SearchCount& count);
+  // Best match of each pixel within any of its intervals, for up to kMostLanes pixels. Unknown if
+  // depth is not observable along the line or no match is good enough. `found`: one per query.
+  void Search(std::span<const EpipolarQuery> queries, std::span<Hypothesis> found,
+              SearchCount& count);
+  int lanes() const { return lanes_; }  // pixels searched at once
 
  private:
-  static constexpr int kPattern = 2 * kHalf + 1;
-  // Samples around a match: the pattern's and one on both sides; with padding for vector loads.
-  static constexpr int kAround = 12;
-
-  // Best positions so far.
-  struct Matches {
-    Lanes<int32_t> cost{-1, -1, -1, -1};  // -1: none yet
-    Lanes<int32_t> place{};               // whole pixel along the axis
-    Lanes<float> across{}, slope{};       // the line at that position
-    std::array<std::array<uint32_t, kAround>, kLanes> samples{};
-  };
-
-  void TakePattern(const EdgePixel& pixel, const EpipolarLines& lines, int lane);
-  void WalkLine(const LineParts& parts, bool rows, int lane);
-  int LeastCost(int lane, int places);
-  void SearchPart(const LineParts& parts, bool rows, int lane, Matches& matches);
-  bool SumsOf(const Matches& matches, int lane, int32_t& gradient2, int32_t& product) const;
-  Lanes<Hypothesis> Refine(const EpipolarLines& lines, const Matches& matches,
-                           const Lanes<int>& gradient_step) const;
-  bool Turned(const cv::Mat& direction, int x, int y, int gradient_step) const;
-
-  const EpipolarPair& pair_;
-  const SemiDenseSettings& settings_;
-  EpipolarGeometry geometry_;
-  // Rotation of the image about the optical axis, and tolerance of gradient directions; in
-  // direction steps.
-  int turn_, max_turn_;
-  // Samples: intensity in the low half, gradient in the high half.
-  std::array<std::array<uint32_t, 2 * kLanes>, kLanes> patterns_{};  // unused ones are 0
-  std::array<uint32_t, kMaxPlaces + 2 * kLineMargin + kAround> line_{};
-  int32_t least_cost_ = 0;
+  const EpipolarPair* pair_;
+  LinePair lines_;
+  LineSearch search_;
+  int lanes_;
+  LineQueries queries_{};
 };
 
 }  // namespace alidade

@@ -41,6 +41,8 @@ struct Sets {
 }  // namespace
 
 Hypothesis Fuse(std::span<const Hypothesis> hypotheses, float chi2, int enough) {
+  const auto known = [](const Hypothesis& h) { return h.known(); };
+  if (std::count_if(hypotheses.begin(), hypotheses.end(), known) < enough) return {};
   int most = enough - 1;
   float best_weight = 0;
   Hypothesis fused;

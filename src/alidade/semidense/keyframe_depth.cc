@@ -1,6 +1,7 @@
 #include "alidade/semidense/keyframe_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 #include <span>
 
@@ -39,14 +40,16 @@ std::vector<Hypothesis> SearchAll(std::vector<EpipolarSearch>& searches,
     const int missing = settings.min_compatible - static_cast<int>(partners - partner);
     if (settings.fuse)
       std::erase_if(open, [&](size_t i) { return candidates[i].known() < missing; });
-    for (size_t i = 0; i < open.size(); i += kLanes) {
-      const size_t n = std::min<size_t>(kLanes, open.size() - i);
-      Lanes<EpipolarQuery> queries;
+    const auto lanes = static_cast<size_t>(searches[partner].lanes());
+    for (size_t i = 0; i < open.size(); i += lanes) {
+      const size_t n = std::min(lanes, open.size() - i);
+      std::array<EpipolarQuery, kMostLanes> queries;
+      std::array<Hypothesis, kMostLanes> result;
       for (size_t k = 0; k < n; ++k) {
         const EdgePixel& pixel = pixels[open[i + k]];
         queries[k] = {pixel, candidates[open[i + k]].Around(range.At(pixel.x, pixel.y))};
       }
-      const Lanes<Hypothesis> result = searches[partner].Search({queries.data(), n}, count);
+      searches[partner].Search({queries.data(), n}, result, count);
       for (size_t k = 0; k < n; ++k) {
         found[open[i + k] * partners + partner] = result[k];
         candidates[open[i + k]].Add(result[k]);

@@ -28,12 +28,19 @@ class PixelIndex {
     }
   }
 
-  // Index of the pixel among those appended; -1 if it is none of them.
-  int At(uint32_t x, uint32_t y) const {
-    const Word& word = words_[y * row_ + x / kBits];
-    const uint32_t below = (1u << (x % kBits)) - 1;
-    if ((word.bits & (below + 1)) == 0) return -1;
-    return static_cast<int>(word.before) + std::popcount(word.bits & below);
+  // Pixels side by side: bit k is set if the k-th was appended. The first of those that were has
+  // the index `first` among all, the next one `first` + 1, and so on.
+  struct Run {
+    uint32_t bits, first;
+  };
+  // Of `count` pixels from (x, y) to the right, all in the image; at most 31.
+  Run At(uint32_t x, uint32_t y, uint32_t count) const {
+    const Word* word = &words_[y * row_ + x / kBits];
+    const uint32_t shift = x % kBits;
+    uint32_t bits = word->bits >> shift;
+    if (shift + count > kBits) bits |= word[1].bits << (kBits - shift);
+    const uint32_t below = word->bits & ((1u << shift) - 1);
+    return {bits & ((1u << count) - 1), word->before + static_cast<uint32_t>(std::popcount(below))};
   }
 
  private:

@@ -1,10 +1,12 @@
 #include "alidade/semidense/smooth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "alidade/base/parallel.h"
 #include "alidade/semidense/fuse.h"
+#include "alidade/semidense/pixel_index.h"
 
 namespace alidade {
 namespace {
@@ -14,13 +16,13 @@ constexpr int kEnoughAgree = 2;  // neighbors that must agree
 // Known neighbors in the 3x3 window.
 class Neighbours {
  public:
-  Neighbours(const std::vector<int>& index, int width, std::span<const Hypothesis> depth,
-             const EdgePixel& pixel) {
+  // `itself`: index of `pixel`.
+  Neighbours(const PixelIndex& index, std::span<const Hypothesis> depth, const EdgePixel& pixel,
+             size_t itself) {
     for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (dx == 0 && dy == 0) continue;
-        const int i = index[(pixel.y + dy) * width + pixel.x + dx];
-        if (i >= 0 && depth[i].known()) around_[count_++] = depth[i];
+      auto [bits, i] = index.At(pixel.x - 1u, pixel.y + dy, 3);
+      for (; bits != 0; bits &= bits - 1, ++i) {
+        if (i != itself && depth[i].known()) Add(depth[i]);
       }
     }
   }
@@ -33,9 +35,8 @@ class Neighbours {
     for (int k = 0; k < count_; ++k) {
       if (!Compatible(around_[k], centre, chi2)) continue;
       ++agree;
-      const float w = 1 / (around_[k].sigma * around_[k].sigma);
-      weight += w;
-      sum += w * around_[k].inverse_depth;
+      weight += weights_[k];
+      sum += weights_[k] * around_[k].inverse_depth;
       sigma = std::min(sigma, around_[k].sigma);
     }
     // Neighbors are correlated, so the mean is not more certain than the best of them.
@@ -52,7 +53,13 @@ class Neighbours {
   }
 
  private:
-  Hypothesis around_[8];
+  void Add(const Hypothesis& h) {
+    around_[count_] = h;
+    weights_[count_++] = 1 / (h.sigma * h.sigma);
+  }
+
+  std::array<Hypothesis, 8> around_;
+  std::array<float, 8> weights_;
   int count_ = 0;
 };
 
@@ -60,10 +67,9 @@ class Neighbours {
 
 std::vector<Hypothesis> Smooth(std::span<const EdgePixel> edges, std::span<const Hypothesis> depth,
                                cv::Size size, float chi2) {
-  std::vector<int> index(static_cast<size_t>(size.area()), -1);
-  for (size_t i = 0; i < edges.size(); ++i) {
-    index[edges[i].y * size.width + edges[i].x] = static_cast<int>(i);
-  }
+  PixelIndex index(size.width, size.height);
+  for (const EdgePixel& edge : edges) index.Append(edge);
+  index.Finish();
   constexpr int kChunk = 2048;  // pixels per task
   const int count = static_cast<int>(edges.size());
   const auto over = [&](auto&& body) {
@@ -75,11 +81,11 @@ std::vector<Hypothesis> Smooth(std::span<const EdgePixel> edges, std::span<const
   std::vector<Hypothesis> kept(edges.size());
   over([&](int i) {
     if (depth[i].known())
-      kept[i] = Neighbours(index, size.width, depth, edges[i]).With(depth[i], true, chi2);
+      kept[i] = Neighbours(index, depth, edges[i], i).With(depth[i], true, chi2);
   });
   std::vector<Hypothesis> grown = kept;
   over([&](int i) {
-    if (!kept[i].known()) grown[i] = Neighbours(index, size.width, kept, edges[i]).Grown(chi2);
+    if (!kept[i].known()) grown[i] = Neighbours(index, kept, edges[i], i).Grown(chi2);
   });
   return grown;
 }

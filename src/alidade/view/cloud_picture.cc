@@ -150,7 +150,8 @@ Eye LookAt(const CloudScene& scene, CloudView view, const CloudPictureSettings& 
 }
 
 struct Dot {
-  float x, y, z;  // pixels, and depth
+  float x, y, z;    // pixels, and depth
+  uint32_t number;  // of the point
   cv::Vec3b color;
 };
 
@@ -222,7 +223,7 @@ std::vector<Dot> Dots(const CloudScene& scene, const Eye& eye, cv::Size size, do
       continue;
     if (ShowsItsBack(p_world, p_eye, up, witnesses)) continue;
     dots.push_back({static_cast<float>(pixel.x()), static_cast<float>(pixel.y()),
-                    static_cast<float>(p.z()),
+                    static_cast<float>(p.z()), static_cast<uint32_t>(i),
                     cloud.colors.empty() ? kGray : Lifted(cloud.colors[i])});
   }
   return dots;
@@ -239,7 +240,7 @@ double DotRadius(const std::vector<Dot>& dots, cv::Size size) {
   return std::clamp(0.8 * spacing, 1.0, 4.0);
 }
 
-void Splat(const Dot& dot, double radius, cv::Mat3b& picture, cv::Mat1f& depth) {
+void Splat(const Dot& dot, double radius, cv::Mat3b& picture) {
   const int left = std::max(0, static_cast<int>(std::ceil(dot.x - radius)));
   const int right = std::min(picture.cols - 1, static_cast<int>(std::floor(dot.x + radius)));
   const int top = std::max(0, static_cast<int>(std::ceil(dot.y - radius)));
@@ -247,9 +248,7 @@ void Splat(const Dot& dot, double radius, cv::Mat3b& picture, cv::Mat1f& depth) 
   for (int y = top; y <= bottom; ++y) {
     for (int x = left; x <= right; ++x) {
       const double dx = x - dot.x, dy = y - dot.y;
-      if (dx * dx + dy * dy > radius * radius || depth(y, x) <= dot.z) continue;
-      depth(y, x) = dot.z;
-      picture(y, x) = dot.color;
+      if (dx * dx + dy * dy <= radius * radius) picture(y, x) = dot.color;
     }
   }
 }
@@ -265,6 +264,14 @@ void DrawLine(const Eigen::Vector3d& p_world, const Eigen::Vector3d& q_world, co
                      static_cast<int>(std::lround(pixel.y())));
   };
   cv::line(picture, at(p), at(q), color, kFiner + 1, cv::LINE_AA, kFractionBits);
+}
+
+// From far to near, so that no pixel's depth must be stored (15 MB). Of equally near ones the first
+// is in front.
+void SortByDepth(std::vector<Dot>& dots) {
+  std::sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) {
+    return a.z > b.z || (a.z == b.z && a.number > b.number);
+  });
 }
 
 // Draws a camera as a viewing pyramid of length `size`.
@@ -294,11 +301,11 @@ void DrawPath(const CloudScene& scene, const Eye& eye, cv::Mat3b& picture) {
 cv::Mat DrawCloud(const CloudScene& scene, CloudView view, const CloudPictureSettings& settings) {
   const cv::Size size(kFiner * settings.width, kFiner * settings.height);
   cv::Mat3b picture(size, kBackground);
-  cv::Mat1f depth(size, std::numeric_limits<float>::infinity());
   const Eye eye = LookAt(scene, view, settings);
-  const std::vector<Dot> dots = Dots(scene, eye, size, settings.most_sigma);
+  std::vector<Dot> dots = Dots(scene, eye, size, settings.most_sigma);
+  SortByDepth(dots);
   const double radius = DotRadius(dots, size);
-  for (const Dot& dot : dots) Splat(dot, radius * eye.distance / dot.z, picture, depth);
+  for (const Dot& dot : dots) Splat(dot, radius * eye.distance / dot.z, picture);
   DrawPath(scene, eye, picture);
   cv::Mat scaled;
   cv::resize(picture, scaled, {settings.width, settings.height}, 0, 0, cv::INTER_AREA);

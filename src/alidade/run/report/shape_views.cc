@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "alidade/base/parallel.h"
+#include "alidade/base/memory.h"
 #include "alidade/io/files/image_codec.h"
 #include "alidade/run/results/semidense_outputs.h"
 #include "alidade/view/cloud_picture.h"
@@ -49,14 +49,13 @@ ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, cons
                           ? cloud
                           : MakeDepthCloud(DepthOf(results, results.maps.front()), camera, pixel),
                       PathOf(results), results.maps.front().gravity};
-  constexpr int kCount = static_cast<int>(std::size(kViews));
-  std::vector<cv::Mat> drawn(kCount);
-  ParallelFor(kCount,
-              [&](int i) { drawn[static_cast<size_t>(i)] = DrawCloud(scene, kViews[i].first); });
-  folder.Write("semidense.png", EncodePng(drawn[0]));
+  ReturnFreedMemory();
   std::vector<ReportPicture> pictures;
-  for (size_t i = 0; i < drawn.size(); ++i)
-    pictures.push_back({kViews[i].second, "image/jpeg", EncodeJpeg(drawn[i], kJpegQuality)});
+  for (const auto& [view, name] : kViews) {  // one at a time: each needs 20 MB
+    const cv::Mat drawn = DrawCloud(scene, view);
+    if (pictures.empty()) folder.Write("semidense.png", EncodePng(drawn));
+    pictures.push_back({name, "image/jpeg", EncodeJpeg(drawn, kJpegQuality)});
+  }
   return {std::move(scene), std::move(pictures)};
 }
 
