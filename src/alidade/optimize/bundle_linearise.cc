@@ -26,6 +26,7 @@ struct ChunkSums {
 inline Double2 PairOf(const double* numbers) { return Double2{numbers[0], numbers[1]}; }
 
 inline void Add(const SightingTerms& terms, CameraBlock& camera) {
+#pragma GCC unroll 14
   for (int i = 0; i < 14; ++i) camera.sums[i] += PairOf(terms.camera + 2 * i);
 }
 
@@ -119,8 +120,8 @@ class Worker {
       if (i >= point.free_end) continue;
       coupling->slot = layout_.sightings[i].slot;
       alidade::Add(*terms, sums_.cameras[coupling->slot]);
-      std::copy_n(terms->camera + CameraBlock::kTt, 6, coupling->N.begin());
-      std::copy_n(terms->Y, 3, coupling->Y.begin());
+      for (int n = 0; n < 6; ++n) coupling->N[n] = terms->camera[CameraBlock::kTt + n];
+      for (int n = 0; n < 3; ++n) coupling->Y[n] = terms->Y[n];
       ++coupling;
     }
     PointBlock& block = result_.points[j];

@@ -54,6 +54,7 @@ template <typename V>
   const V* R = s.R;
   const V huber = s.seen[5], inv_c2 = s.seen[6], trust = s.seen[7];
   V Y[3];
+#pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) Y[i] = s.X[i] - s.centre[i];
   const V x = R[0] * Y[0] + R[3] * Y[1] + R[6] * Y[2];
   const V y = R[1] * Y[0] + R[4] * Y[1] + R[7] * Y[2];
@@ -73,14 +74,17 @@ template <typename V>
   wr *= say;
   // Rows of B = A R, with A the derivative by the point in the camera frame.
   V U[3], W[3], S[3];
+#pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     U[i] = e.u_x * R[3 * i] + e.u_z * R[3 * i + 2];
     W[i] = e.v_y * R[3 * i + 1] + e.v_z * R[3 * i + 2];
     S[i] = e.d_z * R[3 * i + 2];
   }
+#pragma GCC unroll 3
   for (int i = 0, at = kTermsN; i < 3; ++i) {
     const V a = w * U[i], b = w * W[i], r = wr * S[i];
     terms[kTermsG + i] = a * e.u + b * e.v + r * e.d;
+#pragma GCC unroll 3
     for (int j = i; j < 3; ++j) terms[at++] = a * U[j] + b * W[j] + r * S[j];
     terms[kTermsY + i] = Y[i];
   }

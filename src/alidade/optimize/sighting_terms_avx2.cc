@@ -32,6 +32,7 @@ namespace {
 // Numbers [4 n, 4 n + 4) of four rows.
 [[gnu::always_inline]] inline void Load(const double* const* rows, int n, Double4* out) {
   Double4 in[4];
+#pragma GCC unroll 4
   for (int i = 0; i < 4; ++i) in[i] = _mm256_loadu_pd(rows[i] + 4 * n);
   Transpose(in, out);
 }
@@ -40,24 +41,31 @@ void LookAtFour(const SightingLens& lens, const SightingPlace* places, bool deri
                 SightingTerms* terms) {
   SightingLanes<Double4> lanes;
   const double* rows[4];
+#pragma GCC unroll 4
   for (int i = 0; i < 4; ++i) rows[i] = places[i].camera;
   Double4 camera[12];
+#pragma GCC unroll 3
   for (int n = 0; n < 3; ++n) Load(rows, n, camera + 4 * n);
+#pragma GCC unroll 9
   for (int i = 0; i < 9; ++i) lanes.R[i] = camera[i];
+#pragma GCC unroll 3
   for (int i = 0; i < 3; ++i) {
     lanes.centre[i] = camera[9 + i];
     lanes.X[i] =
         Double4{places[0].point[i], places[1].point[i], places[2].point[i], places[3].point[i]};
   }
+#pragma GCC unroll 4
   for (int i = 0; i < 4; ++i) rows[i] = places[i].seen;
   Load(rows, 0, lanes.seen);
   Load(rows, 1, lanes.seen + 4);
   Double4 q[kTermsSize];
   FillTerms(lens, lanes, derivatives, q);
   if (!derivatives) {
+#pragma GCC unroll 4
     for (int n = 0; n < 4; ++n) terms[n].cost = q[kTermsCost][n];
     return;
   }
+#pragma GCC unroll 8
   for (int i = 0; i < kTermsSize; i += 4) {
     Double4 out[4];
     Transpose(q + i, out);
