@@ -56,7 +56,16 @@ BundleSighting Sight(const Intrinsics& k, const BundleObservation& o, int slot,
   return s;
 }
 
-bool SlotBefore(const BundleSighting& a, const BundleSighting& b) { return a.slot < b.slot; }
+// By insertion, which is stable: few sightings, and mostly in order already.
+void SortBySlot(std::vector<BundleSighting>::iterator first,
+                std::vector<BundleSighting>::iterator last) {
+  for (auto next = first; next != last; ++next) {
+    const BundleSighting sighting = *next;
+    auto to = next;
+    for (; to != first && sighting.slot < to[-1].slot; --to) *to = to[-1];
+    *to = sighting;
+  }
+}
 
 std::vector<int> Cut(const BundleLayout& layout) {
   const int total = static_cast<int>(layout.sightings.size());
@@ -112,7 +121,7 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
     const int begin = start[p], end = start[p + 1];
     if (begin == end) continue;
     const auto first = layout.sightings.begin() + begin, last = first + free[p];
-    if (!std::is_sorted(first, last, SlotBefore)) std::stable_sort(first, last, SlotBefore);
+    SortBySlot(first, last);
     layout.points.push_back({static_cast<int>(p), begin, begin + free[p], end, layout.couplings});
     layout.couplings += free[p];
   }
