@@ -47,7 +47,7 @@ struct BundleSettings {
   // Stops when a step moves the cameras by less, all of them together, in standard deviations of
   // where they are known to be: δ' S δ < still² σ², S being the reduced system at σ = 1 and σ² the
   // noise by the residuals. Their own noise is 6 times their number, so that what a step of 1 adds
-  // cannot be told from it. What is left then is the points', one by one. 0: does not stop for it.
+  // cannot be told from it. Most of what is left is single points. 0: does not stop for it.
   double still = 0;
   int sparse_above = 100;  // free cameras; above, the reduced system is factored sparse if faster
   void Check() const;      // throws Error naming the field that cannot be
