@@ -7,11 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <random>
 #include <vector>
 
 #include "alidade/base/random.h"
 #include "alidade/geometry/se3.h"
 #include "alidade/optimize/schur_row.h"
+#include "alidade/optimize/sighting_terms.h"
 
 namespace alidade::bundle_kernels_test {
 namespace {
@@ -227,6 +230,46 @@ TEST_F(BundleKernels, EveryVersionOfARowOfProductsGivesTheSameBits) {
     const Eigen::Map<const Matrix6d> before(blocks.data() + static_cast<ptrdiff_t>(36) * places[n]);
     const Eigen::Map<const Matrix6d> after(two.data() + static_cast<ptrdiff_t>(36) * places[n]);
     EXPECT_LT((before - a * b.transpose() - after).norm(), 10 * kRounding);
+  }
+}
+
+// Thirteen sightings, one of them behind its camera.
+TEST(LookAtSightings, TwoAndFourAtOnceGiveTheSameBits) {
+  constexpr int kCount = 13, kRoom = 16;
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> between(-1, 1);
+  std::vector<std::array<double, 8>> seen(kRoom);
+  std::vector<std::array<double, 12>> cameras(kRoom);
+  std::vector<std::array<double, 3>> points(kRoom);
+  std::vector<SightingPlace> places;
+  for (int i = 0; i < kRoom; ++i) {
+    const double bound = i % 2 ? std::numeric_limits<double>::infinity() : 2.4;
+    seen[i] = {320 + 90 * between(random), 240 + 90 * between(random),
+               310 + 90 * between(random), 1.5,
+               i % 3 ? 0.0 : 2.5,          bound,
+               i % 2 ? 0.2 : 0.0,          i % 5 ? 1.0 : 0.4};
+    const Eigen::Matrix3d R = ExpSo3(0.2 * Eigen::Vector3d(between(random), between(random), 1));
+    std::copy_n(R.data(), 9, cameras[i].begin());
+    for (int n = 0; n < 3; ++n) {
+      cameras[i][9 + n] = between(random);
+      points[i][n] = between(random) + (n == 2 ? 4 : 0);
+    }
+  }
+  points[6][2] = -4;
+  for (int i = 0; i < kRoom; ++i)
+    places.push_back({seen[i].data(), cameras[i].data(), points[i].data()});
+  const SightingLens lens{500, 510, 320, 240, 40};
+  for (const bool derivatives : {true, false}) {
+    std::vector<SightingTerms> two(kRoom), fastest(kRoom);
+    LookAtSightings2(lens, places.data(), kCount, derivatives, two.data());
+    FastestLookAtSightings()(lens, places.data(), kCount, derivatives, fastest.data());
+    for (int i = 0; i < kCount; ++i) {
+      EXPECT_EQ(two[i].cost, fastest[i].cost);
+      EXPECT_EQ(std::isinf(two[i].cost), i == 6);
+      if (!derivatives) continue;
+      EXPECT_TRUE(std::equal(two[i].camera, two[i].camera + 28, fastest[i].camera));
+      EXPECT_TRUE(std::equal(two[i].Y, two[i].Y + 3, fastest[i].Y));
+    }
   }
 }
 

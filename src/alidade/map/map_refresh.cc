@@ -16,6 +16,38 @@ bool MoreShared(const Neighbour& a, const Neighbour& b) {
   return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
 }
 
+// KeyFrame::Centre() without the inverse's rotation.
+Eigen::Vector3d CentreOf(const KeyFrame& keyframe) {
+  const Se3& T = keyframe.T_camera_world;
+  return -(T.R.transpose() * T.t);
+}
+
+// Index of the descriptor with the smallest median distance to all of them; the first of several.
+size_t Representative(const std::vector<const Descriptor*>& descriptors) {
+  const size_t count = descriptors.size();
+  if (count <= 2) return 0;
+  std::vector<int> distances(count * count);
+  for (size_t i = 0; i < count; ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      distances[i * count + j] = distances[j * count + i] =
+          HammingDistance(*descriptors[i], *descriptors[j]);
+    }
+  }
+  size_t best = 0;
+  int best_median = std::numeric_limits<int>::max();
+  const auto middle = static_cast<std::ptrdiff_t>((count - 1) / 2);
+  for (size_t i = 0; i < count; ++i) {
+    const auto row = distances.begin() + static_cast<std::ptrdiff_t>(i * count);
+    const auto end = row + static_cast<std::ptrdiff_t>(count);
+    // The median is smaller only if more distances than `middle` are.
+    if (std::count_if(row, end, [&](int d) { return d < best_median; }) <= middle) continue;
+    std::nth_element(row, row + middle, end);
+    best_median = row[middle];
+    best = i;
+  }
+  return best;
+}
+
 }  // namespace
 
 void MapCommit::RefreshLandmark(LandmarkId id) {
@@ -24,28 +56,14 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
   if (landmark->observations.empty()) return Remove(id);
 
   std::vector<const Descriptor*> descriptors;
+  descriptors.reserve(landmark->observations.size());
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
   for (const Observation& seen : landmark->observations) {
     const KeyFrame* keyframe = Find(seen.keyframe);
     descriptors.push_back(&keyframe->frame->descriptors[seen.keypoint]);
-    direction += (landmark->p_world - keyframe->Centre()).normalized();
+    direction += (landmark->p_world - CentreOf(*keyframe)).normalized();
   }
-  // Representative descriptor: the one with the smallest median distance to the others.
-  size_t best = 0;
-  int best_median = std::numeric_limits<int>::max();
-  std::vector<int> distances(descriptors.size());
-  for (size_t i = 0; i < descriptors.size() && descriptors.size() > 2; ++i) {
-    for (size_t j = 0; j < descriptors.size(); ++j) {
-      distances[j] = HammingDistance(*descriptors[i], *descriptors[j]);
-    }
-    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>((distances.size() - 1) / 2);
-    std::nth_element(distances.begin(), middle, distances.end());
-    if (*middle < best_median) {
-      best_median = *middle;
-      best = i;
-    }
-  }
-  landmark->descriptor = *descriptors[best];
+  landmark->descriptor = *descriptors[Representative(descriptors)];
   landmark->normal = direction.normalized().cast<float>();
 
   const KeyFrame* reference = Find(landmark->reference);
@@ -53,7 +71,7 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
       std::find_if(landmark->observations.begin(), landmark->observations.end(),
                    [&](const Observation& o) { return o.keyframe == landmark->reference; });
   const int level = reference->frame->keypoints[seen->keypoint].level;
-  const double distance = (landmark->p_world - reference->Centre()).norm();
+  const double distance = (landmark->p_world - CentreOf(*reference)).norm();
   landmark->max_distance = static_cast<float>(distance * ScaleOfLevel(level));
   landmark->min_distance =
       static_cast<float>(distance * ScaleOfLevel(level) / ScaleOfLevel(kPyramidLevels - 1));

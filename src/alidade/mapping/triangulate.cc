@@ -36,6 +36,42 @@ std::vector<int> WithoutLandmark(const KeyFrame& keyframe) {
   return free;
 }
 
+// Keypoints, and how far from a line they may be.
+class Bands {
+ public:
+  explicit Bands(size_t count) : groups_((count + kLanes - 1) / kLanes) {}
+  // `reach`: squared distance, pixels². A keypoint that is not set is near no line.
+  void Set(size_t i, const Keypoint& keypoint, float reach) {
+    Group& group = groups_[i / kLanes];
+    group.x[i % kLanes] = keypoint.x;
+    group.y[i % kLanes] = keypoint.y;
+    group.reach[i % kLanes] = reach;
+  }
+  // Calls visit(i) for those near the line a x + b y + c = 0, a² + b² = 1, ascending.
+  template <typename Visit>
+  void VisitNear(float a, float b, float c, Visit&& visit) const {
+    for (size_t n = 0; n < groups_.size(); ++n) {
+      const Group& group = groups_[n];
+      const Lanes off = a * group.x + b * group.y + c;
+      const auto near = off * off <= group.reach;
+      typedef long long Halves __attribute__((vector_size(16)));
+      const Halves any = reinterpret_cast<Halves>(near);
+      if ((any[0] | any[1]) == 0) continue;
+      for (int i = 0; i < kLanes; ++i) {
+        if (near[i]) visit(static_cast<int>(n) * kLanes + i);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kLanes = 4;
+  typedef float Lanes __attribute__((vector_size(4 * kLanes)));
+  struct Group {
+    Lanes x{}, y{}, reach = Lanes{} - 1;
+  };
+  std::vector<Group> groups_;
+};
+
 // Matches by descriptor along epipolar lines, with a ratio test.
 std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& free_a,
                                      const KeyFrame& b, const std::vector<int>& free_b,
@@ -46,16 +82,13 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
   const Eigen::Vector2d epipole =
       epipole_seen ? camera.Project(T_b_a.t) : Eigen::Vector2d(-1e9, -1e9);
 
-  std::vector<float> x(free_b.size()), y(free_b.size()), reach(free_b.size());
+  Bands bands(free_b.size());
   for (size_t j = 0; j < free_b.size(); ++j) {
     const Keypoint& keypoint = b.frame->keypoints[free_b[j]];
-    x[j] = keypoint.x;
-    y[j] = keypoint.y;
     const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
-    reach[j] = static_cast<float>(kChiSquared1 * sigma * sigma);
     // Close to the epipole all directions are consistent and the depth is undetermined.
-    if ((keypoint.pixel() - epipole).squaredNorm() < 100 * ScaleOfLevel(keypoint.level))
-      reach[j] = -1;
+    if ((keypoint.pixel() - epipole).squaredNorm() >= 100 * ScaleOfLevel(keypoint.level))
+      bands.Set(j, keypoint, static_cast<float>(kChiSquared1 * sigma * sigma));
   }
   std::vector<Partner> best_for_b(free_b.size());
   for (int i : free_a) {
@@ -66,19 +99,17 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
     const auto lx = static_cast<float>(line.x() / norm), ly = static_cast<float>(line.y() / norm),
                lc = static_cast<float>(line.z() / norm);
     int best = 256, second = 256, best_j = -1;
-    for (size_t j = 0; j < free_b.size(); ++j) {
-      const float off = lx * x[j] + ly * y[j] + lc;
-      if (off * off > reach[j]) continue;
+    bands.VisitNear(lx, ly, lc, [&](int j) {
       const int distance =
           HammingDistance(a.frame->descriptors[i], b.frame->descriptors[free_b[j]]);
       if (distance < best) {
         second = best;
         best = distance;
-        best_j = static_cast<int>(j);
+        best_j = j;
       } else if (distance < second) {
         second = distance;
       }
-    }
+    });
     if (best > settings.triangulate_distance || best > settings.triangulate_ratio * second)
       continue;
     Partner& held = best_for_b[best_j];

@@ -56,9 +56,15 @@ BundleSighting Sight(const Intrinsics& k, const BundleObservation& o, int slot,
   return s;
 }
 
-// Orders by slot; fixed cameras (slot -1) come last.
-bool SlotBefore(const BundleSighting& a, const BundleSighting& b) {
-  return static_cast<unsigned>(a.slot) < static_cast<unsigned>(b.slot);
+// By insertion, which is stable: few sightings, and mostly in order already.
+void SortBySlot(std::vector<BundleSighting>::iterator first,
+                std::vector<BundleSighting>::iterator last) {
+  for (auto next = first; next != last; ++next) {
+    const BundleSighting sighting = *next;
+    auto to = next;
+    for (; to != first && sighting.slot < to[-1].slot; --to) *to = to[-1];
+    *to = sighting;
+  }
 }
 
 std::vector<int> Cut(const BundleLayout& layout) {
@@ -81,8 +87,9 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
   BundleLayout layout;
   layout.intrinsics = Intrinsics::Of(problem.camera);
 
-  // Counting sort by point: accepts any order and keeps the order within a point.
-  std::vector<int> start(problem.points.size() + 1, 0);
+  // Counting sort by point, free cameras before fixed ones: accepts any order and keeps it among
+  // those of a kind.
+  std::vector<int> start(problem.points.size() + 1, 0), free(problem.points.size(), 0);
   std::vector<uint8_t> usable(problem.observations.size());
   std::vector<int> slot(problem.T_camera_world.size(), -1);
   for (size_t i = 0; i < problem.observations.size(); ++i) {
@@ -90,7 +97,9 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
     usable[i] = Usable(problem, o);
     if (!usable[i]) continue;
     ++start[o.point + 1];
-    if (!problem.fixed[o.camera]) slot[o.camera] = 0;
+    if (problem.fixed[o.camera]) continue;
+    ++free[o.point];
+    slot[o.camera] = 0;
   }
   for (size_t c = 0; c < slot.size(); ++c) {
     if (slot[c] < 0) continue;
@@ -99,23 +108,22 @@ BundleLayout LayOut(const BundleProblem& problem, const BundleSettings& settings
   }
   for (size_t p = 0; p < problem.points.size(); ++p) start[p + 1] += start[p];
   layout.sightings.resize(start.back());
-  std::vector<int> next = start;
+  std::vector<int> next_free(start.begin(), start.end() - 1), next_fixed = next_free;
+  for (size_t p = 0; p < free.size(); ++p) next_fixed[p] += free[p];
   for (size_t i = 0; i < problem.observations.size(); ++i) {
     if (!usable[i]) continue;
     const BundleObservation& o = problem.observations[i];
-    layout.sightings[next[o.point]++] = Sight(layout.intrinsics, o, slot[o.camera], settings);
+    int& next = (problem.fixed[o.camera] ? next_fixed : next_free)[o.point];
+    layout.sightings[next++] = Sight(layout.intrinsics, o, slot[o.camera], settings);
   }
 
   for (size_t p = 0; p < problem.points.size(); ++p) {
     const int begin = start[p], end = start[p + 1];
     if (begin == end) continue;
-    const auto first = layout.sightings.begin();
-    std::stable_sort(first + begin, first + end, SlotBefore);
-    const auto fixed = std::find_if(first + begin, first + end,
-                                    [](const BundleSighting& s) { return s.slot < 0; });
-    const int free_end = static_cast<int>(fixed - first);
-    layout.points.push_back({static_cast<int>(p), begin, free_end, end, layout.couplings});
-    layout.couplings += free_end - begin;
+    const auto first = layout.sightings.begin() + begin, last = first + free[p];
+    SortBySlot(first, last);
+    layout.points.push_back({static_cast<int>(p), begin, begin + free[p], end, layout.couplings});
+    layout.couplings += free[p];
   }
   layout.chunks = Cut(layout);
   layout.motion = LayOutMotion(problem.motion, slot, static_cast<int>(layout.free_cameras.size()));

@@ -1,106 +1,21 @@
 #include "alidade/optimize/bundle_linearise.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "alidade/base/parallel.h"
+#include "alidade/optimize/sighting_terms.h"
 
 namespace alidade {
 namespace {
 
-// Terms of two sightings of one point, computed in parallel.
-struct Terms {
-  Double2 Y[3];  // point minus camera center, world axes
-  // B' W B; W contains trust and the loss's weight at this state (iteratively reweighted least
-  // squares).
-  Double2 N[6];
-  Double2 g[3];  // B' W r
-  Double2 cost;
-  Mask2 in_front;
-};
+static_assert(sizeof(Intrinsics) == sizeof(SightingLens));
+static_assert(sizeof(BundleCamera) == 12 * sizeof(double));
+static_assert(sizeof(SightingTerms) == 32 * sizeof(double));
 
-[[gnu::always_inline]] inline Terms Look(const Intrinsics& k, const BundleCamera& c0,
-                                         const BundleCamera& c1, const Eigen::Vector3d& X,
-                                         const BundleSighting& s0, const BundleSighting& s1,
-                                         Double2 counts) {
-  Terms t;
-  Double2 R[9];
-  for (int i = 0; i < 9; ++i) R[i] = Double2{c0.R.data()[i], c1.R.data()[i]};  // column-major
-  for (int i = 0; i < 3; ++i) t.Y[i] = X[i] - Double2{c0.centre[i], c1.centre[i]};
-  const Double2 x = R[0] * t.Y[0] + R[3] * t.Y[1] + R[6] * t.Y[2];
-  const Double2 y = R[1] * t.Y[0] + R[4] * t.Y[1] + R[7] * t.Y[2];
-  const Double2 z = R[2] * t.Y[0] + R[5] * t.Y[1] + R[8] * t.Y[2];
-  t.in_front = z > kMinDepth;
-  const Reprojection<Double2> e = Reproject<Double2>(
-      k, x, y, z, Double2{s0.u, s1.u}, Double2{s0.v, s1.v}, Double2{s0.right, s1.right});
-  Double2 w = Double2{s0.weight, s1.weight} * counts;
-  Double2 wr = Double2{s0.weight_r, s1.weight_r} * counts;
-  const Double2 chi2 = w * (e.u * e.u + e.v * e.v) + wr * (e.d * e.d);
-  const Double2 huber{s0.huber, s1.huber};
-  const Double2 root = Sqrt(chi2), inner = Min(root, huber);
-  const Double2 trust{s0.trust, s1.trust};
-  // Huber's loss times Geman & McClure's factor; one of the two is always inactive.
-  const Double2 q = 1 / (1 + chi2 * Double2{s0.inv_c2, s1.inv_c2});
-  t.cost = trust * (inner * (root - 0.5 * inner)) * q;
-  const Double2 say = trust * (root > huber ? huber / root : Both(1)) * (q * q);
-  w *= say;
-  wr *= say;
-  // Rows of B = A R, with A the derivative by the point in the camera frame.
-  Double2 U[3], V[3], S[3];
-  for (int i = 0; i < 3; ++i) {
-    U[i] = e.u_x * R[3 * i] + e.u_z * R[3 * i + 2];
-    V[i] = e.v_y * R[3 * i + 1] + e.v_z * R[3 * i + 2];
-    S[i] = e.d_z * R[3 * i + 2];
-  }
-  for (int i = 0, at = 0; i < 3; ++i) {
-    const Double2 u = w * U[i], v = w * V[i], r = wr * S[i];
-    t.g[i] = u * e.u + v * e.v + r * e.d;
-    for (int j = i; j < 3; ++j) t.N[at++] = u * U[j] + v * V[j] + r * S[j];
-  }
-  return t;
-}
-
-// Adds G N G' and G g of both sightings to their cameras.
-[[gnu::always_inline]] inline void AddToCameras(const Terms& t, CameraBlock& first,
-                                                CameraBlock* second) {
-  const Double2 x = t.Y[0], y = t.Y[1], z = t.Y[2];
-  const Double2* N = t.N;
-  Double2 q[28];
-  for (int i = 0; i < 6; ++i) q[CameraBlock::kTt + i] = N[i];
-  // C = [Y]x N
-  Double2* C = q + CameraBlock::kRt;
-  C[0] = y * N[2] - z * N[1];
-  C[1] = y * N[4] - z * N[3];
-  C[2] = y * N[5] - z * N[4];
-  C[3] = z * N[0] - x * N[2];
-  C[4] = z * N[1] - x * N[4];
-  C[5] = z * N[2] - x * N[5];
-  C[6] = x * N[1] - y * N[0];
-  C[7] = x * N[3] - y * N[1];
-  C[8] = x * N[4] - y * N[2];
-  // C [Y]x'
-  Double2* rr = q + CameraBlock::kRr;
-  rr[0] = y * C[2] - z * C[1];
-  rr[1] = z * C[0] - x * C[2];
-  rr[2] = x * C[1] - y * C[0];
-  rr[3] = z * C[3] - x * C[5];
-  rr[4] = x * C[4] - y * C[3];
-  rr[5] = x * C[7] - y * C[6];
-  Double2* g = q + CameraBlock::kG;
-  for (int i = 0; i < 3; ++i) g[i] = t.g[i];
-  g[3] = y * t.g[2] - z * t.g[1];
-  g[4] = z * t.g[0] - x * t.g[2];
-  g[5] = x * t.g[1] - y * t.g[0];
-  q[CameraBlock::kSize] = Both(0);
-  for (int i = 0; i < 14; ++i) first.sums[i] += Double2{q[2 * i][0], q[2 * i + 1][0]};
-  if (!second) return;
-  for (int i = 0; i < 14; ++i) second->sums[i] += Double2{q[2 * i][1], q[2 * i + 1][1]};
-}
-
-inline void StoreCoupling(const Terms& t, int lane, int slot, Coupling& coupling) {
-  for (int i = 0; i < 6; ++i) coupling.N[i] = t.N[i][lane];
-  for (int i = 0; i < 3; ++i) coupling.Y[i] = t.Y[i][lane];
-  coupling.slot = slot;
-}
+// Points whose sightings are looked at together: few enough that what they give stays in the cache.
+constexpr int kSightingsTogether = 64;
 
 struct ChunkSums {
   std::vector<CameraBlock> cameras;
@@ -108,65 +23,127 @@ struct ChunkSums {
   bool valid = true;
 };
 
+inline Double2 PairOf(const double* numbers) { return Double2{numbers[0], numbers[1]}; }
+
+inline void Add(const SightingTerms& terms, CameraBlock& camera) {
+#pragma GCC unroll 14
+  for (int i = 0; i < 14; ++i) camera.sums[i] += PairOf(terms.camera + 2 * i);
+}
+
+// Sums of every other sighting of a point, added at the end.
+struct PointSums {
+  Double2 N[3]{}, g[2]{}, cost{};  // the first of `g` is another number
+
+  void Add(const SightingTerms& terms) {
+    for (int i = 0; i < 3; ++i) N[i] += PairOf(terms.camera + CameraBlock::kTt + 2 * i);
+    for (int i = 0; i < 2; ++i) g[i] += PairOf(terms.camera + CameraBlock::kG - 1 + 2 * i);
+    AddCost(terms);
+  }
+  void AddCost(const SightingTerms& terms) { cost += Double2{terms.cost, 0}; }
+};
+
 class Worker {
  public:
-  Worker(const BundleLayout& layout, const BundleState& state, Linearisation& result,
-         ChunkSums& sums, bool derivatives)
-      : layout_(layout), state_(state), result_(result), sums_(sums), derivatives_(derivatives) {
+  Worker(const BundleLayout& layout, const BundleState* before, BundleState& state,
+         Linearisation& result, ChunkSums& sums, bool derivatives)
+      : layout_(layout),
+        before_(before),
+        state_(state),
+        result_(result),
+        sums_(sums),
+        derivatives_(derivatives) {
     sums.cameras.resize(layout.free_cameras.size());
   }
 
-  // Returns false without any effect if the point is behind one of its cameras.
-  bool Add(int j, const Eigen::Vector3d& X) {
-    const BundlePoint& point = layout_.points[j];
-    const int pairs = (point.end - point.begin + 1) / 2;
-    if (static_cast<int>(terms_.size()) < pairs) terms_.resize(pairs);
-    Mask2 in_front{-1, -1};
-    for (int n = 0; n < pairs; ++n) {
-      const int i = point.begin + 2 * n;
-      const bool alone = i + 1 == point.end;  // processed twice, counted once
-      const BundleSighting& s0 = layout_.sightings[i];
-      const BundleSighting& s1 = layout_.sightings[alone ? i : i + 1];
-      terms_[n] = Look(layout_.intrinsics, state_.cameras[s0.camera], state_.cameras[s1.camera], X,
-                       s0, s1, Double2{1, alone ? 0.0 : 1.0});
-      in_front &= terms_[n].in_front;
+  // Points [begin, end). Returns false where one stays behind a camera.
+  bool Add(int begin, int end) {
+    while (begin < end) {
+      int after = begin + 1;
+      while (after < end &&
+             layout_.points[after].end - layout_.points[begin].begin <= kSightingsTogether)
+        ++after;
+      Look(begin, after, terms_);
+      const int first = layout_.points[begin].begin;
+      for (; begin < after; ++begin) {
+        const SightingTerms* terms = terms_.data() + (layout_.points[begin].begin - first);
+        if (IsBehind(begin, terms)) {
+          if (!before_) return false;
+          state_.points[begin] = before_->points[begin];
+          Look(begin, begin + 1, of_one_);
+          terms = of_one_.data();
+          if (IsBehind(begin, terms)) return false;
+        }
+        AddPoint(begin, terms);
+      }
     }
-    if (!(in_front[0] & in_front[1])) return false;
-    Double2 H[6]{}, g[3]{}, cost{};
-    if (!derivatives_) {
-      for (int n = 0; n < pairs; ++n) cost += terms_[n].cost;
-      sums_.cost += Sum(cost);
-      return true;
-    }
-    Coupling* coupling = result_.couplings.data() + point.coupling;
-    for (int n = 0; n < pairs; ++n) {
-      const Terms& t = terms_[n];
-      for (int d = 0; d < 6; ++d) H[d] += t.N[d];
-      for (int d = 0; d < 3; ++d) g[d] += t.g[d];
-      cost += t.cost;
-      const int i = point.begin + 2 * n;
-      if (i >= point.free_end) continue;
-      const int slot0 = layout_.sightings[i].slot;
-      const bool both = i + 1 < point.free_end;
-      const int slot1 = both ? layout_.sightings[i + 1].slot : -1;
-      AddToCameras(t, sums_.cameras[slot0], both ? &sums_.cameras[slot1] : nullptr);
-      StoreCoupling(t, 0, slot0, *coupling++);
-      if (both) StoreCoupling(t, 1, slot1, *coupling++);
-    }
-    PointBlock& block = result_.points[j];
-    for (int d = 0; d < 6; ++d) block.H[d] = Sum(H[d]);
-    for (int d = 0; d < 3; ++d) block.g[d] = Sum(g[d]);
-    sums_.cost += Sum(cost);
     return true;
   }
 
  private:
+  void Look(int begin, int end, std::vector<SightingTerms>& terms) {
+    places_.clear();
+    for (int j = begin; j < end; ++j) {
+      const BundlePoint& point = layout_.points[j];
+      for (int i = point.begin; i < point.end; ++i) {
+        const BundleSighting& sighting = layout_.sightings[i];
+        places_.push_back(
+            {&sighting.u, state_.cameras[sighting.camera].R.data(), state_.points[j].data()});
+      }
+    }
+    const size_t count = places_.size();
+    while (places_.size() % kSightingGroup != 0) places_.push_back(places_.back());
+    if (terms.size() < places_.size()) terms.resize(places_.size());
+    const Intrinsics& k = layout_.intrinsics;
+    look_({k.fx, k.fy, k.cx, k.cy, k.bf}, places_.data(), static_cast<int>(count), derivatives_,
+          terms.data());
+  }
+
+  bool IsBehind(int j, const SightingTerms* terms) const {
+    const BundlePoint& point = layout_.points[j];
+    return std::any_of(terms, terms + (point.end - point.begin), [](const SightingTerms& t) {
+      return t.cost == std::numeric_limits<double>::infinity();
+    });
+  }
+
+  void AddPoint(int j, const SightingTerms* terms) {
+    const BundlePoint& point = layout_.points[j];
+    PointSums sums[2];
+    if (!derivatives_) {
+      for (int i = point.begin; i < point.end; ++i)
+        sums[(i - point.begin) % 2].AddCost(terms[i - point.begin]);
+      sums_.cost += sums[0].cost[0] + sums[1].cost[0];
+      return;
+    }
+    Coupling* coupling = result_.couplings.data() + point.coupling;
+    for (int i = point.begin; i < point.end; ++i, ++terms) {
+      sums[(i - point.begin) % 2].Add(*terms);
+      if (i >= point.free_end) continue;
+      coupling->slot = layout_.sightings[i].slot;
+      alidade::Add(*terms, sums_.cameras[coupling->slot]);
+      for (int n = 0; n < 6; ++n) coupling->N[n] = terms->camera[CameraBlock::kTt + n];
+      for (int n = 0; n < 3; ++n) coupling->Y[n] = terms->Y[n];
+      ++coupling;
+    }
+    PointBlock& block = result_.points[j];
+    for (int i = 0; i < 3; ++i) {
+      const Double2 N = sums[0].N[i] + sums[1].N[i];
+      block.H[2 * i] = N[0];
+      block.H[2 * i + 1] = N[1];
+    }
+    const Double2 g[2] = {sums[0].g[0] + sums[1].g[0], sums[0].g[1] + sums[1].g[1]};
+    block.g = {g[0][1], g[1][0], g[1][1]};
+    sums_.cost += sums[0].cost[0] + sums[1].cost[0];
+  }
+
   const BundleLayout& layout_;
-  const BundleState& state_;
+  const BundleState* before_;
+  BundleState& state_;
   Linearisation& result_;
   ChunkSums& sums_;
   bool derivatives_;
-  std::vector<Terms> terms_;  // of the current point
+  LookAtSightings look_ = FastestLookAtSightings();
+  std::vector<SightingPlace> places_;
+  std::vector<SightingTerms> terms_, of_one_;
 };
 
 }  // namespace
@@ -207,15 +184,8 @@ void Linearise(const BundleLayout& layout, const BundleState* before, BundleStat
   result.points.resize(layout.points.size());
   std::vector<ChunkSums> sums(layout.chunk_count());
   ParallelFor(layout.chunk_count(), [&](int chunk) {
-    Worker worker(layout, state, result, sums[chunk], derivatives);
-    for (int j = layout.chunks[chunk]; j < layout.chunks[chunk + 1]; ++j) {
-      if (worker.Add(j, state.points[j])) continue;
-      if (before) state.points[j] = before->points[j];
-      if (!before || !worker.Add(j, state.points[j])) {
-        sums[chunk].valid = false;
-        return;
-      }
-    }
+    Worker worker(layout, before, state, result, sums[chunk], derivatives);
+    sums[chunk].valid = worker.Add(layout.chunks[chunk], layout.chunks[chunk + 1]);
   });
   result.cameras = sums[0].cameras;
   result.cost = sums[0].cost;
