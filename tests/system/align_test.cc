@@ -98,27 +98,6 @@ TEST_P(AlignTest, GivesTheSameBytesWithOneAndTwoThreads) {
 INSTANTIATE_TEST_SUITE_P(Sensors, AlignTest,
                          testing::Values(Sensor::kMono, Sensor::kRgbd, Sensor::kStereo));
 
-class AlignAmongPeople : public testing::TestWithParam<Sensor> {};
-
-TEST_P(AlignAmongPeople, ExtractsFewerFramesAndIsAsAccurate) {
-  SynthSettings walked;
-  walked.width = 400;
-  walked.height = 300;
-  walked.seed = 22;
-  walked.actors = 2;
-  RenderedFrames& room = FramesOf(walked);
-  SlamSettings extracting = Settings(GetParam(), false), aligning = Settings(GetParam(), true);
-  extracting.dynamics.mode = aligning.dynamics.mode = DynamicsMode::kGeometry;
-  const Outcome all = Play(room, extracting);
-  const Outcome some = Play(room, aligning);
-  EXPECT_EQ(all.extracted, size_t{kFrames});
-  EXPECT_LT(some.extracted, size_t{80});
-  EXPECT_GE(some.tracked, all.tracked - 2);
-  EXPECT_LT(some.rmse, std::max(1.3 * all.rmse, 0.02));
-}
-
-INSTANTIATE_TEST_SUITE_P(Sensors, AlignAmongPeople, testing::Values(Sensor::kMono, Sensor::kRgbd));
-
 TEST(Align, AllowsForAnExposureThatChangesFromOneFrameToTheNext) {
   RenderedFrames& room = Room(Sensor::kRgbd);
   const Outcome steady = Play(room, Settings(Sensor::kRgbd, true));

@@ -70,7 +70,8 @@ cv::Mat DynamicFilter::ExpectedMovers() const {
 
 void DynamicFilter::Judge(Frame& frame, const PoseGuess* guess) {
   Judge(guess, true);
-  Apply(frame);
+  frame.static_probability = StaticProbabilities(cells_, belief_, DepthImage(now_.depth, camera_),
+                                                 frame.keypoints, settings_);
 }
 
 void DynamicFilter::JudgeTracks(const PoseGuess* guess) { Judge(guess, false); }
@@ -89,11 +90,6 @@ void DynamicFilter::Judge(const PoseGuess* guess, bool surfaces) {
                                           : std::max(judged.geometry[i], kLeastGeometry);
   }
   belief_ = std::move(judged);
-}
-
-void DynamicFilter::Apply(Frame& frame) const {
-  frame.static_probability = StaticProbabilities(cells_, belief_, DepthImage(now_.depth, camera_),
-                                                 frame.keypoints, settings_);
 }
 
 DynamicFilter::GeometryBelief DynamicFilter::JudgeGeometry(const PoseGuess* guess, bool surfaces) {
@@ -205,14 +201,9 @@ void DynamicFilter::Enter(const WorldId& world) {
   world_ = world;
 }
 
-void DynamicFilter::Remember(const Frame& frame, bool extracted, const Se3* T_camera_world,
-                             const WorldId& world) {
+void DynamicFilter::Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world) {
   if (T_camera_world) Enter(world);
-  if (extracted) {
-    tracks_.Seed(frame.keypoints, now_.gray.size());
-  } else {
-    tracks_.SeedCorners();
-  }
+  tracks_.Seed(frame.keypoints, now_.gray.size());
   std::shared_ptr<PastView> view;
   if (T_camera_world) {
     view = std::make_shared<PastView>();

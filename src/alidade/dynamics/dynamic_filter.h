@@ -61,17 +61,17 @@ class DynamicFilter {
   // Mask of the expected moving objects, 255 = moving, one pixel per cell. The extractor avoids
   // these cells.
   cv::Mat ExpectedMovers() const;
-  // Sets frame.static_probability. `guess`: the predicted pose; null when there is none.
+  // Sets frame.static_probability. `guess`: the predicted or aligned pose; null when there is none.
   void Judge(Frame& frame, const PoseGuess* guess);
   // Instead of Judge(), where only RivalShare() and MovedShare() are asked for: with depth,
   // surfaces are not compared with earlier views.
   void JudgeTracks(const PoseGuess* guess);
-  // The same for other keypoints of the image that was judged last.
-  void Apply(Frame& frame) const;
   // Ends the frame. `T_camera_world`: its pose in `world`; null when lost. Tracks are started at
-  // keypoints of the frame if it has features of its own (`extracted`), otherwise at any corners.
-  void Remember(const Frame& frame, bool extracted, const Se3* T_camera_world,
-                const WorldId& world);
+  // its keypoints.
+  void Remember(const Frame& frame, const Se3* T_camera_world, const WorldId& world);
+  // Before Remember(), for a frame without features of its own: starts tracks at any corners that
+  // are not in `left_out` (see FlowTracks), because landmarks are rarely on moving objects.
+  void SeedCorners(const cv::Mat& left_out) { tracks_.SeedCorners(left_out, camera_); }
 
   // Share of the image that agrees on a motion other than that of the pose passed to Judge(), 0…1;
   // see ShareOfRivalMotion().

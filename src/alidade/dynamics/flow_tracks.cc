@@ -7,6 +7,7 @@
 
 #include "alidade/base/parallel.h"
 #include "alidade/features/fast.h"
+#include "alidade/features/mask.h"
 
 namespace alidade {
 namespace {
@@ -79,7 +80,7 @@ void FlowTracks::Advance(const cv::Mat& gray) {
   size_ = gray.size();
 }
 
-void FlowTracks::SeedCorners() {
+void FlowTracks::SeedCorners(const cv::Mat& left_out, const Camera& camera) {
   constexpr int kThreshold = 12;  // gray levels, of the half-size image
   constexpr int kBorder = 18;     // pixels of it
   const cv::Mat& image = pyramid_.front();
@@ -92,7 +93,7 @@ void FlowTracks::SeedCorners() {
     Keypoint keypoint;
     keypoint.raw_x = static_cast<float>(kShrink * corner.x);
     keypoint.raw_y = static_cast<float>(kShrink * corner.y);
-    keypoints.push_back(keypoint);
+    if (!Marks(left_out, keypoint.raw_x, keypoint.raw_y, camera)) keypoints.push_back(keypoint);
   }
   Seed(keypoints, size_);
 }

@@ -32,8 +32,9 @@ class FlowTracks {
   void Advance(const cv::Mat& gray);
   // Starts tracks at keypoints of that frame with no track nearby.
   void Seed(std::span<const Keypoint> keypoints, cv::Size image);
-  // The same at corners of the image.
-  void SeedCorners();
+  // The same at corners of the image. `left_out`: see Marks() (features/mask.h); no track starts
+  // there.
+  void SeedCorners(const cv::Mat& left_out, const Camera& camera);
   const std::vector<FlowTrack>& tracks() const { return tracks_; }
 
  private:

@@ -126,7 +126,6 @@ KeyFrameId Mapper::InsertTwoViews(const TwoViewMap& start) {
   });
   AdjustSettings thorough{settings_.noise, settings_.bundle, settings_.min_noise_ratio};
   thorough.bundle.max_iterations = 20;
-  thorough.bundle.still = 0;
   const Adjustment adjusted =
       AdjustKeyFrames(map, {second}, {first}, camera_, thorough, nullptr, second);
   map_.Commit([&](MapCommit& commit) {

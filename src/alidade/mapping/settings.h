@@ -84,7 +84,7 @@ struct MapperSettings {
   int window_fixed = 20;
   double min_noise_ratio = 0.1;
   BundleSettings bundle{
-      .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6, .still = 1};
+      .max_iterations = 10, .min_relative_decrease = 1e-4, .initial_lambda = 1e-6};
 
   static std::span<const Setting> Table();
   void Check() const;  // throws Error (usage) naming the invalid setting

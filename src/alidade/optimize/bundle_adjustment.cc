@@ -58,16 +58,6 @@ void Store(const BundleLayout& layout, const BundleState& state, BundleProblem& 
   }
 }
 
-// Measured numbers minus unknown ones: the expectation of 2 cost / σ².
-double SpareOf(const BundleProblem& problem, const BundleLayout& layout) {
-  double measured = 0;
-  for (const BundleSighting& sighting : layout.sightings) measured += sighting.weight_r > 0 ? 3 : 2;
-  for (const BundleMotionState& of_imu : problem.motion.states)
-    measured += of_imu.accel_bias_sigma > 0 ? 3 : 0;
-  measured += 12.0 * static_cast<double>(problem.motion.links.size());
-  return measured - 6.0 * layout.rows() - 3.0 * static_cast<double>(layout.points.size());
-}
-
 }  // namespace
 
 void BundleSettings::Check() const {
@@ -82,7 +72,6 @@ void BundleSettings::Check() const {
   if (!(initial_lambda > 0) || !std::isfinite(initial_lambda)) {
     ThrowUsage("initial_lambda: must be above 0");
   }
-  if (!(still >= 0)) ThrowUsage("still: must not be negative");
   if (sparse_above < 0) ThrowUsage("sparse_above: must not be negative");
 }
 
@@ -101,7 +90,6 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
   report.initial_cost = report.final_cost = system.cost;
   if (!system.valid) return report;
 
-  const double spare = SpareOf(problem, layout);
   const bool many = static_cast<int>(layout.free_cameras.size()) > settings.sparse_above;
   SchurSolver solver(layout, many ? ReducedFactor::kFastest : ReducedFactor::kDense);
   BundleStep step;
@@ -119,14 +107,11 @@ BundleReport AdjustBundle(BundleProblem& problem, const BundleSettings& settings
     // A step that promises less than what ends the adjustment is most likely the last one, and then
     // only its cost is needed.
     const double least = settings.min_relative_decrease * system.cost;
-    const bool still =
-        spare > 0 && step.motion * spare < settings.still * settings.still * (2 * system.cost);
-    const bool derivatives = step.predicted >= least && !still;
+    const bool derivatives = step.predicted >= least;
     Linearise(layout, &state, trial, next, derivatives);
     const double actual = system.cost - next.cost;
     const bool better = next.valid && actual > 0;
-    report.converged =
-        step.predicted <= 1e-14 * system.cost || (better && (actual < least || still));
+    report.converged = step.predicted <= 1e-14 * system.cost || (better && actual < least);
     if (better) {
       if (!derivatives && !report.converged) Linearise(layout, &state, trial, next);
       std::swap(state, trial);
@@ -155,15 +140,23 @@ std::optional<Matrix6d> CameraCovariance(const BundleProblem& problem,
   if (!system.valid) return {};
 
   const auto cameras = static_cast<Eigen::Index>(layout.free_cameras.size());
-  const bool has_right =
-      std::any_of(layout.sightings.begin(), layout.sightings.end(),
-                  [](const BundleSighting& sighting) { return sighting.weight_r > 0; });
-  const double spare = SpareOf(problem, layout);
+  double measured = 0;
+  bool has_right = false;
+  for (const BundleSighting& sighting : layout.sightings) {
+    has_right = has_right || sighting.weight_r > 0;
+    measured += sighting.weight_r > 0 ? 3 : 2;
+  }
+  const BundleMotion& motion = problem.motion;
+  for (const BundleMotionState& of_imu : motion.states)
+    measured += of_imu.accel_bias_sigma > 0 ? 3 : 0;
+  measured += 12.0 * static_cast<double>(motion.links.size());
+  const double spare =
+      measured - 6.0 * layout.rows() - 3.0 * static_cast<double>(layout.points.size());
   if (!(spare > 0)) return {};
 
   Eigen::VectorXd scale;
   const auto is_fixed = [](uint8_t fixed) { return fixed != 0; };
-  if (!has_right && problem.motion.links.empty() &&
+  if (!has_right && motion.links.empty() &&
       std::count_if(problem.fixed.begin(), problem.fixed.end(), is_fixed) == 1) {
     const auto fixed = std::find_if(problem.fixed.begin(), problem.fixed.end(), is_fixed);
     const Eigen::Vector3d& origin = state.cameras[fixed - problem.fixed.begin()].centre;

@@ -44,11 +44,6 @@ struct BundleSettings {
   // Damping, relative to the diagonal. For a whole map take 1e-6: where all of it is bent, hundreds
   // of cameras move together, each step weighed down by the damping of all of them.
   double initial_lambda = 1e-4;
-  // Stops when a step moves the cameras by less, all of them together, in standard deviations of
-  // where they are known to be: δ' S δ < still² σ², S being the reduced system at σ = 1 and σ² the
-  // noise by the residuals. Their own noise is 6 times their number, so that what a step of 1 adds
-  // cannot be told from it. Most of what is left is single points. 0: does not stop for it.
-  double still = 0;
   int sparse_above = 100;  // free cameras; above, the reduced system is factored sparse if faster
   void Check() const;      // throws Error naming the field that cannot be
 };
@@ -56,8 +51,7 @@ struct BundleSettings {
 struct BundleReport {
   double initial_cost = 0, final_cost = 0;  // ½ sum of weighted losses, unitless
   int iterations = 0;
-  bool converged =
-      false;  // stopped by the decrease or the motion, not by the iteration limit or `stop`
+  bool converged = false;  // stopped by the decrease, not by the iteration limit or `stop`
 };
 
 // Improves `problem` in place; the cost never rises. Points and cameras without usable observations

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "alidade/base/parallel.h"
@@ -10,11 +11,12 @@
 namespace alidade {
 namespace {
 
-static_assert(sizeof(Intrinsics) == sizeof(SightingLens));
+static_assert(offsetof(BundleSighting, trust) ==
+              offsetof(BundleSighting, u) + 7 * sizeof(double));  // read as eight numbers
 static_assert(sizeof(BundleCamera) == 12 * sizeof(double));
 static_assert(sizeof(SightingTerms) == 32 * sizeof(double));
 
-// Points whose sightings are looked at together: few enough that what they give stays in the cache.
+// Sightings that are evaluated together: few enough that their terms stay in the cache.
 constexpr int kSightingsTogether = 64;
 
 struct ChunkSums {
@@ -30,7 +32,7 @@ inline void Add(const SightingTerms& terms, CameraBlock& camera) {
   for (int i = 0; i < 14; ++i) camera.sums[i] += PairOf(terms.camera + 2 * i);
 }
 
-// Sums of every other sighting of a point, added at the end.
+// Sums of the sightings of a point with even or with odd index, added at the end.
 struct PointSums {
   Double2 N[3]{}, g[2]{}, cost{};  // the first of `g` is another number
 

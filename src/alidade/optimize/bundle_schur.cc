@@ -276,8 +276,6 @@ void SchurSolver::Solve(const Linearisation& system, double lambda, BundleStep& 
     step.valid = false;
     return;
   }
-  step.motion = 0;
-  for (int i = 0; i < rows_; ++i) step.motion += x.segment<6>(6 * i).dot(reduced_[0].right[i]);
   step.cameras.resize(cameras_);
   for (int i = 0; i < cameras_; ++i) step.cameras[i] = x.segment<6>(6 * i);
   step.states.resize(rows_ - cameras_);

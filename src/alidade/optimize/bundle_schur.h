@@ -15,7 +15,6 @@ struct BundleStep {
   std::vector<Vector6d> states;         // (velocity, bias) of the inertial sensor
   std::vector<Eigen::Vector3d> points;  // in the layout's order
   double predicted = 0;                 // decrease of the cost in the quadratic model
-  double motion = 0;                    // δ' S δ of cameras and states, S the reduced system
   bool valid = false;                   // false: the system could not be factored
 };
 

@@ -41,7 +41,7 @@ class EpipolarSearch {
   EpipolarSearch(const EpipolarPair& pair, const Camera& camera, const SemiDenseSettings& settings,
                  LineSearch search);
 
-  // Best match of each pixel within any of its intervals, for up to kMostLanes pixels. Unknown if
+  // Best match of each pixel within any of its intervals, for up to lanes() pixels. Unknown if
   // depth is not observable along the line or no match is good enough. `found`: one per query.
   void Search(std::span<const EpipolarQuery> queries, std::span<Hypothesis> found,
               SearchCount& count);

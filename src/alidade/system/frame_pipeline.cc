@@ -94,7 +94,8 @@ TrackResult FramePipeline::Process(const FrameInput& prepared, double time) {
   if (now.map_left && result.state != TrackState::kTracking)
     result.failure = TrackFailure::kUnknownScale;
   KeepForLater(now, result);
-  movers_.End(*now.placed.frame, !now.aligned, result);
+  if (now.aligned) movers_.SeedCorners(left_out_.With({}));
+  movers_.End(*now.placed.frame, result);
   more_left_out_ = left_out_.See(prepared.image, now.frame) || more_left_out_;
   Publish(now);
   if (settings_.sensor == Sensor::kMono && result.state != TrackState::kInitializing)

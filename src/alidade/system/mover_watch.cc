@@ -51,7 +51,6 @@ void MoverWatch::Begin(const FrameInput& prepared, int number, bool placed, bool
   if (!placed) watched_ = 0;
   looks_ = filter_ && (used_ || (placed && Watches(young)));
   counts_ = looks_ && used_;
-  judged_ = false;
   if (!looks_) return;
   const cv::Mat& seen = prepared.color.empty() ? prepared.image : prepared.color;
   detections_.Offer(number, seen);
@@ -101,7 +100,8 @@ bool MoverWatch::FollowsMover(bool young) {
     LogWarning(
         "much of the image moves: moving objects are left out from now on (--dynamics off disables "
         "this)");
-    used_ = counts_ = true;  // counts_: this frame already gives evidence on landmarks
+    used_ = true;
+    counts_ = sensor_ != Sensor::kRgbd;  // this frame's tracks already give evidence on landmarks
   }
   present_ms_ += watch.Milliseconds();
   return follows;
@@ -112,10 +112,11 @@ void MoverWatch::Judge(Frame& frame, const PoseGuess* guess) {
   if (!looks_) return;
   const Stopwatch watch;
   if (!guess) doubtful_ = 0;
-  if (!judged_ && counts_) filter_->Judge(frame, guess);
-  if (!judged_ && !counts_) filter_->JudgeTracks(guess);
-  if (judged_ && counts_) filter_->Apply(frame);
-  judged_ = true;
+  if (counts_) {
+    filter_->Judge(frame, guess);
+  } else {
+    filter_->JudgeTracks(guess);
+  }
   if (counts_ && frame.picture) {
     Picture picture = *frame.picture;
     const cv::Mat left_out = picture.mask;
@@ -152,15 +153,20 @@ void MoverWatch::Forget() {
   if (filter_) filter_->Forget();
 }
 
-void MoverWatch::End(const Frame& frame, bool extracted, const TrackResult& result) {
+void MoverWatch::End(const Frame& frame, const TrackResult& result) {
   const PartTimer timer(FramePart::kMovers);
   if (!looks_) return;
   looks_ = false;
   const Stopwatch watch;
   const Se3 T_camera_world = result.T_world_camera.Inverse();
-  filter_->Remember(frame, extracted,
-                    result.state == TrackState::kTracking ? &T_camera_world : nullptr, world_);
+  filter_->Remember(frame, result.state == TrackState::kTracking ? &T_camera_world : nullptr,
+                    world_);
   milliseconds_.Add(present_ms_ + watch.Milliseconds());
+}
+
+void MoverWatch::SeedCorners(const cv::Mat& left_out) {
+  const PartTimer timer(FramePart::kMovers);
+  if (looks_) filter_->SeedCorners(left_out);
 }
 
 void MoverWatch::SetCamera(const Camera& camera) {

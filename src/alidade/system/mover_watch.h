@@ -41,8 +41,7 @@ class MoverWatch {
   MoverWatch(const Camera& camera, const SlamSettings& settings,
              const std::shared_ptr<Detector>& detector);
 
-  bool on() const { return used_; }      // moving objects are left out
-  bool looks() const { return looks_; }  // the present frame is examined
+  bool on() const { return used_; }  // moving objects are left out
   // Starts a frame, before its features are extracted. `placed`: the last frame has a pose that
   // optical flow can be compared with. `young`: the frame belongs to a map of one camera that may
   // still be dropped.
@@ -53,8 +52,9 @@ class MoverWatch {
   double detections_age() const { return now_ - answer_time_; }
   cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers(); empty: none
   // Sets the static probabilities of the frame's keypoints, before its pose is estimated, and the
-  // mask of its picture, if it has one. `guess`: the predicted pose; null: there is none. Called
-  // again for the same image, it applies what was found to the keypoints of `frame`.
+  // mask of its picture, if it has one. `guess`: the predicted or aligned pose; null: there is
+  // none. Called again for the same image, it applies what was found to the keypoints of `frame`,
+  // and `guess` is not used.
   void Judge(Frame& frame, const PoseGuess* guess);
   // Call once for each frame judged with a guess. True if the poses of the last frames follow a
   // moving object, while most of the image agrees on another motion. With auto, moving objects are
@@ -67,8 +67,9 @@ class MoverWatch {
   // on moving objects, since then the segmentation is probably wrong.
   LandmarkNews NewsOf(const TrackEstimate& estimate, const MapSnapshot& map) const;
   void Place(const WorldId& world) { world_ = world; }  // the world that the frame's pose is in
-  // `extracted`: the frame has features of its own.
-  void End(const Frame& frame, bool extracted, const TrackResult& result);
+  // Before End(), for a frame without features of its own; see DynamicFilter.
+  void SeedCorners(const cv::Mat& left_out);
+  void End(const Frame& frame, const TrackResult& result);
   // All frames from now on are of this camera; what was estimated about the image is dropped.
   void SetCamera(const Camera& camera);
   // An exception ended a frame: drops everything. If the filter cannot be created again, dynamics
@@ -100,7 +101,6 @@ class MoverWatch {
   std::atomic<bool> used_{false};        // moving objects are left out, from the next frame on
   bool looks_ = false;                   // the filter processes the present frame
   bool counts_ = false;                  // moving objects are left out of the present frame
-  bool judged_ = false;                  // the present image was judged
   int watched_ = 0;                      // auto: consecutive examined frames
   int rest_ = 0;                         // auto: frames until examination resumes
   std::deque<double> moved_;             // DynamicFilter::MovedShare() of the last examined frames

@@ -10,9 +10,10 @@
 namespace alidade {
 
 // Whether the frame may do without features of its own. Frames that are processed again later need
-// them.
+// them. Where moving objects are left out every frame needs them: with depth, aligned frames
+// followed people who fill the image.
 bool FramePipeline::MayAlign(int number) const {
-  return settings_.tracker.align && session_.state() == SessionState::kTracking &&
+  return settings_.tracker.align && session_.state() == SessionState::kTracking && !movers_.on() &&
          !young_.WantsGlance(number) && !early_.Wants(number) && !CollectsForRebuild() &&
          !KeepsForFixedParts();
 }
@@ -24,19 +25,14 @@ bool FramePipeline::AlignFrame(const FrameInput& prepared, double time, PresentF
   const Stopwatch watch;
   MapSnapshot map = workers_.map().Snapshot();
   tracker_.SetTurn(time, inertial_.TurnBetween(tracker_.last_time(), time));
-  Tracker::JudgeFrame judge;
-  if (movers_.looks()) {
-    judge = [&](Frame& frame, const PlacedFrame& placed) {
-      const PoseGuess where = GuessOf(placed, tracker_.reference(), map);
-      movers_.Judge(frame, &where);
-    };
-  }
-  std::optional<TrackEstimate> estimate = tracker_.Align(
-      prepared.image, prepared.depth, time, number, left_out_.With(movers_.Expected()), map, judge);
+  std::optional<TrackEstimate> estimate =
+      tracker_.Align(prepared.image, prepared.depth, time, number, left_out_.With({}), map);
   if (!estimate) return false;
   now.frame = std::const_pointer_cast<Frame>(estimate->placed.frame);
   now.placed.frame = now.frame;
   track_ms_.Add(watch.Milliseconds());
+  const PoseGuess where = GuessOf(estimate->placed, tracker_.reference(), map);
+  movers_.Judge(*now.frame, &where);
   WatchReadout(*estimate, map);
   now.aligned = AlignedEstimate{std::move(*estimate), std::move(map)};
   return true;

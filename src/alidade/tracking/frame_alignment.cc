@@ -123,8 +123,8 @@ const Patch* FrameAlignment::WarpedPatch(size_t level, const ReferencePoint& poi
     const float moved = 0.5f * Patch::kSide * change.cwiseAbs().rowwise().sum().maxCoeff();
     if (moved <= kSameWarp) return last.usable ? &last.patch : nullptr;
   } else {
-    index = static_cast<int>(warped_.size());
     warped_.emplace_back();
+    index = static_cast<int>(warped_.size()) - 1;
   }
   Warped& warped = warped_[static_cast<size_t>(index)];
   warped.warp = warp;

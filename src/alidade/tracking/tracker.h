@@ -56,14 +56,10 @@ class Tracker {
   // The frame of `image` by aligning the landmarks of the last extracted frame with it, instead of
   // extracting its features; its keypoints are those landmarks. `depth` may be empty. `left_out`:
   // CV_8U of any size, stretched over the image, nonzero where nothing is used; may be empty.
-  // `judge`, if any, sets the frame's static_probability from its pose if all of it is static. It
-  // is called at most once, and not where too few landmarks are found.
   // nullopt: features are needed, because a keyframe is due or too few landmarks are found; `align`
   // is off; or there is no such frame.
-  using JudgeFrame = std::function<void(Frame&, const PlacedFrame&)>;
   std::optional<TrackEstimate> Align(const cv::Mat& image, const cv::Mat& depth, double time,
-                                     int number, const cv::Mat& left_out, const MapSnapshot& map,
-                                     const JudgeFrame& judge = {});
+                                     int number, const cv::Mat& left_out, const MapSnapshot& map);
   // Changes the readout time (Camera::readout) from the next frame on.
   void SetReadout(const std::array<double, 2>& readout) { camera_.readout = readout; }
   // Rotation R_now_last of the frame at `time` since the last frame, as an inertial sensor tells
@@ -151,7 +147,6 @@ class Tracker {
   void CountAligned(const ReferenceView& view, std::span<const AlignedPoint> aligned,
                     TrackEstimate& estimate) const;
   bool SufficesAligned(const TrackEstimate& estimate);
-  int LeastAligned() const { return 2 * Scaled(settings_.min_tracked); }
   void UndoShutter(Frame& frame, const PlacedFrame& placed, const MapSnapshot& map) const;
   struct InverseDepthsSeen {
     std::vector<float> of_keypoints;  // 1 / map units; 0: unknown

@@ -23,13 +23,13 @@ void Tracker::KeepReference(const PlacedFrame& placed, KeyFrameId keyframe,
                             const MapSnapshot& map) {
   if (extracted_.empty() || placed.frame->number != extracted_number_) return;
   const KeyFrame* found = map.Find(keyframe);
+  reference_ = {};
+  alignment_.SetReference(extracted_, placed.frame->keypoints.size());
   reference_.frame = placed.frame;
   reference_.matches = placed.matches;
   reference_.anchor = AnchorTo(map.state(), keyframe, placed.T_camera_world);
   reference_.is_keyframe = found && found->frame->number == placed.frame->number;
   reference_.inliers = placed.inliers;
-  reference_.most_found = 0;
-  alignment_.SetReference(extracted_, placed.frame->keypoints.size());
   extracted_.release();
 }
 
@@ -45,7 +45,7 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
     LandmarkId& id = reference_.matches[k];
     id = map.Current(id);  // older ids are released
     const Landmark* landmark = id.valid() ? map.Find(id) : nullptr;
-    if (!landmark || !reference_.frame->IsUsable(static_cast<int>(k))) continue;
+    if (!landmark) continue;
     const Keypoint& keypoint = reference_.frame->keypoints[k];
     const Eigen::Vector3d p = view.T_camera_world * landmark->p_world;
     if (!(p.z() > 0)) continue;
@@ -62,7 +62,7 @@ Tracker::ReferenceView Tracker::ViewReference(const MapSnapshot& map) {
 
 std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat& depth, double time,
                                             int number, const cv::Mat& left_out,
-                                            const MapSnapshot& map, const JudgeFrame& judge) {
+                                            const MapSnapshot& map) {
   if (!reference_.frame || !last_.frame || unproven_ > 0 ||
       number - reference_.frame->number >= settings_.max_keyframe_gap ||
       !(time - last_.frame->time <= settings_.max_motion_age) ||
@@ -90,15 +90,6 @@ std::optional<TrackEstimate> Tracker::Align(const cv::Mat& image, const cv::Mat&
   TrackEstimate estimate;
   estimate.moved = MoveByErrors(view, aligned, *frame);
   estimate.reference = reference_.anchor.keyframe;
-  if (judge) {
-    PlacedFrame guess = placed;
-    Optimise(guess, map);
-    if (guess.inliers < LeastAligned()) return std::nullopt;
-    judge(*frame, guess);
-    for (size_t k = 0; k < placed.matches.size(); ++k) {
-      if (!frame->IsUsable(static_cast<int>(k))) placed.matches[k] = {};
-    }
-  }
   estimate.agreement = Optimise(placed, map);
   estimate.placed = std::move(placed);
   CountAligned(view, aligned, estimate);
@@ -184,7 +175,8 @@ void Tracker::CountAligned(const ReferenceView& view, std::span<const AlignedPoi
 bool Tracker::SufficesAligned(const TrackEstimate& estimate) {
   const PlacedFrame& placed = estimate.placed;
   reference_.most_found = std::max(reference_.most_found, placed.inliers);
-  if (estimate.agreement < settings_.good_agreement || placed.inliers < LeastAligned() ||
+  if (estimate.agreement < settings_.good_agreement ||
+      placed.inliers < 2 * Scaled(settings_.min_tracked) ||
       placed.log_odds < LogOdds(settings_.evidence.min_probability))
     return false;
   const int of_reference = std::max(reference_.inliers, reference_.most_found);
