@@ -328,15 +328,9 @@ void Tracker::Judge(TrackEstimate& estimate, double prior, const MapSnapshot& ma
   if (has_depth_) passing_.Update(placed, map.corrections());
 }
 
-// The number of landmarks that are found in extracted frames scatters. If all frames are extracted,
-// the first low number makes a keyframe. Aligned frames lose landmarks steadily; for as many
-// keyframes the limit lies higher by what a number loses by chance: two σ of the Poisson
-// distribution of the loss, and at most half of the loss.
 double Tracker::LeastInliers() const {
-  const double share = has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono;
-  const double loss = (1 - share) * most_inliers_;
-  const double scatter = reference_.most_found > 0 ? std::min(2 * std::sqrt(loss), loss / 2) : 0;
-  return settings_.align ? most_inliers_ - loss + scatter : share * most_inliers_;
+  return (has_depth_ ? settings_.keyframe_share_depth : settings_.keyframe_share_mono) *
+         most_inliers_;
 }
 
 bool Tracker::WantsKeyFrame(const PlacedFrame& placed, double agreement) const {
