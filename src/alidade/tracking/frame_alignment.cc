@@ -21,7 +21,6 @@ constexpr float kLinear = 2;         // pixels: gradients predict brightness no 
 constexpr double kSmallStep = 0.05;  // pixels of the level: the pose is found
 constexpr float kReach = 6;          // pixels of the level: largest error of the pose found before
 constexpr float kMinCorrelation = 0.8f;
-constexpr float kSameWarp = 0.1f;  // pixels, at the corners of a patch
 
 double ScaleOf(size_t level) { return 1 << level; }
 
@@ -76,8 +75,6 @@ void FrameAlignment::SetReference(const cv::Mat& reference, size_t keypoints) {
   reference_ = HalvedImages(reference, kLevels);
   patches_.clear();
   patch_of_.assign(reference_.size(), std::vector<int>(keypoints, kUnknown));
-  warped_.clear();
-  warped_of_.assign(keypoints, kUnknown);
 }
 
 std::vector<AlignedPoint> FrameAlignment::Align(const Camera& camera, const cv::Mat& image,
@@ -110,26 +107,6 @@ const Patch* FrameAlignment::PatchOn(size_t level, const ReferencePoint& point) 
     if (usable) patches_.push_back(patch);
   }
   return index == kUnusable ? nullptr : &patches_[static_cast<size_t>(index)];
-}
-
-// The patch as it should look now. It is cut again only when its corners moved by kSameWarp pixels
-// since the last time; its middle, which is what is looked for, does not move.
-const Patch* FrameAlignment::WarpedPatch(size_t level, const ReferencePoint& point,
-                                         const Eigen::Matrix2f& warp) {
-  int& index = warped_of_[static_cast<size_t>(point.keypoint)];
-  if (index != kUnknown) {
-    const Warped& last = warped_[static_cast<size_t>(index)];
-    const Eigen::Matrix2f change = warp - last.warp;
-    const float moved = 0.5f * Patch::kSide * change.cwiseAbs().rowwise().sum().maxCoeff();
-    if (moved <= kSameWarp) return last.usable ? &last.patch : nullptr;
-  } else {
-    warped_.emplace_back();
-    index = static_cast<int>(warped_.size()) - 1;
-  }
-  Warped& warped = warped_[static_cast<size_t>(index)];
-  warped.warp = warp;
-  warped.usable = CutPatch(reference_[level], OnLevel(point.raw, level), warp, warped.patch);
-  return warped.usable ? &warped.patch : nullptr;
 }
 
 // Gauss-Newton steps: each patch measures how far its landmark is from where the pose predicts it,
@@ -168,7 +145,7 @@ void FrameAlignment::AlignOn(size_t level, const Camera& camera,
 }
 
 AlignedPoint FrameAlignment::Find(const Camera& camera, const ReferencePoint& point,
-                                  const Se3& T_camera_reference, const Se3& T_camera_world) {
+                                  const Se3& T_camera_reference, const Se3& T_camera_world) const {
   AlignedPoint aligned;
   const Eigen::Vector3d q = T_camera_world * point.p_world;
   const double z = T_camera_reference.R.col(2).dot(q - T_camera_reference.t);  // in the reference
@@ -184,12 +161,13 @@ AlignedPoint FrameAlignment::Find(const Camera& camera, const ReferencePoint& po
   Eigen::Vector2f place = OnLevel(RawPixel(camera, q), level);
   aligned.expected = HoldsPatch(image, place);
   if (!aligned.expected) return aligned;
-  const Patch* patch = WarpedPatch(level, point, turned.inverse().cast<float>());
-  if (!patch) {
+  Patch patch;
+  if (!CutPatch(reference_[level], OnLevel(point.raw, level), turned.inverse().cast<float>(),
+                patch)) {
     aligned.expected = false;
     return aligned;
   }
-  aligned.found = AlignPatch(*patch, image, kReach, kMinCorrelation, place);
+  aligned.found = AlignPatch(patch, image, kReach, kMinCorrelation, place);
   aligned.raw = FromLevel(place, level);
   aligned.turn = static_cast<float>(std::atan2(turned(1, 0), turned(0, 0)));
   return aligned;

@@ -50,20 +50,12 @@ class FrameAlignment {
   const Patch* PatchOn(size_t level, const ReferencePoint& point);
   void AlignOn(size_t level, const Camera& camera, std::span<const ReferencePoint> points,
                Se3& T_camera_world);
-  const Patch* WarpedPatch(size_t level, const ReferencePoint& point, const Eigen::Matrix2f& warp);
   AlignedPoint Find(const Camera& camera, const ReferencePoint& point,
-                    const Se3& T_camera_reference, const Se3& T_camera_world);
+                    const Se3& T_camera_reference, const Se3& T_camera_world) const;
 
   std::vector<cv::Mat> reference_, image_;  // halved images, the largest first
   std::vector<Patch> patches_;              // of the reference; neither turned nor scaled
   std::vector<std::vector<int>> patch_of_;  // index by level, keypoint; or kUnknown, kUnusable
-  struct Warped {
-    Eigen::Matrix2f warp;
-    bool usable = false;
-    Patch patch;
-  };
-  std::vector<Warped> warped_;  // of the reference, as they were last looked for
-  std::vector<int> warped_of_;  // index by keypoint, or kUnknown
 };
 
 }  // namespace alidade
