@@ -214,7 +214,8 @@ TEST(Architecture, InstalledHeadersIncludeInstalledHeadersOnly) {
 // for both.
 TEST(Architecture, TypesOfHeadersHaveNamesOfTheirOwn) {
   const std::regex space(R"(^namespace (?:ALIDADE_API )?(alidade\S*) \{.*)"),
-      type(R"(^(?:struct|class|enum class) (?:ALIDADE_API )?(?:alignas\(\d+\) )?(\w+(?:::\w+)*)\b[^;]*\{$)");
+      type(
+          R"(^(?:struct|class|enum class) (?:ALIDADE_API )?(?:alignas\(\d+\) )?(\w+(?:::\w+)*)\b[^;]*\{$)");
   const fs::path sources = fs::path(ALIDADE_SOURCE_DIR) / "src/alidade";
   std::map<std::string, std::string> headers;  // by the type's full name
   for (const std::string& path : SourcesUnder(sources, sources)) {
