@@ -102,7 +102,7 @@ FixedParts::Corners FixedParts::Compare(const cv::Mat& thumbnail) const {
       to_change[x] = more_x * more_x + more_y * more_y;
     }
   }
-  const cv::Vec3f third = cv::Vec3f::all(1.0f / 3);  // cv::blur() would add 80 kB to the web page
+  const cv::Vec3f third = cv::Vec3f::all(1.0f / 3);  // smaller in WebAssembly than cv::blur()
   for (cv::Mat* sums : {&xx, &yy, &xy, &change})
     cv::sepFilter2D(*sums, *sums, CV_32F, third, third);
   Corners corners{cv::Mat(then_.size(), CV_8U, cv::Scalar(0)),

@@ -77,12 +77,11 @@ void FlowTracks::Advance(const cv::Mat& gray) {
     tracks_ = std::move(kept);
   }
   pyramid_ = std::move(pyramid);
-  size_ = gray.size();
 }
 
 void FlowTracks::SeedCorners(const cv::Mat& left_out, const Camera& camera) {
   constexpr int kThreshold = 12;  // gray levels, of the half-size image
-  constexpr int kBorder = 18;     // pixels of it
+  constexpr int kBorder = 18;     // pixels of it: the least that FastCorners() admits
   const cv::Mat& image = pyramid_.front();
   std::vector<Corner> corners =
       FastCorners(image, kThreshold, kBorder, kBorder, image.rows - kBorder);
@@ -95,7 +94,7 @@ void FlowTracks::SeedCorners(const cv::Mat& left_out, const Camera& camera) {
     keypoint.raw_y = static_cast<float>(kShrink * corner.y);
     if (!Marks(left_out, keypoint.raw_x, keypoint.raw_y, camera)) keypoints.push_back(keypoint);
   }
-  Seed(keypoints, size_);
+  Seed(keypoints, {camera.width, camera.height});
 }
 
 void FlowTracks::Seed(std::span<const Keypoint> keypoints, cv::Size image) {

@@ -39,7 +39,6 @@ class FlowTracks {
 
  private:
   std::vector<cv::Mat> pyramid_;  // of the previous frame, at half size
-  cv::Size size_;                 // of the image
   std::vector<FlowTrack> tracks_;
   uint32_t next_id_ = 0;
   int frames_ = 0;

@@ -38,8 +38,8 @@ void ForEachSample(const std::vector<PlacedDepth>& keyframes, const Camera& came
 
 using Voxel = std::array<int64_t, 3>;
 
-// Numbers voxels in the order in which they are met. A table of numbers and a list of voxels: half
-// the memory of std::unordered_map.
+// Numbers voxels in the order in which they are first met. A table of numbers and a list of voxels
+// take less memory than std::unordered_map.
 class VoxelNumbers {
  public:
   size_t Of(const Voxel& voxel) {
@@ -73,7 +73,7 @@ class VoxelNumbers {
   }
 
   std::vector<uint32_t> table_;  // a power of two, at most half full
-  std::deque<Voxel> voxels_;     // needs no room to grow
+  std::deque<Voxel> voxels_;     // grows without copying
 };
 
 // Weighted sums over the samples of one voxel.

@@ -48,7 +48,7 @@ struct KeyFrame {
   uint64_t version = 0;                   // commit that last changed it
 
   // Camera center, world frame.
-  Eigen::Vector3d Centre() const { return T_camera_world.Inverse().t; }
+  Eigen::Vector3d Centre() const { return -(T_camera_world.R.transpose() * T_camera_world.t); }
 };
 
 }  // namespace alidade

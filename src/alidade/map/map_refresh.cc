@@ -16,12 +16,6 @@ bool MoreShared(const Neighbour& a, const Neighbour& b) {
   return a.shared != b.shared ? a.shared > b.shared : a.id < b.id;
 }
 
-// KeyFrame::Centre() without the inverse's rotation.
-Eigen::Vector3d CentreOf(const KeyFrame& keyframe) {
-  const Se3& T = keyframe.T_camera_world;
-  return -(T.R.transpose() * T.t);
-}
-
 // Index of the descriptor with the smallest median distance to all of them; the first of several.
 size_t Representative(const std::vector<const Descriptor*>& descriptors) {
   const size_t count = descriptors.size();
@@ -61,7 +55,7 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
   for (const Observation& seen : landmark->observations) {
     const KeyFrame* keyframe = Find(seen.keyframe);
     descriptors.push_back(&keyframe->frame->descriptors[seen.keypoint]);
-    direction += (landmark->p_world - CentreOf(*keyframe)).normalized();
+    direction += (landmark->p_world - keyframe->Centre()).normalized();
   }
   landmark->descriptor = *descriptors[Representative(descriptors)];
   landmark->normal = direction.normalized().cast<float>();
@@ -71,7 +65,7 @@ void MapCommit::RefreshLandmark(LandmarkId id) {
       std::find_if(landmark->observations.begin(), landmark->observations.end(),
                    [&](const Observation& o) { return o.keyframe == landmark->reference; });
   const int level = reference->frame->keypoints[seen->keypoint].level;
-  const double distance = (landmark->p_world - CentreOf(*reference)).norm();
+  const double distance = (landmark->p_world - reference->Centre()).norm();
   landmark->max_distance = static_cast<float>(distance * ScaleOfLevel(level));
   landmark->min_distance =
       static_cast<float>(distance * ScaleOfLevel(level) / ScaleOfLevel(kPyramidLevels - 1));

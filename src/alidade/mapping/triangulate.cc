@@ -36,10 +36,10 @@ std::vector<int> WithoutLandmark(const KeyFrame& keyframe) {
   return free;
 }
 
-// Keypoints, and how far from a line they may be.
-class Bands {
+// Finds the keypoints near a line, several at once.
+class KeypointsNearLines {
  public:
-  explicit Bands(size_t count) : groups_((count + kLanes - 1) / kLanes) {}
+  explicit KeypointsNearLines(size_t count) : groups_((count + kLanes - 1) / kLanes) {}
   // `reach`: squared distance, pixels². A keypoint that is not set is near no line.
   void Set(size_t i, const Keypoint& keypoint, float reach) {
     Group& group = groups_[i / kLanes];
@@ -82,13 +82,13 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
   const Eigen::Vector2d epipole =
       epipole_seen ? camera.Project(T_b_a.t) : Eigen::Vector2d(-1e9, -1e9);
 
-  Bands bands(free_b.size());
+  KeypointsNearLines candidates(free_b.size());
   for (size_t j = 0; j < free_b.size(); ++j) {
     const Keypoint& keypoint = b.frame->keypoints[free_b[j]];
     const double sigma = settings.noise.sigma_px * ScaleOfLevel(keypoint.level);
     // Close to the epipole all directions are consistent and the depth is undetermined.
     if ((keypoint.pixel() - epipole).squaredNorm() >= 100 * ScaleOfLevel(keypoint.level))
-      bands.Set(j, keypoint, static_cast<float>(kChiSquared1 * sigma * sigma));
+      candidates.Set(j, keypoint, static_cast<float>(kChiSquared1 * sigma * sigma));
   }
   std::vector<Partner> best_for_b(free_b.size());
   for (int i : free_a) {
@@ -99,7 +99,7 @@ std::vector<Partner> MatchAlongLines(const KeyFrame& a, const std::vector<int>& 
     const auto lx = static_cast<float>(line.x() / norm), ly = static_cast<float>(line.y() / norm),
                lc = static_cast<float>(line.z() / norm);
     int best = 256, second = 256, best_j = -1;
-    bands.VisitNear(lx, ly, lc, [&](int j) {
+    candidates.VisitNear(lx, ly, lc, [&](int j) {
       const int distance =
           HammingDistance(a.frame->descriptors[i], b.frame->descriptors[free_b[j]]);
       if (distance < best) {

@@ -64,14 +64,14 @@ class Worker {
       while (after < end &&
              layout_.points[after].end - layout_.points[begin].begin <= kSightingsTogether)
         ++after;
-      Look(begin, after, terms_);
+      Evaluate(begin, after, terms_);
       const int first = layout_.points[begin].begin;
       for (; begin < after; ++begin) {
         const SightingTerms* terms = terms_.data() + (layout_.points[begin].begin - first);
         if (IsBehind(begin, terms)) {
           if (!before_) return false;
           state_.points[begin] = before_->points[begin];
-          Look(begin, begin + 1, of_one_);
+          Evaluate(begin, begin + 1, of_one_);
           terms = of_one_.data();
           if (IsBehind(begin, terms)) return false;
         }
@@ -82,7 +82,7 @@ class Worker {
   }
 
  private:
-  void Look(int begin, int end, std::vector<SightingTerms>& terms) {
+  void Evaluate(int begin, int end, std::vector<SightingTerms>& terms) {
     places_.clear();
     for (int j = begin; j < end; ++j) {
       const BundlePoint& point = layout_.points[j];
@@ -96,8 +96,8 @@ class Worker {
     while (places_.size() % kSightingGroup != 0) places_.push_back(places_.back());
     if (terms.size() < places_.size()) terms.resize(places_.size());
     const Intrinsics& k = layout_.intrinsics;
-    look_({k.fx, k.fy, k.cx, k.cy, k.bf}, places_.data(), static_cast<int>(count), derivatives_,
-          terms.data());
+    evaluate_({k.fx, k.fy, k.cx, k.cy, k.bf}, places_.data(), static_cast<int>(count), derivatives_,
+              terms.data());
   }
 
   bool IsBehind(int j, const SightingTerms* terms) const {
@@ -143,7 +143,7 @@ class Worker {
   Linearisation& result_;
   ChunkSums& sums_;
   bool derivatives_;
-  LookAtSightings look_ = FastestLookAtSightings();
+  EvaluateSightings evaluate_ = FastestEvaluateSightings();
   std::vector<SightingPlace> places_;
   std::vector<SightingTerms> terms_, of_one_;
 };

@@ -1,10 +1,10 @@
-// The reprojection residual of a camera (reproject.h), and which measurements have one.
+// The reprojection residual of a camera (reprojection_formula.h), and which measurements have one.
 #pragma once
 
 #include <cmath>
 
 #include "alidade/geometry/camera.h"
-#include "alidade/optimize/reproject.h"
+#include "alidade/optimize/reprojection_formula.h"
 
 namespace alidade {
 

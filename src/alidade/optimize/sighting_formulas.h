@@ -3,7 +3,7 @@
 // their vectors V before.
 #pragma once
 
-#include "alidade/optimize/reproject.h"
+#include "alidade/optimize/reprojection_formula.h"
 #include "alidade/optimize/sighting_terms.h"
 
 namespace alidade {

@@ -6,8 +6,8 @@
 namespace alidade {
 namespace {
 
-void LookAtPair(const SightingLens& lens, const SightingPlace& a, const SightingPlace& b,
-                bool derivatives, SightingTerms* terms) {
+void EvaluatePair(const SightingLens& lens, const SightingPlace& a, const SightingPlace& b,
+                  bool derivatives, SightingTerms* terms) {
   SightingLanes<Double2> lanes;
   for (int i = 0; i < 9; ++i) lanes.R[i] = Double2{a.camera[i], b.camera[i]};
   for (int i = 0; i < 3; ++i) {
@@ -31,17 +31,17 @@ void LookAtPair(const SightingLens& lens, const SightingPlace& a, const Sighting
 
 }  // namespace
 
-void LookAtSightings2(const SightingLens& lens, const SightingPlace* places, int count,
-                      bool derivatives, SightingTerms* terms) {
+void EvaluateSightings2(const SightingLens& lens, const SightingPlace* places, int count,
+                        bool derivatives, SightingTerms* terms) {
   for (int i = 0; i < count; i += 2)
-    LookAtPair(lens, places[i], places[i + 1], derivatives, terms + i);
+    EvaluatePair(lens, places[i], places[i + 1], derivatives, terms + i);
 }
 
-LookAtSightings FastestLookAtSightings() {
+EvaluateSightings FastestEvaluateSightings() {
 #ifdef ALIDADE_AVX2
-  if (HasAvx2()) return LookAtSightings4;
+  if (HasAvx2()) return EvaluateSightings4;
 #endif
-  return LookAtSightings2;
+  return EvaluateSightings2;
 }
 
 }  // namespace alidade

@@ -25,25 +25,25 @@ struct alignas(16) SightingTerms {
   double cost;  // weighted loss; infinite if the point is behind the camera
 };
 
-// Sightings are looked at in groups of so many: `places` and `terms` have room for whole groups,
-// and the last group's places are all valid.
+// Sightings are evaluated in groups of this size: `places` and `terms` have room for whole groups,
+// and all places of the last group are valid.
 inline constexpr int kSightingGroup = 4;
 
 // Without `derivatives` only the costs of `terms` are set.
-using LookAtSightings = void (*)(const SightingLens& lens, const SightingPlace* places, int count,
-                                 bool derivatives, SightingTerms* terms);
+using EvaluateSightings = void (*)(const SightingLens& lens, const SightingPlace* places, int count,
+                                   bool derivatives, SightingTerms* terms);
 
 // Two sightings at once.
-void LookAtSightings2(const SightingLens& lens, const SightingPlace* places, int count,
-                      bool derivatives, SightingTerms* terms);
+void EvaluateSightings2(const SightingLens& lens, const SightingPlace* places, int count,
+                        bool derivatives, SightingTerms* terms);
 
 #ifdef ALIDADE_AVX2
 // Four at once, with AVX2.
-void LookAtSightings4(const SightingLens& lens, const SightingPlace* places, int count,
-                      bool derivatives, SightingTerms* terms);
+void EvaluateSightings4(const SightingLens& lens, const SightingPlace* places, int count,
+                        bool derivatives, SightingTerms* terms);
 #endif
 
 // The fastest one that this processor admits.
-LookAtSightings FastestLookAtSightings();
+EvaluateSightings FastestEvaluateSightings();
 
 }  // namespace alidade

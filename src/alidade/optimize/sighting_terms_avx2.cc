@@ -37,8 +37,8 @@ namespace {
   Transpose(in, out);
 }
 
-void LookAtFour(const SightingLens& lens, const SightingPlace* places, bool derivatives,
-                SightingTerms* terms) {
+void EvaluateFour(const SightingLens& lens, const SightingPlace* places, bool derivatives,
+                  SightingTerms* terms) {
   SightingLanes<Double4> lanes;
   const double* rows[4];
 #pragma GCC unroll 4
@@ -75,9 +75,9 @@ void LookAtFour(const SightingLens& lens, const SightingPlace* places, bool deri
 
 }  // namespace
 
-void LookAtSightings4(const SightingLens& lens, const SightingPlace* places, int count,
-                      bool derivatives, SightingTerms* terms) {
-  for (int i = 0; i < count; i += 4) LookAtFour(lens, places + i, derivatives, terms + i);
+void EvaluateSightings4(const SightingLens& lens, const SightingPlace* places, int count,
+                        bool derivatives, SightingTerms* terms) {
+  for (int i = 0; i < count; i += 4) EvaluateFour(lens, places + i, derivatives, terms + i);
 }
 
 }  // namespace alidade

@@ -53,14 +53,13 @@ class MoverWatch {
   cv::Mat Expected() const;  // as DynamicFilter::ExpectedMovers(); empty: none
   // Sets the static probabilities of the frame's keypoints, before its pose is estimated, and the
   // mask of its picture, if it has one. `guess`: the predicted or aligned pose; null: there is
-  // none. Called again for the same image, it applies what was found to the keypoints of `frame`,
-  // and `guess` is not used.
+  // none.
   void Judge(Frame& frame, const PoseGuess* guess);
   // Call once for each frame judged with a guess. True if the poses of the last frames follow a
   // moving object, while most of the image agrees on another motion. With auto, moving objects are
-  // left out from the next frame on if so, or if much of the image moves; this frame already gives
-  // evidence on landmarks. `young`: the frame is in a young map; in older maps the test runs only
-  // while auto has not left anything out.
+  // left out from the next frame on if so, or if much of the image moves; without RGB-D, this frame
+  // already gives evidence on landmarks. `young`: the frame is in a young map; in older maps the
+  // test runs only while auto has not left anything out.
   bool FollowsMover(bool young);
   void Forget();  // drops what was estimated from such poses
   // Returns no evidence if more than half (landmarks.most_on_movers) of the expected landmarks lie

@@ -10,8 +10,7 @@
 namespace alidade {
 
 // Whether the frame may do without features of its own. Frames that are processed again later need
-// them. Where moving objects are left out every frame needs them: with depth, aligned frames
-// followed people who fill the image.
+// them, and so do all frames where moving objects are left out (decision 0038).
 bool FramePipeline::MayAlign(int number) const {
   return settings_.tracker.align && session_.state() == SessionState::kTracking && !movers_.on() &&
          !young_.WantsGlance(number) && !early_.Wants(number) && !CollectsForRebuild() &&

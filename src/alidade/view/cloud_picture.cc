@@ -266,8 +266,8 @@ void DrawLine(const Eigen::Vector3d& p_world, const Eigen::Vector3d& q_world, co
   cv::line(picture, at(p), at(q), color, kFiner + 1, cv::LINE_AA, kFractionBits);
 }
 
-// From far to near, so that no pixel's depth must be stored (15 MB). Of equally near ones the first
-// is in front.
+// From far to near, so that no depth per pixel must be stored. Of equally near ones the first is in
+// front.
 void SortByDepth(std::vector<Dot>& dots) {
   std::sort(dots.begin(), dots.end(), [](const Dot& a, const Dot& b) {
     return a.z > b.z || (a.z == b.z && a.number > b.number);

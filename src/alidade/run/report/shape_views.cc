@@ -51,7 +51,7 @@ ShapeViews WriteShapeViews(OutputFolder& folder, const RunResults& results, cons
                       PathOf(results), results.maps.front().gravity};
   ReturnFreedMemory();
   std::vector<ReportPicture> pictures;
-  for (const auto& [view, name] : kViews) {  // one at a time: each needs 20 MB
+  for (const auto& [view, name] : kViews) {  // one at a time, for less memory
     const cv::Mat drawn = DrawCloud(scene, view);
     if (pictures.empty()) folder.Write("semidense.png", EncodePng(drawn));
     pictures.push_back({name, "image/jpeg", EncodeJpeg(drawn, kJpegQuality)});
