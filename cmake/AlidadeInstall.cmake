@@ -61,7 +61,7 @@ if(TARGET alidade)
   add_dependencies(alidade alidade_static alidade_shared)  # build everything that is installed
 endif()
 # The program and the library load the modules from this folder (base/module), which is specific to the version.
-foreach(MODULE alidade_media alidade_bags alidade_dnn alidade_serve)
+foreach(MODULE alidade_media alidade_bags alidade_dds alidade_dnn alidade_serve)
   if(TARGET ${MODULE})
     install(TARGETS ${MODULE} LIBRARY DESTINATION ${ALIDADE_MODULE_DIR})
     if(TARGET alidade)

@@ -26,6 +26,7 @@ class ClippedSource : public FrameSource {
 
   const SourceInfo& Info() const override { return info_; }
 
+  void Stop() override { source_->Stop(); }
   bool Seek(int frames) override {
     if (!source_->Seek(first_ + frames)) return false;
     done_ = frames;

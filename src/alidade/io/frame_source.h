@@ -51,8 +51,9 @@ struct SourceFrame {
 
 struct SourceInfo {
   std::string name;  // short, usable in a file name
-  // "tum", "euroc", "kitti", "images", "video", "ros", "synth", "camera".
+  // "tum", "euroc", "kitti", "images", "video", "ros", "synth", "camera", "ros2".
   std::string kind;
+  bool live = false;  // images come as they are taken: a camera, topics
   Sensor sensor = Sensor::kMono;
   Camera camera;                // after any rectification
   bool camera_guessed = false;  // no calibration: the field of view is assumed
@@ -85,6 +86,8 @@ class FrameSource {
     (void)frames;
     return false;
   }
+  // From any thread: Next() waits for no further image of a live source, and returns nullopt.
+  virtual void Stop() {}
 };
 
 }  // namespace alidade

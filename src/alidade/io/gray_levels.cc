@@ -53,4 +53,12 @@ cv::Mat GrayLevels::To8Bit(const cv::Mat& image, double time) {
   return gray;
 }
 
+cv::Mat GrayLevels::ColorTo8Bit(const cv::Mat& color) const {
+  if (color.depth() != CV_16U || !range_) return color;
+  const double scale = 255 / (range_->white - range_->black);
+  cv::Mat color8;
+  color.convertTo(color8, CV_8U, scale, -scale * range_->black);
+  return color8;
+}
+
 }  // namespace alidade

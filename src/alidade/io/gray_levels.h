@@ -20,6 +20,8 @@ class GrayLevels {
     double black, white;
   };
   std::optional<Range> range() const { return range_; }
+  // `color` (CV_8UC3 or CV_16UC3) with the brightness of the gray images so far, CV_8UC3.
+  cv::Mat ColorTo8Bit(const cv::Mat& color) const;
 
  private:
   void Learn(const cv::Mat& image);

@@ -3,6 +3,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "alidade/base/parallel.h"
@@ -30,6 +31,7 @@ ReadAhead::~ReadAhead() {
     stop_ = true;
   }
   changed_.notify_all();
+  source_->Stop();
   thread_.join();
 }
 
@@ -42,9 +44,9 @@ void ReadAhead::Run() {
       cpu_seconds_.store(ThreadCpuSeconds());
       if (!frame) break;
       std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return stop_ || queue_.size() < capacity_; });
+      changed_.wait(lock, [this] { return stop_ || info_.live || queue_.size() < capacity_; });
       if (stop_) break;
-      queue_.push_back(std::move(*frame));
+      Push(std::move(*frame));
       changed_.notify_all();
     }
   } catch (...) {
@@ -54,6 +56,27 @@ void ReadAhead::Run() {
   failure_ = failure;
   finished_ = true;
   changed_.notify_all();
+}
+
+void ReadAhead::Push(SourceFrame frame) {
+  if (info_.live && !queue_.empty()) {
+    std::vector<ImuSample>& before = queue_.back().imu;
+    frame.imu.insert(frame.imu.begin(), before.begin(), before.end());
+    queue_.pop_back();
+    ++replaced_;
+  }
+  queue_.push_back(std::move(frame));
+}
+
+bool ReadAhead::Wait(double seconds) const {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, std::chrono::duration<double>(seconds),
+                           [this] { return finished_ || !queue_.empty(); });
+}
+
+int ReadAhead::replaced() const {
+  const std::lock_guard lock(mutex_);
+  return replaced_;
 }
 
 bool ReadAhead::ready() const {

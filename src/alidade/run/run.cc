@@ -168,6 +168,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   if (saved && !wanted.sensor) wanted.sensor = SensorNamed("the sensor of the map", saved->sensor);
   settings.localize = options.localize;
   wanted.color = settings.WantsColor();
+  wanted.interrupted = Interrupted;
   InspectedSource inspected = OpenInspected(options.source, wanted);
   std::unique_ptr<FrameSource> source = Repeat(std::move(inspected.source), options.repeat);
   setup.source = source->Info();
@@ -175,7 +176,7 @@ RunOutcome Run(const RunOptions& options, const std::vector<RunWatcher*>& watche
   setup.source.told = inspected.told;
   setup.reading = wanted;
   settings.sensor = setup.source.sensor;
-  const bool live = setup.source.kind == "camera";
+  const bool live = setup.source.live;
   settings.threaded = ThreadedFrom(options, live);
   const Rate rate = RateFrom(options, settings.threaded);
   settings.wait_for_mapping = rate.kind == Rate::Kind::kMax && !live;

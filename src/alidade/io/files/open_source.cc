@@ -20,6 +20,7 @@
 #include "alidade/io/files/imu_file.h"
 #include "alidade/io/files/media.h"
 #include "alidade/io/files/video_source.h"
+#include "alidade/io/ros/live/live_source.h"
 #include "alidade/io/ros/source/bag_file.h"
 #include "alidade/io/ros/source/bag_source.h"
 #include "alidade/io/text.h"
@@ -153,6 +154,18 @@ std::optional<ImuModel> ImuModelTold(const std::string& path, const SourceOption
   return model;
 }
 
+// `told` by the source, or what the user's file says instead, of the camera of `info`.
+ImuModel ModelFor(ImuModel told, const std::string& path, const SourceOptions& options,
+                  const SourceInfo& info) {
+  if (std::optional<ImuModel> given = ImuModelTold(path, options)) {
+    if (given->rate <= 0) given->rate = told.rate;
+    told = *given;
+  }
+  told.T_camera_imu =
+      Se3{info.R_camera_rectified.transpose(), Eigen::Vector3d::Zero()} * told.T_camera_imu;
+  return told;
+}
+
 // Adds the readings: those of a file, those of the source, or those beside it.
 std::unique_ptr<FrameSource> WithReadings(Opened opened, const std::string& path,
                                           const SourceOptions& options) {
@@ -170,15 +183,16 @@ std::unique_ptr<FrameSource> WithReadings(Opened opened, const std::string& path
     }
   }
   if (!opened.imu) return std::move(opened.source);
-  ImuModel& model = opened.imu->model;
-  if (std::optional<ImuModel> given = ImuModelTold(path, options)) {
-    if (given->rate <= 0) given->rate = model.rate;
-    model = *given;
-  }
-  const Eigen::Matrix3d& R_camera_rectified = opened.source->Info().R_camera_rectified;
-  model.T_camera_imu =
-      Se3{R_camera_rectified.transpose(), Eigen::Vector3d::Zero()} * model.T_camera_imu;
+  opened.imu->model = ModelFor(opened.imu->model, path, options, opened.source->Info());
   return WithImu(std::move(opened.source), std::move(*opened.imu), told);
+}
+
+std::unique_ptr<FrameSource> OpenTopics(const std::string& path, const SourceOptions& options) {
+  if (options.imu && options.imu != kNoImu)
+    ThrowUsage("--imu FILE needs a recording; live readings come by a topic (ros2:?imu=TOPIC)");
+  std::unique_ptr<TopicSource> source = OpenRos2Source(path, options);
+  if (source->ImuTold()) source->UseImu(ModelFor(*source->ImuTold(), "", options, source->Info()));
+  return source;
 }
 
 // The N of "camera:N".
@@ -202,6 +216,8 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
     if (options.imu && options.imu != kNoImu)
       ThrowUsage("--imu FILE needs a recording, not a live camera");
     source = OpenLiveCameraSource(*number, options);
+  } else if (IsRos2Source(path)) {
+    source = OpenTopics(path, options);
   } else if (IsBagSource(path) && !IsKnownFolder(path)) {
     OpenedBag bag = OpenBagSource(path, options);
     opened = {std::move(bag.source), std::move(bag.imu)};
@@ -213,7 +229,9 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOpt
     CheckIsFile(path);  // otherwise FFmpeg would wait for a pipe's writer
     source = OpenVideoSource(path, options);
   }
+  const bool live = source->Info().live;
   source = Clip(std::move(source), options.first, options.last);
+  if (live) return std::move(source);
   return WithReadings(std::move(opened), path, options);
 }
 

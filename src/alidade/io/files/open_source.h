@@ -26,13 +26,16 @@ struct SourceOptions {
   // The inertial readings: a file of them, or kNoImu. nullopt: those that the source brings.
   std::optional<std::string> imu = {};
   bool color = false;  // read the frames' colors as well, if there are any
+  // While a live source waits for its first images: true ends the wait. Null: it waits on.
+  bool (*interrupted)() = nullptr;
 };
 
 // The kind of source is detected from its content: a TUM RGB-D folder (rgb.txt), EuRoC (mav0/),
 // KITTI odometry (image_0/ times.txt), a folder of images, a video file, a ROS recording (.bag,
 // .db3, .mcap or the folder of a rosbag2; `?image=TOPIC&depth=TOPIC…` after the path selects
-// topics), or `camera:N`. Throws Error: kInput when the source cannot be read or recognized, kUsage
-// when it lacks what the options require.
+// topics), `ros2:` (topics as they are published, with the same options), or `camera:N`. Throws
+// Error: kInput when the source cannot be read or recognized, kUsage when it lacks what the options
+// require.
 std::unique_ptr<FrameSource> OpenSource(const std::string& path, const SourceOptions& options = {});
 
 }  // namespace alidade

@@ -198,6 +198,7 @@ std::unique_ptr<FrameSource> OpenLiveCameraSource(int number, const SourceOption
   SourceInfo info;
   info.name = "camera" + std::to_string(number);
   info.kind = "camera";
+  info.live = true;
   return MakeSource(std::move(info), {}, OpenLiveCamera(number), options);
 }
 

@@ -76,7 +76,7 @@ CameraFinding LearnCamera(const RunOptions& options, const SourceOptions& wanted
     return finding;
   }
   const bool looked_for = source.sensor == Sensor::kMono && calibrate.enabled;
-  if (looked_for && (source.kind == "camera" || !options.calibrate_first)) {  // during the run
+  if (looked_for && (source.live || !options.calibrate_first)) {  // during the run
     settings.EnableSelfCalibration();
     settings.refine.focal_sigma = finding.focal_sigma;
     return finding;

@@ -21,8 +21,9 @@
 namespace alidade {
 namespace {
 
-constexpr int kWarnedFrames = 10;  // warnings about individual frames at most
-constexpr double kBlack = 10;      // mean grey level
+constexpr int kWarnedFrames = 10;   // warnings about individual frames at most
+constexpr double kBlack = 10;       // mean grey level
+constexpr double kLookedUp = 0.05;  // seconds from Ctrl-C to its effect while no image comes
 
 std::atomic<int> g_interrupted{0};  // requests so far
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may touch nothing else");
@@ -201,7 +202,10 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   const bool with_imu = slam.Inertial().given;
   const bool may_drop = settings.threaded;  // the inline schedule gives the same every time
   try {
-    while (!Interrupted()) {
+    while (true) {
+      while (!Interrupted() && !source.Wait(kLookedUp)) {  // a live source may have no images now
+      }
+      if (Interrupted()) break;
       const std::optional<SourceFrame> frame = source.Next();
       if (!frame) break;
       if (!cpu) {
@@ -232,6 +236,7 @@ void RunFrames(ReadAhead& source, const Rate& rate, const SlamSettings& settings
   }
   log.health = slam.Health();
   if (cpu) log.cpu_s = cpu->Seconds();
+  log.late += source.replaced();
   if (wall) log.wall_s = wall->Milliseconds() * 1e-3;
   log.interrupted = Interrupted();
   if (log.dropped > kWarnedFrames)

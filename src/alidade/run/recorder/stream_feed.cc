@@ -28,7 +28,7 @@ StreamSource SourceOf(const std::string& program, const Slam& slam, const RunSet
   source.sensor = NameOf(setup.settings.slam.sensor);
   source.unit = setup.settings.slam.sensor == Sensor::kMono ? "map units" : "m";
   source.frames = setup.source.frames;
-  source.live = setup.source.kind == "camera";
+  source.live = setup.source.live;
   source.camera = slam.camera();
   source.R_camera_rectified = setup.source.R_camera_rectified;
   source.truth = TruthOf(TruthBeside(setup.source_path));
@@ -54,7 +54,7 @@ StreamFeed::~StreamFeed() {
 
 void StreamFeed::Begin(const WatchedRun& run, const std::string& folder) {
   log_ = &run.log;
-  playback_.may_pause = run.setup.source.kind != "camera";
+  playback_.may_pause = !run.setup.source.live;
   Start(run.slam, SourceOf(program_, run.slam, run.setup), folder);
 }
 

@@ -2,6 +2,7 @@
 
 #include "alidade/base/error.h"
 #include "alidade/io/files/file.h"
+#include "alidade/io/ros/live/live_source.h"
 #include "alidade/run/sources/synth_source.h"
 
 namespace alidade {
@@ -17,7 +18,7 @@ std::unique_ptr<FrameSource> OpenAnySource(const std::string& source,
 }
 
 std::string PathOfSource(const std::string& source) {
-  if (IsSynthSource(source) || source.rfind("camera:", 0) == 0) return {};
+  if (IsSynthSource(source) || source.rfind("camera:", 0) == 0 || IsRos2Source(source)) return {};
   return IsThere(source) ? source : source.substr(0, source.find('?'));
 }
 

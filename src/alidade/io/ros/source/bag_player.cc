@@ -11,26 +11,6 @@
 #include "alidade/io/text.h"
 
 namespace alidade {
-namespace {
-
-// Seconds, more than half a frame interval at 30 Hz; the default of TUM's associate.py.
-constexpr double kDepthWithin = 0.02;
-// Seconds. The drivers of cameras that are triggered together may stamp them slightly apart.
-// Rotating at 60 degrees per second, the image moves by about 2 pixels in this time.
-constexpr double kPairWithin = 0.003;
-
-// `levels` are those of the gray image, so that color and gray have the same brightness.
-cv::Mat ColorIn8Bit(const cv::Mat& color, const GrayLevels& levels) {
-  const auto range = levels.range();
-  if (color.depth() != CV_16U || !range) return color;
-  const double scale = 255 / (range->white - range->black);
-  cv::Mat color8;
-  color.convertTo(color8, CV_8U, scale, -scale * range->black);
-  return color8;
-}
-
-}  // namespace
-
 BagPlayer::BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const ChosenTopics& chosen,
                      std::optional<double> max_dt)
     : bag_(std::move(bag)),
@@ -109,7 +89,7 @@ std::optional<SourceFrame> BagPlayer::Next() {
   try {
     const DecodedImage read = Read(image_, i, color_ ? ImageUse::kGrayAndColor : ImageUse::kGray);
     frame.image = preparation_->Left(levels_.To8Bit(read.image, frame.time));
-    if (!read.color.empty()) frame.color = preparation_->Left(ColorIn8Bit(read.color, levels_));
+    if (!read.color.empty()) frame.color = preparation_->Left(levels_.ColorTo8Bit(read.color));
   } catch (const Error& error) {
     frame.problem =
         path_ + ": message " + std::to_string(i) + " of " + image_.name + " " + error.what();

@@ -24,8 +24,6 @@ class BagPlayer : public FrameSource {
   // for stereo.
   BagPlayer(std::unique_ptr<BagFile> bag, std::string path, const ChosenTopics& chosen,
             std::optional<double> max_dt);
-  // Frames per second; see TopicStamps.
-  std::optional<double> Rate() const { return frames_.Rate(); }
   // Must be called once, before the first frame. Sets `info.frames`.
   void Begin(SourceInfo info, ImagePreparation preparation, bool color);
 

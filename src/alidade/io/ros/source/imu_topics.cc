@@ -92,19 +92,22 @@ std::vector<ImuSample> InOrder(std::vector<ImuSample> samples) {
 }
 
 // REP 145 asks for m/s² and rad/s; some drivers know better.
-void ToUnits(std::vector<ImuSample>& samples, const std::string& name) {
+ImuUnits UnitsOf(const std::vector<ImuSample>& samples, const std::string& name) {
   std::vector<double> rates, forces;
   for (const ImuSample& sample : samples) {
     rates.push_back(sample.angular_rate.norm());
     forces.push_back(sample.specific_force.norm());
   }
-  const bool degrees = SeemInDegrees(std::move(rates)), g = SeemInG(std::move(forces));
-  if (degrees) LogWarning(name + ": the angular rates are read as deg/s");
-  if (g) LogWarning(name + ": the accelerations are read as g");
-  for (ImuSample& sample : samples) {
-    if (degrees) sample.angular_rate *= std::numbers::pi / 180;
-    if (g) sample.specific_force *= kStandardGravity;
+  ImuUnits units;
+  if (SeemInDegrees(std::move(rates))) {
+    LogWarning(name + ": the angular rates are read as deg/s");
+    units.rate = std::numbers::pi / 180;
   }
+  if (SeemInG(std::move(forces))) {
+    LogWarning(name + ": the accelerations are read as g");
+    units.force = kStandardGravity;
+  }
+  return units;
 }
 
 // Static transforms: for each frame its neighbors, T_frame_neighbor.
@@ -209,8 +212,10 @@ BagImu ReadBagImu(BagFile& bag, const BagQuery& query, const PictureTopic& image
   if (!turns || !forces) {
     if (!turns && !forces) return {};
     const std::string name = (turns ? turns : forces)->name;
-    return {std::nullopt, name + " is not used: there is no " +
-                              (turns ? "accelerometer" : "gyroscope") + " beside it"};
+    BagImu none;
+    none.told = name + " is not used: there is no " + (turns ? "accelerometer" : "gyroscope") +
+                " beside it";
+    return none;
   }
   ImuRecording imu;
   std::string name = turns->name;
@@ -221,13 +226,19 @@ BagImu ReadBagImu(BagFile& bag, const BagQuery& query, const PictureTopic& image
     imu.samples =
         OnOneClock(InOrder(ReadAll(bag, turns->topic)), InOrder(ReadAll(bag, forces->topic)));
   }
-  ToUnits(imu.samples, name);
+  BagImu result;
+  result.rate_topic = static_cast<int>(turns->topic);
+  result.force_topic = static_cast<int>(forces->topic);
+  result.units = UnitsOf(imu.samples, name);
+  for (ImuSample& sample : imu.samples) {
+    sample.angular_rate *= result.units.rate;
+    sample.specific_force *= result.units.force;
+  }
   if (const auto T = TransformBetween(StaticFrames(bag), image.frame_id, turns->frame_id)) {
     imu.model.T_camera_imu = *T;
     imu.model.rotation_known = imu.model.translation_known = true;
   }
   const bool placed = imu.model.rotation_known;
-  BagImu result;
   result.recording = CleanImu(std::move(imu), name);
   if (result.recording) {
     result.told = "inertial readings " + name + PerSecond(*result.recording) +

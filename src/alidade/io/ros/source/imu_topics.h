@@ -10,9 +10,17 @@
 
 namespace alidade {
 
+struct ImuUnits {
+  double rate = 1, force = 1;
+};
+
 struct BagImu {
   std::optional<ImuRecording> recording;  // of the camera as mounted; nullopt: none
   std::string told;                       // the choice, as part of a sentence; empty: none
+  // Indices of the topics with angular rates and accelerations, often the same; -1: none.
+  int rate_topic = -1, force_topic = -1;
+  // What the messages' numbers were multiplied by to get rad/s and m/s².
+  ImuUnits units;
 };
 
 // Reads the topic that query.imu names ("/imu", or "/gyro,/accel"), else the one with both

@@ -41,6 +41,12 @@ class TopicStamps {
 // "1403715273.262142976"; 6 decimals when the last three digits are 0.
 std::string StampText(int64_t nanoseconds);
 
+// Seconds, more than half a frame interval at 30 Hz; the default of TUM's associate.py.
+inline constexpr double kDepthWithin = 0.02;
+// Seconds. The drivers of cameras that are triggered together may stamp them slightly apart.
+// Rotating at 60 degrees per second, the image moves by about 2 pixels in this time.
+inline constexpr double kPairWithin = 0.003;
+
 // Pairs frames with messages of another topic taken at the same time. Associates the frames around
 // the given one with the messages around it, as for recordings in folders (io/association.h), and
 // reads only these messages' headers.

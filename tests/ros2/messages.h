@@ -1,0 +1,33 @@
+// Messages that cameras' drivers publish, as CDR.
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "alidade/ros/cdr.h"
+#include "alidade/ros/ros_messages.h"
+
+namespace alidade {
+
+inline constexpr char kImageType[] = "sensor_msgs::msg::dds_::Image_";
+inline constexpr char kInfoType[] = "sensor_msgs::msg::dds_::CameraInfo_";
+
+// sensor_msgs/Image of a gray (mono8) or 16-bit depth (16UC1) image.
+inline std::string EncodeRawImage(double time, const std::string& frame_id, const cv::Mat& image) {
+  const RosTime stamp = RosTime::FromSeconds(time);
+  CdrWriter out;
+  out.Add(stamp.sec);
+  out.Add(stamp.nanosec);
+  out.AddText(frame_id);
+  out.Add(static_cast<uint32_t>(image.rows));
+  out.Add(static_cast<uint32_t>(image.cols));
+  out.AddText(image.type() == CV_16UC1 ? "16UC1" : "mono8");
+  out.Add(static_cast<uint8_t>(0));
+  const auto step = static_cast<size_t>(image.cols) * image.elemSize();
+  out.Add(static_cast<uint32_t>(step));
+  const cv::Mat whole = image.isContinuous() ? image : image.clone();
+  out.AddBytes({reinterpret_cast<const char*>(whole.data), step * static_cast<size_t>(image.rows)});
+  return out.Take();
+}
+
+}  // namespace alidade
